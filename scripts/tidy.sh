@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# tidy.sh [--all]: clang-tidy over the sources that changed since origin/main (where that is absent, or is what is
+# checked out: in the last commit), for at most four minutes; --all: over every source, however long it takes.
+# Needs build/release/compile_commands.json.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# Names of changed and of new files below src, stereo, shaders and tests; fails where there is no history to compare with.
+changed() {
+  local base
+  base=$(git merge-base HEAD origin/main) || base=$(git rev-parse HEAD) || return
+  if [[ $base == $(git rev-parse HEAD) ]]; then base=$(git rev-parse --verify HEAD~1) || return; fi
+  git diff --name-only --diff-filter=d "$base" -- src stereo shaders tests
+  git ls-files --others --exclude-standard -- src stereo shaders tests
+}
+
+# The .cpp files to look at: those that changed, and for each changed header one that includes it.
+chosen() {
+  local names name
+  if [[ ${1:-} == --all ]] || ! names=$(changed 2>/dev/null); then
+    find src stereo tests -name '*.cpp'
+    return
+  fi
+  for name in $names; do
+    case $name in
+      *.cpp) echo "$name" ;;
+      stereo/*.h) grep -rlF --include='*.cpp' "\"$name\"" src stereo tests | head -n 1 || true ;;
+      *.h) grep -rlF --include='*.cpp' "\"${name#*/}\"" src stereo tests | head -n 1 || true ;;
+    esac
+  done
+}
+
+# tidy FILE: quiet when it is clean; past the deadline it only names the file.
+tidy() {
+  if ((EPOCHSECONDS > deadline)); then echo "clang-tidy: out of time, not checked: $1"; return; fi
+  local findings
+  findings=$(clang-tidy --quiet -p build/release "$1" 2>&1) && return
+  sed '/ warnings\{0,1\} generated\.$/d' <<<"$findings"
+  return 1
+}
+export -f tidy
+
+deadline=$((EPOCHSECONDS + 240))
+if [[ ${1:-} == --all ]]; then deadline=$((EPOCHSECONDS + 86400)); fi
+export deadline
+mapfile -t files < <(chosen "$@" | sort -u)
+echo "clang-tidy on ${#files[@]} files"
+if ((${#files[@]})); then printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" bash -c 'tidy "$1"' -; fi

@@ -1,0 +1,110 @@
+// Stage 6: the picture (METHOD 3). One work group a tile, one invocation a pixel; the tile's splats pass front to back
+// through shared memory.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+
+layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
+
+layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
+layout(std430, binding = 2) readonly buffer Values { uint values[]; };
+layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
+layout(std430, binding = 4) writeonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
+layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
+uniform uint view_count;
+uniform uint tile_count;
+uniform uint list_per_view;  // 1 with --tiles all: a view's tiles share one list
+
+#define PIXELS (TILE_SIZE * TILE_SIZE)
+#define BATCH (PIXELS < 256 ? PIXELS : 256)  // splats in shared memory at a time: 12 KiB at most
+shared vec4 batch_geometry[BATCH];  // mean, depth, opacity
+shared vec4 batch_conic[BATCH];
+shared vec4 batch_colour[BATCH];
+shared uint alive;  // pixels that still take light
+
+vec2 pixel;
+vec3 colour = vec3(0.0);
+float z_sum = 0.0;
+float transmittance = 1.0;
+bool done = false;
+
+void blend(uint at) {
+  vec4 geometry = batch_geometry[at];
+  vec4 conic = batch_conic[at];
+  precise vec2 d = pixel - geometry.xy;
+  precise float q = conic.x * d.x * d.x + 2.0 * conic.y * d.x * d.y + conic.z * d.y * d.y;
+  precise float alpha = min(float(ALPHA_MAX), geometry.w * exp2(-0.72134752044448170 * q));
+  if (done || q < 0.0 || !(alpha >= float(ALPHA_MIN))) return;
+  precise float left = transmittance * (1.0 - alpha);
+  if (left < float(TRANSMITTANCE_MIN)) {
+    done = true;
+    return;
+  }
+  precise float weight = alpha * transmittance;
+  precise vec3 sum = colour + weight * batch_colour[at].rgb;
+  precise float z = z_sum + weight * geometry.z;
+  colour = sum;
+  z_sum = z;
+  transmittance = left;
+}
+
+void load(uint at, uint end) {
+  uint self = gl_LocalInvocationIndex;
+  if (self >= BATCH) return;
+  if (at < end) {
+    Splat splat = splats[values[at]];
+    batch_geometry[self] = vec4(splat.mean, splat.depth, splat.opacity);
+    batch_conic[self] = splat.conic;
+    batch_colour[self] = splat.colour;
+  } else {
+    batch_geometry[self] = vec4(0.0);  // no opacity: leaves no mark
+    batch_conic[self] = vec4(0.0);
+    batch_colour[self] = vec4(0.0);
+  }
+}
+
+uint view_of(uint tile) {
+  uint v = 0u;
+  while (v + 1u < view_count && tile >= views[v + 1u].tile_offset) ++v;
+  return v;
+}
+
+void main() {
+  uint tile = group_index();
+  if (tile >= tile_count) return;
+  uint view_index = view_of(tile);
+  View view = views[view_index];
+  uint in_view = tile - view.tile_offset;
+  uvec2 at = uvec2(in_view % view.tiles_x, in_view / view.tiles_x) * uint(TILE_SIZE) + gl_LocalInvocationID.xy;
+  pixel = vec2(at);
+  bool inside = at.x < view.width && at.y < view.height;
+  done = !inside;
+
+  uint list = list_per_view != 0u ? view_index : tile;
+  uint end = ranges[2u * list + 1u];
+  uint batch = ranges[2u * list];
+  bool cut = false;
+  for (; batch < end; batch += BATCH) {
+    if (gl_LocalInvocationIndex == 0u) alive = 0u;
+    barrier();
+    if (!done) atomicAdd(alive, 1u);
+    load(batch + gl_LocalInvocationIndex, end);
+    barrier();
+    if (alive == 0u) break;
+    uint size = min(end - batch, uint(BATCH));
+    uint next = 0u;
+    for (; next < size && !done; next += BLEND_UNROLL) {
+      for (uint i = 0u; i < BLEND_UNROLL; ++i) blend(next + i);
+    }
+    cut = cut || (!done && next < size);
+    barrier();
+  }
+  if (cut || (!done && batch < end)) atomicAdd(counters.loop_cut, 1u);
+  if (inside) {
+    uint to = view.pixel_offset + at.y * view.width + at.x;
+    colours[to] = vec4(colour, transmittance);
+    z_sums[to] = z_sum;
+  }
+}

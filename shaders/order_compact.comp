@@ -1,0 +1,46 @@
+// Stage 2, order: the depths and numbers of the Gaussians seen, without gaps and in index order, so that the stable sort
+// after it breaks ties by index.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 1) readonly buffer DepthKeys { uint depth_keys[]; };
+layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };  // scanned
+layout(std430, binding = 3) writeonly buffer Keys { uint keys[]; };
+layout(std430, binding = 4) writeonly buffer Values { uint values[]; };
+uniform uint gaussian_count;
+uniform uint order_group;
+
+#define WORDS (THREADS / 32)
+shared uint masks[WORDS];
+
+void main() {
+  uint block = group_index();
+  if (block * COMPACT_BLOCK >= gaussian_count || amounts[0].count == 0u) return;
+  uint self = gl_LocalInvocationIndex;
+  uint before = block_counts[block];
+  for (uint i = 0u; i < COMPACT_BLOCK / THREADS; ++i) {
+    if (self < WORDS) masks[self] = 0u;
+    barrier();
+    uint at = block * COMPACT_BLOCK + i * THREADS + self;
+    uint key = at < gaussian_count ? depth_keys[order_group * gaussian_count + at] : DEPTH_KEY_NONE;
+    if (key != DEPTH_KEY_NONE) atomicOr(masks[self / 32u], 1u << (self % 32u));
+    barrier();
+    uint rank = uint(bitCount(masks[self / 32u] & ((1u << (self % 32u)) - 1u)));
+    uint all = 0u;
+    for (uint w = 0u; w < WORDS; ++w) {
+      uint seen = uint(bitCount(masks[w]));
+      if (w < self / 32u) rank += seen;
+      all += seen;
+    }
+    if (key != DEPTH_KEY_NONE) {
+      keys[before + rank] = key;
+      values[before + rank] = at;
+    }
+    before += all;
+    barrier();
+  }
+}

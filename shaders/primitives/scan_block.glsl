@@ -1,0 +1,20 @@
+// An exclusive scan over the THREADS values of a work group (Hillis and Steele 1986), for the scan's programs.
+
+shared uint scan_sums[THREADS];
+
+// The sum of the values before this invocation's; every invocation must call it.
+uint scan_group(uint value) {
+  uint at = gl_LocalInvocationIndex;
+  scan_sums[at] = value;
+  barrier();
+  for (uint step = 1u; step < THREADS; step <<= 1) {
+    uint before = at >= step ? scan_sums[at - step] : 0u;
+    barrier();
+    scan_sums[at] = saturating_add(scan_sums[at], before);
+    barrier();
+  }
+  return at == 0u ? 0u : scan_sums[at - 1u];
+}
+
+// The sum over all invocations; after scan_group.
+uint group_total() { return scan_sums[THREADS - 1u]; }

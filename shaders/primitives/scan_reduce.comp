@@ -1,0 +1,27 @@
+// Scan, first of three dispatches: the sum of each block of SCAN_BLOCK values (reduce, then scan: Sengupta 2007; no group
+// waits for another, which GL does not promise to work).
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "shared/saturate.glsl"
+#include "primitives/scan_block.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 1) readonly buffer Values { uint values[]; };
+layout(std430, binding = 2) writeonly buffer BlockSums { uint block_sums[]; };
+uniform uint amount;  // which Amount says how many values there are
+
+void main() {
+  uint count = amounts[amount].count;
+  uint block = group_index();
+  if (block * SCAN_BLOCK >= count) return;
+  uint sum = 0u;
+  for (uint i = 0u; i < SCAN_BLOCK / THREADS; ++i) {
+    uint at = block * SCAN_BLOCK + i * THREADS + gl_LocalInvocationIndex;
+    if (at < count) sum = saturating_add(sum, values[at]);
+  }
+  scan_group(sum);
+  if (gl_LocalInvocationIndex == 0u) block_sums[block] = group_total();
+}

@@ -1,0 +1,5 @@
+// Where an invocation stands in a launch that may have been split over y (gl/dispatch.h); groups of THREADS.
+
+uint group_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
+
+uint thread_index() { return group_index() * THREADS + gl_LocalInvocationIndex; }

@@ -1,0 +1,93 @@
+// Structs that GLSL and C++ share, laid out by std430. Members are float, uint, vec2 and vec4 only: vec3 and mat3 pad
+// differently in the two languages. C++ checks sizes here; tests/gl asks the driver for the offsets.
+#ifndef BINOSPLAT_SHARED_TYPES_H
+#define BINOSPLAT_SHARED_TYPES_H
+
+#ifdef __cplusplus
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+namespace binosplat::shared {
+using uint = std::uint32_t;
+using vec2 = glm::vec2;
+using vec4 = glm::vec4;
+#endif
+
+// One eye's camera. World to eye is v = rows * (p - anchor) + translation, rows the camera's axes (x right, y down,
+// z forward) in the world. The anchor is a point near all views, the same number in the views of a rig: subtracting it
+// first keeps fp32 exact far from the origin, and views with equal anchors and third rows see equal depths to the bit.
+struct View {
+  vec4 row_x;   // axis x, then translation x
+  vec4 row_y;   // axis y, then translation y
+  vec4 row_z;   // axis z (forward), then translation z
+  vec4 anchor;  // world point; w: near, the smallest depth drawn (world units)
+  vec4 eye;     // the eye minus the anchor, world axes; w: unused
+  vec4 lens;    // fx, fy, cx, cy in px
+  uint width;   // px
+  uint height;  // px
+  uint tiles_x;
+  uint tiles_y;
+  uint tile_offset;   // this view's first tile in the frame's list of tiles
+  uint pixel_offset;  // this view's first pixel in the frame's pixel buffers
+  uint order_group;   // views of equal number share one depth order
+  uint th_group;      // views of equal number share Th
+};
+
+// A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
+struct Gaussian {
+  vec4 position;  // world; w: opacity in [0, 1]
+  vec4 rotation;  // unit quaternion (w, x, y, z)
+  vec4 scale;     // standard deviations along its axes, world units; w: unused
+};
+
+// A Gaussian as one view sees it.
+struct Splat {
+  vec2 mean;      // px; the centre of pixel (i, j) lies at (i, j)
+  float depth;    // view z, world units
+  float opacity;  // sigma
+  vec4 conic;     // Q.xx, Q.xy, Q.yy in px^-2; w: sqrt(det C2) in px^2
+  vec4 colour;    // rgb, display-referred; w: unused
+};
+
+// What a frame counts on the GPU, read back after it. An overflow bit says that a buffer was too small for the number
+// wanted; the frame is then drawn again with larger ones. Counts stop at COUNT_MAX instead of wrapping.
+struct Counters {
+  uint visible;       // Gaussians in depth order, summed over the order groups
+  uint order_wanted;  // the most Gaussians that one order group had
+  uint pairs;         // Gaussian-tile pairs wanted, all views
+  uint overflow;      // OVERFLOW_ bits
+  uint loop_cut;      // tiles whose list the driver cut short: the picture is wrong and must not be used
+  uint unused_0;
+  uint unused_1;
+  uint unused_2;
+};
+
+#define COUNT_MAX 0xFFFFFFFFu
+#define DEPTH_KEY_NONE 0xFFFFFFFFu  // of a Gaussian that no view of the order group draws
+#define AMOUNT_ORDER 0u             // what a total counts: the Gaussians of one order group
+#define AMOUNT_PAIRS 1u             // the pairs of one order group, after those of the groups before it
+#define AMOUNT_ALL_PAIRS 2u         // the pairs of all groups
+#define OVERFLOW_ORDER 1u
+#define OVERFLOW_PAIRS 2u
+
+// How many things there are, known to the GPU only, and the indirect dispatches that go over them. Group counts are
+// split into x and y for drivers that allow few along x.
+struct Amount {
+  uint count;
+  uint first;  // where they begin in their buffer
+  uint threads_x, threads_y, threads_z;  // THREADS things a group
+  uint scan_x, scan_y, scan_z;           // SCAN_BLOCK things a group
+  uint sort_x, sort_y, sort_z;           // SORT_BLOCK things a group
+  uint unused;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(View) == 128 && offsetof(View, lens) == 80 && offsetof(View, th_group) == 124);
+static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
+static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
+static_assert(sizeof(Counters) == 32);
+static_assert(sizeof(Amount) == 48 && offsetof(Amount, threads_x) == 8 && offsetof(Amount, sort_x) == 32);
+}  // namespace binosplat::shared
+#endif
+
+#endif

@@ -1,0 +1,18 @@
+// The square of 3D-GS (Kerbl 2023): three standard deviations of the longer axis, whatever the opacity, its tiles found by
+// C's truncation. It cuts tails that can be seen: alpha is still 0.011 there for an opaque splat.
+
+uvec4 tile_box(Splat splat, View view) {
+  // The covariance back from the conic; the half trace m and det of INRIA's lambda.
+  precise float det = splat.conic.w * splat.conic.w;
+  precise float m = 0.5 * (splat.conic.x + splat.conic.z) * det;
+  precise float lambda = m + sqrt(max(0.1, m * m - det));
+  precise float radius = ceil(3.0 * sqrt(lambda));
+  precise vec2 low = (splat.mean - radius) / float(TILE_SIZE);
+  precise vec2 high = (splat.mean + radius + float(TILE_SIZE - 1)) / float(TILE_SIZE);
+  vec2 grid = vec2(view.tiles_x, view.tiles_y);
+  uvec2 first = uvec2(trunc(clamp(low, vec2(0.0), grid)));
+  uvec2 last = uvec2(trunc(clamp(high, vec2(0.0), grid)));
+  return uvec4(first, max(first, last));
+}
+
+uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }

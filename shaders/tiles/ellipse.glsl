@@ -1,0 +1,92 @@
+// Exact (FlashGS, AdR-Gaussian): a tile is touched where the smallest q over the rectangle of its pixel centres is at most
+// rho = 2 ln(sigma / tau), that is where alpha reaches tau. The rounding of fp32 must not drop a pair that the blend would
+// show, so the test has a margin (METHOD 4).
+
+float ellipse_rho(Splat splat) {
+  precise float rho = 1.3862943611198906 * log2(splat.opacity / float(ALPHA_MIN));
+  return rho;
+}
+
+// The test itself, for pixel centres from `low` to `high`.
+bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {
+  precise vec2 a = low - splat.mean;
+  precise vec2 b = high - splat.mean;
+  precise vec2 nearest = clamp(vec2(0.0), a, b);
+  if (nearest == vec2(0.0)) return rho >= -4e-6;
+  precise float xx = splat.conic.x;
+  precise float xy = splat.conic.y;
+  precise float yy = splat.conic.z;
+  // q is convex: its smallest value lies on an edge that faces the mean, one or two of the four.
+  precise float best = 3.4e38;
+  precise vec2 d = nearest;
+  if (nearest.x != 0.0) {
+    precise float y = clamp(-xy * nearest.x / yy, a.y, b.y);
+    precise float q = xx * nearest.x * nearest.x + 2.0 * xy * nearest.x * y + yy * y * y;
+    best = q;
+    d = vec2(nearest.x, y);
+  }
+  if (nearest.y != 0.0) {
+    precise float x = clamp(-xy * nearest.y / xx, a.x, b.x);
+    precise float q = xx * x * x + 2.0 * xy * x * nearest.y + yy * nearest.y * nearest.y;
+    if (q < best) {
+      best = q;
+      d = vec2(x, nearest.y);
+    }
+  }
+  precise float size = abs(xx) * d.x * d.x + 2.0 * abs(xy * d.x * d.y) + abs(yy) * d.y * d.y;
+  precise float margin = 2e-6 * size + 4e-6;
+  return best - margin <= rho;
+}
+
+vec2 tile_low(uvec2 tile) { return vec2(tile * uint(TILE_SIZE)); }
+
+vec2 tile_high(uvec2 tile, View view) {
+  return vec2(min(tile * uint(TILE_SIZE) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u)));
+}
+
+// What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.
+float ellipse_outer_rho(float rho) { return 1.001 * max(rho, 0.0) + 1e-3; }
+
+// C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
+vec3 covariance(Splat splat) {
+  float s = splat.conic.w;
+  return vec3(splat.conic.z * s * s, -splat.conic.y * s * s, splat.conic.x * s * s);
+}
+
+uvec4 tile_box(Splat splat, View view) {
+  float rho = ellipse_rho(splat);
+  if (rho < -4e-6) return uvec4(0u);
+  vec3 c = covariance(splat);
+  precise vec2 extent = sqrt(ellipse_outer_rho(rho) * c.xz) * 1.0001 + 0.01;
+  uvec2 columns = tile_span(splat.mean.x - extent.x, splat.mean.x + extent.x, view.tiles_x);
+  uvec2 rows = tile_span(splat.mean.y - extent.y, splat.mean.y + extent.y, view.tiles_y);
+  return uvec4(columns.x, rows.x, columns.y, rows.y);
+}
+
+uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
+  float rho = ellipse_rho(splat);
+  precise float outer = ellipse_outer_rho(rho);
+  vec3 c = covariance(splat);
+  float low = tile_low(uvec2(0u, row)).y - splat.mean.y;
+  float high = tile_high(uvec2(0u, row), view).y - splat.mean.y;
+  // Where the ellipse reaches furthest to the right and, mirrored, to the left; then the nearest heights in this row.
+  precise float apex = c.y * sqrt(outer / c.x);
+  precise float right_y = clamp(apex, low, high);
+  precise float left_y = clamp(-apex, low, high);
+  precise float lean = c.y / c.z;                             // of the line through the middles of its rows
+  precise float width = splat.conic.w * splat.conic.w / c.z;  // det / C2.yy: the variance within a row
+  precise float left = lean * left_y - sqrt(max(0.0, (outer - left_y * left_y / c.z) * width));
+  precise float right = lean * right_y + sqrt(max(0.0, (outer - right_y * right_y / c.z) * width));
+  precise float slack = 0.01 + 1e-5 * (abs(left) + abs(right));
+  uvec2 columns = tile_span(splat.mean.x + left - slack, splat.mean.x + right + slack, view.tiles_x);
+  columns = clamp(columns, box.xx, box.zz);
+  while (columns.x < columns.y &&
+         !ellipse_touches(splat, rho, tile_low(uvec2(columns.x, row)), tile_high(uvec2(columns.x, row), view))) {
+    ++columns.x;
+  }
+  while (columns.x < columns.y &&
+         !ellipse_touches(splat, rho, tile_low(uvec2(columns.y - 1u, row)), tile_high(uvec2(columns.y - 1u, row), view))) {
+    --columns.y;
+  }
+  return columns;
+}

@@ -1,0 +1,43 @@
+#pragma once
+// What the sub-commands share: how main learns of them, and how they end and write.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/error.h"
+
+namespace binosplat::app {
+
+/// What the command line asked for; main runs it once all options are known to be well formed.
+using Command = std::function<ExitCode()>;
+
+/// Each adds its sub-command and the options of it to `program`, and sets `command` if it is the one that was
+/// named.
+void add_render(CLI::App& program, Command& command);
+void add_compare(CLI::App& program, Command& command);
+
+/// From now on SIGINT and SIGTERM end the program at once, or after the file that is being written
+/// (Uninterrupted), so that no half file is left. Call it before any thread is made.
+void end_cleanly_on_signals();
+
+/// Held while a file is being written.
+class Uninterrupted {
+ public:
+  Uninterrupted();
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+};
+
+/// Throws Error if `path` cannot become an output: a file stands where a folder is needed, no permission, or
+/// it is a folder itself. Leaves no trace; call it before long work.
+void check_output(const std::filesystem::path& path);
+
+/// Writes `value` for people and programs to read. Numbers that are not finite become null, as JSON has none.
+void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& value);
+
+}  // namespace binosplat::app

@@ -1,0 +1,137 @@
+// binosplat compare: by how much two pictures differ, and where.
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "app/command.h"
+#include "formats/image_file.h"
+#include "measure/metrics.h"
+
+namespace binosplat::app {
+
+namespace {
+
+struct CompareOptions {
+  std::string a;
+  std::string b;
+  std::optional<double> min_psnr;
+  std::string difference;
+  std::string json;
+};
+
+struct Comparison {
+  double psnr = 0.0;
+  double ssim = 0.0;
+  measure::Difference largest;
+};
+
+// Grey as three equal channels, so that it can be compared with colour.
+Image as_colour(const Image& grey) {
+  Image colour(grey.width, grey.height, 3);
+  for (std::size_t k = 0; k < colour.data.size(); ++k) colour.data[k] = grey.data[k / 3];
+  return colour;
+}
+
+void make_comparable(const CompareOptions& options, Image& a, Image& b) {
+  if (a.width != b.width || a.height != b.height) {
+    fail("{} is {} x {} px and {} is {} x {}: only pictures of one size can be compared", options.a, a.width,
+         a.height, options.b, b.width, b.height);
+  }
+  if ((a.channels == 4) != (b.channels == 4)) {
+    const bool first = a.channels == 4;
+    fail("{} has alpha and {} has none: draw both with the same --background", first ? options.a : options.b,
+         first ? options.b : options.a);
+  }
+  if (a.channels < b.channels) a = as_colour(a);
+  if (b.channels < a.channels) b = as_colour(b);
+}
+
+const char* channel_name(const Image& image, int channel) {
+  static const char* const names[] = {"red", "green", "blue", "alpha"};
+  return image.channels == 1 ? "grey" : names[channel];
+}
+
+void print(const Comparison& found, const Image& image) {
+  if (std::isinf(found.psnr) && found.psnr > 0) {
+    fmt::print("PSNR           infinite: the pictures are equal\n");
+  } else {
+    fmt::print("PSNR           {:.4f} dB\n", found.psnr);
+  }
+  if (std::isnan(found.ssim)) {
+    fmt::print(
+        "SSIM           undefined: the pictures are smaller than its window of 11 x 11 px, or hold a NaN\n");
+  } else {
+    fmt::print("SSIM           {:.6f}\n", found.ssim);
+  }
+  if (found.largest.max > 0.0) {
+    fmt::print("largest error  {:.6f} ({:.2f} of 255) at x {}, y {}, {}\n", found.largest.max,
+               255.0 * found.largest.max, found.largest.x, found.largest.y,
+               channel_name(image, found.largest.channel));
+  }
+}
+
+nlohmann::ordered_json to_json(const CompareOptions& options, const Comparison& found, const Image& image) {
+  nlohmann::ordered_json json = {{"version", BINOSPLAT_VERSION},
+                                 {"a", options.a},
+                                 {"b", options.b},
+                                 {"width", image.width},
+                                 {"height", image.height},
+                                 {"equal", found.largest.max == 0.0},
+                                 {"psnr_db", found.psnr},  // null where equal: infinite
+                                 {"ssim", found.ssim},
+                                 {"largest_error",
+                                  {{"value", found.largest.max},
+                                   {"x", found.largest.x},
+                                   {"y", found.largest.y},
+                                   {"channel", channel_name(image, found.largest.channel)}}}};
+  if (options.min_psnr) json["min_psnr_db"] = *options.min_psnr;
+  return json;
+}
+
+ExitCode compare(const CompareOptions& options) {
+  if (!options.difference.empty()) check_output(options.difference);
+  if (!options.json.empty()) check_output(options.json);
+  Image a = load_image(options.a);
+  Image b = load_image(options.b);
+  make_comparable(options, a, b);
+  // What a screen shows: an EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
+  a = measure::clamped(a);
+  b = measure::clamped(b);
+  const Comparison found = {measure::psnr(a, b), measure::ssim(a, b), measure::largest_difference(a, b)};
+  print(found, a);
+  if (!options.difference.empty()) {
+    const double gain = measure::difference_gain(found.largest.max);
+    const Uninterrupted hold;
+    save_png(options.difference, measure::difference_picture(a, b, gain));
+    fmt::print("difference     {} (times {})\n", options.difference, gain);
+  }
+  if (!options.json.empty()) save_json(options.json, to_json(options, found, a));
+  if (options.min_psnr && !(found.psnr >= *options.min_psnr)) {
+    throw Error(ExitCode::fell_short,
+                fmt::format("{:.4f} dB fall short of --min-psnr {}", found.psnr, *options.min_psnr));
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("compare", "Say by how much two pictures differ, and where");
+  const auto options = std::make_shared<CompareOptions>();
+  sub->add_option("A", options->a, "Picture: PNG, JPEG or OpenEXR")->required();
+  sub->add_option("B", options->b, "Picture of the same size")->required();
+  sub->add_option("--min-psnr", options->min_psnr, "Exit code 1 if PSNR is below this")->type_name("DB");
+  sub->add_option("--difference", options->difference, "Write the absolute error, amplified, as PNG")
+      ->type_name("FILE");
+  sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
+  sub->footer(
+      "OpenEXR is brought back to display values by its header; values are clamped to 0 to 1.\n"
+      "Examples:\n"
+      "  binosplat compare drawn.png photo.jpg\n"
+      "  binosplat compare a.exr b.png --min-psnr 50 --difference error.png");
+  sub->callback([options, &command] { command = [options] { return compare(*options); }; });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,66 @@
+// The command line: finds the sub-command, runs it, and turns what went wrong into a line and an exit code.
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "app/command.h"
+#include "base/log.h"
+
+namespace {
+
+using binosplat::Error;
+using binosplat::ExitCode;
+
+constexpr const char* epilogue =
+    "`binosplat SUBCOMMAND --help` has the options and examples.\n"
+    "Exit codes: 0 done; 1 a comparison fell short; 2 input, output or usage is wrong; 3 no usable OpenGL; 4 "
+    "out of "
+    "memory.";
+
+int end(ExitCode code, const std::string& text) {
+  binosplat::log_line(text);
+  return static_cast<int>(code);
+}
+
+// Options that cannot be understood end in CLI::ParseError, everything else that is wrong in Error.
+int run(int argc, char** argv) {
+  CLI::App program(
+      "binosplat draws both eyes of a 3D Gaussian Splatting model, and proves the pictures right.",
+      "binosplat");
+  program.set_version_flag("--version", "binosplat " BINOSPLAT_VERSION);
+  program.require_subcommand(1);
+  program.footer(epilogue);
+  binosplat::app::Command command;
+  binosplat::app::add_render(program, command);
+  binosplat::app::add_compare(program, command);
+  try {
+    program.parse(argc, argv);
+    return static_cast<int>(command());
+  } catch (const CLI::Success& asked) {
+    return program.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = program.get_subcommands();
+    const std::string hint = chosen.empty() ? "" : chosen.front()->get_name() + " ";
+    return end(ExitCode::bad_input, fmt::format("{}\n  see: binosplat {}--help", error.what(), hint));
+  } catch (const Error& error) {
+    return end(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return end(
+        ExitCode::out_of_memory,
+        "out of memory: the model and the pictures do not fit; try a smaller --size, or fewer Gaussians");
+  } catch (const std::exception& error) {
+    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Writing beyond a limit of file size then fails like a full disk, with an error that can be reported.
+  std::signal(SIGXFSZ, SIG_IGN);
+  binosplat::app::end_cleanly_on_signals();
+
+  return run(argc, argv);
+}

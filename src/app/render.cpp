@@ -1,0 +1,151 @@
+// binosplat render: from options to pictures, in the order in which mistakes are cheapest to find.
+
+#include <cstdio>
+#include <memory>
+
+#include "app/command.h"
+#include "app/render_options.h"
+#include "app/render_outputs.h"
+#include "app/render_report.h"
+#include "app/shots.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "formats/image_file.h"
+#include "formats/model_file.h"
+#include "gl/context.h"
+#include "measure/metrics.h"
+#include "render/frame.h"
+#include "scene/demo_room.h"
+#include "scene/framing.h"
+
+namespace binosplat::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* demo_scene = "demo:room";
+
+// The file of a view's photo, or nothing.
+std::optional<fs::path> find_photo(const fs::path& folder, const Shot& shot) {
+  if (fs::is_regular_file(folder / shot.name)) return folder / shot.name;
+  for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
+    if (fs::is_regular_file(folder / (shot.stem + ending))) return folder / (shot.stem + ending);
+  }
+  return std::nullopt;
+}
+
+void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
+  for (const Shot& shot : shots) {
+    if (find_photo(folder, shot)) return;
+  }
+  fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, shots[0].stem);
+}
+
+// PSNR of the picture as 8 bits would keep it against the photo.
+std::optional<double> photo_psnr(const RenderOptions& options, const Shot& shot, const Picture& picture) {
+  if (options.photos.empty()) return std::nullopt;
+  const auto file = find_photo(options.photos, shot);
+  if (!file) {
+    log_info("no photo of {} in {}", shot.name, options.photos);
+    return std::nullopt;
+  }
+  const Image photo = load_image(*file);
+  if (photo.width != picture.width || photo.height != picture.height) {
+    fail("photo {} has {} x {} px and the view {} x {}: draw it in its own size", file->string(), photo.width,
+         photo.height, picture.width, picture.height);
+  }
+  const Image drawn = composite(picture, options.background.value_or(glm::vec3(0.0f)));
+  return measure::psnr(quantised(drawn), quantised(photo));
+}
+
+gl::Backend backend_of(const std::string& name) {
+  if (name == "device") return gl::Backend::device;
+  return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
+}
+
+render::FrameSettings settings_of(const RenderOptions& options) {
+  render::FrameSettings settings;
+  settings.tiles = options.tiles == "aabb" ? TILES_AABB : options.tiles == "all" ? TILES_ALL : TILES_ELLIPSE;
+  settings.tile_size = options.tile;
+  for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
+    if (options.reference_until == render::stage_names[i])
+      settings.reference_until = static_cast<render::Stage>(i);
+  }
+  return settings;
+}
+
+std::unique_ptr<gl::Context> open_context(const RenderOptions& options) {
+  auto context = gl::Context::open(backend_of(options.backend), options.device);
+  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
+  if (!options.shader_dir.empty()) context->set_shader_folder(options.shader_dir);
+  return context;
+}
+
+// Draws every shot options.frames times and writes its last frame.
+void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> shots, RenderReport& report) {
+  const RenderOptions& options = report.options;
+  const render::FrameSettings settings = settings_of(options);
+  render::Frame frame(context, report.model);
+  Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
+  std::size_t done = 0;
+  for (Shot& shot : shots) {
+    Drawn& drawn = report.drawn.emplace_back();
+    drawn.shot = std::move(shot);
+    std::vector<shared::View> views;
+    for (const Eye& eye : drawn.shot.eyes) views.push_back(eye.view);
+    for (int n = 0; n < options.frames; ++n) {
+      drawn.report = frame.draw(views, settings);
+      report.times.add(drawn.report);
+      progress.update(++done);
+    }
+    const std::vector<Picture> pictures = frame.read_pictures();
+    drawn.files = write_outputs(options, plan, drawn.shot, pictures);
+    drawn.photo_psnr = photo_psnr(options, drawn.shot, pictures[0]);
+  }
+}
+
+ExitCode render(const RenderOptions& options) {
+  check(options);
+  const OutputPlan plan = plan_outputs(options);
+  const bool built_in = options.scene == demo_scene;
+  if (!built_in && options.scene.rfind("demo:", 0) == 0) {
+    fail("{}: the scene that is built in is called {}", options.scene, demo_scene);
+  }
+  Demo demo = built_in ? demo_room() : Demo();
+  CameraList list = listed_cameras(options, demo.cameras);
+  const Model model = built_in ? std::move(demo.model) : load_model(options.scene);
+  if (!list.listed) list = made_up_cameras(options, model);
+
+  const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
+  std::vector<Shot> shots = make_shots(options, list, near_plane);
+  if (!plan.file.empty() && shots.size() > 1) {
+    fail("-o {} is one file and {} views are to be drawn: name a folder", options.output, shots.size());
+  }
+  if (!options.photos.empty()) check_photos(options.photos, shots);
+
+  const auto context = open_context(options);
+  RenderReport report{options, model, *context, near_plane, {}, {}};
+  draw_all(*context, plan, std::move(shots), report);
+  print(report);
+  if (!options.json.empty()) save_json(options.json, to_json(report));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("render", "Draw both eyes of a model");
+  const auto options = std::make_shared<RenderOptions>();
+  add_options(*sub, *options);
+  sub->footer(
+      "Examples:\n"
+      "  binosplat render demo:room -o out/demo\n"
+      "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
+      "  binosplat render garden.ply --view all --mono --photos images -o out\n"
+      "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
+      "  binosplat render scan.ply --orbit 24 --preset headset --exr half");
+  sub->callback([options, &command] { command = [options] { return render(*options); }; });
+}
+
+}  // namespace binosplat::app

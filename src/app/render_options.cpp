@@ -1,0 +1,228 @@
+#include "app/render_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace binosplat::app {
+
+namespace {
+
+// "1,-2.5,3" as numbers; the whole text must be used up.
+glm::dvec3 parse_three(const std::string& option, const std::string& text) {
+  glm::dvec3 v{0.0};
+  char comma_1 = 0, comma_2 = 0;
+  std::istringstream in(text);
+  in >> v.x >> comma_1 >> v.y >> comma_2 >> v.z;
+  if (!in || comma_1 != ',' || comma_2 != ',' || in.peek() != std::istringstream::traits_type::eof()) {
+    fail("{} {}: expected three numbers with commas, as in 1,-2.5,3", option, text);
+  }
+  return v;
+}
+
+glm::ivec2 parse_size(const std::string& text) {
+  glm::ivec2 size{0};
+  char cross = 0;
+  std::istringstream in(text);
+  in >> size.x >> cross >> size.y;
+  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || size.x < 1 ||
+      size.y < 1) {
+    fail("--size {}: expected pixels as WIDTHxHEIGHT, for one 1280x720", text);
+  }
+  return size;
+}
+
+Background parse_background(const std::string& text) {
+  if (text == "none") return std::nullopt;
+  const glm::dvec3 rgb = parse_three("--background", text);
+  for (int i = 0; i < 3; ++i) {
+    if (!(rgb[i] >= 0.0 && rgb[i] <= 1.0))
+      fail("--background {}: expected numbers from 0 to 1, or none", text);
+  }
+  return glm::vec3(rgb);
+}
+
+// Finite and above zero; written so that "nan" and "inf" fail too.
+const CLI::Validator positive(
+    [](std::string& text) {
+      double value = 0.0;
+      const bool good = CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
+      return good ? std::string() : text + ": expected a number above zero";
+    },
+    "");
+
+// A choice of words or numbers; the help names them as the option's type, and once is enough.
+template <typename T>
+CLI::Validator one_of(std::initializer_list<T> choices) {
+  return CLI::IsMember(std::vector<T>(choices)).description("");
+}
+
+CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }
+
+CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
+
+void add_cameras(CLI::App& sub, RenderOptions& o) {
+  const auto three = [&sub](const char* name, std::optional<glm::dvec3>& into, const char* help) {
+    return sub
+        .add_option_function<std::string>(
+            name, [name, &into](const std::string& text) { into = parse_three(name, text); }, help)
+        ->type_name("X,Y,Z");
+  };
+  const char* const group = "Cameras";
+  sub.add_option("--cameras", o.cameras, "cameras.json; default: the one beside the model")
+      ->type_name("FILE")
+      ->group(group);
+  sub.add_option("--view", o.views,
+                 "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
+                 "NAME_right")
+      ->type_name("NAME")
+      ->group(group);
+  three("--eye", o.eye, "Camera position instead, in world units")->group(group);
+  three("--at", o.at, "What it looks at")->group(group);
+  three("--up", o.up, "What is up in the picture (0,-1,0); for --eye, --orbit and\nmodels without cameras")
+      ->group(group);
+  sub.add_option("--fov", o.fov, "Vertical field of view of such cameras (60)")
+      ->type_name("DEGREES")
+      ->check(positive)
+      ->group(group);
+  sub.add_option("--orbit", o.orbit, "N cameras around the model instead")
+      ->type_name("N")
+      ->check(range(1, 10000))
+      ->group(group);
+  sub.add_option_function<std::string>(
+         "--size", [&o](const std::string& text) { o.size = parse_size(text); },
+         "Pixels of each eye; keeps the vertical field of view")
+      ->type_name("WxH")
+      ->group(group);
+  sub.add_option("--preset", o.preset,
+                 "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye,\n100 degrees")
+      ->check(one_of<std::string>({"preview", "headset"}))
+      ->type_name("preview|headset")
+      ->group(group);
+  sub.add_option("--near", o.near_plane, "Nothing nearer is drawn, in world units (0.2)")
+      ->type_name("DEPTH")
+      ->check(positive)
+      ->group(group);
+}
+
+void add_rig(CLI::App& sub, RenderOptions& o) {
+  const char* const group = "Both eyes";
+  sub.add_flag("--mono", o.mono, "Draw the camera itself, one picture")->group(group);
+  sub.add_option("--only", o.only, "Draw one eye of the pair")
+      ->check(one_of<std::string>({"left", "right"}))
+      ->type_name("left|right")
+      ->group(group);
+  sub.add_option("--ipd", o.ipd, "Distance between the eyes (0.063)")->type_name("METRES")->group(group);
+  sub.add_option("--units-per-metre", o.units_per_metre, "World units that make a metre (1)")
+      ->type_name("N")
+      ->check(positive)
+      ->group(group);
+  sub.add_option("--convergence", o.convergence, "Distance without disparity (infinite)")
+      ->type_name("METRES")
+      ->group(group);
+  sub.add_option("--cant", o.cant, "Turn each eye outwards (0)")->type_name("DEGREES")->group(group);
+}
+
+void add_frame(CLI::App& sub, RenderOptions& o) {
+  const char* const group = "Drawing";
+  sub.add_option("--tiles", o.tiles,
+                 "Which tiles a Gaussian is drawn in: ellipse is exact, aabb is\n3D-GS's square, all is for "
+                 "tests (ellipse)")
+      ->check(one_of<std::string>({"aabb", "ellipse", "all"}))
+      ->type_name("aabb|ellipse|all")
+      ->group(group);
+  sub.add_option("--tile", o.tile, "Side of a tile in px (16)")
+      ->check(one_of({8, 16, 32}))
+      ->type_name("8|16|32")
+      ->group(group);
+  sub.add_option("--reference-until", o.reference_until,
+                 "Take the stages up to this one from the float64 reference:\nproject, order, pairs, "
+                 "tile_sort, ranges or blend")
+      ->check(one_of<std::string>({"project", "order", "pairs", "tile_sort", "ranges", "blend"}))
+      ->type_name("STAGE")
+      ->group(group);
+  sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")
+      ->type_name("N")
+      ->check(range(1, 100000))
+      ->group(group);
+  sub.add_option("--backend", o.backend,
+                 "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, or the first "
+                 "that works (auto)")
+      ->check(one_of<std::string>({"auto", "device", "surfaceless"}))
+      ->type_name("auto|device|surfaceless")
+      ->group(group);
+  sub.add_option("--device", o.device, "Number of the EGL device")
+      ->type_name("N")
+      ->check(range(0, 1000))
+      ->group(group);
+  sub.add_option("--shader-dir", o.shader_dir, "Read shaders from this folder, not the built-in ones")
+      ->type_name("DIR")
+      ->check(folder())
+      ->group(group);
+}
+
+void add_outputs(CLI::App& sub, RenderOptions& o) {
+  const char* const group = "Outputs";
+  sub.add_option("-o,--output", o.output,
+                 "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
+                 "FILE.exr: both eyes side by side (out/SCENE)")
+      ->type_name("DIR|FILE")
+      ->group(group);
+  sub.add_option_function<std::string>(
+         "--background", [&o](const std::string& text) { o.background = parse_background(text); },
+         "Colour behind the model, 0 to 1, or none: keep alpha (0,0,0)")
+      ->type_name("R,G,B|none")
+      ->group(group);
+  sub.add_option("--bits", o.bits, "Bits a channel of PNG (8)")
+      ->check(one_of({8, 16}))
+      ->type_name("8|16")
+      ->group(group);
+  sub.add_option("--exr", o.exr, "Write OpenEXR too, with depth; half where only -o FILE.exr asks")
+      ->check(one_of<std::string>({"half", "float"}))
+      ->type_name("half|float")
+      ->group(group);
+  sub.add_option("--exr-encoding", o.exr_encoding, "Scene-linear light, or display values as in PNG (linear)")
+      ->check(one_of<std::string>({"linear", "display"}))
+      ->type_name("linear|display")
+      ->group(group);
+  sub.add_option("--photos", o.photos, "Print PSNR against DIR/NAME.jpg or .png; with --mono")
+      ->type_name("DIR")
+      ->check(folder())
+      ->group(group);
+  sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE")->group(group);
+}
+
+}  // namespace
+
+void add_options(CLI::App& sub, RenderOptions& options) {
+  sub.add_option("SCENE", options.scene, "A model (.ply), or demo:room, the built-in room")->required();
+  add_cameras(sub, options);
+  add_rig(sub, options);
+  add_frame(sub, options);
+  add_outputs(sub, options);
+}
+
+void check(const RenderOptions& o) {
+  if (o.eye.has_value() != o.at.has_value())
+    fail("--eye and --at go together: where the camera is, and what it looks at");
+  const bool made_up = o.eye || o.orbit;
+  if (o.eye && o.orbit) fail("--eye and --orbit: choose one of them");
+  if (made_up && (!o.cameras.empty() || !o.views.empty())) {
+    fail("{} makes its own camera: leave --cameras and --view out", o.eye ? "--eye" : "--orbit");
+  }
+  if (o.fov && o.preset == "headset")
+    fail("--fov with --preset headset: the preset's lens has 100 degrees across");
+  if (o.mono && !o.only.empty())
+    fail("--mono draws the camera itself and --only an eye beside it: choose one of them");
+  if (o.mono && (o.ipd || o.convergence || o.cant)) {
+    fail("--mono has no rig: leave --ipd, --convergence and --cant out");
+  }
+  if (!o.photos.empty() && !o.mono)
+    fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
+  if (o.device >= 0 && o.backend == "surfaceless")
+    fail("--device is for --backend device or auto: surfaceless has none");
+}
+
+}  // namespace binosplat::app

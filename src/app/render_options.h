@@ -1,0 +1,62 @@
+#pragma once
+// The options of `binosplat render`, as far as they can be checked by themselves.
+
+#include <CLI/CLI.hpp>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "shared/limits.h"
+
+namespace binosplat::app {
+
+struct RenderOptions {
+  std::string scene;  // a model file, or demo:room
+
+  // Cameras.
+  std::string cameras;             // a file; empty: found beside the model
+  std::vector<std::string> views;  // names, or "all"; empty: the first
+  std::optional<glm::dvec3> eye, at, up;
+  std::optional<double> fov;  // degrees
+  std::optional<int> orbit;
+  std::optional<glm::ivec2> size;  // px
+  std::string preset;
+  std::optional<double> near_plane;  // world units
+
+  // The rig.
+  bool mono = false;
+  std::string only;
+  std::optional<double> ipd;          // m
+  std::optional<double> convergence;  // m
+  std::optional<double> cant;         // degrees
+  double units_per_metre = 1.0;
+
+  // The frame and where it is drawn.
+  std::string tiles = "ellipse";
+  int tile = TILE_SIZE_DEFAULT;
+  std::string reference_until;
+  std::string backend = "auto";
+  int device = -1;
+  std::string shader_dir;
+  int frames = 1;
+
+  // Outputs.
+  std::string output;
+  Background background = glm::vec3(0.0f);
+  std::optional<int> bits;
+  std::string exr;
+  std::string exr_encoding;
+  std::string photos;
+  std::string json;
+};
+
+/// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
+/// end it with CLI::ParseError or Error.
+void add_options(CLI::App& sub, RenderOptions& options);
+
+/// Throws Error for options that contradict each other.
+void check(const RenderOptions& options);
+
+}  // namespace binosplat::app

@@ -1,0 +1,136 @@
+#include "app/render_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace binosplat::app {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+// The smallest value that at least `share` of the values do not exceed.
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::max<std::size_t>(rank, 1) - 1];
+}
+
+std::optional<double> mean_photo_psnr(const RenderReport& report) {
+  double sum = 0.0;
+  int count = 0;
+  for (const Drawn& drawn : report.drawn) {
+    if (!drawn.photo_psnr) continue;
+    sum += *drawn.photo_psnr;
+    ++count;
+  }
+  if (count < 2) return std::nullopt;
+  return sum / count;
+}
+
+ordered_json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+ordered_json eye_json(const Eye& eye) {
+  const Camera& c = eye.camera;
+  ordered_json json;
+  if (!eye.side.empty()) json["eye"] = eye.side;
+  json.update(
+      {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}});
+  json["position"] = list(c.position);
+  json["axes"] = {
+      {"x_right", list(c.rotation[0])}, {"y_down", list(c.rotation[1])}, {"z_forward", list(c.rotation[2])}};
+  return json;
+}
+
+ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
+  ordered_json json = {{"name", drawn.shot.name}, {"units_per_metre", options.units_per_metre}};
+  if (drawn.shot.ipd) json["ipd_metres"] = *drawn.shot.ipd;
+  if (options.convergence) json["convergence_metres"] = *options.convergence;
+  if (options.cant) json["cant_degrees"] = *options.cant;
+  json["eyes"] = ordered_json::array();
+  for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
+  json["visible"] = drawn.report.visible;
+  json["pairs"] = drawn.report.pairs;
+  json["depth_orders"] = drawn.report.order_groups;
+  json["drawn_again"] = drawn.report.redrawn;
+  if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
+  json["outputs"] = drawn.files;
+  return json;
+}
+
+ordered_json settings_json(const RenderReport& report) {
+  const RenderOptions& o = report.options;
+  ordered_json json = {{"tiles", o.tiles}, {"tile", o.tile}, {"near", report.near_plane}};
+  json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
+  if (!o.reference_until.empty()) json["reference_until"] = o.reference_until;
+  return json;
+}
+
+}  // namespace
+
+void StageTimes::add(const render::FrameReport& report) { frames_.push_back(report); }
+
+std::vector<StageTimes::Row> StageTimes::rows() const {
+  if (frames_.empty()) return {};
+  const std::size_t first = frames_.size() - frames();
+  const auto row = [&](const std::string& name, const auto& time_of) {
+    std::vector<double> times;
+    for (std::size_t k = first; k < frames_.size(); ++k) times.push_back(time_of(frames_[k]));
+    return Row{name, quantile(times, 0.5), quantile(times, 0.99)};
+  };
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < frames_[first].stages.size(); ++i) {
+    rows.push_back(row(frames_[first].stages[i].name,
+                       [i](const render::FrameReport& frame) { return frame.stages.at(i).ms; }));
+  }
+  rows.push_back(row("frame", [](const render::FrameReport& frame) { return frame.total_ms; }));
+  return rows;
+}
+
+void print(const RenderReport& report) {
+  for (const Drawn& drawn : report.drawn) {
+    std::string line = fmt::format("{}: {}", drawn.shot.name, fmt::join(drawn.files, ", "));
+    line += fmt::format("  ({} pairs", drawn.report.pairs);
+    if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
+    fmt::print("{})\n", line);
+  }
+  if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
+  const std::size_t frames = report.times.frames();
+  fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
+  for (const StageTimes::Row& row : report.times.rows()) {
+    fmt::print("{:<12}{:>12.3f}{:>12.3f}\n", row.stage, row.median_ms, row.p99_ms);
+  }
+  fmt::print("GPU time of {} frame{} on {}{}; {:.1f} MB in buffers\n", frames, frames == 1 ? "" : "s",
+             report.context.renderer(), frames == 1 ? " (--frames N for more)" : "",
+             static_cast<double>(report.context.peak_bytes()) / 1e6);
+}
+
+ordered_json to_json(const RenderReport& report) {
+  ordered_json json = {{"version", BINOSPLAT_VERSION},
+                       {"scene",
+                        {{"name", report.options.scene},
+                         {"gaussians", report.model.count()},
+                         {"left_out", report.model.left_out},
+                         {"degree", report.model.degree}}},
+                       {"device",
+                        {{"backend", report.context.backend()},
+                         {"renderer", report.context.renderer()},
+                         {"opengl", report.context.version()}}},
+                       {"settings", settings_json(report)}};
+  json["views"] = ordered_json::array();
+  for (const Drawn& drawn : report.drawn) json["views"].push_back(view_json(drawn, report.options));
+  if (const auto mean = mean_photo_psnr(report)) json["mean_photo_psnr_db"] = *mean;
+  json["frames"] = report.times.frames();
+  json["stages"] = ordered_json::array();
+  for (const StageTimes::Row& row : report.times.rows()) {
+    json["stages"].push_back({{"stage", row.stage}, {"median_ms", row.median_ms}, {"p99_ms", row.p99_ms}});
+  }
+  json["memory"] = {{"gpu_bytes", report.context.allocated_bytes()},
+                    {"gpu_peak_bytes", report.context.peak_bytes()}};
+  return json;
+}
+
+}  // namespace binosplat::app

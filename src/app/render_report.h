@@ -1,0 +1,56 @@
+#pragma once
+// What `binosplat render` says about what it drew, for people and as JSON.
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/render_options.h"
+#include "app/shots.h"
+#include "gl/context.h"
+#include "render/frame.h"
+#include "scene/model.h"
+
+namespace binosplat::app {
+
+/// GPU times of frames, by stage. The first frame of all makes the driver compile shaders: it counts only
+/// while it is alone.
+class StageTimes {
+ public:
+  struct Row {
+    std::string stage;  // the last one is "frame", the sum
+    double median_ms = 0.0;
+    double p99_ms = 0.0;
+  };
+
+  void add(const render::FrameReport& report);
+  std::vector<Row> rows() const;
+  std::size_t frames() const { return frames_.size() > 1 ? frames_.size() - 1 : frames_.size(); }
+
+ private:
+  std::vector<render::FrameReport> frames_;
+};
+
+/// A shot once it is drawn.
+struct Drawn {
+  Shot shot;
+  render::FrameReport report;
+  std::vector<std::string> files;
+  std::optional<double> photo_psnr;  // dB
+};
+
+struct RenderReport {
+  const RenderOptions& options;
+  const Model& model;
+  const gl::Context& context;
+  double near_plane = 0.0;  // world units
+  std::vector<Drawn> drawn;
+  StageTimes times;
+};
+
+void print(const RenderReport& report);
+nlohmann::ordered_json to_json(const RenderReport& report);
+
+}  // namespace binosplat::app

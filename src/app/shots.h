@@ -1,0 +1,47 @@
+#pragma once
+// From the options to what is drawn: the cameras, and the eyes of each.
+
+#include <string>
+#include <vector>
+
+#include "app/render_options.h"
+#include "scene/camera.h"
+#include "scene/model.h"
+#include "shared/types.h"
+
+namespace binosplat::app {
+
+/// One eye's camera and what the shaders see of it.
+struct Eye {
+  std::string side;  // "left", "right", or "" for the camera itself
+  Camera camera;
+  shared::View view;
+};
+
+/// What one frame draws.
+struct Shot {
+  std::string name;  // the view's, as the user knows it
+  std::string stem;  // of its files: unique among the shots, without folders and picture endings
+  std::vector<Eye> eyes;
+  std::optional<double> ipd;  // m, where there is a rig
+};
+
+/// Where cameras come from, for the log, and which they are.
+struct CameraList {
+  std::string source;
+  std::vector<Camera> cameras;
+  bool listed = false;  // in a file or by the built-in scene: --view chooses; made-up ones are all drawn
+};
+
+/// The cameras that --cameras, a file beside the model, or the built-in scene (`built_in`) gives; empty if
+/// none does or the options make up their own. Quick: comes before the model is read.
+CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera>& built_in);
+
+/// Cameras made up from --eye, --orbit or the model.
+CameraList made_up_cameras(const RenderOptions& options, const Model& model);
+
+/// The shots that --view, --mono and the rig's options ask for. `near_plane` in world units. Throws Error for
+/// a view that is not there; it names some that are.
+std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane);
+
+}  // namespace binosplat::app

@@ -1,0 +1,46 @@
+#include "base/image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shared/limits.h"
+
+namespace binosplat {
+
+Image composite(const Picture& picture, const Background& background) {
+  Image image(picture.width, picture.height, background ? 3 : 4);
+  for (std::size_t k = 0; k < picture.colour.size(); ++k) {
+    const glm::vec4 c = picture.colour[k];
+    float* out = &image.data[k * static_cast<std::size_t>(image.channels)];
+    const float coverage = 1.0f - c.a;
+    for (int i = 0; i < 3; ++i) {
+      if (background) {
+        out[i] = c[i] + c.a * (*background)[i];
+      } else {
+        out[i] = coverage > 0.0f ? c[i] / coverage : 0.0f;
+      }
+    }
+    if (!background) out[3] = coverage;
+  }
+  return image;
+}
+
+Image depth_map(const Picture& picture) {
+  Image image(picture.width, picture.height, 1);
+  for (std::size_t k = 0; k < picture.colour.size(); ++k) {
+    const float coverage = 1.0f - picture.colour[k].a;
+    image.data[k] = coverage > static_cast<float>(COVERAGE_FOR_DEPTH) ? picture.z_sum[k] / coverage
+                                                                      : std::numeric_limits<float>::infinity();
+  }
+  return image;
+}
+
+Image quantised(const Image& image, int levels) {
+  Image out = image;
+  const float top = static_cast<float>(levels - 1);
+  for (float& v : out.data) v = std::round(std::clamp(v, 0.0f, 1.0f) * top) / top;
+  return out;
+}
+
+}  // namespace binosplat

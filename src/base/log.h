@@ -1,0 +1,26 @@
+#pragma once
+// Lines for the user on standard error; standard output is kept for results.
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace binosplat {
+
+/// Writes `binosplat: TEXT` and a newline to standard error.
+void log_line(const std::string& text);
+
+/// Something worth knowing: which device is used, what was left out, that a frame was drawn again.
+template <typename... Args>
+void log_info(fmt::format_string<Args...> format, Args&&... args) {
+  log_line(fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// Something that is probably not what the user meant.
+template <typename... Args>
+void log_warning(fmt::format_string<Args...> format, Args&&... args) {
+  log_line("warning: " + fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace binosplat

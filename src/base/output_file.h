@@ -1,0 +1,46 @@
+#pragma once
+// Files that appear whole or not at all: what is written goes to a temporary name beside the target, which
+// commit() renames. Every output of the program is written through this.
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace binosplat {
+
+class OutputFile {
+ public:
+  /// Creates the folders above `path` where they are missing and opens PATH.part-PID in the same folder. A
+  /// symbolic link is followed. Throws Error naming the path and the reason: a file stands where a folder is
+  /// needed, no permission, or the path names something that is not a regular file (a folder, a device).
+  explicit OutputFile(const std::filesystem::path& path);
+
+  /// Removes the temporary file unless it was committed.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// The temporary file, for those who want to write it by name; what write() is given may not be in it
+  /// before commit().
+  const std::filesystem::path& path() const { return temporary_; }
+
+  /// Appends. Throws Error, for one when the disk is full.
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+
+  /// Flushes, closes and renames to the target, replacing what stood there. Throws Error where any of it
+  /// fails; then the target is as it was.
+  void commit();
+
+ private:
+  [[noreturn]] void fail_to_write() const;
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  std::FILE* file_ = nullptr;
+  bool committed_ = false;
+};
+
+}  // namespace binosplat

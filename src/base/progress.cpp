@@ -1,0 +1,37 @@
+#include "base/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+#include "base/log.h"
+
+namespace binosplat {
+
+Progress::Progress(std::string label, std::uint64_t total)
+    : label_(std::move(label)),
+      total_(total),
+      terminal_(isatty(STDERR_FILENO) != 0),
+      next_(Clock::now() + std::chrono::seconds(1)) {}
+
+Progress::~Progress() {
+  if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(std::uint64_t done) {
+  const Clock::time_point now = Clock::now();
+  if (now < next_) return;
+  const int percent = total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
+  if (terminal_) {
+    fmt::print(stderr, "\r\033[K{} {} %", label_, percent);
+    std::fflush(stderr);
+  } else {
+    log_info("{} {} %", label_, percent);
+  }
+  shown_ = true;
+  next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,31 @@
+#pragma once
+// Progress of long work: a line that is rewritten on a terminal, a line every few seconds in a log, nothing for work
+// that is over within a second.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace binosplat {
+
+class Progress {
+ public:
+  /// `label` says what is being done, in the form "reading garden.ply".
+  Progress(std::string label, std::uint64_t total);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Tells how much of `total` is done so far. Cheap enough for every few thousand elements; one thread only.
+  void update(std::uint64_t done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  std::uint64_t total_;
+  bool terminal_;
+  bool shown_ = false;
+  Clock::time_point next_;
+};
+
+}  // namespace binosplat

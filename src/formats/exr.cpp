@@ -1,0 +1,212 @@
+#include "formats/exr.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/output_file.h"
+#include "formats/picture_readers.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr const char* encoding_name = "binosplatEncoding";
+constexpr const char* coverage_name = "coverage";
+
+/// What OpenEXR writes, kept in memory: on a file of its own it would swallow a full disk in a destructor.
+class MemoryStream : public Imf::OStream {
+ public:
+  explicit MemoryStream(const char* name) : Imf::OStream(name) {}
+  void write(const char bytes[], int size) override {
+    const auto count = static_cast<std::size_t>(size);
+    if (at_ + count > data_.size()) data_.resize(at_ + count);
+    std::memcpy(&data_[at_], bytes, count);
+    at_ += count;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t at) override { at_ = at; }
+  const std::string& data() const { return data_; }
+
+ private:
+  std::string data_;
+  std::size_t at_ = 0;
+};
+
+/// One channel's values, rows from the top.
+struct Plane {
+  std::string name;
+  std::vector<float> values;
+  std::vector<half> halves;  // instead of values where the channel is stored so
+};
+
+std::vector<Plane> planes_of(const Picture& picture, const ExrOptions& options) {
+  const Image image = composite(picture, options.background);
+  const std::size_t count = picture.colour.size();
+  std::vector<Plane> planes{{"R", {}, {}}, {"G", {}, {}}, {"B", {}, {}}, {"A", {}, {}}};
+  if (options.background) planes.push_back({coverage_name, {}, {}});
+  for (Plane& plane : planes) plane.values.resize(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    const float coverage = 1.0f - picture.colour[k].a;
+    const float alpha = options.background ? 1.0f : coverage;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double v = image.data[k * static_cast<std::size_t>(image.channels) + c];
+      planes[c].values[k] = static_cast<float>(alpha * (options.display ? v : srgb_to_linear(v)));
+    }
+    planes[3].values[k] = alpha;
+    if (options.background) planes[4].values[k] = coverage;
+  });
+  if (options.half) {
+    for (Plane& plane : planes) {
+      plane.halves.assign(plane.values.begin(), plane.values.end());
+      plane.values.clear();
+    }
+  }
+  planes.push_back({"Z", depth_map(picture).data, {}});
+  return planes;
+}
+
+void write_planes(Imf::OStream& stream, int width, int height, std::vector<Plane>& planes,
+                  const ExrOptions& options) {
+  Imf::Header header(width, height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [key, value] : options.notes) header.insert(key, Imf::StringAttribute(value));
+  header.insert(encoding_name, Imf::StringAttribute(options.display ? "display" : "linear"));
+  Imf::FrameBuffer frame;
+  for (Plane& plane : planes) {
+    const bool halves = !plane.halves.empty();
+    const Imf::PixelType type = halves ? Imf::HALF : Imf::FLOAT;
+    char* base =
+        halves ? reinterpret_cast<char*>(plane.halves.data()) : reinterpret_cast<char*>(plane.values.data());
+    const std::size_t step = halves ? sizeof(half) : sizeof(float);
+    header.channels().insert(plane.name, Imf::Channel(type));
+    frame.insert(plane.name, Imf::Slice(type, base, step, step * static_cast<std::size_t>(width)));
+  }
+  Imf::OutputFile file(stream, header);
+  file.setFrameBuffer(frame);
+  file.writePixels(height);
+}
+
+/// The channels that make an Image: R G B or Y, and A unless the picture holds its background.
+std::vector<std::string> wanted_channels(const std::filesystem::path& path,
+                                         const Imf::ChannelList& channels) {
+  std::vector<std::string> wanted;
+  const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
+  const bool alpha = has("A") && !has(coverage_name);
+  if (has("R") && has("G") && has("B")) {
+    wanted = {"R", "G", "B"};
+  } else if (has("Y") && !alpha) {
+    wanted = {"Y"};
+  } else if (has("Y")) {
+    wanted = {"Y", "Y", "Y"};
+  } else {
+    std::string names;
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+      names += std::string(" ") + channel.name();
+    fail("{}: no channels R, G, B or Y in this OpenEXR file; it has:{}", path.string(), names);
+  }
+  if (alpha) wanted.emplace_back("A");
+  for (const std::string& name : wanted) {
+    const Imf::Channel& channel = channels[name];
+    if (channel.xSampling != 1 || channel.ySampling != 1) {
+      fail("{}: channel {} is stored at a lower resolution, which cannot be read", path.string(), name);
+    }
+  }
+  return wanted;
+}
+
+/// Reads the wanted channels as they are stored, and whether they are display values.
+Image read_channels(const std::filesystem::path& path, bool& display) {
+  Imf::InputFile file(path.c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  check_size(path, width, height, std::filesystem::file_size(path), 16384);
+  const auto* encoding = file.header().findTypedAttribute<Imf::StringAttribute>(encoding_name);
+  display = encoding != nullptr && encoding->value() == "display";
+
+  const std::vector<std::string> wanted = wanted_channels(path, file.header().channels());
+  Image image(static_cast<int>(width), static_cast<int>(height), static_cast<int>(wanted.size()));
+  const std::size_t step = sizeof(float) * wanted.size();
+  // OpenEXR fills one slice a channel; of Y that stands for R, G and B the others are copied below.
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < wanted.size(); ++c) {
+    frame.insert(wanted[c], Imf::Slice::Make(Imf::FLOAT, &image.data[c], window, step,
+                                             step * static_cast<std::size_t>(width)));
+  }
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+  if (wanted[0] == "Y" && wanted.size() == 4) {
+    for (std::size_t i = 0; i < image.data.size(); i += 4)
+      image.data[i] = image.data[i + 1] = image.data[i + 2];
+  }
+  return image;
+}
+
+}  // namespace
+
+double srgb_to_linear(double v) {
+  const double size = std::abs(v);
+  const double linear = size <= 0.04045 ? size / 12.92 : std::pow((size + 0.055) / 1.055, 2.4);
+  return std::copysign(linear, v);
+}
+
+double linear_to_srgb(double v) {
+  const double size = std::abs(v);
+  const double display = size <= 0.0031308 ? size * 12.92 : 1.055 * std::pow(size, 1.0 / 2.4) - 0.055;
+  return std::copysign(display, v);
+}
+
+void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options) {
+  OutputFile file(path);
+  MemoryStream stream(path.c_str());
+  try {
+    std::vector<Plane> planes = planes_of(picture, options);
+    write_planes(stream, picture.width, picture.height, planes, options);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail("cannot write {}: {}", path.string(), error.what());
+  }
+  file.write(stream.data());
+  file.commit();
+}
+
+Image load_exr(const std::filesystem::path& path) {
+  bool display = false;
+  Image image;
+  try {
+    image = read_channels(path, display);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail("{}: broken OpenEXR: {}", path.string(), error.what());
+  }
+  const auto channels = static_cast<std::size_t>(image.channels);
+  const std::size_t colours = channels == 4 ? 3 : channels;
+  tbb::parallel_for(std::size_t{0}, image.data.size() / channels, [&](std::size_t k) {
+    float* pixel = &image.data[k * channels];
+    const float alpha = channels == 4 ? pixel[3] : 1.0f;
+    for (std::size_t c = 0; c < colours; ++c) {
+      const float straight = alpha > 0.0f ? pixel[c] / alpha : 0.0f;
+      pixel[c] = display ? straight : static_cast<float>(linear_to_srgb(straight));
+    }
+  });
+  return image;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,38 @@
+#pragma once
+// OpenEXR as METHOD.md section 3 defines it: scene-linear by convention, with depth.
+//
+// With a background: R, G, B = EOTF(C + T * background), A = 1, and what the model covers, 1 - T, in channel
+// `coverage`. Without: associated alpha, R, G, B = A * EOTF(C/A), A = 1 - T. EOTF is sRGB's, which goes on
+// above 1 by the same power law; nothing is clamped. Z is view-space depth Z/A where A > 0.5, +infinity
+// elsewhere, always FLOAT. The header's attribute `binosplatEncoding`, "linear" or "display" (EOTF left out),
+// tells readers which it is.
+
+#include <filesystem>
+#include <span>
+
+#include "base/image.h"
+#include "formats/image_file.h"
+
+namespace binosplat {
+
+/// sRGB's transfer function from display values to linear light and back, odd about 0 and without an upper
+/// end.
+double srgb_to_linear(double v);
+double linear_to_srgb(double v);
+
+struct ExrOptions {
+  bool half = true;       // all channels but Z as 16-bit floats
+  bool display = false;   // leave the EOTF out
+  Background background;  // none: associated alpha
+  Notes notes;            // string attributes of the header
+};
+
+/// Writes a picture. Throws Error naming the file.
+void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
+
+/// What load_image does with an OpenEXR file: display values of R, G, B (or Y), brought back by the header's
+/// encoding; a file without the attribute is taken as scene-linear. A becomes straight alpha; of a file that
+/// has `coverage`, and so its background, it is left out.
+Image load_exr(const std::filesystem::path& path);
+
+}  // namespace binosplat

@@ -1,0 +1,40 @@
+#include "formats/image_file.h"
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "formats/content.h"
+#include "formats/exr.h"
+#include "formats/picture_readers.h"
+
+namespace binosplat {
+
+Image load_image(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  const Content content = content_of(file.bytes());
+  switch (content) {
+    case Content::png:
+      return load_png(path, file.bytes());
+    case Content::jpeg:
+      return load_jpeg(path, file.bytes());
+    case Content::exr:
+      return load_exr(path);
+    default:
+      break;
+  }
+  fail("{} is not a picture that can be read: expected PNG, JPEG or OpenEXR, but it looks like {}",
+       path.string(), describe(content));
+}
+
+void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
+                std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte) {
+  constexpr std::int64_t most_pixels = std::int64_t{1} << 31;
+  if (width < 1 || height < 1 || width > most_pixels || height > most_pixels / width) {
+    fail("{}: a picture of {} x {} px cannot be read (from 1 px to 2^31)", path.string(), width, height);
+  }
+  if (static_cast<std::uint64_t>(width * height) / most_pixels_a_byte > file_bytes) {
+    fail("{} is damaged or cut short: its header promises {} x {} px, which {} bytes cannot hold",
+         path.string(), width, height, file_bytes);
+  }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,24 @@
+#pragma once
+// Pictures from and to files. In memory they are display-referred floats (base/image.h).
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "base/image.h"
+
+namespace binosplat {
+
+/// Words that a picture's file carries beside its pixels: PNG text chunks, EXR header attributes.
+using Notes = std::map<std::string, std::string>;
+
+/// Reads PNG (grey, RGB, palette, with or without alpha; 1 to 16 bits), JPEG (grey or colour) or OpenEXR
+/// (formats/exr.h says how); which one is decided by content. 1 channel for grey, 3 for RGB, 4 where there is
+/// alpha. Throws Error naming the file for anything else, and for damaged or cut files.
+Image load_image(const std::filesystem::path& path);
+
+/// Writes round(255 clamp(v)), or 65535 for 16 `bits`, of 1, 3 or 4 channels. No gamma is applied: the values
+/// are sRGB as they are, and the file says so.
+void save_png(const std::filesystem::path& path, const Image& image, int bits = 8, const Notes& notes = {});
+
+}  // namespace binosplat

@@ -1,0 +1,21 @@
+#pragma once
+// What load_image chooses from.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "base/image.h"
+
+namespace binosplat {
+
+Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes);
+Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// Throws Error for a picture of more than 2^31 px, or of more than the file's bytes can hold at the best
+/// compression that its format reaches, before anyone makes room for it: a header costs nothing to forge.
+void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
+                std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte);
+
+}  // namespace binosplat

@@ -1,0 +1,299 @@
+#include "formats/ply.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/mapped_file.h"
+#include "base/progress.h"
+#include "formats/content.h"
+#include "formats/ply_layout.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
+
+/// A number as it is stored; every type of ply fits a double exactly.
+template <typename T, typename Bits>
+double load_as(const std::byte* at, bool swapped) {
+  Bits bits;
+  std::memcpy(&bits, at, sizeof(bits));
+  if constexpr (sizeof(Bits) > 1) {
+    if (swapped) {
+      auto bytes = std::bit_cast<std::array<std::byte, sizeof(Bits)>>(bits);
+      std::reverse(bytes.begin(), bytes.end());
+      bits = std::bit_cast<Bits>(bytes);
+    }
+  }
+  return static_cast<double>(std::bit_cast<T>(bits));
+}
+
+double load(PlyType type, const std::byte* at, bool swapped) {
+  switch (type) {
+    case PlyType::int8:
+      return load_as<std::int8_t, std::uint8_t>(at, swapped);
+    case PlyType::uint8:
+      return load_as<std::uint8_t, std::uint8_t>(at, swapped);
+    case PlyType::int16:
+      return load_as<std::int16_t, std::uint16_t>(at, swapped);
+    case PlyType::uint16:
+      return load_as<std::uint16_t, std::uint16_t>(at, swapped);
+    case PlyType::int32:
+      return load_as<std::int32_t, std::uint32_t>(at, swapped);
+    case PlyType::uint32:
+      return load_as<std::uint32_t, std::uint32_t>(at, swapped);
+    case PlyType::float32:
+      return load_as<float, std::uint32_t>(at, swapped);
+    case PlyType::float64:
+      break;
+  }
+  return load_as<double, std::uint64_t>(at, swapped);
+}
+
+/// Walks the elements of a ply file in order and decodes the Gaussians among them.
+class PlyReader {
+ public:
+  PlyReader(const std::filesystem::path& path, std::span<const std::byte> bytes)
+      : path_(path),
+        bytes_(bytes),
+        header_(read_ply_header(path, bytes)),
+        layout_(find_layout(path, header_)),
+        swapped_((header_.format == PlyFormat::big_endian) != (std::endian::native == std::endian::big)),
+        at_(header_.data),
+        line_(header_.lines),
+        progress_("reading " + path.filename().string(), layout_.vertices->count) {}
+
+  Model read() {
+    model_.name = path_.filename().string();
+    model_.degree = layout_.degree;
+    for (const PlyElement& element : header_.elements) {
+      const bool gaussians = &element == layout_.vertices;
+      if (header_.format == PlyFormat::ascii) {
+        read_text(element, gaussians);
+      } else if (element.has_list()) {
+        read_ragged(element, gaussians);
+      } else {
+        read_fixed(element, gaussians);
+      }
+    }
+    if (header_.format != PlyFormat::ascii && at_ < bytes_.size()) {
+      log_warning("{}: {} bytes after the last element are ignored", path_.string(), bytes_.size() - at_);
+    }
+    keep_only(model_, kept_);
+    return std::move(model_);
+  }
+
+ private:
+  /// Room for all Gaussians; the file must have been found long enough before.
+  void make_room() {
+    model_.resize(layout_.vertices->count);
+    kept_.assign(layout_.vertices->count, 0);
+  }
+
+  void keep(std::size_t i, const RawGaussian& raw) { kept_[i] = decode(layout_, model_, i, raw) ? 1 : 0; }
+
+  [[noreturn]] void fail_cut(const PlyElement& element, std::uint64_t row) const {
+    fail(
+        "{} is cut short: element '{}' {} of {} would go on beyond the file's {} bytes; fetch or export it "
+        "again",
+        path_.string(), element.name, row, element.count, bytes_.size());
+  }
+
+  /// Binary rows of one size.
+  void read_fixed(const PlyElement& element, bool gaussians) {
+    const std::size_t row = element.row_bytes();
+    const std::size_t left = bytes_.size() - at_;
+    if (row == 0) return;
+    if (element.count > left / row) fail_too_short(element, row);
+    if (gaussians) {
+      make_room();
+      std::vector<std::size_t> offsets;
+      find_offsets(element, at_, offsets);
+      for (std::size_t begin = 0; begin < element.count; begin += progress_block) {
+        const std::size_t end = std::min<std::size_t>(begin + progress_block, element.count);
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 2048), [&](const auto& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i)
+            keep(i, gather(bytes_.data() + at_ + i * row, offsets));
+        });
+        progress_.update(end);
+      }
+    }
+    at_ += element.count * row;
+  }
+
+  [[noreturn]] void fail_too_short(const PlyElement& element, std::size_t row) const {
+    const std::size_t left = bytes_.size() - at_;
+    std::uint64_t needed = 0;
+    if (__builtin_mul_overflow(element.count, row, &needed)) {
+      fail("{}: its header promises {} of element '{}', more than any file can hold; the header is damaged",
+           path_.string(), element.count, element.name);
+    }
+    fail(
+        "{} is cut short: element '{}' needs {} x {} = {} bytes from byte {} on, but {} are there; the file "
+        "ends within "
+        "number {} of {}, counted from 0. Fetch or export it again",
+        path_.string(), element.name, element.count, row, needed, at_, left, left / row, element.count);
+  }
+
+  /// Binary rows with lists, whose sizes only a walk can tell.
+  void read_ragged(const PlyElement& element, bool gaussians) {
+    // Every row has a byte at least.
+    if (element.count > bytes_.size() - at_) fail_cut(element, bytes_.size() - at_);
+    if (gaussians) make_room();
+    std::vector<std::size_t> offsets;
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      const std::size_t end = find_offsets(element, at_, offsets);
+      if (end > bytes_.size()) fail_cut(element, i);
+      if (gaussians) keep(i, gather(bytes_.data() + at_, offsets));
+      if (gaussians && i % 4096 == 0) progress_.update(i);
+      at_ = end;
+    }
+  }
+
+  /// Where each property lies in the row at byte `row`, relative to it. Returns the byte where the row ends,
+  /// or one beyond the file's end where the row does not fit.
+  std::size_t find_offsets(const PlyElement& element, std::size_t row,
+                           std::vector<std::size_t>& offsets) const {
+    offsets.clear();
+    std::size_t at = row;
+    const std::size_t beyond = bytes_.size() + 1;
+    for (const PlyProperty& property : element.properties) {
+      offsets.push_back(at - row);
+      std::size_t length = 1;
+      if (property.count_type) {
+        if (size_of(*property.count_type) > bytes_.size() - at) return beyond;
+        const double count = load(*property.count_type, bytes_.data() + at, swapped_);
+        if (count < 0) return beyond;
+        length = static_cast<std::size_t>(count);
+        at += size_of(*property.count_type);
+      }
+      if (length * size_of(property.type) > bytes_.size() - at) return beyond;
+      at += length * size_of(property.type);
+    }
+    return at;
+  }
+
+  RawGaussian gather(const std::byte* row, const std::vector<std::size_t>& offsets) const {
+    RawGaussian raw;
+    for (std::size_t k = 0; k < layout_.sources.size(); ++k) {
+      const std::size_t property = layout_.sources[k];
+      const PlyType type = layout_.vertices->properties[property].type;
+      raw[k] = static_cast<float>(load(type, row + offsets[property], swapped_));
+    }
+    return raw;
+  }
+
+  /// Text: one line an element.
+  void read_text(const PlyElement& element, bool gaussians) {
+    if (element.properties.empty()) return;
+    // A value takes a digit and a blank at least.
+    const std::size_t shortest = 2 * element.properties.size();
+    const std::size_t left = bytes_.size() - at_ + 1;
+    if (element.count > left / shortest) fail_cut(element, left / shortest);
+    if (gaussians) make_room();
+    std::vector<double> values;
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      const std::string_view line = next_line(element, i);
+      if (!gaussians) continue;
+      parse_row(element, i, line, values);
+      RawGaussian raw;
+      for (std::size_t k = 0; k < layout_.sources.size(); ++k)
+        raw[k] = static_cast<float>(values[layout_.sources[k]]);
+      keep(i, raw);
+      if (i % 4096 == 0) progress_.update(i);
+    }
+  }
+
+  /// The next line that is not blank.
+  std::string_view next_line(const PlyElement& element, std::uint64_t row) {
+    const std::string_view text = as_text(bytes_);
+    while (at_ < text.size()) {
+      const std::size_t end = std::min(text.find('\n', at_), text.size());
+      const std::string_view line = text.substr(at_, end - at_);
+      at_ = std::min(end + 1, text.size());
+      ++line_;
+      if (line.find_first_not_of(blanks) != std::string_view::npos) return line;
+    }
+    fail("{} is cut short: it ends at line {} with {} of {} lines of element '{}'; fetch or export it again",
+         path_.string(), line_, row, element.count, element.name);
+  }
+
+  /// One value a property; of lists the length.
+  void parse_row(const PlyElement& element, std::uint64_t row, std::string_view line,
+                 std::vector<double>& values) {
+    values.clear();
+    std::string_view rest = line;
+    for (const PlyProperty& property : element.properties) {
+      const double value = parse_value(element, row, property, rest);
+      values.push_back(value);
+      if (property.count_type) {
+        if (value < 0 || value != std::floor(value)) {
+          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), line_,
+               property.name, element.name, row, value);
+        }
+        for (double k = 0; k < value; ++k) parse_value(element, row, property, rest);
+      }
+    }
+    if (rest.find_first_not_of(blanks) != std::string_view::npos) {
+      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(), line_,
+           element.name, row, element.properties.size());
+    }
+  }
+
+  double parse_value(const PlyElement& element, std::uint64_t row, const PlyProperty& property,
+                     std::string_view& rest) const {
+    const std::size_t begin = std::min(rest.find_first_not_of(blanks), rest.size());
+    const std::size_t end = std::min(rest.find_first_of(blanks, begin), rest.size());
+    std::string_view word = rest.substr(begin, end - begin);
+    rest.remove_prefix(end);
+    if (word.empty()) {
+      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), line_, element.name, row,
+           property.name);
+    }
+    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+    double value = 0;
+    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || stop != digits.data() + digits.size()) {
+      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), line_,
+           quoted(word), property.name, element.name, row);
+    }
+    return value;
+  }
+
+  static constexpr std::string_view blanks = " \t\r";
+
+  const std::filesystem::path& path_;
+  std::span<const std::byte> bytes_;
+  PlyHeader header_;
+  PlyLayout layout_;
+  bool swapped_;
+  std::size_t at_;    // byte where the next element begins
+  std::size_t line_;  // of text, lines read so far
+  Progress progress_;
+  Model model_;
+  std::vector<std::uint8_t> kept_;
+};
+
+}  // namespace
+
+Model load_ply(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  Model model = PlyReader(path, file.bytes()).read();
+  if (model.count() == 0) {
+    fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),
+         model.left_out);
+  }
+  return model;
+}
+
+}  // namespace binosplat

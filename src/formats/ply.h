@@ -1,0 +1,26 @@
+#pragma once
+// Trained models in INRIA's ply layout (3D-GS, Kerbl 2023), as many trainers write it.
+//
+// Vertex properties are found by name: x y z, f_dc_0..2, f_rest_*, opacity (logit), scale_0..2 (logarithms),
+// rot_0..3 (quaternion w x y z of any length). The number of f_rest gives the degree of the spherical
+// harmonics: 0, 9, 24 or 45 for degrees 0 to 3; 72 (degree 4) is cut to degree 3 with a warning. They are
+// channel-major in the file, f_rest[c * K
+// + k], and coefficient-major in Model::sh. Text and binary of either byte order, any scalar type, any order
+// of properties, CRLF in the header, other elements and properties: all are read or skipped as ply defines.
+//
+// Two relatives are read as well: `red green blue` (uchar) in f_dc's place are base colours (Nerfstudio), and
+// `filter_3D` is folded into scales and opacities (Mip-Splatting, Yu 2024).
+
+#include <filesystem>
+
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// Reads a model; degree and count are the file's, Model::left_out counts what was not usable. The file is
+/// mapped into memory and decoded on all cores; progress is shown where it takes long. Throws Error naming
+/// the file and the place: a broken header, missing properties, a file shorter than its header promises, a
+/// point cloud without opacities, a compressed ply, no Gaussians.
+Model load_ply(const std::filesystem::path& path);
+
+}  // namespace binosplat

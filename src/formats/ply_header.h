@@ -1,0 +1,52 @@
+#pragma once
+// The header of a ply file (Turk 1994): which elements it holds, and how they are stored.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace binosplat {
+
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class PlyFormat { ascii, little_endian, big_endian };
+
+constexpr std::size_t size_of(PlyType type) {
+  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<int>(type)];
+}
+
+struct PlyProperty {
+  std::string name;
+  PlyType type = PlyType::float32;    // of the value, or of a list's values
+  std::optional<PlyType> count_type;  // of a list's length; none: a single value
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;  // as the header says; not checked against the file
+  std::vector<PlyProperty> properties;
+
+  const PlyProperty* find(std::string_view property) const;
+  bool has_list() const;
+  std::size_t row_bytes() const;  // of elements without lists
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;   // in the order of their data
+  std::vector<std::string> comments;  // without the word itself
+  std::size_t data = 0;               // byte where the data begins
+  std::size_t lines = 0;              // of the header
+
+  const PlyElement* find(std::string_view element) const;
+};
+
+/// Reads the header of a file's bytes. Throws Error naming `path` and the line.
+PlyHeader read_ply_header(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+}  // namespace binosplat

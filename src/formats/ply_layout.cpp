@@ -1,0 +1,159 @@
+#include "formats/ply_layout.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <string>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr float sh_c0 = 0.28209479177387814f;
+
+/// Refuses files that are well-formed but hold something else.
+void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header) {
+  const std::string name = path.string();
+  if (!header.elements.empty() && header.elements[0].name == "chunk") {
+    fail(
+        "{} is a PlayCanvas compressed ply; convert it to a plain one (splat-transform IN.compressed.ply "
+        "OUT.ply)",
+        name);
+  }
+  const PlyElement* vertices = header.find("vertex");
+  if (vertices == nullptr)
+    fail("{}: the ply header has no element 'vertex'; it is no model of Gaussians", name);
+  const auto has = [&](std::string_view property) { return vertices->find(property) != nullptr; };
+  if (has("f_anchor_feat_0")) fail("{} holds the anchors of Scaffold-GS, not Gaussians", name);
+  if (!has("opacity") && !has("scale_0") && !has("rot_0")) {
+    const PlyElement* faces = header.find("face");
+    if (faces != nullptr && faces->count > 0) {
+      fail("{} is a mesh of {} faces, not a model of Gaussians", name, faces->count);
+    }
+    fail(
+        "{} is a point cloud: its {} vertices have no opacity, scale_* and rot_*. Trained models lie in "
+        "point_cloud/iteration_N/point_cloud.ply; input.ply holds the points that training began with",
+        name, vertices->count);
+  }
+  if (has("scale_1") && !has("scale_2")) {
+    fail("{} holds flat Gaussians (2D Gaussian Splatting): scale_2 is missing; only 3D ones can be drawn",
+         name);
+  }
+  if (vertices->count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", name);
+}
+
+/// Anti-aliased models want another kernel than the plain one (METHOD.md section 1): say so rather than draw
+/// them wrong in silence.
+void warn_if_antialiased(const std::filesystem::path& path, const PlyHeader& header, bool filter_3d) {
+  bool antialiased = filter_3d;
+  for (std::string comment : header.comments) {
+    std::transform(comment.begin(), comment.end(), comment.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (comment.find("splatrendermode:") != std::string::npos)
+      antialiased = comment.find("mip") != std::string::npos;
+    if (comment.find("antialiased ") != std::string::npos)
+      antialiased = comment.find("antialiased 1") != std::string::npos;
+  }
+  if (antialiased) {
+    log_warning("{} was trained with anti-aliasing, which is not drawn: distant parts will look thicker",
+                path.string());
+  }
+}
+
+/// The number of f_rest properties of an element, after checking that they run from 0 without a gap.
+std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vertices) {
+  const std::size_t count = static_cast<std::size_t>(
+      std::count_if(vertices.properties.begin(), vertices.properties.end(),
+                    [](const PlyProperty& property) { return property.name.starts_with("f_rest_"); }));
+  if (count != 0 && count != 9 && count != 24 && count != 45 && count != 72) {
+    fail("{}: {} properties f_rest_*; expected 0, 9, 24 or 45 (degrees 0 to 3 of the spherical harmonics)",
+         path.string(), count);
+  }
+  return count;
+}
+
+/// Collects the sources of a layout one by one.
+class Finder {
+ public:
+  Finder(const std::filesystem::path& path, PlyLayout& layout) : path_(path), layout_(layout) {}
+
+  void add(const std::string& name) {
+    const PlyProperty* property = layout_.vertices->find(name);
+    if (property == nullptr) fail("{}: element 'vertex' has no property '{}'", path_.string(), name);
+    if (property->count_type) {
+      fail("{}: property '{}' of element 'vertex' is a list; expected one number", path_.string(), name);
+    }
+    layout_.sources.push_back(static_cast<std::size_t>(property - layout_.vertices->properties.data()));
+  }
+
+ private:
+  const std::filesystem::path& path_;
+  PlyLayout& layout_;
+};
+
+bool has_bytes(const PlyElement& vertices, std::string_view name) {
+  const PlyProperty* property = vertices.find(name);
+  return property != nullptr && property->type == PlyType::uint8;
+}
+
+}  // namespace
+
+PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header) {
+  refuse_relatives(path, header);
+  PlyLayout layout;
+  layout.vertices = header.find("vertex");
+  const std::size_t in_file = count_rest(path, *layout.vertices) / 3;
+  if (in_file == 24) log_warning("{}: spherical harmonics of degree 4 are cut to degree 3", path.string());
+  const std::size_t higher = std::min<std::size_t>(in_file, 15);
+  layout.degree = static_cast<int>(std::lround(std::sqrt(static_cast<double>(higher + 1)))) - 1;
+
+  Finder finder(path, layout);
+  for (const char* name :
+       {"x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3", "opacity"}) {
+    finder.add(name);
+  }
+  layout.rgb = layout.vertices->find("f_dc_0") == nullptr && has_bytes(*layout.vertices, "red") &&
+               has_bytes(*layout.vertices, "green") && has_bytes(*layout.vertices, "blue");
+  for (const char* name :
+       layout.rgb ? std::array{"red", "green", "blue"} : std::array{"f_dc_0", "f_dc_1", "f_dc_2"}) {
+    finder.add(name);
+  }
+  for (std::size_t k = 0; k < higher; ++k) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      finder.add(fmt::format("f_rest_{}", channel * in_file + k));
+  }
+  layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
+  if (layout.filter_3d) finder.add("filter_3D");
+  warn_if_antialiased(path, header, layout.filter_3d);
+  return layout;
+}
+
+bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGaussian& raw) {
+  glm::vec3 position(raw[0], raw[1], raw[2]);
+  std::array<float, 3 * sh_count(3)> sh{};
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(layout.degree));
+  std::copy_n(&raw[11], values, sh.begin());
+  if (layout.rgb) {
+    for (int c = 0; c < 3; ++c) sh[c] = (sh[c] / 255.0f - 0.5f) / sh_c0;
+  }
+  const bool good = decode_raw(model, i, position, glm::vec3(raw[3], raw[4], raw[5]),
+                               glm::vec4(raw[6], raw[7], raw[8], raw[9]), raw[10], sh.data());
+  if (!layout.filter_3d) return good;
+
+  // Mip-Splatting convolves the Gaussian with one of standard deviation f and keeps its mass.
+  const double f = raw[11 + values];
+  double mass = 1.0;
+  for (int c = 0; c < 3; ++c) {
+    const double scale = model.scale[i][c];
+    const double wider = std::sqrt(scale * scale + f * f);
+    if (wider > 0.0) mass *= scale / wider;
+    model.scale[i][c] = static_cast<float>(wider);
+  }
+  model.opacity[i] *= static_cast<float>(mass);
+  return good && std::isfinite(f);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,33 @@
+#pragma once
+// Which properties of a ply file's vertices make a Gaussian, and how.
+
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "formats/ply_header.h"
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// The numbers of one Gaussian as stored: position, log-scales, quaternion, opacity logit, then the
+/// coefficients in the order of Model::sh, then filter_3D where there is one.
+using RawGaussian = std::array<float, 11 + 3 * sh_count(3) + 1>;
+
+struct PlyLayout {
+  const PlyElement* vertices = nullptr;
+  int degree = 0;
+  std::vector<std::size_t>
+      sources;             // for each number of a RawGaussian, the vertex property that it comes from
+  bool rgb = false;        // the first three coefficients are base colours of 0 to 255 (Nerfstudio)
+  bool filter_3d = false;  // the last number is Mip-Splatting's filter (world units)
+};
+
+/// Finds the Gaussians in a file by the names of properties. Throws Error naming `path` if there are none or
+/// something is missing, saying what the file looks like instead. `header` must outlive the layout.
+PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header);
+
+/// Decodes one Gaussian into slot `i` of a model; returns whether it may be kept (scene/model.h, decode_raw).
+bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGaussian& raw);
+
+}  // namespace binosplat

@@ -1,0 +1,184 @@
+// libpng reports errors by longjmp, which runs no destructors: what it may jump out of keeps its objects in a
+// struct of the caller.
+#include <png.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <csetjmp>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/output_file.h"
+#include "formats/image_file.h"
+#include "formats/picture_readers.h"
+
+namespace binosplat {
+
+namespace {
+
+struct Reader {
+  const std::filesystem::path& path;
+  std::span<const std::byte> bytes;
+  std::size_t at = 0;
+  std::string error;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::vector<png_byte> values;
+  std::vector<png_bytep> rows;
+
+  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+struct Writer {
+  std::string encoded;
+  std::string error;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::vector<png_byte> row;
+  std::vector<png_text> texts;
+
+  ~Writer() { png_destroy_write_struct(&png, &info); }
+};
+
+template <typename Owner>
+[[noreturn]] void on_error(png_structp png, png_const_charp text) {
+  static_cast<Owner*>(png_get_error_ptr(png))->error = text;
+  png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+void read_bytes(png_structp png, png_bytep out, std::size_t size) {
+  Reader& reader = *static_cast<Reader*>(png_get_io_ptr(png));
+  if (size > reader.bytes.size() - reader.at) png_error(png, "the file is cut short");
+  std::memcpy(out, reader.bytes.data() + reader.at, size);
+  reader.at += size;
+}
+
+void write_bytes(png_structp png, png_bytep data, std::size_t size) {
+  static_cast<Writer*>(png_get_io_ptr(png))->encoded.append(reinterpret_cast<const char*>(data), size);
+}
+
+bool read_header(Reader& reader) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+  png_set_read_fn(reader.png, &reader, read_bytes);
+  png_read_info(reader.png, reader.info);
+  return true;
+}
+
+/// To 8 or 16 bits of grey, RGB or RGBA.
+bool expand(Reader& reader) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_set_expand(reader.png);
+  const bool alpha = (png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
+                     png_get_valid(reader.png, reader.info, PNG_INFO_tRNS) != 0;
+  if (alpha) png_set_gray_to_rgb(reader.png);
+  if (std::endian::native == std::endian::little) png_set_swap(reader.png);
+  png_read_update_info(reader.png, reader.info);
+  return true;
+}
+
+bool read_rows(Reader& reader) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_read_image(reader.png, reader.rows.data());
+  png_read_end(reader.png, nullptr);
+  return true;
+}
+
+/// The image's row `y` as PNG stores it: big-endian levels. NaN becomes 0.
+void encode_row(const Image& image, int y, int bits, std::vector<png_byte>& row) {
+  const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
+  const float* values = &image.data[static_cast<std::size_t>(y) * count];
+  for (std::size_t i = 0; i < count; ++i) {
+    const float clamped = values[i] > 0.0f ? std::min(values[i], 1.0f) : 0.0f;
+    if (bits == 8) {
+      row[i] = static_cast<png_byte>(std::lround(clamped * 255.0f));
+    } else {
+      const auto level = static_cast<std::uint16_t>(std::lround(clamped * 65535.0f));
+      row[2 * i] = static_cast<png_byte>(level >> 8);
+      row[2 * i + 1] = static_cast<png_byte>(level & 255);
+    }
+  }
+}
+
+bool write_image(Writer& writer, const Image& image, int bits) {
+  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
+  const int colour = image.channels == 1   ? PNG_COLOR_TYPE_GRAY
+                     : image.channels == 3 ? PNG_COLOR_TYPE_RGB
+                                           : PNG_COLOR_TYPE_RGB_ALPHA;
+  png_set_write_fn(writer.png, &writer, write_bytes, nullptr);
+  png_set_user_limits(writer.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+  png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width),
+               static_cast<png_uint_32>(image.height), bits, colour, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_set_text(writer.png, writer.info, writer.texts.data(), static_cast<int>(writer.texts.size()));
+  png_write_info(writer.png, writer.info);
+  for (int y = 0; y < image.height; ++y) {
+    encode_row(image, y, bits, writer.row);
+    png_write_row(writer.png, writer.row.data());
+  }
+  png_write_end(writer.png, nullptr);
+  return true;
+}
+
+}  // namespace
+
+Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  Reader reader{path, bytes};
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error<Reader>, on_warning);
+  if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
+    throw std::bad_alloc();
+  if (!read_header(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
+  const png_uint_32 width = png_get_image_width(reader.png, reader.info);
+  const png_uint_32 height = png_get_image_height(reader.png, reader.info);
+  const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
+  constexpr std::uint64_t best_deflate = 1032;  // bytes out of one byte of a zlib stream
+  check_size(path, width, height, bytes.size(), best_deflate * 8 / static_cast<std::uint64_t>(bits) + 1);
+  if (!expand(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
+
+  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
+  reader.values.resize(row_bytes * height);
+  for (std::size_t y = 0; y < height; ++y) reader.rows.push_back(&reader.values[y * row_bytes]);
+  if (!read_rows(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
+
+  Image image(static_cast<int>(width), static_cast<int>(height), png_get_channels(reader.png, reader.info));
+  const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    if (wide) {
+      std::uint16_t level;
+      std::memcpy(&level, &reader.values[2 * i], sizeof(level));
+      image.data[i] = static_cast<float>(level) / 65535.0f;
+    } else {
+      image.data[i] = static_cast<float>(reader.values[i]) / 255.0f;
+    }
+  }
+  return image;
+}
+
+void save_png(const std::filesystem::path& path, const Image& image, int bits, const Notes& notes) {
+  if (bits != 8 && bits != 16) fail("{}: a PNG has 8 or 16 bits, not {}", path.string(), bits);
+  OutputFile file(path);
+  Writer writer;
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error<Writer>, on_warning);
+  if (writer.png == nullptr || (writer.info = png_create_info_struct(writer.png)) == nullptr)
+    throw std::bad_alloc();
+  writer.row.resize(static_cast<std::size_t>(image.width) *
+                    static_cast<std::size_t>(image.channels * bits / 8));
+  for (const auto& [key, value] : notes) {
+    png_text text{};
+    text.compression = PNG_ITXT_COMPRESSION_NONE;
+    text.key = const_cast<char*>(key.c_str());
+    text.text = const_cast<char*>(value.c_str());
+    writer.texts.push_back(text);
+  }
+  if (!write_image(writer, image, bits)) fail("cannot write {}: {}", path.string(), writer.error);
+  file.write(writer.encoded);
+  file.commit();
+}
+
+}  // namespace binosplat

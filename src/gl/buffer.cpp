@@ -1,0 +1,91 @@
+#include "gl/buffer.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "base/error.h"
+
+namespace binosplat::gl {
+
+namespace {
+
+// Uploads and read-backs go through pieces of this size: NVIDIA moves data ten times faster through a mapped buffer than
+// through glGetNamedBufferSubData, and a piece bounds what the driver has to pin.
+constexpr std::int64_t piece_bytes = std::int64_t{64} << 20;
+
+}  // namespace
+
+Buffer::Buffer(Context& context, std::string label) : context_(context), label_(std::move(label)) {}
+
+Buffer::~Buffer() { release(); }
+
+void Buffer::release() {
+  if (id_ == 0) return;
+  context_.gl().DeleteBuffers(1, &id_);
+  context_.count_allocation(-bytes_);
+  id_ = 0;
+  bytes_ = 0;
+}
+
+void Buffer::reserve(std::int64_t bytes) {
+  bytes = std::max<std::int64_t>(bytes, 16);  // a binding of size 0 is an error
+  if (bytes <= bytes_) return;
+  const std::int64_t limit = context_.limits().storage_block_bytes;
+  if (bytes > limit) {
+    throw Error(ExitCode::out_of_memory,
+                fmt::format("{} needs {} MiB; a shader on {} reaches {} MiB of one buffer. Use a smaller picture or model.",
+                            label_, bytes >> 20, context_.renderer(), limit >> 20));
+  }
+  release();
+  const Functions& gl = context_.gl();
+  gl.CreateBuffers(1, &id_);
+  gl.NamedBufferStorage(id_, bytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR) {
+    gl.DeleteBuffers(1, &id_);
+    id_ = 0;
+    throw Error(ExitCode::out_of_memory,
+                fmt::format("no room on {} for {} MiB of {} ({} MiB in use by this program). Use a smaller picture or model.",
+                            context_.renderer(), bytes >> 20, label_, context_.allocated_bytes() >> 20));
+  }
+  bytes_ = bytes;
+  context_.count_allocation(bytes);
+  gl.ObjectLabel(GL_BUFFER, id_, -1, label_.c_str());
+}
+
+void Buffer::write(const void* data, std::int64_t bytes) {
+  const auto* from = static_cast<const std::byte*>(data);
+  for (std::int64_t at = 0; at < bytes; at += piece_bytes) {
+    context_.gl().NamedBufferSubData(id_, at, std::min(piece_bytes, bytes - at), from + at);
+  }
+  context_.check("uploading " + label_);
+}
+
+void Buffer::read_bytes(void* out, std::int64_t bytes) const {
+  if (bytes == 0) return;
+  const Functions& gl = context_.gl();
+  gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  std::uint32_t staging = 0;
+  const std::int64_t staging_bytes = std::min(piece_bytes, bytes);
+  constexpr GLbitfield flags = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  gl.CreateBuffers(1, &staging);
+  gl.NamedBufferStorage(staging, staging_bytes, nullptr, flags | GL_CLIENT_STORAGE_BIT);
+  const void* mapped = gl.MapNamedBufferRange(staging, 0, staging_bytes, flags);
+  if (mapped == nullptr) {
+    gl.DeleteBuffers(1, &staging);
+    context_.check("reading " + label_);
+    throw Error(ExitCode::out_of_memory, "no memory to read " + label_ + " back");
+  }
+  for (std::int64_t at = 0; at < bytes; at += staging_bytes) {
+    const std::int64_t piece = std::min(staging_bytes, bytes - at);
+    gl.CopyNamedBufferSubData(id_, staging, at, 0, piece);
+    gl.Finish();
+    std::memcpy(static_cast<std::byte*>(out) + at, mapped, static_cast<std::size_t>(piece));
+  }
+  gl.UnmapNamedBuffer(staging);
+  gl.DeleteBuffers(1, &staging);
+  context_.check("reading " + label_);
+}
+
+}  // namespace binosplat::gl

@@ -1,0 +1,59 @@
+#pragma once
+// Storage on the GPU.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gl/context.h"
+
+namespace binosplat::gl {
+
+/// A shader storage buffer with a name for debuggers and error texts. Empty until reserved; contents are undefined until
+/// written.
+class Buffer {
+ public:
+  Buffer(Context& context, std::string label);
+  ~Buffer();
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+
+  /// Makes room for at least `bytes`; what was in it is lost when it has to grow. Throws Error(out_of_memory) if the GPU
+  /// has no room, or if a shader on this driver could not reach all of it.
+  void reserve(std::int64_t bytes);
+
+  template <typename T>
+  void upload(std::span<const T> data) {
+    reserve(static_cast<std::int64_t>(data.size_bytes()));
+    write(data.data(), static_cast<std::int64_t>(data.size_bytes()));
+  }
+  template <typename T>
+  void upload(const std::vector<T>& data) {
+    upload(std::span<const T>(data));
+  }
+
+  /// `count` elements from the buffer's start, after everything before it has run.
+  template <typename T>
+  std::vector<T> read(std::size_t count) const {
+    std::vector<T> out(count);
+    read_bytes(out.data(), static_cast<std::int64_t>(count * sizeof(T)));
+    return out;
+  }
+
+  std::uint32_t id() const { return id_; }
+  std::int64_t bytes() const { return bytes_; }
+  const std::string& label() const { return label_; }
+
+ private:
+  void release();
+  void write(const void* data, std::int64_t bytes);
+  void read_bytes(void* out, std::int64_t bytes) const;
+
+  Context& context_;
+  std::string label_;
+  std::uint32_t id_ = 0;
+  std::int64_t bytes_ = 0;
+};
+
+}  // namespace binosplat::gl

@@ -1,0 +1,89 @@
+#include "gl/context.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace binosplat::gl {
+
+namespace {
+
+void APIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei, const GLchar* message, const void*) {
+  if (type == GL_DEBUG_TYPE_ERROR) log_warning("OpenGL: {}", message);
+}
+
+std::string text(const Functions& gl, GLenum name) {
+  const auto* value = reinterpret_cast<const char*>(gl.GetString(name));
+  return value == nullptr ? "" : value;
+}
+
+}  // namespace
+
+void Context::initialise(GetProcAddress get_proc_address, std::string backend) {
+  functions_ = load_functions(get_proc_address);
+  backend_ = std::move(backend);
+  renderer_ = text(functions_, GL_RENDERER);
+  version_ = text(functions_, GL_VERSION);
+  int major = 0;
+  int minor = 0;
+  functions_.GetIntegerv(GL_MAJOR_VERSION, &major);
+  functions_.GetIntegerv(GL_MINOR_VERSION, &minor);
+  if (10 * major + minor < 45) {
+    throw Error(ExitCode::no_gl, fmt::format("{} offers OpenGL {}.{}: binosplat needs 4.5 core", renderer_, major, minor));
+  }
+  functions_.DebugMessageCallback(on_message, nullptr);
+
+  int groups = 0;
+  functions_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
+  limits_.groups = static_cast<std::uint32_t>(groups);
+  int invocations = 0;
+  functions_.GetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &invocations);
+  limits_.invocations = static_cast<std::uint32_t>(invocations);
+  functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
+  // llvmpipe states 128 MiB and works right up to 2 GiB, where a read crashes; no driver is trusted beyond that.
+  const std::int64_t two_gib = std::int64_t{1} << 31;
+  limits_.storage_block_bytes = software() ? two_gib : std::min(limits_.storage_block_bytes, two_gib);
+}
+
+bool Context::software() const { return renderer_.find("llvmpipe") != std::string::npos; }
+
+std::unique_ptr<Context> Context::adopt(GetProcAddress get_proc_address) {
+  std::unique_ptr<Context> context(new Context());
+  context->initialise(get_proc_address, "caller's");
+  return context;
+}
+
+const Program& Context::program(const std::string& name, const Defines& defines) {
+  std::string key = name;
+  for (const auto& [define, value] : defines) key += " " + define + "=" + value;
+  auto found = programs_.find(key);
+  if (found == programs_.end()) {
+    found = programs_.emplace(key, Program(functions_, name, defines, shader_folder_)).first;
+  }
+  return found->second;
+}
+
+void Context::set_shader_folder(const std::filesystem::path& folder) {
+  shader_folder_ = folder;
+  programs_.clear();
+}
+
+void Context::count_allocation(std::int64_t bytes) {
+  allocated_ += bytes;
+  peak_ = std::max(peak_, allocated_);
+}
+
+void Context::check(const std::string& what) const {
+  const GLenum error = functions_.GetError();
+  if (error == GL_NO_ERROR) return;
+  if (error == GL_OUT_OF_MEMORY) {
+    throw Error(ExitCode::out_of_memory, fmt::format("{}: the GPU is out of memory ({} MiB in use by this program)", what,
+                                                     allocated_ >> 20));
+  }
+  throw std::runtime_error(fmt::format("{}: OpenGL error 0x{:04x}", what, error));
+}
+
+}  // namespace binosplat::gl

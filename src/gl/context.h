@@ -1,0 +1,77 @@
+#pragma once
+// An OpenGL 4.5 core context without a window, or a caller's own, and everything that belongs to it: entry points,
+// limits, compiled programs, memory taken.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "gl/functions.h"
+#include "gl/program.h"
+
+namespace binosplat::gl {
+
+/// Where a context comes from. `automatic` takes the first GPU that EGL's device platform offers, else Mesa's surfaceless
+/// platform (software: llvmpipe). None of them needs a display server.
+enum class Backend { automatic, device, surfaceless };
+
+struct Limits {
+  std::int64_t storage_block_bytes = 0;  // largest binding of a storage buffer that is safe on this driver
+  std::uint32_t groups = 0;              // work groups of one dispatch along x
+  std::uint32_t invocations = 0;         // of one work group
+};
+
+class Context {
+ public:
+  /// Opens and makes current. `device` counts EGL's devices (only for Backend::device and automatic; -1: the first GPU).
+  /// Throws Error(no_gl) that lists what was tried and what to install.
+  static std::unique_ptr<Context> open(Backend backend = Backend::automatic, int device = -1);
+
+  /// Wraps a context of the caller's that is current; it stays the caller's.
+  static std::unique_ptr<Context> adopt(GetProcAddress get_proc_address);
+
+  virtual ~Context() = default;
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  const Functions& gl() const { return functions_; }
+  const Limits& limits() const { return limits_; }
+  /// Largest group count that a dispatch may use along x; a test may lower it to see dispatches split.
+  void limit_groups(std::uint32_t groups) { limits_.groups = groups; }
+
+  const std::string& backend() const { return backend_; }    // "EGL device 0", "EGL surfaceless", "caller's"
+  const std::string& renderer() const { return renderer_; }  // GL_RENDERER
+  const std::string& version() const { return version_; }    // GL_VERSION
+  bool software() const;                                     // llvmpipe
+
+  /// The program of a shader file and its defines, compiled at first use.
+  const Program& program(const std::string& name, const Defines& defines = {});
+  /// Shaders are read from this folder from now on; empty: the embedded ones.
+  void set_shader_folder(const std::filesystem::path& folder);
+
+  /// Bytes in buffers now and at most; buffers report here.
+  std::int64_t allocated_bytes() const { return allocated_; }
+  std::int64_t peak_bytes() const { return peak_; }
+  void count_allocation(std::int64_t bytes);
+
+  /// Throws std::runtime_error naming `what` if GL has recorded an error, Error(out_of_memory) for GL_OUT_OF_MEMORY.
+  void check(const std::string& what) const;
+
+ protected:
+  Context() = default;
+  void initialise(GetProcAddress get_proc_address, std::string backend);
+  /// For a destructor that ends the context: programs go before it.
+  void release_programs() { programs_.clear(); }
+
+ private:
+  Functions functions_;
+  Limits limits_;
+  std::string backend_, renderer_, version_;
+  std::filesystem::path shader_folder_;
+  std::map<std::string, Program> programs_;
+  std::int64_t allocated_ = 0, peak_ = 0;
+};
+
+}  // namespace binosplat::gl

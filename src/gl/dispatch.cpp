@@ -1,0 +1,98 @@
+#include "gl/dispatch.h"
+
+#include <algorithm>
+#include <cstring>
+#include <stdexcept>
+
+#include "base/error.h"
+
+namespace binosplat::gl {
+
+Dispatcher::~Dispatcher() {
+  if (!queries_.empty()) context_.gl().DeleteQueries(static_cast<int>(queries_.size()), queries_.data());
+}
+
+void Dispatcher::begin_frame() { marks_.clear(); }
+
+void Dispatcher::mark(const std::string& stage) {
+  if (marks_.size() == queries_.size()) {
+    queries_.push_back(0);
+    context_.gl().CreateQueries(GL_TIMESTAMP, 1, &queries_.back());
+  }
+  marks_.push_back({stage, queries_[marks_.size()]});
+  context_.gl().QueryCounter(marks_.back().query, GL_TIMESTAMP);
+}
+
+void Dispatcher::begin_stage(const char* name) {
+  if (!marks_.empty()) context_.gl().PopDebugGroup();
+  mark(name);
+  context_.gl().PushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
+}
+
+void Dispatcher::end_frame() {
+  if (!marks_.empty()) context_.gl().PopDebugGroup();
+  mark("");
+}
+
+void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bindings,
+                      std::initializer_list<Uniform> uniforms) {
+  const Functions& gl = context_.gl();
+  for (const Program::Block& block : program.blocks()) {
+    const auto* found = std::find_if(bindings.begin(), bindings.end(),
+                                     [&](const Binding& b) { return block.name == b.block; });
+    if (found == bindings.end() || found->buffer.id() == 0) {
+      throw std::logic_error(program.name() + ": nothing bound to the storage block " + block.name);
+    }
+    gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, block.binding, found->buffer.id(), 0, found->buffer.bytes());
+  }
+  for (const Program::Uniform& uniform : program.uniforms()) {
+    const auto* found =
+        std::find_if(uniforms.begin(), uniforms.end(), [&](const Uniform& u) { return uniform.name == u.name; });
+    if (found == uniforms.end()) throw std::logic_error(program.name() + ": no value for the uniform " + uniform.name);
+    gl.ProgramUniform1ui(program.id(), uniform.location, found->value);
+  }
+}
+
+void Dispatcher::run(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
+                     std::initializer_list<Uniform> uniforms) {
+  if (work.arguments == nullptr && work.groups == 0) return;
+  const Functions& gl = context_.gl();
+  bind(program, bindings, uniforms);
+  gl.UseProgram(program.id());
+  if (work.arguments != nullptr) {
+    gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, work.arguments->id());
+    gl.DispatchComputeIndirect(work.offset);
+  } else {
+    const std::uint64_t rows = (work.groups + context_.limits().groups - 1) / context_.limits().groups;
+    const std::uint64_t columns = (work.groups + rows - 1) / rows;
+    if (rows > 65535) throw std::logic_error(program.name() + ": more work groups than any driver takes");
+    gl.DispatchCompute(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), 1);
+  }
+  gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  context_.check(program.name());
+}
+
+std::vector<StageTime> Dispatcher::wait_and_time() {
+  const Functions& gl = context_.gl();
+  const GLsync fence = gl.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  constexpr std::uint64_t one_second = 1'000'000'000;
+  GLenum state = GL_TIMEOUT_EXPIRED;
+  while (state == GL_TIMEOUT_EXPIRED) state = gl.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, one_second);
+  gl.DeleteSync(fence);
+  if (state == GL_WAIT_FAILED) throw std::runtime_error("the GPU was lost while drawing a frame");
+
+  std::vector<std::uint64_t> at(marks_.size());
+  for (std::size_t i = 0; i < marks_.size(); ++i) {
+    gl.GetQueryObjectui64v(marks_[i].query, GL_QUERY_RESULT, &at[i]);
+  }
+  std::vector<StageTime> times;
+  for (std::size_t i = 0; i + 1 < marks_.size(); ++i) {
+    const std::string& name = marks_[i].stage;
+    auto found = std::find_if(times.begin(), times.end(), [&](const StageTime& t) { return t.name == name; });
+    if (found == times.end()) found = times.insert(times.end(), {name, 0.0});
+    found->ms += static_cast<double>(at[i + 1] - at[i]) * 1e-6;
+  }
+  return times;
+}
+
+}  // namespace binosplat::gl

@@ -1,0 +1,81 @@
+#pragma once
+// The one place that launches work: it splits what exceeds a driver's group count, labels for debuggers, times by stage,
+// and refuses a dispatch with a buffer or uniform forgotten (GL would read zeros without a word).
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/context.h"
+
+namespace binosplat::gl {
+
+/// How much to launch. Shaders find their place with group_index() and thread_index() of shared/grid.glsl and leave when
+/// it lies beyond their count: a split launch has some groups too many.
+struct Work {
+  std::uint64_t groups = 0;          // direct
+  const Buffer* arguments = nullptr;  // or indirect: three uints at `offset`, already split
+  std::int64_t offset = 0;
+
+  /// One invocation for each of `count` things, at `local_size` a group.
+  static Work threads(std::uint64_t count, std::uint32_t local_size) { return {(count + local_size - 1) / local_size}; }
+  static Work of_groups(std::uint64_t count) { return {count}; }
+  static Work indirect(const Buffer& arguments, std::int64_t offset) { return {0, &arguments, offset}; }
+};
+
+struct Binding {
+  const char* block;  // the storage block's name in the shader
+  const Buffer& buffer;
+};
+
+struct Uniform {
+  const char* name;
+  std::uint32_t value;
+};
+
+/// GPU time of one stage of a frame.
+struct StageTime {
+  std::string name;
+  double ms = 0;
+};
+
+class Dispatcher {
+ public:
+  explicit Dispatcher(Context& context) : context_(context) {}
+  ~Dispatcher();
+  Dispatcher(const Dispatcher&) = delete;
+  Dispatcher& operator=(const Dispatcher&) = delete;
+
+  Context& context() { return context_; }
+
+  /// Starts a frame: forgets the last frame's stages.
+  void begin_frame();
+  /// What is dispatched from here on belongs to the stage `name`; a name may come again and is summed up.
+  void begin_stage(const char* name);
+  void end_frame();
+
+  /// Runs a program, with a barrier after it so that whatever comes next sees what it wrote.
+  /// Throws std::logic_error if a block or uniform of the program is not given.
+  void run(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
+           std::initializer_list<Uniform> uniforms = {});
+
+  /// Waits for the frame on the GPU, then the time of each stage in order of first appearance, from timestamps (llvmpipe
+  /// reports nothing between a GL_TIME_ELAPSED pair).
+  std::vector<StageTime> wait_and_time();
+
+ private:
+  struct Mark {
+    std::string stage;
+    std::uint32_t query;
+  };
+  void mark(const std::string& stage);
+  void bind(const Program& program, std::initializer_list<Binding> bindings, std::initializer_list<Uniform> uniforms);
+
+  Context& context_;
+  std::vector<std::uint32_t> queries_;
+  std::vector<Mark> marks_;
+};
+
+}  // namespace binosplat::gl

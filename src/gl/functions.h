@@ -1,0 +1,71 @@
+#pragma once
+// The OpenGL entry points that the project calls, filled from the context's own getProcAddress: EGL, OSMesa and a
+// caller's context may live in one process, and their pointers differ.
+
+#include <GL/glcorearb.h>
+
+namespace binosplat::gl {
+
+// X(name without gl, the upper-case name that GL's function pointer types use)
+#define BINOSPLAT_GL_FUNCTIONS(X)                                 \
+  X(AttachShader, ATTACHSHADER)                                   \
+  X(BindBuffer, BINDBUFFER)                                       \
+  X(BindBufferRange, BINDBUFFERRANGE)                             \
+  X(ClientWaitSync, CLIENTWAITSYNC)                               \
+  X(CompileShader, COMPILESHADER)                                 \
+  X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA)               \
+  X(CreateBuffers, CREATEBUFFERS)                                 \
+  X(CreateProgram, CREATEPROGRAM)                                 \
+  X(CreateQueries, CREATEQUERIES)                                 \
+  X(CreateShader, CREATESHADER)                                   \
+  X(DebugMessageCallback, DEBUGMESSAGECALLBACK)                   \
+  X(DeleteBuffers, DELETEBUFFERS)                                 \
+  X(DeleteProgram, DELETEPROGRAM)                                 \
+  X(DeleteQueries, DELETEQUERIES)                                 \
+  X(DeleteShader, DELETESHADER)                                   \
+  X(DeleteSync, DELETESYNC)                                       \
+  X(DispatchCompute, DISPATCHCOMPUTE)                             \
+  X(DispatchComputeIndirect, DISPATCHCOMPUTEINDIRECT)             \
+  X(FenceSync, FENCESYNC)                                         \
+  X(Finish, FINISH)                                               \
+  X(GetError, GETERROR)                                           \
+  X(GetInteger64v, GETINTEGER64V)                                 \
+  X(GetIntegeri_v, GETINTEGERI_V)                                 \
+  X(GetIntegerv, GETINTEGERV)                                     \
+  X(GetProgramInfoLog, GETPROGRAMINFOLOG)                         \
+  X(GetProgramInterfaceiv, GETPROGRAMINTERFACEIV)                 \
+  X(GetProgramResourceIndex, GETPROGRAMRESOURCEINDEX)             \
+  X(GetProgramResourceName, GETPROGRAMRESOURCENAME)               \
+  X(GetProgramResourceiv, GETPROGRAMRESOURCEIV)                   \
+  X(GetProgramiv, GETPROGRAMIV)                                   \
+  X(GetQueryObjectui64v, GETQUERYOBJECTUI64V)                     \
+  X(GetShaderInfoLog, GETSHADERINFOLOG)                           \
+  X(GetShaderiv, GETSHADERIV)                                     \
+  X(GetString, GETSTRING)                                         \
+  X(GetUniformLocation, GETUNIFORMLOCATION)                       \
+  X(LinkProgram, LINKPROGRAM)                                     \
+  X(MapNamedBufferRange, MAPNAMEDBUFFERRANGE)                     \
+  X(MemoryBarrier, MEMORYBARRIER)                                 \
+  X(NamedBufferStorage, NAMEDBUFFERSTORAGE)                       \
+  X(NamedBufferSubData, NAMEDBUFFERSUBDATA)                       \
+  X(ObjectLabel, OBJECTLABEL)                                     \
+  X(PopDebugGroup, POPDEBUGGROUP)                                 \
+  X(ProgramUniform1ui, PROGRAMUNIFORM1UI)                         \
+  X(PushDebugGroup, PUSHDEBUGGROUP)                               \
+  X(QueryCounter, QUERYCOUNTER)                                   \
+  X(ShaderSource, SHADERSOURCE)                                   \
+  X(UnmapNamedBuffer, UNMAPNAMEDBUFFER)                           \
+  X(UseProgram, USEPROGRAM)
+
+using GetProcAddress = void (*(*)(const char* name))();
+
+struct Functions {
+#define BINOSPLAT_GL_MEMBER(name, upper) PFNGL##upper##PROC name = nullptr;
+  BINOSPLAT_GL_FUNCTIONS(BINOSPLAT_GL_MEMBER)
+#undef BINOSPLAT_GL_MEMBER
+};
+
+/// The table of the context that is current. Throws Error(no_gl) that names the first entry point not found.
+Functions load_functions(GetProcAddress get_proc_address);
+
+}  // namespace binosplat::gl

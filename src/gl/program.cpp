@@ -1,0 +1,86 @@
+#include "gl/program.h"
+
+#include <array>
+#include <utility>
+
+#include "base/error.h"
+
+namespace binosplat::gl {
+
+namespace {
+
+template <typename Visit>
+void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, GLenum property, const Visit& visit) {
+  std::int32_t count = 0;
+  gl.GetProgramInterfaceiv(program, kind, GL_ACTIVE_RESOURCES, &count);
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+    std::array<char, 64> name{};
+    std::int32_t value = 0;
+    gl.GetProgramResourceName(program, kind, i, name.size(), nullptr, name.data());
+    gl.GetProgramResourceiv(program, kind, i, 1, &property, 1, nullptr, &value);
+    visit(name.data(), value);
+  }
+}
+
+}  // namespace
+
+Program::Program(const Functions& gl, const std::string& name, const Defines& defines,
+                 const std::filesystem::path& folder)
+    : gl_(&gl), name_(name) {
+  compile(ShaderSource(name, defines, folder));
+  reflect();
+}
+
+Program::~Program() {
+  if (id_ != 0) gl_->DeleteProgram(id_);
+}
+
+Program::Program(Program&& other) noexcept
+    : gl_(other.gl_),
+      name_(std::move(other.name_)),
+      id_(std::exchange(other.id_, 0)),
+      local_size_(other.local_size_),
+      blocks_(std::move(other.blocks_)),
+      uniforms_(std::move(other.uniforms_)) {}
+
+void Program::compile(const ShaderSource& source) {
+  const std::uint32_t shader = gl_->CreateShader(GL_COMPUTE_SHADER);
+  const char* text = source.text().c_str();
+  gl_->ShaderSource(shader, 1, &text, nullptr);
+  gl_->CompileShader(shader);
+  std::int32_t good = 0;
+  gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  std::string log(1 << 16, '\0');
+  std::int32_t length = 0;
+  if (good == 0) {
+    gl_->GetShaderInfoLog(shader, static_cast<int>(log.size()), &length, log.data());
+    gl_->DeleteShader(shader);
+    log.resize(static_cast<std::size_t>(length));
+    throw Error(ExitCode::no_gl, "shader " + name_ + " does not compile:\n" + source.with_file_names(log));
+  }
+  id_ = gl_->CreateProgram();
+  gl_->AttachShader(id_, shader);
+  gl_->LinkProgram(id_);
+  gl_->DeleteShader(shader);
+  gl_->GetProgramiv(id_, GL_LINK_STATUS, &good);
+  if (good == 0) {
+    gl_->GetProgramInfoLog(id_, static_cast<int>(log.size()), &length, log.data());
+    gl_->DeleteProgram(id_);
+    log.resize(static_cast<std::size_t>(length));
+    throw Error(ExitCode::no_gl, "shader " + name_ + " does not link:\n" + source.with_file_names(log));
+  }
+  gl_->ObjectLabel(GL_PROGRAM, id_, -1, name_.c_str());
+}
+
+void Program::reflect() {
+  std::array<std::int32_t, 3> size{};
+  gl_->GetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
+  local_size_ = static_cast<std::uint32_t>(size[0] * size[1] * size[2]);
+  for_each_resource(*gl_, id_, GL_SHADER_STORAGE_BLOCK, GL_BUFFER_BINDING, [&](const char* name, std::int32_t binding) {
+    blocks_.push_back({name, static_cast<std::uint32_t>(binding)});
+  });
+  for_each_resource(*gl_, id_, GL_UNIFORM, GL_LOCATION,
+                    [&](const char* name, std::int32_t location) { uniforms_.push_back({name, location}); });
+}
+
+}  // namespace binosplat::gl

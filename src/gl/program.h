@@ -1,0 +1,51 @@
+#pragma once
+// A compiled compute shader and the names in it.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gl/functions.h"
+#include "gl/shader_source.h"
+
+namespace binosplat::gl {
+
+class Program {
+ public:
+  struct Block {
+    std::string name;
+    std::uint32_t binding;
+  };
+
+  struct Uniform {
+    std::string name;
+    std::int32_t location;
+  };
+
+  /// Compiles and links. Throws Error(no_gl) with the driver's log, places given as file:line.
+  Program(const Functions& gl, const std::string& name, const Defines& defines, const std::filesystem::path& folder);
+  ~Program();
+  Program(Program&& other) noexcept;
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  Program& operator=(Program&&) = delete;
+
+  std::uint32_t id() const { return id_; }
+  const std::string& name() const { return name_; }
+  std::uint32_t local_size() const { return local_size_; }         // invocations of a work group
+  const std::vector<Block>& blocks() const { return blocks_; }      // storage blocks the shader really uses
+  const std::vector<Uniform>& uniforms() const { return uniforms_; }  // those the shader really uses
+
+ private:
+  void compile(const ShaderSource& source);
+  void reflect();
+
+  const Functions* gl_;
+  std::string name_;
+  std::uint32_t id_ = 0;
+  std::uint32_t local_size_ = 1;
+  std::vector<Block> blocks_;
+  std::vector<Uniform> uniforms_;
+};
+
+}  // namespace binosplat::gl

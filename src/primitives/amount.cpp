@@ -1,0 +1,32 @@
+#include "primitives/amount.h"
+
+#include "shared/limits.h"
+
+namespace binosplat::primitives {
+
+namespace {
+
+std::uint32_t blocks_of(std::uint32_t count, std::uint32_t block) { return count / block + (count % block != 0 ? 1 : 0); }
+
+void split(std::uint32_t groups, std::uint32_t groups_max, std::uint32_t& x, std::uint32_t& y, std::uint32_t& z) {
+  y = groups == 0 ? 1 : (groups + groups_max - 1) / groups_max;
+  x = (groups + y - 1) / y;
+  z = 1;
+}
+
+}  // namespace
+
+shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max) {
+  shared::Amount a{};
+  a.count = count;
+  split(blocks_of(count, THREADS), groups_max, a.threads_x, a.threads_y, a.threads_z);
+  split(blocks_of(count, SCAN_BLOCK), groups_max, a.scan_x, a.scan_y, a.scan_z);
+  split(blocks_of(count, SORT_BLOCK), groups_max, a.sort_x, a.sort_y, a.sort_z);
+  return a;
+}
+
+SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t groups_max) {
+  return {make_amount(count, groups_max), make_amount(SORT_DIGITS * blocks_of(count, SORT_BLOCK), groups_max)};
+}
+
+}  // namespace binosplat::primitives

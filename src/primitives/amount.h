@@ -1,0 +1,20 @@
+#pragma once
+// Amounts (shared/types.h): how many things there are, for dispatches whose size may be known to the GPU only.
+
+#include <cstdint>
+
+#include "shared/types.h"
+
+namespace binosplat::primitives {
+
+/// The Amount of `count` things that begin at 0, as shared/amount.glsl fills it on the GPU.
+shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max);
+
+/// The two Amounts that the radix sort needs: of its keys, and of its counters.
+struct SortAmounts {
+  shared::Amount keys;
+  shared::Amount counters;
+};
+SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t groups_max);
+
+}  // namespace binosplat::primitives

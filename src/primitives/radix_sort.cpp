@@ -1,0 +1,45 @@
+#include "primitives/radix_sort.h"
+
+#include <cstddef>
+
+#include "shared/limits.h"
+#include "shared/types.h"
+
+namespace binosplat::primitives {
+
+PairBuffers::PairBuffers(gl::Context& context, const std::string& label)
+    : keys_(context, label + ": keys"),
+      keys_other_(context, label + ": keys, other copy"),
+      values_(context, label + ": values"),
+      values_other_(context, label + ": values, other copy") {}
+
+void PairBuffers::reserve(std::int64_t count) {
+  for (gl::Buffer* buffer : {&keys_, &keys_other_, &values_, &values_other_}) buffer->reserve(count * 4);
+}
+
+void RadixSort::reserve(std::int64_t count) {
+  const std::int64_t counters = SORT_DIGITS * (count / SORT_BLOCK + 1);
+  histogram_.reserve(counters * 4);
+  scan_.reserve(counters);
+}
+
+void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs, std::uint32_t bits) {
+  gl::Context& context = dispatcher.context();
+  const auto blocks = gl::Work::indirect(amounts, offsetof(shared::Amount, sort_x));
+  for (std::uint32_t shift = 0; shift < bits; shift += 8) {
+    dispatcher.run(context.program("primitives/sort_count.comp"), blocks,
+                   {{"Amounts", amounts}, {"Keys", pairs.keys()}, {"Histogram", histogram_}}, {{"shift", shift}});
+    scan_.run(dispatcher, amounts, 1, histogram_);
+    dispatcher.run(context.program("primitives/sort_scatter.comp"), blocks,
+                   {{"Amounts", amounts},
+                    {"Keys", pairs.keys()},
+                    {"Values", pairs.values()},
+                    {"Histogram", histogram_},
+                    {"KeysOut", pairs.keys_out()},
+                    {"ValuesOut", pairs.values_out()}},
+                   {{"shift", shift}});
+    pairs.flip();
+  }
+}
+
+}  // namespace binosplat::primitives

@@ -1,0 +1,27 @@
+#include "primitives/scan.h"
+
+#include <cstddef>
+
+#include "shared/limits.h"
+#include "shared/types.h"
+
+namespace binosplat::primitives {
+
+void Scan::reserve(std::int64_t count) {
+  block_sums_.reserve((count / SCAN_BLOCK + 1) * 4);
+  total_.reserve(4);
+}
+
+void Scan::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which, const gl::Buffer& values) {
+  gl::Context& context = dispatcher.context();
+  const auto blocks = gl::Work::indirect(
+      amounts, static_cast<std::int64_t>(which * sizeof(shared::Amount) + offsetof(shared::Amount, scan_x)));
+  dispatcher.run(context.program("primitives/scan_reduce.comp"), blocks,
+                 {{"Amounts", amounts}, {"Values", values}, {"BlockSums", block_sums_}}, {{"amount", which}});
+  dispatcher.run(context.program("primitives/scan_blocks.comp"), gl::Work::of_groups(1),
+                 {{"Amounts", amounts}, {"BlockSums", block_sums_}, {"Total", total_}}, {{"amount", which}});
+  dispatcher.run(context.program("primitives/scan_apply.comp"), blocks,
+                 {{"Amounts", amounts}, {"Values", values}, {"BlockSums", block_sums_}}, {{"amount", which}});
+}
+
+}  // namespace binosplat::primitives

@@ -1,0 +1,56 @@
+#pragma once
+// One pixel of the blend, METHOD.md section 3 to the letter. For blend.cpp and trace.cpp only.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "reference/blend.h"
+#include "shared/limits.h"
+
+namespace binosplat::reference {
+
+/// What a pixel has gathered so far.
+struct PixelSum {
+  glm::dvec3 colour{0.0};      // C
+  double z_sum = 0.0;          // Z
+  double transmittance = 1.0;  // T
+};
+
+enum class Verdict { skipped, blended, stopped };
+
+/// alpha of a splat at pixel (x, y), not yet compared with tau; 0 where q is negative, which is skipped as
+/// well.
+inline double alpha_at(const Splat& splat, int x, int y) {
+  const glm::dvec2 d = glm::dvec2(x, y) - splat.mean;
+  const double q = splat.conic.x * d.x * d.x + 2 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
+  return q < 0.0 ? 0.0 : std::min(ALPHA_MAX, splat.opacity * std::exp(-0.5 * q));
+}
+
+/// Blends the list at pixel (x, y). For each Gaussian, before it is added,
+/// visit(index, alpha, sum so far, verdict) is called.
+template <typename Visit>
+PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y,
+                     Faults faults, const Visit& visit) {
+  PixelSum sum;
+  for (const std::uint32_t i : list) {
+    const Splat& splat = splats[i];
+    const double alpha = alpha_at(splat, x, y);
+    if (alpha < ALPHA_MIN) {
+      visit(i, alpha, sum, Verdict::skipped);
+      continue;
+    }
+    const bool stop = sum.transmittance * (1 - alpha) < TRANSMITTANCE_MIN;
+    visit(i, alpha, sum, stop ? Verdict::stopped : Verdict::blended);
+    if (stop && !faults.stop_late) break;
+    sum.colour += alpha * sum.transmittance * splat.colour;
+    sum.z_sum += alpha * sum.transmittance * splat.depth;
+    sum.transmittance *= 1 - alpha;
+    if (stop) break;
+  }
+  return sum;
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,12 @@
+#include "reference/render.h"
+
+namespace binosplat::reference {
+
+Picture render(const Model& model, const shared::View& view, const Settings& settings) {
+  const std::vector<Splat> splats = project_all(model, view);
+  const std::vector<std::uint32_t> order = depth_order(splats);
+  const TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);
+  return blend(splats, lists, view);
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,22 @@
+#pragma once
+// The float64 judge: one view from model to picture on the CPU, as METHOD.md defines it. The stages by
+// themselves are in project.h, tiles.h and blend.h.
+
+#include "base/image.h"
+#include "reference/blend.h"
+#include "reference/project.h"
+#include "reference/tiles.h"
+#include "reference/trace.h"
+
+namespace binosplat::reference {
+
+struct Settings {
+  int tiles = TILES_ELLIPSE;
+  int tile_size = TILE_SIZE_DEFAULT;  // px
+};
+
+/// The picture of a model in a view. The view's members for the frame (tiles_x to th_group) are not looked
+/// at.
+Picture render(const Model& model, const shared::View& view, const Settings& settings = {});
+
+}  // namespace binosplat::reference

@@ -1,0 +1,152 @@
+#include "reference/tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+
+namespace binosplat::reference {
+
+namespace {
+
+/// Columns x0 up to x1 - 1 and rows y0 up to y1 - 1 of tiles; empty where x1 <= x0 or y1 <= y0.
+struct TileRange {
+  int x0, y0, x1, y1;
+};
+
+int tiles_along(shared::uint pixels, int tile_size) {
+  return (static_cast<int>(pixels) + tile_size - 1) / tile_size;
+}
+
+/// A tile number that may lie anywhere, as C's cast to int truncates it (towards 0), clamped to 0..count.
+int clamped_tile(double tile, int count) { return static_cast<int>(std::clamp(tile, 0.0, double(count))); }
+
+/// The tiles of the 3-sigma square of 3D-GS, its roundings included: the smaller eigenvalue's part of the
+/// radius has a floor, the radius is a whole number of pixels, and a mean left of or above the picture
+/// truncates towards 0.
+TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
+  const double half_trace = 0.5 * (splat.covariance.x + splat.covariance.z);
+  const double lambda1 = half_trace + std::sqrt(std::max(0.1, half_trace * half_trace - splat.det));
+  const double radius = std::ceil(3.0 * std::sqrt(lambda1));
+  const glm::dvec2 low = (splat.mean - radius) / double(tile_size);
+  const glm::dvec2 high = (splat.mean + radius + double(tile_size - 1)) / double(tile_size);
+  return {clamped_tile(low.x, tiles_x), clamped_tile(low.y, tiles_y), clamped_tile(high.x, tiles_x),
+          clamped_tile(high.y, tiles_y)};
+}
+
+/// rho: alpha is at least tau where q is at most this. Negative where sigma is below tau.
+double reach(const Splat& splat) { return 2.0 * std::log(splat.opacity / ALPHA_MIN); }
+
+/// The tiles that the box around the ellipse q = rho meets, one pixel larger so that rounding loses none;
+/// touches() decides.
+TileRange ellipse_candidates(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
+  const double rho = reach(splat);
+  if (!(rho >= 0.0)) return {0, 0, 0, 0};
+  const glm::dvec2 half(std::sqrt(rho * splat.covariance.x) + 1.0, std::sqrt(rho * splat.covariance.z) + 1.0);
+  const glm::dvec2 low = glm::floor((splat.mean - half) / double(tile_size));
+  const glm::dvec2 high = glm::floor((splat.mean + half) / double(tile_size)) + 1.0;
+  return {clamped_tile(low.x, tiles_x), clamped_tile(low.y, tiles_y), clamped_tile(high.x, tiles_x),
+          clamped_tile(high.y, tiles_y)};
+}
+
+/// Whether the smallest q over a rectangle of pixel centres, given relative to the mean, is at most rho.
+/// Where the mean lies outside, the smallest q lies on a side that faces the mean: left or right, above or
+/// below, or either.
+bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high) {
+  const glm::dvec3& c = splat.conic;
+  const double rho = reach(splat);
+  const glm::dvec2 nearest =
+      glm::clamp(glm::dvec2(0.0), low, high);  // 0 in an axis whose side does not face the mean
+  const auto within_reach = [&](double dx, double dy) {
+    const double xx = c.x * dx * dx, xy = 2 * c.y * dx * dy, yy = c.z * dy * dy;
+    // Rounding must not leave out a tile in which the blend, rounding otherwise, finds an alpha of tau.
+    const double margin = 1e-14 * (xx + std::abs(xy) + yy + 1.0);
+    return xx + xy + yy - margin <= rho;
+  };
+  return within_reach(nearest.x, std::clamp(-c.y * nearest.x / c.z, low.y, high.y)) ||
+         within_reach(std::clamp(-c.y * nearest.y / c.x, low.x, high.x), nearest.y);
+}
+
+TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
+  const int tiles_x = tiles_along(view.width, tile_size), tiles_y = tiles_along(view.height, tile_size);
+  switch (tiles) {
+    case TILES_AABB:
+      return aabb_tiles(splat, tile_size, tiles_x, tiles_y);
+    case TILES_ELLIPSE:
+      return ellipse_candidates(splat, tile_size, tiles_x, tiles_y);
+    case TILES_ALL:
+      return {0, 0, tiles_x, tiles_y};
+  }
+  fail("tile test {}: expected one of shared/axes.h", tiles);
+}
+
+/// Calls visit(tile number) for every tile that the splat touches.
+template <typename Visit>
+void for_each_tile(const Splat& splat, int tiles, int tile_size, const shared::View& view,
+                   const Visit& visit) {
+  const int tiles_x = tiles_along(view.width, tile_size);
+  const TileRange range = candidate_tiles(splat, tiles, tile_size, view);
+  for (int ty = range.y0; ty < range.y1; ++ty) {
+    for (int tx = range.x0; tx < range.x1; ++tx) {
+      if (tiles != TILES_ELLIPSE || touches(splat, tiles, tile_size, tx, ty, view)) {
+        visit(static_cast<std::size_t>(ty) * tiles_x + tx);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
+  if (tiles == TILES_ELLIPSE) {
+    const glm::dvec2 first(tx * tile_size, ty * tile_size);
+    const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
+    return ellipse_meets(splat, first - splat.mean, last - splat.mean);
+  }
+  const TileRange range = candidate_tiles(splat, tiles, tile_size, view);
+  return range.x0 <= tx && tx < range.x1 && range.y0 <= ty && ty < range.y1;
+}
+
+std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats) {
+  std::vector<std::uint32_t> order;
+  for (std::size_t i = 0; i < splats.size(); ++i) {
+    if (splats[i].drawn) order.push_back(static_cast<std::uint32_t>(i));
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return splats[a].depth < splats[b].depth; });
+  return order;
+}
+
+TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& order,
+                     const shared::View& view, int tiles, int tile_size) {
+  TileLists lists;
+  lists.tile_size = static_cast<std::uint32_t>(tile_size);
+  lists.tiles_x = static_cast<std::uint32_t>(tiles_along(view.width, tile_size));
+  lists.tiles_y = static_cast<std::uint32_t>(tiles_along(view.height, tile_size));
+
+  // Count what each tile holds, sum the counts to where each list begins, then fill the lists in depth order.
+  lists.begin.assign(std::size_t{lists.tiles_x} * lists.tiles_y + 1, 0);
+  for (const std::uint32_t i : order) {
+    for_each_tile(splats[i], tiles, tile_size, view, [&](std::size_t tile) { ++lists.begin[tile + 1]; });
+  }
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.gaussians.resize(lists.begin.back());
+  std::vector<std::uint32_t> next(lists.begin.begin(), lists.begin.end() - 1);
+  for (const std::uint32_t i : order) {
+    for_each_tile(splats[i], tiles, tile_size, view,
+                  [&](std::size_t tile) { lists.gaussians[next[tile]++] = i; });
+  }
+  return lists;
+}
+
+std::span<const std::uint32_t> TileLists::tile(std::uint32_t tx, std::uint32_t ty) const {
+  const std::size_t t = std::size_t{ty} * tiles_x + tx;
+  return std::span(gaussians).subspan(begin[t], begin[t + 1] - begin[t]);
+}
+
+std::span<const std::uint32_t> TileLists::at_pixel(int x, int y) const {
+  return tile(static_cast<std::uint32_t>(x) / tile_size, static_cast<std::uint32_t>(y) / tile_size);
+}
+
+}  // namespace binosplat::reference

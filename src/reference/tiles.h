@@ -1,0 +1,41 @@
+#pragma once
+// Which tiles a splat is blended in, and the lists that follow (METHOD.md section 4).
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "reference/project.h"
+#include "shared/axes.h"
+#include "shared/limits.h"
+
+namespace binosplat::reference {
+
+/// Indices of what is drawn, nearest first; equal depths in the order of their indices.
+std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats);
+
+/// For each tile, row by row from the top, the Gaussians that it blends, nearest first.
+struct TileLists {
+  std::uint32_t tiles_x = 0;
+  std::uint32_t tiles_y = 0;
+  std::uint32_t tile_size = 0;  // px
+  std::vector<std::uint32_t>
+      begin;  // tiles + 1: tile t owns gaussians[begin[t]] up to gaussians[begin[t + 1]]
+  std::vector<std::uint32_t> gaussians;  // indices into the model
+
+  std::size_t pairs() const { return gaussians.size(); }
+  std::span<const std::uint32_t> tile(std::uint32_t tx, std::uint32_t ty) const;
+  /// The list of the tile that holds pixel (x, y).
+  std::span<const std::uint32_t> at_pixel(int x, int y) const;
+};
+
+/// Whether a drawn splat belongs to tile (tx, ty) of the view. `tiles` is one of shared/axes.h: TILES_AABB,
+/// exactly as 3D-GS; TILES_ELLIPSE: the smallest q over the tile's rectangle of pixel centres, clipped to the
+/// picture, is at most 2 ln(sigma / tau); TILES_ALL: always.
+bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view);
+
+/// The lists of all tiles of a view. `order` is from depth_order().
+TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& order,
+                     const shared::View& view, int tiles, int tile_size = TILE_SIZE_DEFAULT);
+
+}  // namespace binosplat::reference

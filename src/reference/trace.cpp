@@ -1,0 +1,141 @@
+#include "reference/trace.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reference/blend_pixel.h"
+#include "shared/limits.h"
+
+namespace binosplat::reference {
+
+namespace {
+
+/// What the blend met on its way through a pixel.
+struct Met {
+  std::uint32_t gaussian;
+  double alpha;
+  PixelSum before;
+  Verdict verdict;
+};
+
+double largest_channel(const glm::dvec3& colour) {
+  return std::max({std::abs(colour.r), std::abs(colour.g), std::abs(colour.b)});
+}
+
+/// Keeps the candidate if it is the better explanation: within the band the larger change, else the closer
+/// one.
+void consider(NearDecision& best, double distance, const glm::dvec3& change, std::uint32_t gaussian,
+              double band) {
+  const NearDecision candidate{distance, largest_channel(change), gaussian};
+  const bool better = distance < band ? best.distance >= band || candidate.change > best.change
+                                      : best.distance >= band && distance < best.distance;
+  if (better) best = candidate;
+}
+
+/// The change if Gaussian `met` fell on the other side of tau: alpha T (c - C_behind), C_behind being the
+/// colour of all behind it as if the transmittance were 1 there (METHOD.md section 5).
+glm::dvec3 change_by_alpha(const Met& met, const glm::dvec3& colour, const glm::dvec3& final_colour) {
+  const double t = met.before.transmittance;
+  const glm::dvec3 own = met.alpha * t * colour;
+  const glm::dvec3 rest = final_colour - met.before.colour;
+  return met.verdict == Verdict::skipped ? own - met.alpha * rest
+                                         : own - met.alpha * (rest - own) / (1 - met.alpha);
+}
+
+/// The change if two blended neighbours changed places. If the farther one stopped the pixel, the nearer one
+/// will in its place.
+glm::dvec3 change_by_swap(const Met& nearer, const glm::dvec3& nearer_colour, const Met& farther,
+                          const glm::dvec3& farther_colour) {
+  const double t = nearer.before.transmittance;
+  if (farther.verdict == Verdict::stopped)
+    return t * (nearer.alpha * nearer_colour - farther.alpha * farther_colour);
+  return t * nearer.alpha * farther.alpha * (nearer_colour - farther_colour);
+}
+
+/// What stopped the pixel may have a near neighbour behind it, the first that the pixel would see there: in
+/// front, it would be blended before the pixel stops.
+void consider_behind(NearDecision& best, const std::vector<Splat>& splats,
+                     std::span<const std::uint32_t> list, const Met& last, int x, int y) {
+  const double limit = splats[last.gaussian].depth;
+  auto next = std::find(list.begin(), list.end(), last.gaussian);
+  for (++next; next != list.end(); ++next) {
+    const Splat& splat = splats[*next];
+    const double alpha = alpha_at(splat, x, y);
+    if (alpha < ALPHA_MIN) continue;
+    consider(best, (splat.depth - limit) / splat.depth, alpha * last.before.transmittance * splat.colour,
+             *next, depth_band);
+    return;
+  }
+}
+
+}  // namespace
+
+PixelTrace trace(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y) {
+  std::vector<Met> way;
+  const glm::dvec3 final_colour =
+      blend_pixel(splats, list, x, y, {},
+                  [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
+                    way.push_back({i, alpha, before, verdict});
+                  })
+          .colour;
+
+  PixelTrace result;
+  const Met* nearer = nullptr;
+  for (const Met& met : way) {
+    const Splat& splat = splats[met.gaussian];
+    ++result.walked;
+    result.visible += met.verdict == Verdict::blended;
+    if (met.verdict != Verdict::stopped) {
+      consider(result.alpha, std::abs(met.alpha / ALPHA_MIN - 1),
+               change_by_alpha(met, splat.colour, final_colour), met.gaussian, alpha_band);
+    }
+    if (met.verdict == Verdict::skipped) continue;
+    const double t = met.before.transmittance;
+    const glm::dvec3 by_stop =
+        met.verdict == Verdict::stopped ? met.alpha * t * splat.colour : final_colour - met.before.colour;
+    consider(result.stop, std::abs(t * (1 - met.alpha) / TRANSMITTANCE_MIN - 1), by_stop, met.gaussian,
+             stop_band);
+    if (nearer != nullptr) {
+      const Splat& before = splats[nearer->gaussian];
+      consider(result.depth, (splat.depth - before.depth) / splat.depth,
+               change_by_swap(*nearer, before.colour, met, splat.colour), met.gaussian, depth_band);
+    }
+    nearer = &met;
+  }
+  if (!way.empty() && way.back().verdict == Verdict::stopped) {
+    consider_behind(result.depth, splats, list, way.back(), x, y);
+  }
+  return result;
+}
+
+double PixelTrace::largest_change() const {
+  double largest = 0.0;
+  if (alpha.distance < alpha_band) largest = std::max(largest, alpha.change);
+  if (stop.distance < stop_band) largest = std::max(largest, stop.change);
+  if (depth.distance < depth_band) largest = std::max(largest, depth.change);
+  return largest;
+}
+
+std::string PixelTrace::explain() const {
+  struct Kind {
+    const char* what;
+    const NearDecision* near;
+    double band;
+  };
+  const Kind kinds[] = {{"alpha misses tau", &alpha, alpha_band},
+                        {"T (1 - alpha) misses the early stop", &stop, stop_band},
+                        {"two neighbours' depths differ", &depth, depth_band}};
+  std::string others;
+  for (const auto& [what, near, band] : kinds) {
+    if (std::isinf(near->distance)) continue;
+    std::string text = fmt::format("{} (Gaussian {}) by {:.1e} of it, a change of {:.2f}/255", what,
+                                   near->gaussian, near->distance, 255.0 * near->change);
+    if (near->distance < band && near->change == largest_change()) return text;
+    others += "; " + text;
+  }
+  return "no decision that fp32 could turn" + others;
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,21 @@
+#include "render/stages.h"
+
+namespace binosplat::render {
+
+void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+  // The tile test is no part of this program: with every test the same lists give the same bits.
+  const gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)}};
+  dispatcher.run(dispatcher.context().program("blend.comp", defines), gl::Work::of_groups(shape.tile_count),
+                 {{"Views", buffers.views},
+                  {"Ranges", buffers.ranges},
+                  {"Values", buffers.pairs.values()},
+                  {"Splats", buffers.splats},
+                  {"Colours", buffers.colours},
+                  {"ZSums", buffers.z_sums},
+                  {"FrameCounters", buffers.counters}},
+                 {{"view_count", shape.view_count()},
+                  {"tile_count", shape.tile_count},
+                  {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,78 @@
+#pragma once
+// Everything that the stages of a frame read and write on the GPU, and the shape of the frame at hand.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "primitives/radix_sort.h"
+#include "render/settings.h"
+#include "scene/model.h"
+#include "shared/types.h"
+
+namespace binosplat::render {
+
+/// Views that share one depth order: [begin, end) of the frame's views.
+struct OrderGroup {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
+/// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
+struct FrameShape {
+  FrameSettings settings;
+  int degree = 0;  // of the model's SH
+  std::uint32_t gaussian_count = 0;
+  std::vector<shared::View> views;
+  std::vector<OrderGroup> groups;
+  std::uint32_t tile_count = 0;   // over all views
+  std::int64_t pixel_count = 0;  // over all views
+
+  std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
+  /// Bits that tell the lists apart by which pairs are sorted: tiles, or views with --tiles all.
+  std::uint32_t list_bits() const;
+};
+
+/// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, or a bad tile size.
+FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model);
+
+/// The model on the GPU.
+struct ModelBuffers {
+  explicit ModelBuffers(gl::Context& context) : gaussians(context, "Gaussians"), harmonics(context, "SH coefficients") {}
+  void upload(const Model& model);
+
+  gl::Buffer gaussians;  // Gaussian
+  gl::Buffer harmonics;  // packed vec4s, see sh.glsl
+};
+
+struct FrameBuffers {
+  explicit FrameBuffers(gl::Context& context);
+
+  /// Room for a frame of this shape with so many Gaussians in one depth order and so many pairs.
+  void reserve(const FrameShape& shape, std::int64_t order_capacity, std::int64_t pair_capacity);
+
+  gl::Buffer views;        // View
+  gl::Buffer counters;     // Counters
+  gl::Buffer splats;       // Splat (view, Gaussian)
+  gl::Buffer tile_counts;  // uint (view, Gaussian)
+  gl::Buffer depth_keys;   // uint (order group, Gaussian)
+
+  gl::Buffer block_amount;   // Amount of the compaction's blocks
+  gl::Buffer block_counts;   // uint, Gaussians seen by block of COMPACT_BLOCK, scanned
+  gl::Buffer order_amounts;  // SortAmounts of the Gaussians in the depth order at hand
+  primitives::PairBuffers order;  // depth bits, Gaussian
+  gl::Buffer pair_offsets;   // uint by rank in the depth order, scanned
+
+  gl::Buffer pair_amounts;         // SortAmounts of the pairs at hand
+  primitives::PairBuffers pairs;  // tile (view with --tiles all), splat
+  gl::Buffer ranges;               // begin, end by list
+
+  gl::Buffer colours;  // vec4 by pixel: C, T
+  gl::Buffer z_sums;   // float by pixel
+
+  primitives::Scan scan;
+  primitives::RadixSort sort;
+};
+
+}  // namespace binosplat::render

@@ -1,0 +1,131 @@
+#include "render/frame.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "primitives/amount.h"
+#include "render/stages.h"
+#include "render/twins.h"
+
+namespace binosplat::render {
+
+namespace {
+
+// Room that a first frame starts with: most models need some tiles a Gaussian; what is missing is grown.
+constexpr std::int64_t pairs_per_splat_guess = 16;
+constexpr std::int64_t pairs_guess_max = std::int64_t{1} << 24;
+constexpr int attempts_max = 8;
+
+}  // namespace
+
+Frame::Frame(gl::Context& context, const Model& model)
+    : dispatcher_(context), model_(model), model_buffers_(context), buffers_(context) {
+  model_buffers_.upload(model);
+}
+
+FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
+  shape_ = make_shape(views, settings, model_);
+  const std::int64_t gaussians = shape_.gaussian_count;
+  order_capacity_ = settings.order_capacity > 0 ? settings.order_capacity : gaussians;
+  const std::int64_t pairs_guess =
+      std::min(pairs_guess_max, gaussians * shape_.view_count() * pairs_per_splat_guess);
+  pair_capacity_ = settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, pairs_guess);
+
+  buffers_.views.upload(shape_.views);
+  const std::uint32_t groups_max = dispatcher_.context().limits().groups;
+  const std::uint32_t blocks = (shape_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
+  buffers_.block_amount.upload(std::vector{primitives::make_amount(blocks, groups_max)});
+
+  FrameReport report;
+  shared::Counters counters{};
+  for (;;) {
+    buffers_.reserve(shape_, order_capacity_, pair_capacity_);
+    counters = draw_once(report);
+    if (counters.overflow == 0) break;
+    if (++report.redrawn == attempts_max) throw std::logic_error("a frame overflowed again and again");
+    grow(counters);
+  }
+  if (counters.loop_cut != 0) {
+    throw Error(ExitCode::out_of_memory,
+                fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use a smaller "
+                            "--tile or a smaller model.",
+                            dispatcher_.context().renderer()));
+  }
+  report.visible = counters.visible;
+  report.pairs = counters.pairs;
+  report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
+  report.gpu_bytes = dispatcher_.context().allocated_bytes();
+  for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
+  return report;
+}
+
+shared::Counters Frame::draw_once(FrameReport& report) {
+  const auto twin = [&](Stage stage) { return shape_.settings.reference_until >= stage; };
+  buffers_.counters.upload(std::vector{shared::Counters{}});
+  reference_pictures_.clear();
+  if (shape_.settings.reference_until) {
+    reference_pictures_ = fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, buffers_);
+  }
+  dispatcher_.begin_frame();
+  if (!twin(Stage::project)) {
+    dispatcher_.begin_stage("project");
+    project(dispatcher_, shape_, model_buffers_, buffers_);
+  }
+  for (std::uint32_t group = 0; group < shape_.groups.size(); ++group) {
+    if (!twin(Stage::order)) {
+      dispatcher_.begin_stage("order");
+      order(dispatcher_, shape_, group, buffers_);
+    }
+    if (!twin(Stage::pairs)) {
+      dispatcher_.begin_stage("pairs");
+      pairs(dispatcher_, shape_, group, buffers_);
+    }
+  }
+  if (!twin(Stage::tile_sort)) {
+    dispatcher_.begin_stage("tile_sort");
+    tile_sort(dispatcher_, shape_, buffers_);
+  }
+  if (!twin(Stage::ranges)) {
+    dispatcher_.begin_stage("ranges");
+    ranges(dispatcher_, shape_, buffers_);
+  }
+  if (!twin(Stage::blend)) {
+    dispatcher_.begin_stage("blend");
+    blend(dispatcher_, shape_, buffers_);
+  }
+  dispatcher_.end_frame();
+  report.stages = dispatcher_.wait_and_time();
+  return buffers_.counters.read<shared::Counters>(1).front();
+}
+
+void Frame::grow(const shared::Counters& counters) {
+  const auto larger = [](std::uint32_t wanted) { return std::int64_t{wanted} + wanted / 8; };
+  if (counters.pairs == COUNT_MAX) {
+    throw Error(ExitCode::out_of_memory, "more than 2^32 Gaussian-tile pairs in one frame: use a smaller picture");
+  }
+  if ((counters.overflow & OVERFLOW_ORDER) != 0) {
+    log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, buffers_.order.capacity());
+    order_capacity_ = std::min<std::int64_t>(larger(counters.order_wanted), shape_.gaussian_count);
+  }
+  if ((counters.overflow & OVERFLOW_PAIRS) != 0) {
+    log_info("drawn again: {} Gaussian-tile pairs, room for {}", counters.pairs, buffers_.pairs.capacity());
+    pair_capacity_ = larger(counters.pairs);
+  }
+}
+
+std::vector<Picture> Frame::read_pictures() {
+  if (!reference_pictures_.empty()) return reference_pictures_;
+  const auto pixels = static_cast<std::size_t>(shape_.pixel_count);
+  const auto colours = buffers_.colours.read<glm::vec4>(pixels);
+  const auto z_sums = buffers_.z_sums.read<float>(pixels);
+  std::vector<Picture> pictures;
+  for (const shared::View& view : shape_.views) {
+    Picture& picture = pictures.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height));
+    std::copy_n(colours.begin() + view.pixel_offset, picture.colour.size(), picture.colour.begin());
+    std::copy_n(z_sums.begin() + view.pixel_offset, picture.z_sum.size(), picture.z_sum.begin());
+  }
+  return pictures;
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,41 @@
+#include <algorithm>
+#include <cstddef>
+
+#include "render/stages.h"
+
+namespace binosplat::render {
+
+void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers) {
+  gl::Context& context = dispatcher.context();
+  const OrderGroup views = shape.groups[group];
+  const auto each = [](const gl::Buffer& amounts) {
+    return gl::Work::indirect(amounts, offsetof(shared::Amount, threads_x));
+  };
+  dispatcher.run(context.program("pairs_count.comp"), each(buffers.order_amounts),
+                 {{"Amounts", buffers.order_amounts},
+                  {"Order", buffers.order.values()},
+                  {"TileCounts", buffers.tile_counts},
+                  {"PairOffsets", buffers.pair_offsets}},
+                 {{"gaussian_count", shape.gaussian_count}, {"view_begin", views.begin}, {"view_end", views.end}});
+  buffers.scan.run(dispatcher, buffers.order_amounts, 0, buffers.pair_offsets);
+  dispatcher.run(context.program("amount.comp"), gl::Work::of_groups(1),
+                 {{"Amounts", buffers.pair_amounts},
+                  {"Total", buffers.scan.total()},
+                  {"FrameCounters", buffers.counters}},
+                 {{"kind", AMOUNT_PAIRS},
+                  {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
+                  {"groups_max", context.limits().groups}});
+  dispatcher.run(context.program("pairs.comp", tile_defines(shape)), each(buffers.pair_amounts),
+                 {{"OrderAmounts", buffers.order_amounts},
+                  {"PairAmounts", buffers.pair_amounts},
+                  {"Views", buffers.views},
+                  {"Order", buffers.order.values()},
+                  {"PairOffsets", buffers.pair_offsets},
+                  {"TileCounts", buffers.tile_counts},
+                  {"Splats", buffers.splats},
+                  {"Keys", buffers.pairs.keys()},
+                  {"Values", buffers.pairs.values()}},
+                 {{"gaussian_count", shape.gaussian_count}, {"view_begin", views.begin}, {"view_end", views.end}});
+}
+
+}  // namespace binosplat::render

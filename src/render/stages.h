@@ -1,0 +1,30 @@
+#pragma once
+// The stages of a frame. Each records its dispatches and returns; frame.cpp calls them in order.
+
+#include "gl/dispatch.h"
+#include "render/buffers.h"
+
+namespace binosplat::render {
+
+/// Every Gaussian as every view sees it: splats, tile counts, depth keys.
+void project(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuffers& model, FrameBuffers& buffers);
+
+/// The Gaussians that an order group sees, front to back, ties by index.
+void order(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);
+
+/// (tile, splat) for every tile that a splat of the group touches, in depth order, appended to what is there.
+void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);
+
+/// All pairs by tile, in depth order within a tile.
+void tile_sort(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+
+/// Where each tile's list lies among the pairs.
+void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+
+/// The pictures.
+void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+
+/// Shader defines that pick the variant of a stage which depends on tiles.
+gl::Defines tile_defines(const FrameShape& shape);
+
+}  // namespace binosplat::render

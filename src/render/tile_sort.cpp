@@ -1,0 +1,18 @@
+#include "render/stages.h"
+
+namespace binosplat::render {
+
+void tile_sort(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+  gl::Context& context = dispatcher.context();
+  dispatcher.run(context.program("amount.comp"), gl::Work::of_groups(1),
+                 {{"Amounts", buffers.pair_amounts},
+                  {"Total", buffers.scan.total()},
+                  {"FrameCounters", buffers.counters}},
+                 {{"kind", AMOUNT_ALL_PAIRS},
+                  {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
+                  {"groups_max", context.limits().groups}});
+  // The pairs come in depth order, and the sort is stable.
+  buffers.sort.run(dispatcher, buffers.pair_amounts, buffers.pairs, shape.list_bits());
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,69 @@
+#include "scene/camera.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "base/error.h"
+
+namespace binosplat {
+
+shared::View make_view(const Camera& camera, const glm::vec3& anchor, double near_plane) {
+  const glm::dvec3 translation = glm::transpose(camera.rotation) * (glm::dvec3(anchor) - camera.position);
+  shared::View view{};
+  view.row_x = glm::vec4(glm::dvec4(camera.rotation[0], translation.x));
+  view.row_y = glm::vec4(glm::dvec4(camera.rotation[1], translation.y));
+  view.row_z = glm::vec4(glm::dvec4(camera.rotation[2], translation.z));
+  view.anchor = glm::vec4(anchor, static_cast<float>(near_plane));
+  view.eye = glm::vec4(glm::vec3(camera.position - glm::dvec3(anchor)), 0.0f);
+  view.lens = glm::vec4(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy));
+  view.width = static_cast<shared::uint>(camera.width);
+  view.height = static_cast<shared::uint>(camera.height);
+  return view;
+}
+
+shared::View make_view(const Camera& camera, double near_plane) {
+  return make_view(camera, glm::vec3(camera.position), near_plane);
+}
+
+Camera resized(const Camera& camera, int width, int height) {
+  const double factor = static_cast<double>(height) / camera.height;
+  Camera out = camera;
+  out.width = width;
+  out.height = height;
+  out.fx = camera.fx * factor;
+  out.fy = camera.fy * factor;
+  out.cx = width / 2.0 + (camera.cx - camera.width / 2.0) * factor;
+  out.cy = height / 2.0 + (camera.cy - camera.height / 2.0) * factor;
+  return out;
+}
+
+Camera look_at(const glm::dvec3& eye, const glm::dvec3& at, const glm::dvec3& up, double fov_degrees,
+               int width, int height) {
+  if (!(fov_degrees > 0.0 && fov_degrees < 180.0))
+    fail("--fov {}: expected degrees between 0 and 180", fov_degrees);
+  const glm::dvec3 forward = at - eye;
+  const glm::dvec3 right = glm::cross(forward, up);
+  // Also true for values that are not finite.
+  if (!(glm::length(right) > 1e-9 * glm::length(forward) * glm::length(up)) ||
+      !std::isfinite(glm::length(right))) {
+    fail(
+        "--eye ({}, {}, {}), --at ({}, {}, {}), --up ({}, {}, {}): the camera must look at another point, "
+        "and not along up",
+        eye.x, eye.y, eye.z, at.x, at.y, at.z, up.x, up.y, up.z);
+  }
+  Camera camera;
+  camera.name = "camera";
+  camera.width = width;
+  camera.height = height;
+  camera.fy = 0.5 * height / std::tan(0.5 * glm::radians(fov_degrees));
+  camera.fx = camera.fy;
+  camera.cx = width / 2.0;
+  camera.cy = height / 2.0;
+  camera.position = eye;
+  const glm::dvec3 z = glm::normalize(forward);
+  const glm::dvec3 x = glm::normalize(right);
+  camera.rotation = glm::dmat3(x, glm::cross(z, x), z);
+  return camera;
+}
+
+}  // namespace binosplat

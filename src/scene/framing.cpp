@@ -1,0 +1,137 @@
+#include "scene/framing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "base/error.h"
+
+namespace binosplat {
+
+namespace {
+
+/// Cameras look down on the model by this angle.
+constexpr double elevation_degrees = 15.0;
+/// More Gaussians than this tell no more about what stands in the way.
+constexpr std::size_t sample_count = 200000;
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The ball around the median position that holds half of the Gaussians: what the model is about. Trained
+/// models have far outliers and a background larger than their subject, which would ruin a mean or a box.
+struct Core {
+  glm::dvec3 middle{0.0};
+  double radius = 0.0;
+};
+
+Core core_of(const Model& model) {
+  if (model.count() == 0) fail("{}: the model has no Gaussians to look at", model.name);
+  Core core;
+  std::vector<double> values(model.count());
+  for (int i = 0; i < 3; ++i) {
+    std::transform(model.position.begin(), model.position.end(), values.begin(),
+                   [&](const glm::vec3& p) { return static_cast<double>(p[i]); });
+    core.middle[i] = median(values);
+  }
+  std::transform(model.position.begin(), model.position.end(), values.begin(),
+                 [&](const glm::vec3& p) { return glm::length(glm::dvec3(p) - core.middle); });
+  core.radius = median(values);
+  if (core.radius == 0.0) {  // half of them lie in one point: go by their size
+    const glm::vec3& s = model.scale[0];
+    core.radius =
+        std::max({static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z), 1e-3});
+  }
+  return core;
+}
+
+/// The place on the circle around the core where a camera at `turn` radians stands.
+struct Ring {
+  Core core;
+  glm::dvec3 up, ahead, aside;
+  double distance = 0.0;
+
+  Ring(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& wanted_up)
+      : core(core_of(model)), up(glm::normalize(wanted_up)) {
+    // Any direction that is not up will do to start the circle; z, unless up is along it, is where COLMAP's
+    // first camera looks.
+    const glm::dvec3 start = std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    aside = glm::normalize(glm::cross(start, up));
+    ahead = glm::cross(up, aside);
+    const double tan_y = std::tan(0.5 * glm::radians(fov_degrees));
+    const double half_angle = std::atan(std::min(tan_y, tan_y * width / height));
+    distance = core.radius / std::sin(half_angle);
+  }
+
+  glm::dvec3 eye(double turn) const {
+    const double e = glm::radians(elevation_degrees);
+    return core.middle +
+           distance * (std::sin(e) * up - std::cos(e) * (std::cos(turn) * ahead + std::sin(turn) * aside));
+  }
+};
+
+/// How much of the view from `eye` to the core is taken by what lies in the nearer half of the way: the sum
+/// of the Gaussians' solid angles times opacity.
+double obstruction(const Model& model, const Ring& ring, const glm::dvec3& eye) {
+  const glm::dvec3 forward = (ring.core.middle - eye) / ring.distance;
+  const std::size_t stride = model.count() / sample_count + 1;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < model.count(); i += stride) {
+    const glm::dvec3 v = glm::dvec3(model.position[i]) - eye;
+    const double z = glm::dot(v, forward);
+    const double square = glm::dot(v, v);
+    // Within 45 degrees of the middle of the picture.
+    if (z <= 0.0 || z > 0.5 * ring.distance || square > 2.0 * z * z) continue;
+    glm::vec3 s = model.scale[i];
+    std::sort(&s.x, &s.x + 3);
+    sum += model.opacity[i] * std::min(1.0, static_cast<double>(s.y) * s.z / square);
+  }
+  return sum;
+}
+
+/// Of 16 places on the ring the first one with the clearest view, in radians. Differences below 0.02 sr, one
+/// per cent of what is looked at, do not count: they would make the choice depend on noise.
+double clearest_turn(const Model& model, const Ring& ring) {
+  constexpr int places = 16;
+  double best = 0.0, best_turn = 0.0;
+  for (int k = 0; k < places; ++k) {
+    const double turn = glm::two_pi<double>() * k / places;
+    const double found = std::floor(obstruction(model, ring, ring.eye(turn)) / 0.02);
+    if (k == 0 || found < best) {
+      best = found;
+      best_turn = turn;
+    }
+  }
+  return best_turn;
+}
+
+}  // namespace
+
+std::vector<Camera> orbit(const Model& model, int count, int width, int height, double fov_degrees,
+                          const glm::dvec3& up) {
+  const Ring ring(model, width, height, fov_degrees, up);
+  const double start = clearest_turn(model, ring);
+  std::vector<Camera> cameras;
+  for (int k = 0; k < count; ++k) {
+    const glm::dvec3 eye = ring.eye(start + glm::two_pi<double>() * k / count);
+    cameras.push_back(look_at(eye, ring.core.middle, up, fov_degrees, width, height));
+    cameras.back().name = fmt::format("orbit_{:03}", k);
+  }
+  return cameras;
+}
+
+Camera frame_model(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& up) {
+  Camera camera = orbit(model, 1, width, height, fov_degrees, up)[0];
+  camera.name = "framed";
+  return camera;
+}
+
+double near_for(const Model& model) {
+  // A framed model starts about one radius from the camera; a tenth of it leaves room to come closer.
+  return std::min(near_default, 0.1 * core_of(model).radius);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,31 @@
+#pragma once
+// Cameras for a model that brings none: one that frames it, and a ring of them around it.
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "scene/camera.h"
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// What should appear upwards unless the user says otherwise: COLMAP's worlds have y downwards.
+constexpr glm::dvec3 default_up{0.0, -1.0, 0.0};
+
+/// Vertical field of view of cameras that the program makes up, in degrees.
+constexpr double default_fov_degrees = 60.0;
+
+/// A camera that looks at the densest part of the model from slightly above, so far away that the part fills
+/// the picture, and from the side where the least stands in the way. A few far outliers change nothing.
+/// Throws Error if the model is empty.
+Camera frame_model(const Model& model, int width, int height, double fov_degrees = default_fov_degrees,
+                   const glm::dvec3& up = default_up);
+
+/// `count` cameras on a circle around the same part, called orbit_000 and so on; the first is frame_model's.
+std::vector<Camera> orbit(const Model& model, int count, int width, int height,
+                          double fov_degrees = default_fov_degrees, const glm::dvec3& up = default_up);
+
+/// near_default, or less for a model so small that near_default would cut into it when it is framed.
+double near_for(const Model& model);
+
+}  // namespace binosplat

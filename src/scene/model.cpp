@@ -1,0 +1,93 @@
+#include "scene/model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat {
+
+namespace {
+
+bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
+void Model::reserve(std::size_t n) {
+  position.reserve(n);
+  scale.reserve(n);
+  rotation.reserve(n);
+  opacity.reserve(n);
+  sh.reserve(n * 3 * static_cast<std::size_t>(sh_count(degree)));
+}
+
+void Model::resize(std::size_t n) {
+  position.resize(n);
+  scale.resize(n);
+  rotation.resize(n);
+  opacity.resize(n);
+  sh.resize(n * 3 * static_cast<std::size_t>(sh_count(degree)));
+}
+
+bool decode_raw(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& log_scale,
+                const glm::vec4& rotation, float opacity_logit, const float* sh) {
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  const glm::vec3 scale(std::exp(log_scale.x), std::exp(log_scale.y), std::exp(log_scale.z));
+  const float opacity = 1.0f / (1.0f + std::exp(-opacity_logit));
+  // The squares of an fp32 quaternion can overflow fp32.
+  const glm::dvec4 q(rotation);
+  const double norm = std::sqrt(glm::dot(q, q));
+  model.position[i] = position;
+  model.scale[i] = scale;
+  model.rotation[i] = glm::vec4(q / norm);
+  model.opacity[i] = opacity;
+  std::copy(sh, sh + values, &model.sh[i * values]);
+  return finite(position) && finite(scale) && std::isfinite(opacity) && std::isfinite(norm) && norm > 0.0 &&
+         std::all_of(sh, sh + values, [](float v) { return std::isfinite(v); });
+}
+
+bool append_raw(Model& model, const glm::vec3& position, const glm::vec3& log_scale,
+                const glm::vec4& rotation, float opacity_logit, const float* sh) {
+  const std::size_t i = model.count();
+  model.resize(i + 1);
+  if (decode_raw(model, i, position, log_scale, rotation, opacity_logit, sh)) return true;
+  model.resize(i);
+  ++model.left_out;
+  return false;
+}
+
+void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] == 0) continue;
+    if (to != i) {
+      model.position[to] = model.position[i];
+      model.scale[to] = model.scale[i];
+      model.rotation[to] = model.rotation[i];
+      model.opacity[to] = model.opacity[i];
+      std::copy_n(&model.sh[i * values], values, &model.sh[to * values]);
+    }
+    ++to;
+  }
+  model.left_out += kept.size() - to;
+  model.resize(to);
+}
+
+Bounds core_bounds(const Model& model) {
+  Bounds bounds;
+  std::vector<float> axis(model.count());
+  if (axis.empty()) return bounds;
+  for (int i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < axis.size(); ++k) axis[k] = model.position[k][i];
+    const auto percentile = [&](double share) {
+      const auto at =
+          axis.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(axis.size() - 1));
+      std::nth_element(axis.begin(), at, axis.end());
+      return *at;
+    };
+    bounds.low[i] = percentile(0.02);
+    bounds.high[i] = percentile(0.98);
+  }
+  return bounds;
+}
+
+}  // namespace binosplat

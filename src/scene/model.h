@@ -1,0 +1,55 @@
+#pragma once
+// A trained 3D Gaussian Splatting model in memory, decoded (METHOD.md section 1).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+/// Number of SH coefficients per colour channel of a degree.
+constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
+
+/// Arrays of equal length, one element a Gaussian, in file order. Every value is finite and every rotation of
+/// unit length: readers leave out what is not, and count it.
+struct Model {
+  std::string name;                 // for people: the file's or scene's name
+  int degree = 0;                   // of the spherical harmonics, 0 to 3
+  std::vector<glm::vec3> position;  // world units
+  std::vector<glm::vec3> scale;     // standard deviations, world units (not logarithms)
+  std::vector<glm::vec4> rotation;  // unit quaternions (w, x, y, z)
+  std::vector<float> opacity;       // in [0, 1] (not logits)
+  std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
+  std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
+
+  std::size_t count() const { return position.size(); }
+  void reserve(std::size_t n);
+  void resize(std::size_t n);
+};
+
+/// Decodes one Gaussian from the raw numbers that trainers store (log-scales, opacity logit, quaternion w x y
+/// z of any length) and appends it; leaves it out, and counts it, if any decoded value is not finite or the
+/// quaternion is zero. `sh` holds 3 * sh_count(model.degree) values in the model's order. Returns whether it
+/// was kept.
+bool append_raw(Model& model, const glm::vec3& position, const glm::vec3& log_scale,
+                const glm::vec4& rotation, float opacity_logit, const float* sh);
+
+/// The same for readers that know the count and decode on several cores: resize(count), decode_raw for every
+/// slot `i` (it returns whether the Gaussian may be kept), then keep_only, which closes the gaps and counts
+/// them as left out.
+bool decode_raw(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& log_scale,
+                const glm::vec4& rotation, float opacity_logit, const float* sh);
+void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
+
+/// Box around the middle of the model, robust against far outliers: the 2nd to 98th percentile of positions
+/// per axis.
+struct Bounds {
+  glm::vec3 low{0.0f};
+  glm::vec3 high{0.0f};
+};
+Bounds core_bounds(const Model& model);
+
+}  // namespace binosplat

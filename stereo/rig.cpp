@@ -1,0 +1,156 @@
+#include "stereo/rig.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace binosplat::stereo {
+
+namespace {
+
+/// Relative deviation up to which two given eyes count as parallel: the rounding of poses that went through
+/// text.
+constexpr double parallel_tolerance = 1e-9;
+
+void check(const RigSettings& s) {
+  // Written so that values that are not finite fail too.
+  if (!(s.ipd >= 0.0 && std::isfinite(s.ipd))) fail("--ipd {}: expected metres, zero or more", s.ipd);
+  if (!(s.units_per_metre > 0.0 && std::isfinite(s.units_per_metre))) {
+    fail("--units-per-metre {}: expected a number above zero", s.units_per_metre);
+  }
+  if (s.convergence && !(*s.convergence > 0.0 && std::isfinite(*s.convergence))) {
+    fail("--convergence {}: expected metres above zero; leave it out for eyes that look infinitely far",
+         *s.convergence);
+  }
+  if (!(std::abs(s.cant_degrees) < 45.0))
+    fail("--cant {}: expected degrees between -45 and 45", s.cant_degrees);
+  if (s.convergence && s.cant_degrees != 0.0) {
+    fail(
+        "--convergence {} with --cant {}: canted eyes have no common picture plane to shift; leave one of "
+        "them out",
+        *s.convergence, s.cant_degrees);
+  }
+}
+
+void check_near(double near_plane) {
+  if (!(near_plane > 0.0 && std::isfinite(near_plane)))
+    fail("--near {}: expected world units above zero", near_plane);
+}
+
+/// Turns a camera about its own y axis, so that its forward axis moves towards its x axis.
+glm::dmat3 turned_right(const glm::dmat3& rotation, double radians) {
+  const double c = std::cos(radians), s = std::sin(radians);
+  return glm::dmat3(c * rotation[0] - s * rotation[2], rotation[1], s * rotation[0] + c * rotation[2]);
+}
+
+/// Fills in an eye that is the head, moved by `offset` along the head's x axis. The head's translation serves
+/// both eyes, changed in x alone: recomputed from each eye's position, its y and z would differ by rounding.
+shared::View shifted_view(const Camera& eye, const Camera& head, double offset, const glm::vec3& anchor,
+                          double near_plane) {
+  shared::View view = make_view(head, anchor, near_plane);
+  const double head_x = glm::dot(head.rotation[0], glm::dvec3(anchor) - head.position);
+  view.row_x.w = static_cast<float>(head_x - offset);
+  view.eye = glm::vec4(glm::vec3(head.position - glm::dvec3(anchor) + offset * head.rotation[0]), 0.0f);
+  view.lens.z = static_cast<float>(eye.cx);
+  return view;
+}
+
+}  // namespace
+
+EyePair make_rig(const Camera& head, const RigSettings& settings) {
+  check(settings);
+  check_near(settings.near_plane);
+  const double half = 0.5 * settings.ipd * settings.units_per_metre;
+  const double shift = settings.convergence ? 0.5 * head.fx * settings.ipd / *settings.convergence : 0.0;
+  const glm::vec3 anchor(head.position);
+  EyePair pair;
+  pair.parallel = settings.cant_degrees == 0.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double side = k == 0 ? -1.0 : 1.0;
+    // Adding to zero keeps an offset of zero positive, so that the sign of a zero does not tell the eyes
+    // apart.
+    const double offset = 0.0 + side * half;
+    Camera& eye = pair.cameras[k];
+    eye = head;
+    eye.name += k == 0 ? "_left" : "_right";
+    eye.position = head.position + offset * head.rotation[0];
+    eye.cx = head.cx + side * shift;
+    if (pair.parallel) {
+      pair.views[k] = shifted_view(eye, head, offset, anchor, settings.near_plane);
+    } else {
+      eye.rotation = turned_right(head.rotation, side * glm::radians(settings.cant_degrees));
+      pair.views[k] = make_view(eye, anchor, settings.near_plane);
+    }
+  }
+  return pair;
+}
+
+EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane) {
+  check_near(near_plane);
+  const glm::vec3 anchor(0.5 * (left.position + right.position));
+  EyePair pair;
+  pair.cameras = {left, right};
+  for (std::size_t k = 0; k < 2; ++k) pair.views[k] = make_view(pair.cameras[k], anchor, near_plane);
+
+  double turned = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j)
+      turned = std::max(turned, std::abs(left.rotation[i][j] - right.rotation[i][j]));
+  }
+  const double apart = std::abs(glm::dot(left.rotation[2], right.position - left.position));
+  const double reach = std::max(glm::length(left.position), glm::length(right.position));
+  pair.parallel = turned <= parallel_tolerance && apart <= parallel_tolerance * reach;
+  if (pair.parallel) pair.views[1].row_z = pair.views[0].row_z;
+  return pair;
+}
+
+std::optional<std::array<Camera, 2>> find_eyes(const std::vector<Camera>& cameras, std::string_view name) {
+  const auto find = [&](const char* ending) {
+    const std::string wanted = std::string(name) + ending;
+    return std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == wanted; });
+  };
+  const auto left = find("_left"), right = find("_right");
+  if (left == cameras.end() || right == cameras.end()) return std::nullopt;
+  return std::array<Camera, 2>{*left, *right};
+}
+
+Camera camera_from_fov(std::string name, const glm::dvec3& position, const glm::dmat3& rotation,
+                       const Fov& fov, int width, int height) {
+  const auto inside = [](double angle) { return std::abs(angle) < glm::radians(90.0); };
+  if (!(inside(fov.left) && inside(fov.right) && inside(fov.up) && inside(fov.down) && fov.left < fov.right &&
+        fov.down < fov.up)) {
+    fail(
+        "field of view of {}: left {}, right {}, up {}, down {}: expected radians within a quarter turn, "
+        "left below "
+        "right and down below up",
+        name, fov.left, fov.right, fov.up, fov.down);
+  }
+  const double left = std::tan(fov.left), right = std::tan(fov.right);
+  const double up = std::tan(fov.up), down = std::tan(fov.down);
+  Camera camera;
+  camera.name = std::move(name);
+  camera.width = width;
+  camera.height = height;
+  camera.fx = width / (right - left);
+  camera.fy = height / (up - down);
+  camera.cx = -camera.fx * left;
+  camera.cy = camera.fy * up;  // y is down in the picture, up in the angles
+  camera.position = position;
+  camera.rotation = rotation;
+  return camera;
+}
+
+Camera apply_preset(const Camera& head, std::string_view preset) {
+  if (preset == "preview") return resized(head, 1280, 720);
+  if (preset != "headset") fail("--preset {}: expected preview or headset", preset);
+  Camera camera = head;
+  camera.width = 3660;
+  camera.height = 3200;
+  camera.fx = camera.fy = 0.5 * camera.width / std::tan(glm::radians(50.0));
+  camera.cx = 0.5 * camera.width;
+  camera.cy = 0.5 * camera.height;
+  return camera;
+}
+
+}  // namespace binosplat::stereo

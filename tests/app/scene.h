@@ -1,0 +1,73 @@
+#pragma once
+// A small scene in a temporary folder: a model, and cameras beside it.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/ply.h"
+#include "support/program.h"
+
+namespace binosplat::test {
+
+/// A camera at (x, 0, 0) that looks along z, as cameras.json has it.
+inline nlohmann::json camera_json(const std::string& name, double x) {
+  return {{"img_name", name},
+          {"width", 72},
+          {"height", 48},
+          {"position", {x, 0.0, 0.0}},
+          {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+          {"fx", 60.0},
+          {"fy", 60.0}};
+}
+
+/// 300 Gaussians of degree 1, some 4 units before the cameras.
+inline PlyFile small_model() {
+  PlyFile file = inria_file(1, 300);
+  for (std::size_t i = 0; i < file.rows.size(); ++i) {
+    file.at(i, "x") *= 0.8;
+    file.at(i, "y") *= 0.5;
+    file.at(i, "z") = 4.0 + 0.4 * file.at(i, "z");
+    for (const char* scale : {"scale_0", "scale_1", "scale_2"})
+      file.at(i, scale) = -2.5 + 0.3 * file.at(i, scale);
+  }
+  return file;
+}
+
+struct SceneTest : testing::Test {
+  TempFolder folder;
+  const std::string model = folder / "model.ply";
+  const std::string out = folder / "out";
+
+  /// model.ply alone.
+  SceneTest() { write_text(model, to_bytes(small_model())); }
+
+  /// Two heads and the two eyes of a pair, 0.2 apart, beside the model.
+  void add_cameras() {
+    const nlohmann::json cameras = {camera_json("front", 0.0), camera_json("side", 0.5),
+                                    camera_json("pair_left", -0.1), camera_json("pair_right", 0.1)};
+    write_text(folder / "cameras.json", cameras.dump());
+  }
+
+  Outcome render(std::vector<std::string> arguments, const Surroundings& surroundings = {}) const {
+    arguments.insert(arguments.begin(), {"render", model});
+    return run_program(arguments, surroundings);
+  }
+};
+
+/// Whether a run ended well; shows what it said.
+inline testing::AssertionResult good(const Outcome& outcome) {
+  if (outcome.code == 0) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.err;
+}
+
+/// Whether a run ended with this code and said this on standard error.
+inline testing::AssertionResult ended(const Outcome& outcome, int code, const std::string& said) {
+  if (outcome.code == code && outcome.err.find(said) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "exit code " << outcome.code << ", expected " << code << " and '"
+                                     << said << "' in: " << outcome.err;
+}
+
+}  // namespace binosplat::test

@@ -1,0 +1,31 @@
+#include "base/log.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "base/progress.h"
+
+namespace binosplat {
+namespace {
+
+TEST(Log, WritesLinesToStandardError) {
+  testing::internal::CaptureStderr();
+  log_info("{} Gaussians", 3);
+  log_warning("{} left out", 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "binosplat: 3 Gaussians\nbinosplat: warning: 1 left out\n");
+}
+
+TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
+  testing::internal::CaptureStderr();
+  Progress progress("reading x.ply", 200);
+  progress.update(1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1010));
+  progress.update(50);
+  progress.update(51);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: reading x.ply 25 %\n");
+}
+
+}  // namespace
+}  // namespace binosplat

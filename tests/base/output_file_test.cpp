@@ -1,0 +1,108 @@
+#include "base/output_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "support/errors.h"
+#include "support/full_disk.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using test::fails_saying;
+using test::read_text;
+using Names = std::set<std::string>;
+
+TEST(OutputFile, AppearsWholeWhenCommitted) {
+  const test::TempFolder folder;
+  {
+    OutputFile file(folder / "a/b/out.txt");
+    file.write("one ");
+    file.write("two");
+    EXPECT_FALSE(fs::exists(folder / "a/b/out.txt"));
+    EXPECT_EQ(file.path().parent_path(), folder / "a/b");
+    file.commit();
+  }
+  EXPECT_EQ(read_text(folder / "a/b/out.txt"), "one two");
+  EXPECT_EQ(folder.names(), (Names{"a", "a/b", "a/b/out.txt"}));
+}
+
+TEST(OutputFile, LeavesNothingWhenNotCommitted) {
+  const test::TempFolder folder;
+  test::write_text(folder / "out.txt", "old");
+  {
+    OutputFile file(folder / "out.txt");
+    file.write("new");
+    // The planted fault of this test: a file under a temporary name is there before, and seen by names().
+    EXPECT_EQ(folder.names().size(), 2u);
+  }
+  EXPECT_EQ(read_text(folder / "out.txt"), "old");
+  EXPECT_EQ(folder.names(), Names{"out.txt"});
+}
+
+TEST(OutputFile, ReplacesWhatStoodThere) {
+  const test::TempFolder folder;
+  test::write_text(folder / "out.txt", "old and longer");
+  OutputFile file(folder / "out.txt");
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(read_text(folder / "out.txt"), "new");
+}
+
+TEST(OutputFile, FollowsSymbolicLinks) {
+  const test::TempFolder folder;
+  test::write_text(folder / "target.txt", "old");
+  fs::create_symlink(folder / "target.txt", folder / "link.txt");
+  OutputFile file(folder / "link.txt");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(read_text(folder / "target.txt"), "new");
+}
+
+TEST(OutputFile, NamesWhatCannotBeWritten) {
+  const test::TempFolder folder;
+  test::write_text(folder / "file", "");
+  fs::create_directory(folder / "folder");
+  const auto open = [&](const fs::path& path) { return [path] { const OutputFile file(path); }; };
+  EXPECT_TRUE(fails_saying(open(folder / "file/out.txt"), {"file/out.txt", "Not a directory"}));
+  EXPECT_TRUE(fails_saying(open(folder / "file/deeper/out.txt"), {"file/deeper/out.txt", "Not a directory"}));
+  EXPECT_TRUE(fails_saying(open(folder / "folder"), {"folder", "it is a folder"}));
+  EXPECT_TRUE(fails_saying(open("/dev/null"), {"/dev/null", "device"}));
+  EXPECT_TRUE(fails_saying(open(""), {"expected the name of a file"}));
+  EXPECT_TRUE(fails_saying(open(folder / std::string(300, 'x')), {"File name too long"}));
+  EXPECT_EQ(folder.names(), (Names{"file", "folder"}));
+}
+
+TEST(OutputFile, NeedsPermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const test::TempFolder folder;
+  fs::create_directory(folder / "locked");
+  fs::permissions(folder / "locked", fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_TRUE(fails_saying([&] { const OutputFile file(folder / "locked/out.txt"); },
+                           {"out.txt", "Permission denied"}));
+  fs::permissions(folder / "locked", fs::perms::owner_all);
+}
+
+TEST(OutputFile, SaysThatTheDiskIsFull) {
+  const test::TempFolder folder;
+  const auto write = [&](std::size_t bytes) {
+    OutputFile file(folder / "out");
+    file.write(std::string(bytes, 'x'));
+    file.commit();
+  };
+  // Less than the buffer (found when closing), and more (found when writing).
+  for (const std::size_t room : {1000u, 100000u}) {
+    const test::FullDisk disk(room);
+    EXPECT_TRUE(fails_saying([&] { write(room + 1); }, {"cannot write", "out: File too large"}));
+    EXPECT_EQ(folder.names(), Names{});
+    write(room);
+    EXPECT_EQ(fs::file_size(folder / "out"), room);
+    fs::remove(folder / "out");
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,151 @@
+#include "formats/cameras_file.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/errors.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A camera that looks along world x, with its right along world z.
+json one_camera() {
+  return {{"id", 0},
+          {"img_name", "0001"},
+          {"width", 640},
+          {"height", 480},
+          {"position", {1.0, 2.0, 3.0}},
+          {"rotation", {{0, 0, 1}, {0, -1, 0}, {1, 0, 0}}},
+          {"fy", 500.5},
+          {"fx", 501.5}};
+}
+
+std::vector<Camera> load(const std::string& text) {
+  const test::TempFolder folder;
+  test::write_text(folder / "cameras.json", text);
+  return load_cameras(folder / "cameras.json");
+}
+
+testing::AssertionResult refuses(const std::string& text, std::initializer_list<std::string> parts) {
+  if (auto named = test::fails_saying([&] { load(text); }, {"cameras.json"}); !named) return named;
+  return test::fails_saying([&] { load(text); }, parts);
+}
+
+/// The second of two cameras is changed by a JSON merge patch.
+testing::AssertionResult refuses_with(const json& change, std::initializer_list<std::string> parts) {
+  json list = json::array({one_camera(), one_camera()});
+  list[1]["img_name"] = "0002";
+  list[1].merge_patch(change);
+  return refuses(list.dump(), parts);
+}
+
+TEST(Cameras, AreReadAsTheyStand) {
+  const std::vector<Camera> cameras = load(json::array({one_camera()}).dump());
+  ASSERT_EQ(cameras.size(), 1u);
+  const Camera& camera = cameras[0];
+  EXPECT_EQ(camera.name, "0001");
+  EXPECT_EQ(camera.width, 640);
+  EXPECT_EQ(camera.height, 480);
+  EXPECT_EQ(camera.fx, 501.5);
+  EXPECT_EQ(camera.fy, 500.5);
+  EXPECT_EQ(camera.cx, 320.0);
+  EXPECT_EQ(camera.cy, 240.0);
+  EXPECT_EQ(camera.position, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(camera.rotation[0], glm::dvec3(0, 0, 1));
+  EXPECT_EQ(camera.rotation[1], glm::dvec3(0, -1, 0));
+  EXPECT_EQ(camera.rotation[2], glm::dvec3(1, 0, 0));
+  EXPECT_FALSE(camera.time.has_value());
+}
+
+TEST(Cameras, ColumnsAreTheAxes) {
+  // A turn about y by 90 degrees: its rows and columns differ.
+  json object = one_camera();
+  object["rotation"] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
+  const Camera camera = load(json::array({object}).dump())[0];
+  EXPECT_EQ(camera.rotation[2], glm::dvec3(1, 0, 0));
+  EXPECT_NE(glm::transpose(camera.rotation)[2], glm::dvec3(1, 0, 0));  // the planted fault
+}
+
+TEST(Cameras, MayHavePrincipalPointTimeAndMore) {
+  json object = one_camera();
+  object.update({{"cx", 300.25}, {"cy", -3}, {"time", 1.5}, {"width", 640.0}, {"note", nullptr}});
+  const Camera camera = load("\xef\xbb\xbf \n" + json::array({object}).dump())[0];
+  EXPECT_EQ(camera.cx, 300.25);
+  EXPECT_EQ(camera.cy, -3.0);
+  EXPECT_EQ(camera.time, 1.5);
+  EXPECT_EQ(camera.width, 640);
+}
+
+TEST(Cameras, RotationsAreKeptToTheDigit) {
+  json object = one_camera();
+  object["rotation"] = {{0, 0, 1}, {0.0003, -1.0001, 0}, {0.9999, 0, 0}};
+  const Camera camera = load(json::array({object}).dump())[0];
+  EXPECT_EQ(camera.rotation[0], glm::dvec3(0, 0.0003, 0.9999));
+}
+
+TEST(Cameras, NamesMayOccurTwice) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(load(json::array({one_camera(), one_camera()}).dump()).size(), 2u);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("'0001' occurs twice"), std::string::npos);
+}
+
+TEST(Cameras, ErrorsNameTheCameraAndTheKey) {
+  EXPECT_TRUE(
+      refuses_with({{"width", 0}}, {"camera 1 (counted from 0)", "'width'", "0 is no number of pixels"}));
+  EXPECT_TRUE(refuses_with({{"width", -1}}, {"'width'", "-1 is no number of pixels"}));
+  EXPECT_TRUE(refuses_with({{"height", 480.5}}, {"'height'", "480.5 is no number of pixels"}));
+  EXPECT_TRUE(refuses_with({{"height", 1e10}}, {"'height'"}));
+  EXPECT_TRUE(refuses_with({{"width", 100000}, {"height", 100000}}, {"camera 1", "too large"}));
+  EXPECT_TRUE(refuses_with({{"fx", 0}}, {"'fx'", "above 0"}));
+  EXPECT_TRUE(refuses_with({{"fy", -2}}, {"'fy'", "above 0"}));
+  EXPECT_TRUE(refuses_with({{"fx", "500"}}, {"'fx'", "finite number"}));
+  EXPECT_TRUE(refuses_with({{"cx", "x"}}, {"'cx'", "finite number"}));
+  EXPECT_TRUE(refuses_with({{"time", "x"}}, {"'time'", "finite number"}));
+  EXPECT_TRUE(refuses_with({{"img_name", 7}}, {"'img_name'", "in quotes"}));
+  EXPECT_TRUE(refuses_with({{"position", {1, 2}}}, {"'position'", "three numbers"}));
+  EXPECT_TRUE(refuses_with({{"position", {1, 2, true}}}, {"'position'", "finite number"}));
+  EXPECT_TRUE(refuses_with({{"rotation", {{1, 0, 0}, {0, 1, 0}}}}, {"'rotation'", "three rows"}));
+  EXPECT_TRUE(refuses_with({{"rotation", {{1, 0}, {0, 1}, {0, 0}}}}, {"'rotation'", "three rows"}));
+  EXPECT_TRUE(
+      refuses_with({{"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}}}, {"'rotation'", "off by 0.75"}));
+  EXPECT_TRUE(refuses_with({{"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}}}, {"'rotation'", "mirrors"}));
+  for (const char* key : {"img_name", "width", "height", "position", "rotation", "fx", "fy"}) {
+    EXPECT_TRUE(refuses_with({{key, nullptr}}, {"camera 1", fmt::format("'{}': is missing", key)}));
+  }
+}
+
+TEST(Cameras, ErrorsOfTheWholeFile) {
+  EXPECT_TRUE(refuses("[]", {"holds no cameras"}));
+  EXPECT_TRUE(refuses("[1]", {"camera 0", "expected an object"}));
+  EXPECT_TRUE(refuses(one_camera().dump(), {"expected a list", "object"}));
+  EXPECT_TRUE(refuses("[\n{\"a\": 1},\n]", {"not valid JSON at line 3, byte 13"}));
+  EXPECT_TRUE(refuses("[{", {"line 1"}));
+  EXPECT_TRUE(refuses("", {"an empty file"}));
+  EXPECT_TRUE(refuses("<html>", {"line 1, byte 1", "an HTML or XML page"}));
+  EXPECT_TRUE(refuses("[1e999]", {"not valid JSON"}));
+  EXPECT_TRUE(refuses(std::string(300000, '['), {"not valid JSON"}));
+  EXPECT_TRUE(
+      test::fails_saying([] { load_cameras("/nowhere/cameras.json"); }, {"/nowhere", "No such file"}));
+}
+
+TEST(Cameras, AreFoundBesideTheModel) {
+  const test::TempFolder folder;
+  const fs::path inria = folder / "garden/point_cloud/iteration_30000";
+  fs::create_directories(inria);
+  EXPECT_FALSE(find_cameras(inria / "point_cloud.ply").has_value());
+  test::write_text(folder / "garden/cameras.json", "[]");
+  EXPECT_EQ(find_cameras(inria / "point_cloud.ply"), folder / "garden/cameras.json");
+  EXPECT_EQ(find_cameras(folder / "garden/model.ply"), folder / "garden/cameras.json");
+  test::write_text(inria / "cameras.json", "[]");
+  EXPECT_EQ(find_cameras(inria / "point_cloud.ply"), inria / "cameras.json");
+  fs::create_directories(folder / "garden/a/b");
+  EXPECT_FALSE(find_cameras(folder / "garden/a/b/model.ply").has_value());
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,300 @@
+// PNG and JPEG: what is written is read again, every kind of file, and broken ones.
+
+#include "formats/image_file.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+#include <turbojpeg.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/errors.h"
+#include "support/full_disk.h"
+#include "support/ply.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image noise(int width, int height, int channels, std::uint32_t seed = 1) {
+  Image image(width, height, channels);
+  test::Uniform uniform(seed);
+  for (float& value : image.data) value = static_cast<float>(uniform(-0.1, 1.1));
+  return image;
+}
+
+bool equal(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height && a.channels == b.channels && a.data == b.data;
+}
+
+/// A file of any PNG colour type, its samples given as they are packed in rows.
+struct PngFile {
+  int width = 0, height = 0, bits = 8, colour = PNG_COLOR_TYPE_RGB;
+  int interlace = PNG_INTERLACE_NONE;
+  std::vector<png_color> palette;
+  std::vector<png_byte> palette_alpha;
+  std::optional<png_color_16> transparent;
+  std::vector<std::vector<png_byte>> rows;
+};
+
+void write_png(const fs::path& path, PngFile file) {
+  std::FILE* out = std::fopen(path.c_str(), "wb");
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, out);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(file.width), static_cast<png_uint_32>(file.height),
+               file.bits, file.colour, file.interlace, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  if (!file.palette.empty())
+    png_set_PLTE(png, info, file.palette.data(), static_cast<int>(file.palette.size()));
+  png_color_16* transparent = file.transparent ? &*file.transparent : nullptr;
+  if (!file.palette_alpha.empty() || transparent != nullptr) {
+    png_set_tRNS(png, info, file.palette_alpha.data(), static_cast<int>(file.palette_alpha.size()),
+                 transparent);
+  }
+  png_write_info(png, info);
+  std::vector<png_bytep> rows;
+  for (auto& row : file.rows) rows.push_back(row.data());
+  png_write_image(png, rows.data());
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  std::fclose(out);
+}
+
+Image load_png_file(const PngFile& file) {
+  const test::TempFolder folder;
+  write_png(folder / "image.png", file);
+  return load_image(folder / "image.png");
+}
+
+Image expected(int width, int height, int channels, const std::vector<double>& values) {
+  Image image(width, height, channels);
+  EXPECT_EQ(values.size(), image.data.size());
+  std::copy(values.begin(), values.end(), image.data.begin());
+  return image;
+}
+
+TEST(Png, RoundTripIsExactToTheLevel) {
+  const test::TempFolder folder;
+  for (const int bits : {8, 16}) {
+    for (const int channels : {1, 3, 4}) {
+      for (const auto& [width, height] :
+           {std::pair(1, 1), std::pair(7, 5), std::pair(1, 40), std::pair(300, 200)}) {
+        const Image image = noise(width, height, channels);
+        save_png(folder / "image.png", image, bits);
+        const Image loaded = load_image(folder / "image.png");
+        Image kept = quantised(image, bits == 8 ? 256 : 65536);
+        EXPECT_TRUE(equal(loaded, kept)) << bits << " bits, " << channels << " channels";
+        // Planted fault: one value of the last pixel by one level.
+        kept.data.back() += kept.data.back() > 0.5f ? -1.0f / 65535 : 1.0f / 65535;
+        EXPECT_FALSE(equal(loaded, kept));
+      }
+    }
+  }
+}
+
+TEST(Png, RoundsAndClamps) {
+  const test::TempFolder folder;
+  Image image(6, 1, 1);
+  image.data = {-5.0f,
+                7.0f,
+                127.49f / 255,
+                127.51f / 255,
+                std::numeric_limits<float>::quiet_NaN(),
+                std::numeric_limits<float>::infinity()};
+  save_png(folder / "image.png", image, 8);
+  EXPECT_TRUE(
+      equal(load_image(folder / "image.png"), expected(6, 1, 1, {0, 1, 127.0f / 255, 128.0f / 255, 0, 1})));
+}
+
+TEST(Png, CarriesNotesAndSaysThatItIsSrgb) {
+  const test::TempFolder folder;
+  save_png(folder / "image.png", noise(2, 2, 3), 8, {{"units-per-metre", "1.5"}, {"view", "caf\xc3\xa9"}});
+  const std::string bytes = test::read_text(folder / "image.png");
+  EXPECT_NE(bytes.find("sRGB"), std::string::npos);
+  EXPECT_NE(bytes.find("units-per-metre"), std::string::npos);
+  EXPECT_NE(bytes.find("caf\xc3\xa9"), std::string::npos);
+}
+
+TEST(Png, SmallGreyDepthsAreSpread) {
+  PngFile file{.width = 4, .height = 1, .bits = 2, .colour = PNG_COLOR_TYPE_GRAY};
+  file.rows = {{0b00011011}};
+  EXPECT_TRUE(equal(load_png_file(file), expected(4, 1, 1, {0, 85.0f / 255, 170.0f / 255, 1})));
+}
+
+TEST(Png, PalettesBecomeColours) {
+  PngFile file{.width = 3, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_PALETTE};
+  file.palette = {{255, 0, 51}, {0, 102, 255}};
+  file.rows = {{1, 0, 1}};
+  EXPECT_TRUE(equal(load_png_file(file), expected(3, 1, 3, {0, 0.4f, 1, 1, 0, 0.2f, 0, 0.4f, 1})));
+  file.palette_alpha = {51};
+  EXPECT_TRUE(
+      equal(load_png_file(file), expected(3, 1, 4, {0, 0.4f, 1, 1, 1, 0, 0.2f, 0.2f, 0, 0.4f, 1, 1})));
+}
+
+TEST(Png, GreyWithAlphaBecomesRgba) {
+  PngFile file{.width = 2, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_GRAY_ALPHA};
+  file.rows = {{51, 102, 255, 0}};
+  EXPECT_TRUE(equal(load_png_file(file), expected(2, 1, 4, {0.2f, 0.2f, 0.2f, 0.4f, 1, 1, 1, 0})));
+  PngFile keyed{.width = 2, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_GRAY};
+  keyed.transparent = png_color_16{0, 0, 0, 0, 51};
+  keyed.rows = {{51, 102}};
+  EXPECT_TRUE(equal(load_png_file(keyed), expected(2, 1, 4, {0.2f, 0.2f, 0.2f, 0, 0.4f, 0.4f, 0.4f, 1})));
+}
+
+TEST(Png, MayBeInterlaced) {
+  PngFile file{.width = 9, .height = 9, .bits = 16, .colour = PNG_COLOR_TYPE_RGB};
+  for (int y = 0; y < 9; ++y) {
+    std::vector<png_byte>& row = file.rows.emplace_back();
+    for (int i = 0; i < 9 * 6; ++i) row.push_back(static_cast<png_byte>(y * 54 + i));
+  }
+  const Image plain = load_png_file(file);
+  file.interlace = PNG_INTERLACE_ADAM7;
+  EXPECT_TRUE(equal(load_png_file(file), plain));
+  EXPECT_FLOAT_EQ(plain.at(0, 1, 0), (54 * 256 + 55) / 65535.0f);  // the high byte comes first
+}
+
+std::string png_bytes() {
+  const test::TempFolder folder;
+  save_png(folder / "image.png", noise(40, 30, 3), 8);
+  return test::read_text(folder / "image.png");
+}
+
+testing::AssertionResult refuses(const std::string& bytes, std::initializer_list<std::string> parts) {
+  const test::TempFolder folder;
+  test::write_text(folder / "picture", bytes);
+  const auto load = [&] { load_image(folder / "picture"); };
+  if (auto named = test::fails_saying(load, {"picture"}); !named) return named;
+  return test::fails_saying(load, parts);
+}
+
+TEST(Png, BrokenFilesAreRefused) {
+  const std::string good = png_bytes();
+  for (std::size_t size = 8; size < good.size(); size += size < 200 ? 1 : 97) {
+    EXPECT_TRUE(refuses(good.substr(0, size), {"broken PNG"})) << size;
+  }
+  EXPECT_TRUE(refuses(good.substr(0, 1000), {"broken PNG: the file is cut short"}));
+  std::string flipped = good;
+  flipped[1000] = static_cast<char>(flipped[1000] ^ 1);
+  EXPECT_TRUE(refuses(flipped, {"broken PNG"}));
+}
+
+TEST(Png, ForgedSizesTakeNoMemory) {
+  // A header of 2^31 - 1 px a side, then one of 30,000, with a right checksum; the pixels of 40 x 30.
+  for (const std::uint32_t side : {0x7fffffffu, 30000u}) {
+    std::string bytes = png_bytes();
+    std::string number;
+    test::append_bytes(number, side, true);
+    bytes.replace(16, 8, number + number);
+    std::string checksum;
+    test::append_bytes(checksum,
+                       static_cast<std::uint32_t>(crc32(0, reinterpret_cast<Bytef*>(&bytes[12]), 17)), true);
+    bytes.replace(29, 4, checksum);
+    EXPECT_TRUE(refuses(bytes, {fmt::format("{} x {} px", side, side)}));
+  }
+}
+
+TEST(Png, FullDisksAreReported) {
+  const test::TempFolder folder;
+  const Image image = noise(40, 30, 3);
+  const std::size_t size = png_bytes().size();
+  for (std::size_t room = 0; room < size; room += size / 7) {
+    const test::FullDisk disk(room);
+    EXPECT_TRUE(
+        test::fails_saying([&] { save_png(folder / "image.png", image); }, {"image.png: File too large"}));
+    EXPECT_TRUE(folder.names().empty());
+  }
+  const test::FullDisk disk(size);
+  save_png(folder / "image.png", image);
+  EXPECT_EQ(folder.names(), std::set<std::string>{"image.png"});
+}
+
+TEST(Png, OtherBitsAreRefused) {
+  const test::TempFolder folder;
+  EXPECT_TRUE(
+      test::fails_saying([&] { save_png(folder / "a.png", noise(1, 1, 3), 12); }, {"8 or 16 bits, not 12"}));
+  EXPECT_TRUE(folder.names().empty());
+}
+
+/// Smooth colours, so that JPEG stays close to them.
+std::string jpeg_bytes(int format, int subsampling, Image& image) {
+  image = Image(48, 32, format == TJPF_GRAY ? 1 : 3);
+  std::vector<unsigned char> levels;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 48; ++x) {
+      for (int c = 0; c < image.channels; ++c) {
+        levels.push_back(static_cast<unsigned char>(c == 0 ? 4 * x : c == 1 ? 6 * y : 3 * x + y));
+        image.at(x, y, c) = static_cast<float>(levels.back()) / 255.0f;
+      }
+    }
+  }
+  tjhandle encoder = tjInitCompress();
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  tjCompress2(encoder, levels.data(), 48, 0, 32, format, &data, &size, subsampling, 98, TJFLAG_ACCURATEDCT);
+  std::string bytes(reinterpret_cast<char*>(data), size);
+  tjFree(data);
+  tjDestroy(encoder);
+  return bytes;
+}
+
+double largest_difference(const Image& a, const Image& b) {
+  double worst = a.data.size() == b.data.size() && a.channels == b.channels ? 0 : 9;
+  for (std::size_t i = 0; worst < 9 && i < a.data.size(); ++i) {
+    worst = std::max(worst, std::abs(double{a.data[i]} - b.data[i]));
+  }
+  return worst;
+}
+
+TEST(Jpeg, IsReadInColourAndGrey) {
+  for (const auto& [format, subsampling] :
+       {std::pair(TJPF_RGB, TJSAMP_444), std::pair(TJPF_GRAY, TJSAMP_GRAY)}) {
+    Image image;
+    const std::string bytes = jpeg_bytes(format, subsampling, image);
+    const test::TempFolder folder;
+    test::write_text(folder / "image.png", bytes);  // the content decides
+    const Image loaded = load_image(folder / "image.png");
+    EXPECT_LT(largest_difference(loaded, image), 4.0 / 255);
+    // Planted fault: all pixels one and a half rows further.
+    std::rotate(image.data.begin(), image.data.end() - 72 * image.channels, image.data.end());
+    EXPECT_GT(largest_difference(loaded, image), 4.0 / 255);
+  }
+}
+
+TEST(Jpeg, BrokenFilesAreRefused) {
+  Image image;
+  const std::string good = jpeg_bytes(TJPF_RGB, TJSAMP_420, image);
+  for (std::size_t size = 3; size + 2 < good.size(); size += 13) {
+    EXPECT_TRUE(refuses(good.substr(0, size), {"broken JPEG"})) << size;
+  }
+  // A header of 65,500 x 65,500 px.
+  std::string forged = good;
+  const std::size_t frame = forged.find("\xff\xc0");
+  for (const std::size_t at : {frame + 5, frame + 7}) forged.replace(at, 2, "\xff\xdc");
+  EXPECT_TRUE(refuses(forged, {"65500 x 65500 px"}));
+}
+
+TEST(Jpeg, CmykIsRefused) {
+  std::vector<unsigned char> levels(16 * 16 * 4, 99);
+  tjhandle encoder = tjInitCompress();
+  unsigned char* data = nullptr;
+  unsigned long size = 0;
+  tjCompress2(encoder, levels.data(), 16, 0, 16, TJPF_CMYK, &data, &size, TJSAMP_444, 90, 0);
+  EXPECT_TRUE(refuses(std::string(reinterpret_cast<char*>(data), size), {"CMYK"}));
+  tjFree(data);
+  tjDestroy(encoder);
+}
+
+TEST(Images, OtherFilesAreNamed) {
+  EXPECT_TRUE(refuses("ply\nformat ascii 1.0\n", {"expected PNG, JPEG or OpenEXR", "a ply file"}));
+  EXPECT_TRUE(refuses("", {"an empty file"}));
+  EXPECT_TRUE(refuses("version https://git-lfs.github.com/spec/v1", {"git lfs pull"}));
+  EXPECT_TRUE(test::fails_saying([] { load_image("/nowhere/a.png"); }, {"/nowhere/a.png", "No such file"}));
+}
+
+}  // namespace
+}  // namespace binosplat

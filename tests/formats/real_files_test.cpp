@@ -1,0 +1,186 @@
+// Files that other programs wrote, against what independent programs found in them.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "base/image.h"
+#include "formats/cameras_file.h"
+#include "formats/image_file.h"
+#include "formats/model_file.h"
+#include "support/errors.h"
+#include "support/fixtures.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+bool near(double a, double b, double bound) { return std::abs(a - b) <= bound; }
+
+/// One Gaussian against the decoded values of truth.json; the bounds are rounding's.
+bool matches(const Model& model, std::size_t i, const json& truth) {
+  const std::size_t values = model.sh.size() / model.count();
+  const float* sh = &model.sh[i * values];
+  const auto coefficients = [&](const json& expected, const float* found) {
+    bool good = true;
+    for (std::size_t c = 0; c < 3; ++c) good = good && near(found[c], expected[c], 1e-5);
+    return good;
+  };
+  bool good = true;
+  double same_sign = 0;
+  for (int c = 0; c < 3; ++c) {
+    const auto at = static_cast<std::size_t>(c);
+    const double position = truth["position"][at];
+    good = good && near(model.position[i][c], position, 1e-5 * (1 + std::abs(position)));
+    good = good && near(std::log(model.scale[i][c]), std::log(truth["scale"][at].get<double>()), 1e-5);
+    good = good && near(0.5 + 0.28209479177387814 * sh[c], truth["dc"][at], 1e-5);
+  }
+  for (int c = 0; c < 4; ++c) {
+    same_sign += model.rotation[i][c] * truth["rotation_wxyz"][static_cast<std::size_t>(c)].get<double>();
+  }
+  for (int c = 0; c < 4; ++c) {
+    const double expected = truth["rotation_wxyz"][static_cast<std::size_t>(c)];
+    good = good && near(model.rotation[i][c], std::copysign(1.0, same_sign) * expected, 1e-5);
+  }
+  good = good && near(model.opacity[i], truth["opacity"], 1e-6);
+  if (truth.contains("sh")) {
+    for (std::size_t k = 0; k < truth["sh"].size(); ++k)
+      good = good && coefficients(truth["sh"][k], sh + 3 + 3 * k);
+  }
+  if (truth.contains("sh_last")) good = good && coefficients(truth["sh_last"], sh + values - 3);
+  return good;
+}
+
+TEST(RealFiles, PlyAgreesWithAnIndependentDecoder) {
+  REQUIRE_FIXTURES(folder);
+  const json models = test::load_json(folder / "truth.json")["models"];
+  int files = 0;
+  for (const auto& [name, truth] : models.items()) {
+    if (!name.starts_with("ply/")) continue;
+    ++files;
+    const Model model = load_model(folder / name);
+    EXPECT_EQ(model.degree, truth["sh_degree"].get<int>()) << name;
+    EXPECT_EQ(model.count() + model.left_out, truth["count"].get<std::size_t>()) << name;
+    for (const json& gaussian : truth["gaussians"]) {
+      std::size_t index = gaussian["index"].get<std::size_t>();
+      // Row 5 of this file has a zero quaternion and is left out.
+      if (name == "ply/var-unnormalised-quats.ply" && index > 5) --index;
+      EXPECT_TRUE(matches(model, index, gaussian)) << name << ", Gaussian " << index;
+      // Planted faults: the next Gaussian in its place, one coefficient from another channel.
+      EXPECT_FALSE(matches(model, index == 0 ? 1 : index - 1, gaussian)) << name;
+      Model faulty = model;
+      const std::size_t values = model.sh.size() / model.count();
+      std::swap(faulty.sh[index * values + values - 1], faulty.sh[index * values + values - 2]);
+      if (!near(faulty.sh[index * values + values - 1], model.sh[index * values + values - 1], 2e-5 / 0.28)) {
+        EXPECT_FALSE(matches(faulty, index, gaussian)) << name;
+      }
+    }
+  }
+  EXPECT_EQ(files, 14);
+}
+
+TEST(RealFiles, OtherFormatsAreNamed) {
+  REQUIRE_FIXTURES(folder);
+  const auto refuses = [&](const char* name, const char* part) {
+    return test::fails_saying([&] { load_model(folder / name); }, {name, part});
+  };
+  EXPECT_TRUE(refuses("cply/st-train-sh3.compressed.ply", "compressed ply"));
+  EXPECT_TRUE(refuses("spz/st-train-v3-sh3.spz", "gzip"));
+  EXPECT_TRUE(refuses("sog/st-train-sh3.sog", "zip archive"));
+  EXPECT_TRUE(refuses("gltf/st-train-sh3.glb", "binary glTF"));
+  EXPECT_TRUE(refuses("cameras/inria-cameras.json", "JSON"));
+}
+
+TEST(RealFiles, ScenesLoadQuickly) {
+  struct Scene {
+    const char* name;
+    const char* file;
+    std::size_t count;
+  };
+  for (const Scene& scene : {Scene{"fox", "fox.ply", 109832}, Scene{"fox", "fox_pruned.ply", 36289},
+                             Scene{"garden", "garden.ply", 399153}}) {
+    REQUIRE_SCENE(scene.name, folder);
+    const auto begin = std::chrono::steady_clock::now();
+    const Model model = load_model(folder / scene.file);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    std::printf("%s: %zu Gaussians in %.3f s\n", scene.file, model.count(), seconds.count());
+    EXPECT_EQ(model.count(), scene.count);
+    EXPECT_EQ(model.degree, 3);
+    EXPECT_EQ(model.left_out, 0u);
+    const std::optional<fs::path> cameras = find_cameras(folder / scene.file);
+    ASSERT_TRUE(cameras.has_value());
+    EXPECT_EQ(*cameras, folder / "cameras.json");
+    EXPECT_GE(load_cameras(*cameras).size(), 20u);
+  }
+}
+
+TEST(RealFiles, CamerasAgreeWithAnIndependentReader) {
+  REQUIRE_FIXTURES(folder);
+  const std::vector<Camera> cameras = load_cameras(folder / "cameras/inria-cameras.json");
+  const json truth = test::load_json(folder / "truth.json")["cameras"]["cameras/inria-cameras.json"];
+  EXPECT_EQ(cameras.size(), truth["count"].get<std::size_t>());
+  const auto agrees = [](const glm::dvec3& a, const json& b) {
+    return near(a.x, b[0], 1e-7) && near(a.y, b[1], 1e-7) && near(a.z, b[2], 1e-7);
+  };
+  for (const json& expected : truth["cameras"]) {
+    const Camera& camera = cameras[expected["id"].get<std::size_t>()];
+    EXPECT_EQ(camera.name, expected["name"].get<std::string>());
+    EXPECT_EQ(camera.width, expected["width"].get<int>());
+    EXPECT_EQ(camera.height, expected["height"].get<int>());
+    EXPECT_EQ(camera.fx, expected["fx"].get<double>());
+    EXPECT_EQ(camera.fy, expected["fy"].get<double>());
+    EXPECT_EQ(camera.cx, expected["cx"].get<double>());
+    EXPECT_EQ(camera.cy, expected["cy"].get<double>());
+    EXPECT_TRUE(agrees(camera.position, expected["center"]));
+    EXPECT_TRUE(agrees(camera.rotation[2], expected["forward"]));
+    EXPECT_TRUE(agrees(-camera.rotation[1], expected["up"]));
+    // Planted fault: rows taken for columns.
+    EXPECT_FALSE(agrees(glm::transpose(camera.rotation)[2], expected["forward"]));
+  }
+}
+
+TEST(RealFiles, CameraPathsHaveTimes) {
+  REQUIRE_SCENE("fox", folder);
+  const std::vector<Camera> path = load_cameras(folder / "head_path.json");
+  ASSERT_EQ(path.size(), 48u);
+  EXPECT_EQ(path[0].time, 0.0);
+  EXPECT_NEAR(path[1].time.value_or(0), 1.0 / 90.0, 1e-12);
+  EXPECT_FALSE(load_cameras(folder / "cameras.json")[0].time.has_value());
+}
+
+double psnr(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::pow(double{a.data[i]} - b.data[i], 2);
+  return -10 * std::log10(sum / static_cast<double>(a.data.size()));
+}
+
+// Both readers at once: PNG renders against JPEG photos give the figures that were measured with other
+// programs.
+TEST(RealFiles, PicturesGiveThePublishedPsnr) {
+  for (const char* name : {"fox", "garden"}) {
+    REQUIRE_SCENE(name, folder);
+    const json published = test::load_json(folder / "psnr.json");
+    int views = 0;
+    for (const auto& render : fs::directory_iterator(folder / "inria")) {
+      const std::string view = render.path().stem().string();
+      const Image ours = load_image(render.path());
+      const Image photo = load_image(folder / "photos" / (view + ".jpg"));
+      ASSERT_EQ(ours.width, photo.width);
+      ASSERT_EQ(ours.height, photo.height);
+      ASSERT_EQ(ours.channels, 3);
+      ASSERT_EQ(photo.channels, 3);
+      EXPECT_NEAR(psnr(ours, photo), published[view].get<double>(), 0.001) << view;
+      Image faulty = photo;  // planted fault: the channels in another order
+      for (std::size_t i = 0; i < faulty.data.size(); i += 3) std::swap(faulty.data[i], faulty.data[i + 1]);
+      EXPECT_GT(std::abs(psnr(ours, faulty) - published[view].get<double>()), 0.001) << view;
+      ++views;
+    }
+    EXPECT_GE(views, 3);
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,54 @@
+#include "gl/context.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "base/error.h"
+#include "gl/dispatch.h"
+#include "support/errors.h"
+
+namespace binosplat::gl {
+namespace {
+
+TEST(Context, OpensWithoutADisplay) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  const auto context = Context::open();
+  EXPECT_FALSE(context->renderer().empty());
+  EXPECT_GE(context->limits().groups, 65535u);
+  EXPECT_GE(context->limits().invocations, 1024u);
+  EXPECT_GE(context->limits().storage_block_bytes, std::int64_t{128} << 20);
+}
+
+TEST(Context, TwoLiveOnesKeepTheirOwnPrograms) {
+  const auto first = Context::open();
+  Buffer a(*first, "a");
+  a.upload(std::vector<std::uint32_t>{1, 2, 3});
+  {
+    const auto second = Context::open();
+    EXPECT_NO_THROW(second->program("ranges_clear.comp"));
+  }
+  // Opening made the second one current; a program that needs the first opens it again.
+  const auto third = Context::open();
+  EXPECT_NO_THROW(third->program("ranges_clear.comp"));
+}
+
+TEST(Context, ADeviceThatIsNotThereIsNamed) {
+  EXPECT_TRUE(test::fails_saying([] { Context::open(Backend::device, 99); }, {"--device 99"}));
+}
+
+TEST(Context, ABackendThatCannotBeSaysWhatWasTried) {
+  // With llvmpipe only, the device platform has no GPU to offer; on a GPU server this backend simply works.
+  try {
+    const auto context = Context::open(Backend::device);
+    EXPECT_FALSE(context->software());
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::no_gl);
+    EXPECT_NE(std::string(error.what()).find("Tried:"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("apt install"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::gl

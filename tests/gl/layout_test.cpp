@@ -1,0 +1,83 @@
+// The structs that C++ and GLSL share lie where the driver says they lie.
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "gl/program.h"
+#include "shared/types.h"
+#include "support/gl.h"
+#include "support/program.h"
+
+namespace binosplat::gl {
+namespace {
+
+// Offsets of the members of a struct in a storage block `struct items[]`, and its stride under the name "".
+std::map<std::string, int> driver_offsets(const std::string& type) {
+  test::TempFolder folder;
+  std::filesystem::create_directory(folder / "shared");
+  for (const auto& [name, text] : embedded_shaders()) {
+    if (name.rfind("shared/", 0) == 0) test::write_text(folder / name, text);
+  }
+  // Every member must be used, or a driver may leave it out: copying the whole struct uses all.
+  test::write_text(folder / "layout.comp",
+                   "#include \"shared/types.h\"\nlayout(local_size_x = 1) in;\n"
+                   "layout(std430, binding = 0) buffer Items { " + type + " items[]; };\n"
+                   "void main() { items[gl_WorkGroupID.x + 1u] = items[gl_WorkGroupID.x]; }\n");
+  const Functions& gl = test::gl_context().gl();
+  const Program program(gl, "layout.comp", {}, folder.path());
+  std::map<std::string, int> offsets;
+  int count = 0;
+  gl.GetProgramInterfaceiv(program.id(), GL_BUFFER_VARIABLE, GL_ACTIVE_RESOURCES, &count);
+  for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+    char name[128] = {};
+    gl.GetProgramResourceName(program.id(), GL_BUFFER_VARIABLE, i, sizeof(name), nullptr, name);
+    const GLenum wanted[] = {GL_OFFSET, GL_TOP_LEVEL_ARRAY_STRIDE};
+    int values[2] = {};
+    gl.GetProgramResourceiv(program.id(), GL_BUFFER_VARIABLE, i, 2, wanted, 2, nullptr, values);
+    const std::string path = name;
+    offsets[path.substr(path.rfind('.') + 1)] = values[0];
+    offsets[""] = values[1];
+  }
+  return offsets;
+}
+
+using Offsets = std::map<std::string, int>;
+#define AT(type, member) {#member, static_cast<int>(offsetof(shared::type, member))}
+#define STRIDE(type) {"", static_cast<int>(sizeof(shared::type))}
+
+TEST(Layout, ViewIsWhereTheDriverPutsIt) {
+  const Offsets expected = {AT(View, row_x), AT(View, row_y), AT(View, row_z), AT(View, anchor), AT(View, eye),
+                            AT(View, lens), AT(View, width), AT(View, height), AT(View, tiles_x), AT(View, tiles_y),
+                            AT(View, tile_offset), AT(View, pixel_offset), AT(View, order_group), AT(View, th_group),
+                            STRIDE(View)};
+  EXPECT_EQ(driver_offsets("View"), expected);
+}
+
+TEST(Layout, GaussianAndSplatAreWhereTheDriverPutsThem) {
+  const Offsets gaussian = {AT(Gaussian, position), AT(Gaussian, rotation), AT(Gaussian, scale), STRIDE(Gaussian)};
+  EXPECT_EQ(driver_offsets("Gaussian"), gaussian);
+  const Offsets splat = {AT(Splat, mean), AT(Splat, depth), AT(Splat, opacity), AT(Splat, conic), AT(Splat, colour),
+                         STRIDE(Splat)};
+  EXPECT_EQ(driver_offsets("Splat"), splat);
+}
+
+TEST(Layout, CountersAndAmountAreWhereTheDriverPutsThem) {
+  const Offsets counters = {AT(Counters, visible), AT(Counters, order_wanted), AT(Counters, pairs),
+                            AT(Counters, overflow), AT(Counters, loop_cut), AT(Counters, unused_0),
+                            AT(Counters, unused_1), AT(Counters, unused_2), STRIDE(Counters)};
+  EXPECT_EQ(driver_offsets("Counters"), counters);
+  const Offsets amount = {AT(Amount, count), AT(Amount, first), AT(Amount, threads_x), AT(Amount, threads_y),
+                          AT(Amount, threads_z), AT(Amount, scan_x), AT(Amount, scan_y), AT(Amount, scan_z),
+                          AT(Amount, sort_x), AT(Amount, sort_y), AT(Amount, sort_z), AT(Amount, unused),
+                          STRIDE(Amount)};
+  EXPECT_EQ(driver_offsets("Amount"), amount);
+  Offsets wrong = amount;  // the comparison sees a member out of place
+  wrong["sort_x"] += 4;
+  EXPECT_NE(driver_offsets("Amount"), wrong);
+}
+
+}  // namespace
+}  // namespace binosplat::gl

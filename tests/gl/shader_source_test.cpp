@@ -1,0 +1,64 @@
+#include "gl/shader_source.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.h"
+#include "gl/program.h"
+#include "support/errors.h"
+#include "support/gl.h"
+#include "support/program.h"
+
+namespace binosplat::gl {
+namespace {
+
+using test::fails_saying;
+
+TEST(ShaderSource, PutsDefinesFirstAndEachIncludeOnce) {
+  test::TempFolder folder;
+  test::write_text(folder / "a.comp", "#include \"b.glsl\"\n#include \"b.glsl\"\nint a;\n");
+  test::write_text(folder / "b.glsl", "int b;\n");
+  const ShaderSource source("a.comp", {{"SIZE", "16"}}, folder.path());
+  EXPECT_EQ(source.text(),
+            "#version 450 core\n#define SIZE 16\n#line 1 0\n#line 1 1\nint b;\n#line 2 0\n#line 3 0\nint a;\n");
+}
+
+TEST(ShaderSource, NamesTheFileInADriversMessage) {
+  test::TempFolder folder;
+  test::write_text(folder / "a.comp", "#include \"b.glsl\"\nint a;\n");
+  test::write_text(folder / "b.glsl", "int b;\n");
+  const ShaderSource source("a.comp", {}, folder.path());
+  EXPECT_EQ(source.with_file_names("1:14(3): error: x\n0(7) : error C1\n"), "b.glsl:14(3): error: x\na.comp:7 : error C1\n");
+}
+
+TEST(ShaderSource, SaysWhatIsMissingAndWhoWantsIt) {
+  test::TempFolder folder;
+  test::write_text(folder / "a.comp", "\n#include \"gone.glsl\"\n");
+  EXPECT_TRUE(fails_saying([&] { ShaderSource("a.comp", {}, folder.path()); }, {"gone.glsl", "a.comp:2"}));
+  EXPECT_TRUE(fails_saying([&] { ShaderSource("gone.comp", {}, {}); }, {"gone.comp"}));
+}
+
+TEST(ShaderSource, EmbeddedFilesAreTheOnesInTheTree) {
+  const std::filesystem::path root = std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "shaders";
+  if (!std::filesystem::exists(root)) GTEST_SKIP() << "the source tree is not on this machine";
+  ASSERT_GT(embedded_shaders().size(), 10u);
+  for (const auto& [name, text] : embedded_shaders()) EXPECT_EQ(text, test::read_text(root / name)) << name;
+}
+
+TEST(Program, SaysWhereAShaderDoesNotCompile) {
+  test::TempFolder folder;
+  test::write_text(folder / "wrong.comp",
+                   "layout(local_size_x = 1) in;\nvoid main() {\n  int x = missing_name;\n}\n");
+  try {
+    Program(test::gl_context().gl(), "wrong.comp", {}, folder.path());
+    FAIL() << "it compiled";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("wrong.comp:3"), std::string::npos) << error.what();
+    EXPECT_EQ(error.code(), ExitCode::no_gl);
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::gl

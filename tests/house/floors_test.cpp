@@ -1,0 +1,181 @@
+// The house keeps its floors: which rooms a file may include from, how long it may be, how it ends. Read from
+// the include lines of the sources themselves, so that a breach shows even where it compiles.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Files = std::map<std::string, std::string>;  // path below the root of the tree -> text
+using Texts = std::vector<std::string>;
+
+// What each room may include from, besides itself. formats, gl and reference do not see each other, render
+// never sees formats, measure sees pictures only; nothing sees app or tests, because they are in no list.
+const std::map<std::string, std::set<std::string>> may_see = {
+    {"shared", {}},
+    {"base", {"shared"}},
+    {"scene", {"base", "shared"}},
+    {"formats", {"scene", "base", "shared"}},
+    {"gl", {"base", "shared"}},
+    {"reference", {"scene", "base", "shared"}},
+    {"primitives", {"gl", "base", "shared"}},
+    {"render", {"primitives", "gl", "reference", "scene", "base", "shared"}},
+    {"measure", {"base", "shared"}},
+    {"stereo", {"measure", "render", "primitives", "gl", "reference", "scene", "base", "shared"}},
+    {"app",
+     {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
+};
+
+// Files of more than 400 lines, each with the reason why it is better whole.
+const std::map<std::string, std::string> long_files = {};
+constexpr std::ptrdiff_t lines_max = 400;
+
+bool starts_with(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+
+// The room of a file or of an included name: src/ROOM/.., shaders/shared/.. and stereo/..; other shaders are
+// a room "shaders", tests are "tests".
+std::string room_of(const std::string& path) {
+  const std::string below = starts_with(path, "src/") ? path.substr(4) : path;
+  if (starts_with(path, "shaders/shared/")) return "shared";
+  return below.substr(0, below.find('/'));
+}
+
+// The file that a quoted include means, or nothing.
+std::string resolved(const Files& files, const std::string& from, const std::string& name) {
+  Texts places = {"shaders/" + name};
+  if (!starts_with(from, "shaders/")) places.insert(places.begin(), {"src/" + name, name});
+  if (starts_with(from, "tests/")) places.push_back("tests/" + name);
+  for (const std::string& place : places) {
+    if (files.count(place)) return place;
+  }
+  return "";
+}
+
+void check_includes(const Files& files, const std::string& path, const std::string& text, Texts& found) {
+  static const std::regex include(R"re(^[ \t]*#[ \t]*include[ \t]*"([^"]*)")re");
+  const std::string room = room_of(path);
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    std::smatch match;
+    if (!std::regex_search(line, match, include)) continue;
+    const std::string place = path + ":" + std::to_string(number) + ": \"" + match.str(1) + "\" ";
+    const std::string target = resolved(files, path, match.str(1));
+    if (target.empty()) {
+      found.push_back(place + "is no file of the tree: name it by its room, as in \"base/error.h\"");
+      continue;
+    }
+    const std::string seen = room_of(target);
+    if (room == "tests" || seen == room) continue;
+    const bool allowed =
+        room == "shaders" ? seen == "shared" : may_see.count(room) && may_see.at(room).count(seen);
+    if (!allowed) found.push_back(place + room + " does not see " + seen);
+  }
+}
+
+void check_size_and_end(const std::string& path, const std::string& text, Texts& found) {
+  if (text.empty() || text.back() != '\n') found.push_back(path + ": does not end with a newline");
+  if (starts_with(path, "tests/") || starts_with(path, "cmake/")) return;
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  if (lines > lines_max && !long_files.count(path)) {
+    found.push_back(path + ": " + std::to_string(lines) +
+                    " lines: two things live together? (or give a reason here)");
+  }
+}
+
+Texts breaches(const Files& files) {
+  Texts found;
+  for (const auto& [path, text] : files) {
+    const std::string room = room_of(path);
+    if (starts_with(path, "src/") && !may_see.count(room)) found.push_back(path + ": a room without a floor");
+    if (!starts_with(path, "cmake/")) check_includes(files, path, text, found);
+    check_size_and_end(path, text, found);
+  }
+  return found;
+}
+
+Files tree() {
+  Files files;
+  const fs::path root = BINOSPLAT_SOURCE_DIR;
+  for (const char* folder : {"src", "stereo", "shaders", "tests", "cmake"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      static const std::set<std::string> sources = {".cpp", ".h", ".comp", ".glsl", ".txt", ".cmake"};
+      if (!entry.is_regular_file() || !sources.count(entry.path().extension().string())) continue;
+      std::ifstream in(entry.path(), std::ios::binary);
+      std::ostringstream text;
+      text << in.rdbuf();
+      files[fs::relative(entry.path(), root).generic_string()] = text.str();
+    }
+  }
+  return files;
+}
+
+TEST(Floors, TheTreeKeepsThem) {
+  const Files files = tree();
+  EXPECT_TRUE(files.count("src/base/error.h")) << "the sources were not found in " << BINOSPLAT_SOURCE_DIR;
+  for (const std::string& breach : breaches(files)) ADD_FAILURE() << breach;
+}
+
+// A house of one file a room, and one file more that must be found at fault (or not).
+Texts planted(const std::string& path, const std::string& text) {
+  Files files = {{"src/base/error.h", "\n"},
+                 {"src/scene/model.h", "#include \"base/error.h\"\n"},
+                 {"src/formats/ply.h", "\n"},
+                 {"src/gl/context.h", "\n"},
+                 {"src/reference/render.h", "\n"},
+                 {"src/render/frame.h", "#include \"gl/context.h\"\n"},
+                 {"src/measure/metrics.h", "\n"},
+                 {"src/app/command.h", "\n"},
+                 {"stereo/rig.h", "\n"},
+                 {"tests/support/scenes.h", "\n"},
+                 {"shaders/shared/types.h", "\n"},
+                 {"shaders/tiles/ellipse.glsl", "\n"},
+                 {"src/primitives/scan.h", "#include \"shared/types.h\"\n"}};
+  files[path] = text;
+  return breaches(files);
+}
+
+TEST(Floors, PlantedBreachesAreCaught) {
+  const std::vector<std::pair<std::string, std::string>> faults = {
+      {"src/base/a.cpp", "scene/model.h"},         {"src/scene/a.cpp", "formats/ply.h"},
+      {"src/render/a.cpp", "formats/ply.h"},       {"src/gl/a.cpp", "reference/render.h"},
+      {"src/gl/a.cpp", "scene/model.h"},           {"src/reference/a.cpp", "gl/context.h"},
+      {"src/formats/a.cpp", "gl/context.h"},       {"src/measure/a.cpp", "render/frame.h"},
+      {"src/render/a.cpp", "stereo/rig.h"},        {"stereo/a.cpp", "app/command.h"},
+      {"stereo/a.cpp", "support/scenes.h"},        {"src/app/a.cpp", "tests/support/scenes.h"},
+      {"shaders/shared/a.h", "base/error.h"},      {"shaders/shared/a.h", "tiles/ellipse.glsl"},
+      {"shaders/a.comp", "scene/model.h"},         {"src/scene/a.cpp", "model.h"},
+      {"src/primitives/a.cpp", "render/frame.h"},  {"src/new_room/a.cpp", "base/error.h"},
+      {"src/app/a.cpp", "formats/no_such_file.h"},
+  };
+  for (const auto& [path, name] : faults) {
+    EXPECT_FALSE(planted(path, "  #  include \"" + name + "\"\n").empty()) << path << " may include " << name;
+  }
+  EXPECT_FALSE(planted("src/base/a.cpp", "int a;").empty()) << "no newline at the end";
+  EXPECT_FALSE(planted("shaders/a.comp", std::string(lines_max + 1, '\n')).empty()) << "too long";
+}
+
+TEST(Floors, WhatIsAllowedIsLeftAlone) {
+  const std::vector<std::pair<std::string, std::string>> good = {
+      {"src/render/a.cpp", "reference/render.h"}, {"src/app/a.cpp", "stereo/rig.h"},
+      {"shaders/a.comp", "tiles/ellipse.glsl"},   {"shaders/a.comp", "shared/types.h"},
+      {"tests/app/a_test.cpp", "app/command.h"},  {"tests/app/a_test.cpp", "support/scenes.h"},
+      {"src/gl/a.cpp", "shared/types.h"},
+  };
+  for (const auto& [path, name] : good) {
+    EXPECT_EQ(planted(path, "#include \"" + name + "\"\n"), Texts()) << path << " may not include " << name;
+  }
+  EXPECT_EQ(planted("shaders/a.comp", std::string(lines_max, '\n')), Texts());
+}
+
+}  // namespace

@@ -1,0 +1,204 @@
+#include "measure/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+
+namespace binosplat::measure {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
+
+Image filled(int width, int height, int channels, float value) {
+  Image image(width, height, channels);
+  for (float& v : image.data) v = value;
+  return image;
+}
+
+Image noise(int width, int height, int channels, std::uint32_t seed) {
+  std::mt19937 engine(seed);
+  Image image(width, height, channels);
+  for (float& v : image.data) v = static_cast<float>(engine() * 0x1p-32);
+  return image;
+}
+
+TEST(Psnr, ByHand) {
+  // An error of 0.1 everywhere is 20 dB; in one of 100 values it is 40 dB.
+  EXPECT_NEAR(psnr(filled(5, 4, 3, 0.5f), filled(5, 4, 3, 0.6f)), 20.0, 1e-5);
+  Image one = filled(10, 10, 1, 0.5f);
+  one.at(3, 7, 0) = 0.6f;
+  EXPECT_NEAR(psnr(filled(10, 10, 1, 0.5f), one), 40.0, 1e-5);
+  // Eight bits: one level of error everywhere is 20 log10(255).
+  const Image grey = quantised(filled(8, 8, 3, 0.4f));
+  EXPECT_NEAR(psnr(grey, filled(8, 8, 3, grey.data[0] + 1.0f / 255)), 48.1308, 1e-4);
+}
+
+TEST(Psnr, EqualIsInfinite) {
+  const Image image = noise(7, 5, 3, 1);
+  EXPECT_EQ(psnr(image, image), infinite);
+  Image other = image;
+  other.at(6, 4, 2) = std::nextafter(other.at(6, 4, 2), 0.0f);
+  EXPECT_LT(psnr(image, other), infinite) << "the smallest difference in the last value goes unnoticed";
+}
+
+TEST(Psnr, ClampsAndDoesNotRound) {
+  EXPECT_EQ(psnr(filled(4, 4, 3, 1.5f), filled(4, 4, 3, 1.0f)), infinite);
+  EXPECT_EQ(psnr(filled(4, 4, 3, -0.5f), filled(4, 4, 3, 0.0f)), infinite);
+  EXPECT_NEAR(psnr(filled(4, 4, 3, 0.5f), filled(4, 4, 3, 0.5001f)), 80.0, 1e-2);
+}
+
+TEST(Psnr, WhatIsNotANumberIsNotEqual) {
+  Image image = filled(4, 4, 3, 0.5f);
+  image.at(1, 1, 1) = not_a_number;
+  EXPECT_EQ(psnr(image, filled(4, 4, 3, 0.5f)), -infinite);
+  EXPECT_EQ(psnr(image, image), -infinite);
+}
+
+/// SSIM in two dimensions, straight from its definition: slow, and on nothing that metrics.cpp uses.
+double ssim_2d(const Image& a, const Image& b, double sigma = 1.5) {
+  double weights[11][11], total = 0.0;
+  for (int j = 0; j < 11; ++j) {
+    for (int i = 0; i < 11; ++i) {
+      weights[j][i] = std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / (2 * sigma * sigma));
+      total += weights[j][i];
+    }
+  }
+  double sum = 0.0;
+  int count = 0;
+  for (int c = 0; c < a.channels; ++c) {
+    for (int y = 5; y < a.height - 5; ++y) {
+      for (int x = 5; x < a.width - 5; ++x) {
+        const auto average = [&](const auto& of) {
+          double value = 0.0;
+          for (int j = -5; j <= 5; ++j) {
+            for (int i = -5; i <= 5; ++i) {
+              value += weights[j + 5][i + 5] / total * of(a.at(x + i, y + j, c), b.at(x + i, y + j, c));
+            }
+          }
+          return value;
+        };
+        const double ma = average([](double va, double) { return va; });
+        const double mb = average([](double, double vb) { return vb; });
+        const double saa = average([&](double va, double) { return (va - ma) * (va - ma); });
+        const double sbb = average([&](double, double vb) { return (vb - mb) * (vb - mb); });
+        const double sab = average([&](double va, double vb) { return (va - ma) * (vb - mb); });
+        const double c1 = 1e-4, c2 = 9e-4;
+        sum += (2 * ma * mb + c1) * (2 * sab + c2) / ((ma * ma + mb * mb + c1) * (saa + sbb + c2));
+        ++count;
+      }
+    }
+  }
+  return sum / count;
+}
+
+TEST(Ssim, AgreesWithItsDefinition) {
+  for (const auto& [width, height, channels] :
+       {std::array{23, 17, 3}, std::array{11, 11, 1}, std::array{12, 40, 4}}) {
+    const Image a = noise(width, height, channels, 5), b = noise(width, height, channels, 6);
+    Image near = a;
+    for (std::size_t k = 0; k < near.data.size(); ++k) near.data[k] = 0.8f * a.data[k] + 0.2f * b.data[k];
+    EXPECT_NEAR(ssim(a, b), ssim_2d(a, b), 1e-12);
+    EXPECT_NEAR(ssim(a, near), ssim_2d(a, near), 1e-12);
+    EXPECT_GT(std::abs(ssim(a, near) - ssim_2d(a, near, 1.6)), 1e-5) << "another window goes unnoticed";
+  }
+}
+
+TEST(Ssim, ByHand) {
+  const Image image = noise(20, 20, 3, 9);
+  EXPECT_EQ(ssim(image, image), 1.0);
+  // Flat pictures: only the term of the means is left, (2 * 0.5 * 0.6 + c1) / (0.25 + 0.36 + c1).
+  EXPECT_NEAR(ssim(filled(15, 15, 1, 0.5f), filled(15, 15, 1, 0.6f)), 0.6001 / 0.6101, 1e-7);
+  EXPECT_EQ(ssim(filled(15, 15, 1, 1.5f), filled(15, 15, 1, 1.0f)), 1.0) << "values are clamped";
+  // A negative has the sign of its structure turned.
+  Image negative = image;
+  for (float& v : negative.data) v = 1.0f - v;
+  EXPECT_LT(ssim(image, negative), -0.8);
+}
+
+TEST(Ssim, IsNotANumberWhereItHasNoMeaning) {
+  EXPECT_TRUE(std::isnan(ssim(filled(10, 30, 3, 0.5f), filled(10, 30, 3, 0.5f))));
+  Image image = filled(11, 11, 1, 0.5f);
+  image.at(5, 5, 0) = not_a_number;
+  EXPECT_TRUE(std::isnan(ssim(image, image)));
+}
+
+TEST(Difference, LargestAndWhere) {
+  Image a = noise(9, 6, 3, 3), b = a;
+  EXPECT_EQ(largest_difference(a, b).max, 0.0);
+  b.at(2, 1, 0) += 0.25f;
+  b.at(7, 4, 2) = a.at(7, 4, 2) - 0.75f;
+  const Difference largest = largest_difference(a, b);
+  EXPECT_NEAR(largest.max, 0.75, 1e-6);
+  EXPECT_EQ(largest.x, 7);
+  EXPECT_EQ(largest.y, 4);
+  EXPECT_EQ(largest.channel, 2);
+  b.at(8, 5, 1) = not_a_number;
+  EXPECT_EQ(largest_difference(a, b).max, infinite);
+  EXPECT_EQ(largest_difference(a, b).x, 8);
+}
+
+TEST(Difference, IsNotClampedUnlessAsked) {
+  const Image a = filled(3, 3, 3, 2.5f), b = filled(3, 3, 3, 1.0f);
+  EXPECT_NEAR(largest_difference(a, b).max, 1.5, 1e-7);
+  EXPECT_EQ(largest_difference(clamped(a), clamped(b)).max, 0.0);
+}
+
+TEST(Difference, ShareBeyondALimit) {
+  Image a = filled(10, 10, 1, 0.5f), b = a;
+  for (int x = 0; x < 7; ++x) b.at(x, 0, 0) += 0.125f;
+  b.at(0, 1, 0) += 0.0625f;
+  b.at(1, 1, 0) = not_a_number;
+  EXPECT_DOUBLE_EQ(share_beyond(a, b, 0.1), 0.08);
+  EXPECT_DOUBLE_EQ(share_beyond(a, b, 0.05), 0.09);
+  EXPECT_DOUBLE_EQ(share_beyond(a, b, 0.125), 0.01) << "the limit itself is within";
+  EXPECT_EQ(share_beyond(a, a, 0.0), 0.0);
+}
+
+TEST(Difference, PictureWithAGain) {
+  EXPECT_EQ(difference_gain(0.0), 1.0);
+  EXPECT_EQ(difference_gain(1.0), 1.0);
+  EXPECT_EQ(difference_gain(0.3), 2.0);
+  EXPECT_EQ(difference_gain(1.0 / 255), 128.0);
+  Image a = filled(4, 4, 3, 0.5f), b = a;
+  b.at(1, 2, 0) = 0.625f;
+  b.at(2, 2, 1) = 0.25f;
+  b.at(3, 3, 2) = not_a_number;
+  const Image picture = difference_picture(a, b, 4.0);
+  EXPECT_FLOAT_EQ(picture.at(1, 2, 0), 0.5f);
+  EXPECT_FLOAT_EQ(picture.at(1, 2, 1), 0.0f);
+  EXPECT_FLOAT_EQ(picture.at(2, 2, 1), 1.0f);
+  EXPECT_FLOAT_EQ(picture.at(3, 3, 2), 1.0f);
+  // An error of alpha alone is shown, in a picture without alpha.
+  Image c = filled(2, 2, 4, 0.5f), d = c;
+  d.at(1, 1, 3) = 0.75f;
+  const Image of_alpha = difference_picture(c, d, 2.0);
+  EXPECT_EQ(of_alpha.channels, 3);
+  EXPECT_FLOAT_EQ(of_alpha.at(1, 1, 0), 0.5f);
+  EXPECT_FLOAT_EQ(of_alpha.at(0, 0, 0), 0.0f);
+}
+
+TEST(Metrics, RefuseWhatCannotBeCompared) {
+  const Image a = filled(12, 13, 3, 0.5f);
+  for (const Image& other : {filled(13, 12, 3, 0.5f), filled(12, 13, 4, 0.5f)}) {
+    EXPECT_THROW(psnr(a, other), Error);
+    EXPECT_THROW(ssim(a, other), Error);
+    EXPECT_THROW(largest_difference(a, other), Error);
+    EXPECT_THROW(share_beyond(a, other, 0.1), Error);
+    EXPECT_THROW(difference_picture(a, other, 1.0), Error);
+  }
+  EXPECT_THROW(psnr(Image{}, Image{}), Error);
+  try {
+    psnr(a, filled(13, 12, 3, 0.5f));
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("12 x 13 and 13 x 12"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::measure

@@ -1,0 +1,96 @@
+#include "primitives/radix_sort.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "primitives/amount.h"
+#include "shared/limits.h"
+#include "support/gl.h"
+
+namespace binosplat::primitives {
+namespace {
+
+using Keys = std::vector<std::uint32_t>;
+
+// Values are 0, 1, 2, ...: where equal keys keep their order, values of equal keys ascend.
+std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits) {
+  gl::Context& context = test::gl_context();
+  const auto count = static_cast<std::uint32_t>(keys.size());
+  const SortAmounts sizes = make_sort_amounts(count, context.limits().groups);
+  gl::Buffer amounts(context, "amounts");
+  amounts.upload(std::vector{sizes});
+  PairBuffers pairs(context, "pairs");
+  pairs.reserve(count);
+  Keys values(count);
+  std::iota(values.begin(), values.end(), 0u);
+  pairs.keys().upload(keys);
+  pairs.values().upload(values);
+  RadixSort sort(context);
+  sort.reserve(count);
+  gl::Dispatcher dispatcher(context);
+  sort.run(dispatcher, amounts, pairs, bits);
+  return {pairs.keys().read<std::uint32_t>(count), pairs.values().read<std::uint32_t>(count)};
+}
+
+std::pair<Keys, Keys> sort_on_cpu(const Keys& keys, std::uint32_t bits) {
+  const std::uint32_t mask = bits >= 32 ? ~0u : (1u << bits) - 1;
+  Keys values(keys.size());
+  std::iota(values.begin(), values.end(), 0u);
+  std::stable_sort(values.begin(), values.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return (keys[a] & mask) < (keys[b] & mask); });
+  Keys sorted;
+  for (const std::uint32_t v : values) sorted.push_back(keys[v]);
+  return {sorted, values};
+}
+
+Keys random_keys(std::size_t count, std::uint32_t mask) {
+  std::mt19937 engine(11);
+  Keys keys(count);
+  for (std::uint32_t& key : keys) key = engine() & mask;
+  return keys;
+}
+
+TEST(RadixSort, EqualsAStableSortAtEverySizeThatMatters) {
+  const std::size_t block = SORT_BLOCK;
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{255}, std::size_t{257},
+                                 block - 1, block, block + 1, 5 * block + 33, std::size_t{200000}}) {
+    const Keys keys = random_keys(size, ~0u);
+    EXPECT_EQ(sort_on_gpu(keys, 32), sort_on_cpu(keys, 32)) << size;
+  }
+}
+
+TEST(RadixSort, KeepsTheOrderOfEqualKeys) {
+  const Keys keys = random_keys(50000, 0x1Fu);
+  const auto sorted = sort_on_gpu(keys, 8);
+  const auto expected = sort_on_cpu(keys, 8);
+  EXPECT_EQ(sorted, expected);
+  auto unstable = expected;  // two equal keys the other way round are told apart
+  std::swap(unstable.second[0], unstable.second[1]);
+  EXPECT_NE(sorted, unstable);
+  const Keys all_equal(20000, 7u);
+  EXPECT_EQ(sort_on_gpu(all_equal, 32), sort_on_cpu(all_equal, 32));
+}
+
+TEST(RadixSort, TakesWholeDigitsOfTheBitsAsked) {
+  const Keys keys = random_keys(30000, 0x1FFFFu);
+  for (const std::uint32_t bits : {1u, 8u, 9u, 17u}) {
+    EXPECT_EQ(sort_on_gpu(keys, bits), sort_on_cpu(keys, (bits + 7) / 8 * 8)) << bits;
+  }
+  EXPECT_EQ(sort_on_gpu(keys, 0), sort_on_cpu(keys, 0));
+}
+
+TEST(RadixSort, WorksWhenADriverAllowsFewGroups) {
+  gl::Context& context = test::gl_context();
+  const std::uint32_t before = context.limits().groups;
+  context.limit_groups(2);
+  const Keys keys = random_keys(10 * SORT_BLOCK + 3, ~0u);
+  EXPECT_EQ(sort_on_gpu(keys, 32), sort_on_cpu(keys, 32));
+  context.limit_groups(before);
+}
+
+}  // namespace
+}  // namespace binosplat::primitives

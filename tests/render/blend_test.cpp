@@ -1,0 +1,70 @@
+// The stage blend against its float64 twin: both get the same splats and lists.
+
+#include "render/support.h"
+
+namespace binosplat {
+namespace {
+
+constexpr render::FrameSettings only_blend = {.reference_until = render::Stage::ranges};
+
+// Many opaque layers, so that most pixels end early.
+Model layers() {
+  Model model;
+  test::Uniform uniform(31);
+  for (int i = 0; i < 400; ++i) {
+    const double z = 1.0 + 0.01 * i;
+    const glm::vec3 colour(uniform(0, 1), uniform(0, 1), uniform(0, 1));
+    test::add(model, {uniform(-0.4, 0.4) * z, uniform(-0.4, 0.4) * z, z}, glm::vec3(0.2f), static_cast<float>(uniform(0.3, 1)),
+              colour);
+  }
+  return model;
+}
+
+TEST(Blend, EqualsTheReference) {
+  const shared::View view = make_view(test::front_camera(96, 80, 90));
+  for (const Model& model : {test::random_model(32, 2000, 0), layers()}) {
+    const Picture expected = reference::render(model, view);
+    const Picture drawn = test::draw(model, view, only_blend);
+    EXPECT_GE(test::psnr(drawn, expected), 100.0);
+    const Image z = depth_map(drawn);
+    const Image z_expected = depth_map(expected);
+    for (std::size_t k = 0; k < z.data.size(); ++k) {
+      if (std::isinf(z_expected.data[k]) || std::isinf(z.data[k])) continue;
+      EXPECT_NEAR(z.data[k], z_expected.data[k], 1e-4) << k;
+    }
+  }
+}
+
+TEST(Blend, TheComparisonCatchesAnEarlyStopOneGaussianLate) {
+  const Model model = layers();
+  const shared::View view = make_view(test::front_camera(96, 80, 90));
+  const auto splats = reference::project_all(model, view);
+  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+  const Picture late = reference::blend(splats, lists, view, {.stop_late = true});
+  EXPECT_LT(test::psnr(test::draw(model, view, only_blend), late), 95.0);
+}
+
+TEST(Blend, HandComputedPixel) {
+  // Two splats on the axis, so large that the middle pixel sees their full opacity.
+  Model model;
+  test::add(model, {0, 0, 1}, glm::vec3(1.0f), 0.5f, {1, 0, 0});
+  test::add(model, {0, 0, 2}, glm::vec3(1.0f), 0.8f, {0, 1, 0});
+  const Picture picture = test::draw(model, make_view(test::front_camera(65, 65, 64)));
+  const glm::vec4 middle = picture.colour[32 * 65 + 32];
+  EXPECT_NEAR(middle.r, 0.5, 1e-5);
+  EXPECT_NEAR(middle.g, 0.5 * 0.8, 1e-5);
+  EXPECT_NEAR(middle.b, 0.0, 1e-5);
+  EXPECT_NEAR(middle.a, 0.1, 1e-5);
+  EXPECT_NEAR(picture.z_sum[32 * 65 + 32], 0.5 * 1 + 0.4 * 2, 1e-5);
+}
+
+TEST(Blend, AnEmptyViewIsAllBackground) {
+  Model model;
+  test::add(model, {0, 0, -5}, glm::vec3(0.1f), 0.5f);
+  for (const glm::vec4& c : test::draw(model, make_view(test::front_camera(20, 20, 20))).colour) {
+    EXPECT_EQ(c, glm::vec4(0, 0, 0, 1));
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,193 @@
+// Whole frames: the picture does not depend on how it is drawn.
+
+#include "base/error.h"
+#include "render/support.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+
+namespace binosplat {
+namespace {
+
+using render::FrameSettings;
+using render::Stage;
+using test::draw;
+using test::same_bits;
+
+TEST(Frame, EllipseEqualsBruteForceBitForBit) {
+  struct Size {
+    int width, height;
+  };
+  for (const Size size : {Size{160, 96}, Size{1, 1}, Size{17, 1}, Size{1, 33}, Size{31, 47}, Size{160, 16}, Size{7, 95}}) {
+    const Model model = test::random_model(41, 5000, 1, static_cast<double>(size.height) / size.width);
+    const shared::View view = make_view(test::front_camera(size.width, size.height, size.width));
+    const Picture brute = draw(model, view, {.tiles = TILES_ALL});
+    for (const int tile_size : {8, 16, 32}) {
+      EXPECT_TRUE(same_bits(draw(model, view, {.tile_size = tile_size}), brute))
+          << size.width << " x " << size.height << ", tiles of " << tile_size;
+    }
+  }
+}
+
+TEST(Frame, TheComparisonWithBruteForceCatchesCutTails) {
+  const Model model = test::random_model(41, 5000, 1);
+  const shared::View view = make_view(test::front_camera(160, 96, 160));
+  EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_AABB}), draw(model, view, {.tiles = TILES_ALL})));
+}
+
+TEST(Frame, TwoRunsAreEqualBitForBit) {
+  const Model model = test::random_model(42, 5000, 2);
+  const shared::View view = make_view(test::front_camera(200, 120, 200));
+  const Picture first = draw(model, view);
+  EXPECT_TRUE(same_bits(first, draw(model, view)));
+  render::Frame frame(test::gl_context(), model);  // and so is a second frame in the same buffers
+  frame.draw(std::vector{view});
+  frame.draw(std::vector{make_view(test::front_camera(64, 64, 64))});
+  frame.draw(std::vector{view});
+  EXPECT_TRUE(same_bits(first, frame.read_pictures().front()));
+}
+
+TEST(Frame, EqualsTheReference) {
+  for (int degree = 0; degree <= 3; ++degree) {
+    const Model model = test::random_model(static_cast<std::uint32_t>(50 + degree), 3000, degree);
+    const shared::View view = make_view(test::front_camera(150, 110, 140));
+    for (const int tiles : {TILES_AABB, TILES_ELLIPSE}) {
+      EXPECT_GE(test::psnr(draw(model, view, {.tiles = tiles}), reference::render(model, view, {.tiles = tiles})), 80.0)
+          << degree << " " << tiles;
+    }
+  }
+}
+
+TEST(Frame, TheComparisonWithTheReferenceCatchesASignAndATile) {
+  const Model model = test::random_model(51, 3000, 1);
+  const shared::View view = make_view(test::front_camera(150, 110, 140));
+  const Picture drawn = draw(model, view);
+  Model sign = model;
+  for (std::size_t i = 0; i < sign.count(); ++i) sign.sh[i * 12 + 3] *= -1.0f;
+  EXPECT_LT(test::psnr(drawn, reference::render(sign, view)), 60.0);
+  // Lists one tile further along: a tile off by one.
+  const auto splats = reference::project_all(model, view);
+  reference::TileLists lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+  std::vector<std::uint32_t> begin(lists.begin.begin() + 1, lists.begin.end());
+  begin.push_back(begin.back());
+  lists.begin = begin;
+  EXPECT_LT(test::psnr(drawn, reference::blend(splats, lists, view)), 60.0);
+}
+
+TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
+  const Model model = test::random_model(52, 2000, 1);
+  const auto eyes = stereo::make_rig(test::front_camera(90, 70, 80), {.ipd = 0.1});
+  const std::vector views(eyes.views.begin(), eyes.views.end());
+  for (const int tiles : {TILES_AABB, TILES_ELLIPSE, TILES_ALL}) {
+    const Picture expected = reference::render(model, views[1], {.tiles = tiles});
+    for (const Stage stage : {Stage::project, Stage::order, Stage::pairs, Stage::tile_sort, Stage::ranges, Stage::blend}) {
+      const Picture drawn = draw(model, views, {.tiles = tiles, .reference_until = stage})[1];
+      EXPECT_GE(test::psnr(drawn, expected), 80.0) << render::stage_names[static_cast<int>(stage)] << " " << tiles;
+    }
+  }
+}
+
+class Eyes : public testing::TestWithParam<double> {};  // cant, degrees
+
+TEST_P(Eyes, EachEqualsItselfAloneBitForBit) {
+  const Model model = test::random_model(61, 4000, 2);
+  const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = GetParam()});
+  render::Frame frame(test::gl_context(), model);
+  const render::FrameReport report = frame.draw(rig.views);
+  EXPECT_EQ(report.order_groups, GetParam() == 0.0 ? 1u : 2u);
+  const std::vector<Picture> both = frame.read_pictures();
+  EXPECT_TRUE(same_bits(both[0], draw(model, rig.views[0])));
+  EXPECT_TRUE(same_bits(both[1], draw(model, rig.views[1])));
+  EXPECT_FALSE(same_bits(both[0], draw(model, rig.views[1])));  // a left eye in the right's place is caught
+  const std::vector swapped = {rig.views[1], rig.views[0]};
+  const std::vector<Picture> other_way = draw(model, swapped);
+  EXPECT_TRUE(same_bits(both[0], other_way[1]));
+  EXPECT_TRUE(same_bits(both[1], other_way[0]));
+}
+
+INSTANTIATE_TEST_SUITE_P(ParallelAndCanted, Eyes, testing::Values(0.0, 5.0));
+
+TEST(Frame, AtNoEyeDistanceBothEyesAreEqualBitForBit) {
+  const Model model = test::random_model(62, 3000, 1);
+  const auto rig = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.0});
+  const std::vector<Picture> eyes = draw(model, std::vector(rig.views.begin(), rig.views.end()));
+  EXPECT_TRUE(same_bits(eyes[0], eyes[1]));
+}
+
+// The column of a picture's brightest pixel.
+int brightest_column(const Picture& picture) {
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < picture.colour.size(); ++k) {
+    if (picture.colour[k].r > picture.colour[best].r) best = k;
+  }
+  return static_cast<int>(best % static_cast<std::size_t>(picture.width));
+}
+
+TEST(Frame, APointHasItsDisparity) {
+  // f ipd / z = 200 * 0.1 / 2 = 10 px, the left eye's picture further right.
+  Model model;
+  test::add(model, {0.0025f, 0.0025f, 2}, glm::vec3(0.002f), 0.9f);
+  const auto rig = stereo::make_rig(test::front_camera(200, 100, 200), {.ipd = 0.1});
+  const std::vector<Picture> eyes = draw(model, std::vector(rig.views.begin(), rig.views.end()));
+  EXPECT_EQ(brightest_column(eyes[0]) - brightest_column(eyes[1]), 10);
+}
+
+TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
+  const Model model = test::random_model(71, 4000, 0);
+  const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
+  const std::vector views(rig.views.begin(), rig.views.end());
+  const std::vector<Picture> ample = draw(model, views);
+  for (const FrameSettings& settings : {FrameSettings{.order_capacity = 10}, FrameSettings{.pair_capacity = 10},
+                                        FrameSettings{.order_capacity = 10, .pair_capacity = 10}}) {
+    render::Frame frame(test::gl_context(), model);
+    testing::internal::CaptureStderr();
+    const render::FrameReport report = frame.draw(views, settings);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("drawn again"), std::string::npos);
+    EXPECT_GT(report.redrawn, 0);
+    const std::vector<Picture> tight = frame.read_pictures();
+    EXPECT_TRUE(same_bits(ample[0], tight[0]));
+    EXPECT_TRUE(same_bits(ample[1], tight[1]));
+  }
+}
+
+TEST(Frame, WorksWhenADriverAllowsFewGroups) {
+  const Model model = test::random_model(72, 3000, 0);
+  const shared::View view = make_view(test::front_camera(150, 90, 140));
+  const Picture expected = draw(model, view);
+  const std::uint32_t before = test::gl_context().limits().groups;
+  test::gl_context().limit_groups(5);
+  EXPECT_TRUE(same_bits(expected, draw(model, view)));
+  test::gl_context().limit_groups(before);
+}
+
+TEST(Frame, ATileOfManySplatsIsNotCutByTheDriver) {
+  // 70,000 faint ones in one tile: more than llvmpipe's loops go round (65,535), each leaving its mark.
+  Model model;
+  test::Uniform uniform(73);
+  for (int i = 0; i < 70000; ++i) {
+    const double z = uniform(1, 2);
+    test::add(model, {uniform(-0.2, 0.2) * z, uniform(-0.2, 0.2) * z, z}, glm::vec3(0.02f), 0.006f, glm::vec3(uniform(0, 1)));
+  }
+  const shared::View view = make_view(test::front_camera(16, 16, 40));
+  const Picture drawn = draw(model, view);
+  EXPECT_GE(test::psnr(drawn, reference::render(model, view)), 80.0);
+  Model fewer = model;  // a list cut at 65,535 entries is caught
+  const auto splats = reference::project_all(model, view);
+  auto order = reference::depth_order(splats);
+  ASSERT_GT(order.size(), 65535u);
+  order.resize(65535);
+  const auto lists = reference::make_lists(splats, order, view, TILES_ELLIPSE);
+  EXPECT_LT(test::psnr(drawn, reference::blend(splats, lists, view)), 70.0);
+}
+
+TEST(Frame, BadShapesAreNamed) {
+  const Model model = test::random_model(74, 10, 0);
+  EXPECT_TRUE(test::fails_saying([&] { draw(model, std::vector<shared::View>{}); }, {"1 to 8 views"}));
+  const shared::View view = make_view(test::front_camera(16, 16, 16));
+  EXPECT_TRUE(test::fails_saying([&] { draw(model, view, {.tile_size = 12}); }, {"--tile 12"}));
+  shared::View empty = view;
+  empty.width = 0;
+  EXPECT_TRUE(test::fails_saying([&] { draw(model, empty); }, {"0 x 16"}));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,85 @@
+#pragma once
+// What the stage tests share: small frames, and their buffers read back.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "base/image.h"
+#include "measure/metrics.h"
+#include "primitives/amount.h"
+#include "reference/render.h"
+#include "render/frame.h"
+#include "render/stages.h"
+#include "scene/camera.h"
+#include "support/gl.h"
+#include "support/models.h"
+
+namespace binosplat::test {
+
+inline std::vector<Picture> draw(const Model& model, const std::vector<shared::View>& views,
+                                 const render::FrameSettings& settings = {}) {
+  render::Frame frame(gl_context(), model);
+  frame.draw(views, settings);
+  return frame.read_pictures();
+}
+
+inline Picture draw(const Model& model, const shared::View& view, const render::FrameSettings& settings = {}) {
+  return draw(model, std::vector{view}, settings).front();
+}
+
+/// Whether two pictures are equal bit for bit; says where they are not.
+inline testing::AssertionResult same_bits(const Picture& a, const Picture& b) {
+  if (a.width != b.width || a.height != b.height) return testing::AssertionFailure() << "different sizes";
+  for (std::size_t k = 0; k < a.colour.size(); ++k) {
+    if (std::memcmp(&a.colour[k], &b.colour[k], sizeof(glm::vec4)) != 0 ||
+        std::memcmp(&a.z_sum[k], &b.z_sum[k], sizeof(float)) != 0) {
+      return testing::AssertionFailure() << "pixel (" << k % static_cast<std::size_t>(a.width) << ", "
+                                         << k / static_cast<std::size_t>(a.width) << ") differs: " << a.colour[k].x << " "
+                                         << b.colour[k].x << ", T " << a.colour[k].w << " " << b.colour[k].w;
+    }
+  }
+  return testing::AssertionSuccess();
+}
+
+/// PSNR over black, floats.
+inline double psnr(const Picture& a, const Picture& b) {
+  return measure::psnr(composite(a, glm::vec3(0.0f)), composite(b, glm::vec3(0.0f)));
+}
+
+/// The stages of a frame run one after another by themselves, with every buffer at hand.
+struct StageRun {
+  StageRun(const Model& model, const std::vector<shared::View>& views, const render::FrameSettings& settings = {})
+      : shape(render::make_shape(views, settings, model)), frame(gl_context()), model_buffers(gl_context()) {
+    model_buffers.upload(model);
+    frame.views.upload(shape.views);
+    frame.counters.upload(std::vector{shared::Counters{}});
+    frame.reserve(shape, shape.gaussian_count, 1 << 20);
+    const std::uint32_t blocks = (shape.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
+    frame.block_amount.upload(std::vector{primitives::make_amount(blocks, gl_context().limits().groups)});
+  }
+
+  void run_until(render::Stage stage) {
+    gl::Dispatcher dispatcher(gl_context());
+    render::project(dispatcher, shape, model_buffers, frame);
+    if (stage == render::Stage::project) return;
+    for (std::uint32_t group = 0; group < shape.groups.size(); ++group) {
+      render::order(dispatcher, shape, group, frame);
+      if (stage != render::Stage::order) render::pairs(dispatcher, shape, group, frame);
+    }
+    if (stage <= render::Stage::pairs) return;
+    render::tile_sort(dispatcher, shape, frame);
+    if (stage == render::Stage::tile_sort) return;
+    render::ranges(dispatcher, shape, frame);
+  }
+
+  std::size_t splat_count() const { return std::size_t{shape.gaussian_count} * shape.view_count(); }
+
+  render::FrameShape shape;
+  render::FrameBuffers frame;
+  render::ModelBuffers model_buffers;
+};
+
+}  // namespace binosplat::test

@@ -1,0 +1,123 @@
+#include "scene/framing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace binosplat {
+namespace {
+
+void add(Model& model, const glm::vec3& position, float size, float opacity = 0.9f) {
+  model.position.push_back(position);
+  model.scale.emplace_back(size);
+  model.rotation.emplace_back(1, 0, 0, 0);
+  model.opacity.push_back(opacity);
+  model.sh.insert(model.sh.end(), 3, 0.0f);
+}
+
+/// A ball of Gaussians, evenly spread (a Fibonacci spiral) so that their median is its centre.
+Model ball(const glm::vec3& centre, float radius, int count = 5000) {
+  Model model;
+  for (int i = 0; i < count; ++i) {
+    const double y = 1.0 - 2.0 * (i + 0.5) / count, ring = std::sqrt(1.0 - y * y), angle = 2.399963 * i;
+    add(model, centre + radius * glm::vec3(glm::dvec3(ring * std::cos(angle), y, ring * std::sin(angle))),
+        0.02f * radius);
+  }
+  return model;
+}
+
+/// Largest share of the half picture height that the model's Gaussians reach from the picture's middle;
+/// infinite if one is behind the near plane.
+double reach(const Model& model, const Camera& camera, double near_plane) {
+  double out = 0.0;
+  for (const glm::vec3& p : model.position) {
+    const glm::dvec3 v = glm::transpose(camera.rotation) * (glm::dvec3(p) - camera.position);
+    if (v.z < near_plane) return INFINITY;
+    out = std::max(out, std::hypot(v.x, v.y) / v.z * camera.fy / (0.5 * camera.height));
+  }
+  return out;
+}
+
+TEST(Framing, ABallFillsThePicture) {
+  for (const float radius : {0.01f, 1.0f, 500.0f}) {
+    for (const glm::dvec2 size : {glm::dvec2(640, 360), glm::dvec2(360, 640)}) {
+      const Model model = ball(radius * glm::vec3(3, -2, 7), radius);
+      const Camera camera = frame_model(model, static_cast<int>(size.x), static_cast<int>(size.y));
+      const double filled = reach(model, camera, near_for(model));
+      const double fits = std::min(1.0, size.x / size.y);
+      EXPECT_GT(filled, 0.7 * fits) << radius;
+      EXPECT_LT(filled, 1.05 * fits) << radius;
+    }
+  }
+}
+
+TEST(Framing, OutliersChangeNothing) {
+  const Model clean = ball({0, 0, 0}, 1.0f);
+  Model dirty = clean;
+  for (int i = 0; i < 100; ++i) add(dirty, glm::vec3(1e4f * static_cast<float>(i), -3e5f, 1e6f), 10.0f);
+  const Camera a = frame_model(clean, 640, 360), b = frame_model(dirty, 640, 360);
+  EXPECT_LT(glm::length(a.position - b.position), 0.15);
+  Model moved = clean;  // the comparison would notice
+  for (glm::vec3& p : moved.position) p.x += 0.3f;
+  EXPECT_GT(glm::length(a.position - frame_model(moved, 640, 360).position), 0.15);
+}
+
+TEST(Framing, LooksFromAboveAndPastWhatIsInTheWay) {
+  Model model = ball({0, 0, 0}, 1.0f);
+  const Camera open = frame_model(model, 640, 360);
+  EXPECT_LT(open.position.y, -0.2) << "up is negative y";
+  EXPECT_NEAR(open.rotation[0].y, 0.0, 1e-9) << "upright";
+  const auto blocked_by = [&](const glm::dvec3& at) {
+    Model copy = model;
+    for (int i = 0; i < 50; ++i)
+      add(copy, glm::vec3(at) + 0.01f * static_cast<float>(i) * glm::vec3(1, 0, 0), 0.3f);
+    return frame_model(copy, 640, 360);
+  };
+  const glm::dvec3 wall = 0.75 * open.position;
+  const Camera moved = blocked_by(wall);
+  EXPECT_GT(glm::length(moved.position - open.position), 0.5);
+  EXPECT_GT(glm::length(moved.position - wall), 0.5);
+}
+
+TEST(Framing, HonoursUp) {
+  const glm::dvec3 up(0, 0, 1);
+  const Camera camera = frame_model(ball({0, 0, 0}, 1.0f), 640, 360, 60.0, up);
+  EXPECT_GT(camera.position.z, 0.2);
+  EXPECT_LT(glm::dot(camera.rotation[1], up), -0.9) << "the camera's y axis points down";
+}
+
+TEST(Framing, OrbitGoesAround) {
+  const Model model = ball({1, 2, 3}, 1.0f);
+  const std::vector<Camera> cameras = orbit(model, 12, 640, 360);
+  ASSERT_EQ(cameras.size(), 12u);
+  EXPECT_EQ(cameras[0].name, "orbit_000");
+  EXPECT_EQ(cameras[11].name, "orbit_011");
+  EXPECT_EQ(cameras[0].position, frame_model(model, 640, 360).position);
+  glm::dvec3 middle(0.0);
+  for (const Camera& camera : cameras) {
+    middle += camera.position / 12.0;
+    EXPECT_NEAR(camera.position.y, cameras[0].position.y, 1e-9);
+    EXPECT_LT(reach(model, camera, near_for(model)), 1.05);
+  }
+  EXPECT_LT(glm::length(glm::dvec2(middle.x, middle.z) - glm::dvec2(1, 3)), 0.05);
+}
+
+TEST(Framing, NearSuitsSmallModels) {
+  EXPECT_EQ(near_for(ball({0, 0, 0}, 5.0f)), near_default);
+  EXPECT_NEAR(near_for(ball({0, 0, 0}, 0.05f)), 0.005, 1e-4);
+}
+
+TEST(Framing, OddModels) {
+  EXPECT_THROW(frame_model(Model{}, 640, 360), Error);
+  Model one;
+  add(one, {1, 2, 3}, 0.5f);
+  const Camera camera = frame_model(one, 640, 360);
+  EXPECT_NEAR(glm::length(camera.position - glm::dvec3(1, 2, 3)), 1.0, 1e-6);
+  EXPECT_THROW(frame_model(one, 640, 360, 0.0), Error);
+  EXPECT_THROW(frame_model(one, 640, 360, 60.0, {0, 0, 0}), Error);
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,34 @@
+#pragma once
+// What a user is told when something is wrong.
+
+#include <gtest/gtest.h>
+
+#include <initializer_list>
+#include <string>
+
+#include "base/error.h"
+
+namespace binosplat::test {
+
+/// Whether `action` throws Error(bad_input) whose text holds all of `parts`.
+template <typename Action>
+testing::AssertionResult fails_saying(Action action, std::initializer_list<std::string> parts) {
+  try {
+    action();
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    if (error.code() != ExitCode::bad_input)
+      return testing::AssertionFailure() << "another exit code: " << text;
+    for (const std::string& part : parts) {
+      if (text.find(part) == std::string::npos) {
+        return testing::AssertionFailure() << "no '" << part << "' in: " << text;
+      }
+    }
+    return testing::AssertionSuccess() << text;
+  } catch (const std::exception& error) {
+    return testing::AssertionFailure() << "not an Error: " << error.what();
+  }
+  return testing::AssertionFailure() << "nothing was thrown";
+}
+
+}  // namespace binosplat::test

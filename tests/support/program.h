@@ -1,0 +1,137 @@
+#pragma once
+// Runs the real program as a child process, as a shell would, and sees what it says and leaves behind.
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace binosplat::test {
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+inline void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// A folder that is gone with all that is in it when the test ends.
+class TempFolder {
+ public:
+  TempFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "binosplat-test-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder " + name);
+    path_ = name;
+  }
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Everything in it, by path below it.
+  std::set<std::string> names() const {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path_)) {
+      found.insert(std::filesystem::relative(entry.path(), path_).generic_string());
+    }
+    return found;
+  }
+
+  /// The same without folders.
+  std::set<std::string> files() const {
+    std::set<std::string> found = names();
+    std::erase_if(found,
+                  [&](const std::string& name) { return std::filesystem::is_directory(path_ / name); });
+    return found;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// How a run ended: `code` is the exit code, or minus the number of the signal that ended it.
+struct Outcome {
+  int code = 0;
+  std::string out;
+  std::string err;
+};
+
+struct Surroundings {
+  std::filesystem::path folder;                  // the working folder; empty: this one's
+  std::map<std::string, std::string> variables;  // of the environment, in addition
+  std::map<int, rlim_t> limits;                  // RLIMIT_FSIZE and its like
+};
+
+/// A run under way.
+class Program {
+ public:
+  explicit Program(std::vector<std::string> arguments, const Surroundings& surroundings = {}) {
+    arguments.insert(arguments.begin(), BINOSPLAT_PROGRAM);
+    pid_ = fork();
+    if (pid_ < 0) throw std::runtime_error("fork failed");
+    if (pid_ == 0) become(arguments, surroundings);
+  }
+
+  void send(int signal) const { kill(pid_, signal); }
+
+  Outcome wait() {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    return {code, read_text(out()), read_text(err())};
+  }
+
+  /// What it has said so far.
+  std::string said() const { return read_text(out()) + read_text(err()); }
+
+ private:
+  std::filesystem::path out() const { return said_.path() / "out"; }
+  std::filesystem::path err() const { return said_.path() / "err"; }
+
+  // In the child.
+  [[noreturn]] void become(const std::vector<std::string>& arguments,
+                           const Surroundings& surroundings) const {
+    dup2(open(out().c_str(), O_CREAT | O_WRONLY, 0600), STDOUT_FILENO);
+    dup2(open(err().c_str(), O_CREAT | O_WRONLY, 0600), STDERR_FILENO);
+    bool good = surroundings.folder.empty() || chdir(surroundings.folder.c_str()) == 0;
+    for (const auto& [name, value] : surroundings.variables) setenv(name.c_str(), value.c_str(), 1);
+    for (const auto& [what, most] : surroundings.limits) {
+      const rlimit limit = {most, most};
+      good = good && setrlimit(static_cast<__rlimit_resource>(what), &limit) == 0;
+    }
+    std::vector<char*> pointers;
+    for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
+    pointers.push_back(nullptr);
+    if (good) execv(pointers[0], pointers.data());
+    _exit(127);
+  }
+
+  TempFolder said_;
+  pid_t pid_ = -1;
+};
+
+inline Outcome run_program(const std::vector<std::string>& arguments, const Surroundings& surroundings = {}) {
+  return Program(arguments, surroundings).wait();
+}
+
+}  // namespace binosplat::test
