@@ -16,8 +16,8 @@ layout(std430, binding = 4) readonly buffer PairOffsets { uint pair_offsets[]; }
 layout(std430, binding = 5) readonly buffer TileCounts { uint tile_counts[]; };
 layout(std430, binding = 6) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 7) writeonly buffer Keys { uint keys[]; };      // tile, counted over all views
-layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // splat: view * gaussian_count + Gaussian
-uniform uint gaussian_count;
+layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // splat: view * slots + slot
+uniform uint slots;  // of one view
 uniform uint view_begin;
 uniform uint view_end;
 
@@ -39,11 +39,11 @@ void main() {
   uint rank = rank_of(pair);
   uint nth = pair - pair_offsets[rank];  // of the Gaussian's tiles, view after view, row after row
   uint v = view_begin;
-  uint splat_index = v * gaussian_count + order[rank];
+  uint splat_index = v * slots + order[rank];
   while (v + 1u < view_end && nth >= tile_counts[splat_index]) {
     nth -= tile_counts[splat_index];
     ++v;
-    splat_index += gaussian_count;
+    splat_index += slots;
   }
   View view = views[v];
   Splat splat = splats[splat_index];

@@ -1,118 +1,41 @@
-// Stage 1: every Gaussian as every view sees it (METHOD 2). One invocation a Gaussian; what does not depend on the view is
-// computed once. `precise` where other programs or other variants must get the same bits.
+// Stage 1, project, last part: the splats of the Gaussians that cull.comp found, side by side in index order. One invocation
+// a Gaussian; what does not depend on the view is computed once.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
-#include "shared/exact.glsl"
+#include "projection.glsl"
 #include "tiles/tiles.glsl"
 
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
-layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };
-#include "sh.glsl"  // binding 2
-layout(std430, binding = 3) writeonly buffer Splats { Splat splats[]; };            // (view, Gaussian)
-layout(std430, binding = 4) writeonly buffer TileCounts { uint tile_counts[]; };  // (view, Gaussian)
-layout(std430, binding = 5) writeonly buffer DepthKeys { uint depth_keys[]; };    // (order group, Gaussian)
-uniform uint gaussian_count;
-uniform uint view_count;
-
-// Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of METHOD 2.
-mat3 scaled_axes(Gaussian g) {
-  precise float w = g.rotation.x;
-  precise float x = g.rotation.y;
-  precise float y = g.rotation.z;
-  precise float z = g.rotation.w;
-  precise vec3 a = g.scale.x * vec3(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y));
-  precise vec3 b = g.scale.y * vec3(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x));
-  precise vec3 c = g.scale.z * vec3(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
-  return mat3(a, b, c);
-}
-
-float dot_precise(vec3 a, vec3 b) {
-  precise float d = fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
-  return d;
-}
-
-// The point relative to the anchor in the eye's axes.
-vec3 to_eye(View view, vec3 d) {
-  precise float x = dot_precise(view.row_x.xyz, d) + view.row_x.w;
-  precise float y = dot_precise(view.row_y.xyz, d) + view.row_y.w;
-  precise float z = dot_precise(view.row_z.xyz, d) + view.row_z.w;
-  return vec3(x, y, z);
-}
-
-// Rows of J R^T M: the scaled axes as they fall on the picture, px. J is taken at v with its slopes clamped, because the
-// linearisation blows up far outside the picture.
-void axes_on_picture(View view, vec3 v, mat3 axes, out vec3 across, out vec3 down) {
-  vec2 focal = view.lens.xy;
-  vec2 centre = view.lens.zw;
-  vec2 size = vec2(view.width, view.height);
-  precise vec2 lowest = -(centre + float(CLAMP_MARGIN) * size) / focal;
-  precise vec2 highest = (size - centre + float(CLAMP_MARGIN) * size) / focal;
-  precise vec2 slope = clamp(v.xy / v.z, lowest, highest);
-  precise vec2 gain = focal / v.z;
-  precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
-  precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
-  across = vec3(dot_precise(jx, axes[0]), dot_precise(jx, axes[1]), dot_precise(jx, axes[2]));
-  down = vec3(dot_precise(jy, axes[0]), dot_precise(jy, axes[1]), dot_precise(jy, axes[2]));
-}
-
-// (Q.xx, Q.xy, Q.yy, sqrt(det C2)); det not positive is told by w = 0.
-vec4 conic_of(float xx, float xy, float yy) {
-  // A power of two takes the size out, so that no product overflows.
-  uint exponent = floatBitsToUint(max(xx, yy)) & 0x7f800000u;
-  precise float size = uintBitsToFloat(exponent);
-  precise float inverse = uintBitsToFloat(0x7f000000u - exponent);
-  precise float a = xx * inverse;
-  precise float b = xy * inverse;
-  precise float c = yy * inverse;
-  precise float det = difference_of_products(a, c, b, b);
-  if (!(det > 0.0) || exponent >= 0x7f000000u) return vec4(0.0);
-  precise vec3 q = vec3(c, -b, a) / det * inverse;
-  return vec4(q, sqrt(det) * size);
-}
-
-// Everything but the colour. False where this view does not draw it.
-bool project(View view, vec3 d, mat3 axes, float opacity, out Splat splat) {
-  vec3 v = to_eye(view, d);
-  if (!(v.z > view.anchor.w)) return false;
-  vec3 across;
-  vec3 down;
-  axes_on_picture(view, v, axes, across, down);
-  precise float xx = dot_precise(across, across) + float(KERNEL_PX2);
-  precise float xy = dot_precise(across, down);
-  precise float yy = dot_precise(down, down) + float(KERNEL_PX2);
-  splat.conic = conic_of(xx, xy, yy);
-  if (splat.conic.w == 0.0) return false;
-  precise vec2 mean = view.lens.xy * (v.xy / v.z) + view.lens.zw - 0.5;
-  splat.mean = mean;
-  splat.depth = v.z;
-  splat.opacity = opacity;
-  return true;
-}
+layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // of the page
+#include "sh.glsl"  // binding 2, of the page
+layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
+layout(std430, binding = 5) writeonly buffer Splats { Splat splats[]; };          // (view, slot)
+layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
+uniform uint page_first;
+uniform uint page_count;
+uniform uint view_begin;
+uniform uint view_end;
+uniform uint slots;  // of one view
 
 void main() {
-  uint i = thread_index();
-  if (i >= gaussian_count) return;
+  uint slot = thread_index();
+  if (slot >= amounts[0].count) return;
+  uint i = indices[slot] - page_first;  // wraps, and is too large, before the page
+  if (i >= page_count) return;
   Gaussian g = gaussians[i];
   mat3 axes = scaled_axes(g);
-  uint key = DEPTH_KEY_NONE;
-  for (uint v = 0u; v < view_count; ++v) {
+  for (uint v = view_begin; v < view_end; ++v) {
     View view = views[v];
-    precise vec3 d = g.position.xyz - view.anchor.xyz;
     Splat splat;
-    uint tiles = project(view, d, axes, g.position.w, splat) ? tile_count(splat, view) : 0u;
-    tile_counts[v * gaussian_count + i] = tiles;
+    uint tiles = project(view, g, axes, splat) ? tile_count(splat, view) : 0u;
+    tile_counts[v * slots + slot] = tiles;
     if (tiles > 0u) {
-      splat.colour = vec4(sh_colour(i, normalize(d - view.eye.xyz)), 0.0);
-      splats[v * gaussian_count + i] = splat;
-      key = floatBitsToUint(splat.depth);
-    }
-    // Views of one order group follow one another and see the same depth.
-    if (v + 1u == view_count || views[v + 1u].order_group != view.order_group) {
-      depth_keys[view.order_group * gaussian_count + i] = key;
-      key = DEPTH_KEY_NONE;
+      splat.colour = vec4(sh_colour(i, normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz)), 0.0);
+      splats[v * slots + slot] = splat;
     }
   }
 }

@@ -33,3 +33,12 @@ uint tile_count(Splat splat, View view) {
   }
   return count;
 }
+
+bool touches_a_tile(Splat splat, View view) {
+  uvec4 box = tile_box(splat, view);
+  for (uint row = box.y; row < box.w; ++row) {
+    uvec2 columns = tile_row(splat, view, box, row);
+    if (columns.y > columns.x) return true;
+  }
+  return false;
+}

@@ -25,6 +25,7 @@ std::string text(const Functions& gl, GLenum name) {
 void Context::initialise(GetProcAddress get_proc_address, std::string backend) {
   functions_ = load_functions(get_proc_address);
   backend_ = std::move(backend);
+  vendor_ = text(functions_, GL_VENDOR);
   renderer_ = text(functions_, GL_RENDERER);
   version_ = text(functions_, GL_VERSION);
   int major = 0;
@@ -35,6 +36,7 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend) {
     throw Error(ExitCode::no_gl, fmt::format("{} offers OpenGL {}.{}: binosplat needs 4.5 core", renderer_, major, minor));
   }
   functions_.DebugMessageCallback(on_message, nullptr);
+  set_program_cache(ProgramCache::default_folder());
 
   int groups = 0;
   functions_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
@@ -61,7 +63,7 @@ const Program& Context::program(const std::string& name, const Defines& defines)
   for (const auto& [define, value] : defines) key += " " + define + "=" + value;
   auto found = programs_.find(key);
   if (found == programs_.end()) {
-    found = programs_.emplace(key, Program(functions_, name, defines, shader_folder_)).first;
+    found = programs_.emplace(key, Program(functions_, name, defines, shader_folder_, *program_cache_)).first;
   }
   return found->second;
 }
@@ -74,6 +76,11 @@ void Context::set_shader_folder(const std::filesystem::path& folder) {
 void Context::count_allocation(std::int64_t bytes) {
   allocated_ += bytes;
   peak_ = std::max(peak_, allocated_);
+}
+
+void Context::set_program_cache(const std::filesystem::path& folder) {
+  program_cache_ = std::make_unique<ProgramCache>(folder, vendor_ + "\n" + renderer_ + "\n" + version_);
+  programs_.clear();
 }
 
 void Context::check(const std::string& what) const {

@@ -50,6 +50,8 @@ class Context {
   const Program& program(const std::string& name, const Defines& defines = {});
   /// Shaders are read from this folder from now on; empty: the embedded ones.
   void set_shader_folder(const std::filesystem::path& folder);
+  /// Where compiled programs are kept from now on; empty: nowhere. At first ProgramCache::default_folder().
+  void set_program_cache(const std::filesystem::path& folder);
 
   /// Bytes in buffers now and at most; buffers report here.
   std::int64_t allocated_bytes() const { return allocated_; }
@@ -68,8 +70,9 @@ class Context {
  private:
   Functions functions_;
   Limits limits_;
-  std::string backend_, renderer_, version_;
+  std::string backend_, vendor_, renderer_, version_;
   std::filesystem::path shader_folder_;
+  std::unique_ptr<ProgramCache> program_cache_;
   std::map<std::string, Program> programs_;
   std::int64_t allocated_ = 0, peak_ = 0;
 };

@@ -32,6 +32,7 @@ namespace binosplat::gl {
   X(GetInteger64v, GETINTEGER64V)                                 \
   X(GetIntegeri_v, GETINTEGERI_V)                                 \
   X(GetIntegerv, GETINTEGERV)                                     \
+  X(GetProgramBinary, GETPROGRAMBINARY)                           \
   X(GetProgramInfoLog, GETPROGRAMINFOLOG)                         \
   X(GetProgramInterfaceiv, GETPROGRAMINTERFACEIV)                 \
   X(GetProgramResourceIndex, GETPROGRAMRESOURCEINDEX)             \
@@ -50,6 +51,8 @@ namespace binosplat::gl {
   X(NamedBufferSubData, NAMEDBUFFERSUBDATA)                       \
   X(ObjectLabel, OBJECTLABEL)                                     \
   X(PopDebugGroup, POPDEBUGGROUP)                                 \
+  X(ProgramBinary, PROGRAMBINARY)                                 \
+  X(ProgramParameteri, PROGRAMPARAMETERI)                         \
   X(ProgramUniform1ui, PROGRAMUNIFORM1UI)                         \
   X(PushDebugGroup, PUSHDEBUGGROUP)                               \
   X(QueryCounter, QUERYCOUNTER)                                   \

@@ -25,9 +25,14 @@ void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, 
 }  // namespace
 
 Program::Program(const Functions& gl, const std::string& name, const Defines& defines,
-                 const std::filesystem::path& folder)
-    : gl_(&gl), name_(name) {
-  compile(ShaderSource(name, defines, folder));
+                 const std::filesystem::path& folder, const ProgramCache& cache)
+    : gl_(&gl), name_(name), id_(gl.CreateProgram()) {
+  const ShaderSource source(name, defines, folder);
+  if (!cache.load(gl, id_, source.text())) {
+    compile(source);
+    cache.store(gl, id_, source.text());
+  }
+  gl.ObjectLabel(GL_PROGRAM, id_, -1, name_.c_str());
   reflect();
 }
 
@@ -48,28 +53,26 @@ void Program::compile(const ShaderSource& source) {
   const char* text = source.text().c_str();
   gl_->ShaderSource(shader, 1, &text, nullptr);
   gl_->CompileShader(shader);
-  std::int32_t good = 0;
-  gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  gl_->AttachShader(id_, shader);
+  gl_->ProgramParameteri(id_, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+  gl_->LinkProgram(id_);
+  std::int32_t compiled = 0;
+  std::int32_t linked = 0;
+  gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  gl_->GetProgramiv(id_, GL_LINK_STATUS, &linked);
   std::string log(1 << 16, '\0');
   std::int32_t length = 0;
-  if (good == 0) {
+  if (compiled == 0) {
     gl_->GetShaderInfoLog(shader, static_cast<int>(log.size()), &length, log.data());
-    gl_->DeleteShader(shader);
-    log.resize(static_cast<std::size_t>(length));
-    throw Error(ExitCode::no_gl, "shader " + name_ + " does not compile:\n" + source.with_file_names(log));
-  }
-  id_ = gl_->CreateProgram();
-  gl_->AttachShader(id_, shader);
-  gl_->LinkProgram(id_);
-  gl_->DeleteShader(shader);
-  gl_->GetProgramiv(id_, GL_LINK_STATUS, &good);
-  if (good == 0) {
+  } else if (linked == 0) {
     gl_->GetProgramInfoLog(id_, static_cast<int>(log.size()), &length, log.data());
-    gl_->DeleteProgram(id_);
-    log.resize(static_cast<std::size_t>(length));
-    throw Error(ExitCode::no_gl, "shader " + name_ + " does not link:\n" + source.with_file_names(log));
   }
-  gl_->ObjectLabel(GL_PROGRAM, id_, -1, name_.c_str());
+  gl_->DeleteShader(shader);
+  if (compiled != 0 && linked != 0) return;
+  gl_->DeleteProgram(std::exchange(id_, 0));
+  log.resize(static_cast<std::size_t>(length));
+  throw Error(ExitCode::no_gl, fmt::format("shader {} does not {}:\n{}", name_, compiled == 0 ? "compile" : "link",
+                                           source.with_file_names(log)));
 }
 
 void Program::reflect() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gl/functions.h"
+#include "gl/program_cache.h"
 #include "gl/shader_source.h"
 
 namespace binosplat::gl {
@@ -22,8 +23,10 @@ class Program {
     std::int32_t location;
   };
 
-  /// Compiles and links. Throws Error(no_gl) with the driver's log, places given as file:line.
-  Program(const Functions& gl, const std::string& name, const Defines& defines, const std::filesystem::path& folder);
+  /// Takes the program from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log, places given
+  /// as file:line.
+  Program(const Functions& gl, const std::string& name, const Defines& defines, const std::filesystem::path& folder,
+          const ProgramCache& cache);
   ~Program();
   Program(Program&& other) noexcept;
   Program(const Program&) = delete;

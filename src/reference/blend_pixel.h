@@ -21,12 +21,14 @@ struct PixelSum {
 
 enum class Verdict { skipped, blended, stopped };
 
-/// alpha of a splat at pixel (x, y), not yet compared with tau; 0 where q is negative, which is skipped as
-/// well.
+/// alpha of a splat at pixel (x, y), not yet compared with tau. 0 where it is skipped without a look at the
+/// exponential: where q is negative, and where q is so large (beyond 2 ln 255 = 11.08) that even a sigma of 1
+/// leaves less than tau.
 inline double alpha_at(const Splat& splat, int x, int y) {
   const glm::dvec2 d = glm::dvec2(x, y) - splat.mean;
   const double q = splat.conic.x * d.x * d.x + 2 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
-  return q < 0.0 ? 0.0 : std::min(ALPHA_MAX, splat.opacity * std::exp(-0.5 * q));
+  if (q < 0.0 || q > 11.1) return 0.0;
+  return std::min(ALPHA_MAX, splat.opacity * std::exp(-0.5 * q));
 }
 
 /// Blends the list at pixel (x, y). For each Gaussian, before it is added,

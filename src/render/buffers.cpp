@@ -11,10 +11,36 @@ namespace binosplat::render {
 
 namespace {
 
+constexpr std::uint32_t slots_start = 1u << 20;
+
 // Equal to the bit in all that decides a Gaussian's depth.
 bool same_depths(const shared::View& a, const shared::View& b) {
   return std::memcmp(&a.row_z, &b.row_z, sizeof(a.row_z)) == 0 &&
          std::memcmp(&a.anchor, &b.anchor, sizeof(a.anchor)) == 0;
+}
+
+// Of one Gaussian, with the padding that vec4s need.
+std::int64_t harmonic_bytes(int degree) { return (3 * sh_count(degree) + 3) / 4 * 16; }
+
+std::vector<shared::Gaussian> pack_gaussians(const Model& model, std::size_t first, std::size_t count) {
+  std::vector<shared::Gaussian> packed(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = first + k;
+    packed[k].position = glm::vec4(model.position[i], model.opacity[i]);
+    packed[k].rotation = model.rotation[i];
+    packed[k].scale = glm::vec4(model.scale[i], 0.0f);
+  }
+  return packed;
+}
+
+std::vector<float> pad_harmonics(const Model& model, std::size_t first, std::size_t count) {
+  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  const std::size_t stride = static_cast<std::size_t>(harmonic_bytes(model.degree)) / sizeof(float);
+  std::vector<float> padded(count * stride);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::copy_n(&model.sh[(first + k) * floats], floats, &padded[k * stride]);
+  }
+  return padded;
 }
 
 }  // namespace
@@ -33,6 +59,11 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   shape.settings = settings;
   shape.degree = model.degree;
   shape.gaussian_count = static_cast<std::uint32_t>(model.count());
+  // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The reference's results
+  // need all the room they take at once.
+  const std::uint32_t half = shape.gaussian_count / 2;
+  const std::uint32_t start = std::max(half, std::min(shape.gaussian_count, slots_start));
+  shape.slots = settings.reference_until ? shape.gaussian_count : start;
   shape.views.assign(views.begin(), views.end());
   const auto tile = static_cast<std::uint32_t>(settings.tile_size);
   for (std::size_t v = 0; v < views.size(); ++v) {
@@ -51,44 +82,51 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
     shape.groups.back().end = static_cast<std::uint32_t>(v + 1);
     view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
   }
-  if (std::uint64_t{shape.gaussian_count} * views.size() > std::uint64_t{1} << 32) {
-    throw Error(ExitCode::out_of_memory, "more than 2^32 splats in one frame: draw fewer views at once");
-  }
   return shape;
 }
 
-void ModelBuffers::upload(const Model& model) {
-  std::vector<shared::Gaussian> packed(model.count());
-  for (std::size_t i = 0; i < model.count(); ++i) {
-    packed[i].position = glm::vec4(model.position[i], model.opacity[i]);
-    packed[i].rotation = model.rotation[i];
-    packed[i].scale = glm::vec4(model.scale[i], 0.0f);
+ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians) {
+  const std::int64_t largest = std::max<std::int64_t>(sizeof(shared::Gaussian), harmonic_bytes(model.degree));
+  const std::int64_t reach = context.limits().storage_block_bytes / largest;
+  const std::size_t step = page_gaussians != 0 ? page_gaussians : static_cast<std::size_t>(reach);
+  for (std::size_t first = 0; first < model.count(); first += step) {
+    const std::size_t count = std::min(step, model.count() - first);
+    Page& page = pages.emplace_back();
+    page.first = static_cast<std::uint32_t>(first);
+    page.count = static_cast<std::uint32_t>(count);
+    page.gaussians = std::make_unique<gl::Buffer>(context, "Gaussians");
+    page.gaussians->upload(pack_gaussians(model, first, count));
+    page.harmonics = std::make_unique<gl::Buffer>(context, "SH coefficients");
+    const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
+    if (floats % 4 == 0) {
+      page.harmonics->upload(std::span(model.sh).subspan(first * floats, count * floats));
+    } else {
+      page.harmonics->upload(pad_harmonics(model, first, count));
+    }
   }
-  gaussians.upload(packed);
-  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  if (floats % 4 == 0) {
-    harmonics.upload(model.sh);
-    return;
-  }
-  const std::size_t stride = (floats + 3) / 4 * 4;
-  std::vector<float> padded(model.count() * stride);
-  for (std::size_t i = 0; i < model.count(); ++i) {
-    std::copy_n(&model.sh[i * floats], floats, &padded[i * stride]);
-  }
-  harmonics.upload(padded);
+}
+
+MemoryNeeds memory_needs(const FrameShape& shape) {
+  MemoryNeeds needs;
+  needs.model = shape.gaussian_count * (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
+  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t);
+  const std::int64_t slot_bytes = shape.view_count() * splat_bytes + 6 * 4;  // indices, order twice, offsets
+  needs.frame = shape.gaussian_count * 4LL + shape.slots * slot_bytes + shape.pixel_count * 20 + shape.tile_count * 8LL;
+  return needs;
 }
 
 FrameBuffers::FrameBuffers(gl::Context& context)
     : views(context, "views"),
       counters(context, "counters"),
-      splats(context, "splats"),
-      tile_counts(context, "tile counts"),
       depth_keys(context, "depth keys"),
       block_amount(context, "amount of blocks"),
       block_counts(context, "block counts"),
       order_amounts(context, "amounts of the depth order"),
+      indices(context, "indices of the Gaussians drawn"),
       order(context, "depth order"),
       pair_offsets(context, "pair offsets"),
+      splats(context, "splats"),
+      tile_counts(context, "tile counts"),
       pair_amounts(context, "amounts of pairs"),
       pairs(context, "Gaussian-tile pairs"),
       ranges(context, "tile ranges"),
@@ -97,25 +135,26 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       scan(context),
       sort(context) {}
 
-void FrameBuffers::reserve(const FrameShape& shape, std::int64_t order_capacity, std::int64_t pair_capacity) {
+void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) {
   const std::int64_t gaussians = shape.gaussian_count;
-  const std::int64_t splat_count = gaussians * shape.view_count();
+  const std::int64_t slots = shape.slots;
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   counters.reserve(sizeof(shared::Counters));
-  splats.reserve(splat_count * static_cast<std::int64_t>(sizeof(shared::Splat)));
-  tile_counts.reserve(splat_count * 4);
-  depth_keys.reserve(gaussians * static_cast<std::int64_t>(shape.groups.size()) * 4);
+  depth_keys.reserve(gaussians * 4);
   block_counts.reserve(blocks * 4);
   order_amounts.reserve(sizeof(primitives::SortAmounts));
-  order.reserve(order_capacity);
-  pair_offsets.reserve(order_capacity * 4);
+  indices.reserve(slots * 4);
+  order.reserve(slots);
+  pair_offsets.reserve(slots * 4);
+  splats.reserve(slots * shape.view_count() * static_cast<std::int64_t>(sizeof(shared::Splat)));
+  tile_counts.reserve(slots * shape.view_count() * 4);
   pair_amounts.reserve(sizeof(primitives::SortAmounts));
   pairs.reserve(pair_capacity);
   ranges.reserve(std::max<std::int64_t>(shape.tile_count, shape.view_count()) * 8);
   colours.reserve(shape.pixel_count * 16);
   z_sums.reserve(shape.pixel_count * 4);
-  scan.reserve(std::max(blocks, order_capacity));
-  sort.reserve(std::max(order_capacity, pair_capacity));
+  scan.reserve(std::max(blocks, slots));
+  sort.reserve(std::max(slots, pair_capacity));
 }
 
 }  // namespace binosplat::render

@@ -2,6 +2,7 @@
 // Everything that the stages of a frame read and write on the GPU, and the shape of the frame at hand.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct FrameShape {
   FrameSettings settings;
   int degree = 0;  // of the model's SH
   std::uint32_t gaussian_count = 0;
+  std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
   std::vector<shared::View> views;
   std::vector<OrderGroup> groups;
   std::uint32_t tile_count = 0;   // over all views
@@ -37,36 +39,52 @@ struct FrameShape {
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, or a bad tile size.
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model);
 
-/// The model on the GPU.
+/// The model on the GPU, in pages of Gaussians whose buffers a shader can reach.
 struct ModelBuffers {
-  explicit ModelBuffers(gl::Context& context) : gaussians(context, "Gaussians"), harmonics(context, "SH coefficients") {}
-  void upload(const Model& model);
+  struct Page {
+    std::uint32_t first = 0;  // Gaussian of the model
+    std::uint32_t count = 0;
+    std::unique_ptr<gl::Buffer> gaussians;  // Gaussian
+    std::unique_ptr<gl::Buffer> harmonics;  // packed vec4s, see sh.glsl
+  };
 
-  gl::Buffer gaussians;  // Gaussian
-  gl::Buffer harmonics;  // packed vec4s, see sh.glsl
+  /// Uploads; `page_gaussians` limits a page for tests, 0: what the driver reaches.
+  ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
+
+  std::vector<Page> pages;
 };
+
+/// Bytes that the model takes on the GPU, and what a frame of it at least takes besides, before any pair.
+struct MemoryNeeds {
+  std::int64_t model = 0;
+  std::int64_t frame = 0;
+};
+MemoryNeeds memory_needs(const FrameShape& shape);
 
 struct FrameBuffers {
   explicit FrameBuffers(gl::Context& context);
 
-  /// Room for a frame of this shape with so many Gaussians in one depth order and so many pairs.
-  void reserve(const FrameShape& shape, std::int64_t order_capacity, std::int64_t pair_capacity);
+  /// Room for a frame of this shape and its slots, and so many pairs.
+  void reserve(const FrameShape& shape, std::int64_t pair_capacity);
 
-  gl::Buffer views;        // View
-  gl::Buffer counters;     // Counters
-  gl::Buffer splats;       // Splat (view, Gaussian)
-  gl::Buffer tile_counts;  // uint (view, Gaussian)
-  gl::Buffer depth_keys;   // uint (order group, Gaussian)
+  gl::Buffer views;     // View
+  gl::Buffer counters;  // Counters
 
-  gl::Buffer block_amount;   // Amount of the compaction's blocks
-  gl::Buffer block_counts;   // uint, Gaussians seen by block of COMPACT_BLOCK, scanned
-  gl::Buffer order_amounts;  // SortAmounts of the Gaussians in the depth order at hand
-  primitives::PairBuffers order;  // depth bits, Gaussian
-  gl::Buffer pair_offsets;   // uint by rank in the depth order, scanned
+  // Of the order group at hand.
+  gl::Buffer depth_keys;          // uint by Gaussian
+  gl::Buffer block_amount;        // Amount of the compaction's blocks
+  gl::Buffer block_counts;        // uint, Gaussians drawn by block of COMPACT_BLOCK, scanned
+  gl::Buffer order_amounts;       // SortAmounts of the Gaussians drawn
+  gl::Buffer indices;             // Gaussian by slot
+  primitives::PairBuffers order;  // depth bits, slot
+  gl::Buffer pair_offsets;        // uint by rank in the depth order, scanned
 
-  gl::Buffer pair_amounts;         // SortAmounts of the pairs at hand
+  // Of all views.
+  gl::Buffer splats;       // Splat (view, slot)
+  gl::Buffer tile_counts;  // uint (view, slot)
+  gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
   primitives::PairBuffers pairs;  // tile (view with --tiles all), splat
-  gl::Buffer ranges;               // begin, end by list
+  gl::Buffer ranges;              // begin, end by list
 
   gl::Buffer colours;  // vec4 by pixel: C, T
   gl::Buffer z_sums;   // float by pixel

@@ -14,22 +14,21 @@ namespace {
 
 // Room that a first frame starts with: most models need some tiles a Gaussian; what is missing is grown.
 constexpr std::int64_t pairs_per_splat_guess = 16;
+constexpr std::int64_t pairs_guess_min = 1 << 16;
 constexpr std::int64_t pairs_guess_max = std::int64_t{1} << 24;
 constexpr int attempts_max = 8;
 
 }  // namespace
 
-Frame::Frame(gl::Context& context, const Model& model)
-    : dispatcher_(context), model_(model), model_buffers_(context), buffers_(context) {
-  model_buffers_.upload(model);
-}
+Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
+    : dispatcher_(context), model_(model), model_buffers_(context, model, page_gaussians), buffers_(context) {}
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
   shape_ = make_shape(views, settings, model_);
-  const std::int64_t gaussians = shape_.gaussian_count;
-  order_capacity_ = settings.order_capacity > 0 ? settings.order_capacity : gaussians;
+  slots_ = std::max<std::int64_t>(slots_, shape_.slots);
+  if (settings.order_capacity > 0) slots_ = settings.order_capacity;
   const std::int64_t pairs_guess =
-      std::min(pairs_guess_max, gaussians * shape_.view_count() * pairs_per_splat_guess);
+      std::clamp(shape_.slots * std::int64_t{shape_.view_count()} * pairs_per_splat_guess, pairs_guess_min, pairs_guess_max);
   pair_capacity_ = settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, pairs_guess);
 
   buffers_.views.upload(shape_.views);
@@ -40,7 +39,8 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   FrameReport report;
   shared::Counters counters{};
   for (;;) {
-    buffers_.reserve(shape_, order_capacity_, pair_capacity_);
+    shape_.slots = static_cast<std::uint32_t>(slots_);
+    buffers_.reserve(shape_, pair_capacity_);
     counters = draw_once(report);
     if (counters.overflow == 0) break;
     if (++report.redrawn == attempts_max) throw std::logic_error("a frame overflowed again and again");
@@ -68,14 +68,14 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     reference_pictures_ = fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, buffers_);
   }
   dispatcher_.begin_frame();
-  if (!twin(Stage::project)) {
-    dispatcher_.begin_stage("project");
-    project(dispatcher_, shape_, model_buffers_, buffers_);
-  }
   for (std::uint32_t group = 0; group < shape_.groups.size(); ++group) {
+    if (!twin(Stage::project)) {
+      dispatcher_.begin_stage("project");
+      project(dispatcher_, shape_, group, model_buffers_, buffers_);
+    }
     if (!twin(Stage::order)) {
       dispatcher_.begin_stage("order");
-      order(dispatcher_, shape_, group, buffers_);
+      order(dispatcher_, buffers_);
     }
     if (!twin(Stage::pairs)) {
       dispatcher_.begin_stage("pairs");
@@ -105,8 +105,8 @@ void Frame::grow(const shared::Counters& counters) {
     throw Error(ExitCode::out_of_memory, "more than 2^32 Gaussian-tile pairs in one frame: use a smaller picture");
   }
   if ((counters.overflow & OVERFLOW_ORDER) != 0) {
-    log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, buffers_.order.capacity());
-    order_capacity_ = std::min<std::int64_t>(larger(counters.order_wanted), shape_.gaussian_count);
+    log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, slots_);
+    slots_ = std::min<std::int64_t>(larger(counters.order_wanted), shape_.gaussian_count);
   }
   if ((counters.overflow & OVERFLOW_PAIRS) != 0) {
     log_info("drawn again: {} Gaussian-tile pairs, room for {}", counters.pairs, buffers_.pairs.capacity());

@@ -24,9 +24,9 @@ struct FrameReport {
 
 class Frame {
  public:
-  /// Uploads the model; it must outlive the frame, and the context must be current in every call. Throws
-  /// Error(out_of_memory) if the GPU has no room.
-  Frame(gl::Context& context, const Model& model);
+  /// Uploads the model; it must outlive the frame, and the context must be current in every call. `page_gaussians` is
+  /// for tests (see ModelBuffers). Throws Error(out_of_memory) if the GPU has no room.
+  Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
 
   /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to the bit)
   /// share one depth order; each eye of a rig has the same bits drawn together with the other or alone. A frame that
@@ -45,7 +45,7 @@ class Frame {
   ModelBuffers model_buffers_;
   FrameBuffers buffers_;
   FrameShape shape_;
-  std::int64_t order_capacity_ = 0;
+  std::int64_t slots_ = 0;
   std::int64_t pair_capacity_ = 0;
   std::vector<Picture> reference_pictures_;  // with --reference-until blend
 };

@@ -16,7 +16,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Order", buffers.order.values()},
                   {"TileCounts", buffers.tile_counts},
                   {"PairOffsets", buffers.pair_offsets}},
-                 {{"gaussian_count", shape.gaussian_count}, {"view_begin", views.begin}, {"view_end", views.end}});
+                 {{"slots", shape.slots}, {"view_begin", views.begin}, {"view_end", views.end}});
   buffers.scan.run(dispatcher, buffers.order_amounts, 0, buffers.pair_offsets);
   dispatcher.run(context.program("amount.comp"), gl::Work::of_groups(1),
                  {{"Amounts", buffers.pair_amounts},
@@ -35,7 +35,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Splats", buffers.splats},
                   {"Keys", buffers.pairs.keys()},
                   {"Values", buffers.pairs.values()}},
-                 {{"gaussian_count", shape.gaussian_count}, {"view_begin", views.begin}, {"view_end", views.end}});
+                 {{"slots", shape.slots}, {"view_begin", views.begin}, {"view_end", views.end}});
 }
 
 }  // namespace binosplat::render

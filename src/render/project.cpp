@@ -1,23 +1,74 @@
+#include <cstddef>
+
 #include "render/stages.h"
 
 namespace binosplat::render {
+
+namespace {
+
+// Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no memory.
+void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
+          FrameBuffers& buffers) {
+  const gl::Program& program = dispatcher.context().program("cull.comp", tile_defines(shape));
+  for (const ModelBuffers::Page& page : model.pages) {
+    dispatcher.run(
+        program, gl::Work::threads(page.count, THREADS),
+        {{"Views", buffers.views}, {"Gaussians", *page.gaussians}, {"DepthKeys", buffers.depth_keys}},
+        {{"page_first", page.first}, {"page_count", page.count}, {"view_begin", views.begin}, {"view_end", views.end}});
+  }
+}
+
+void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+  gl::Context& context = dispatcher.context();
+  const auto blocks = gl::Work::threads(shape.gaussian_count, COMPACT_BLOCK);
+  dispatcher.run(context.program("compact_count.comp"), blocks,
+                 {{"DepthKeys", buffers.depth_keys}, {"BlockCounts", buffers.block_counts}},
+                 {{"gaussian_count", shape.gaussian_count}});
+  buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
+  dispatcher.run(context.program("amount.comp"), gl::Work::of_groups(1),
+                 {{"Amounts", buffers.order_amounts},
+                  {"Total", buffers.scan.total()},
+                  {"FrameCounters", buffers.counters}},
+                 {{"kind", AMOUNT_ORDER}, {"capacity", shape.slots}, {"groups_max", context.limits().groups}});
+  dispatcher.run(context.program("compact.comp"), blocks,
+                 {{"Amounts", buffers.order_amounts},
+                  {"DepthKeys", buffers.depth_keys},
+                  {"BlockCounts", buffers.block_counts},
+                  {"Keys", buffers.order.keys()},
+                  {"Values", buffers.order.values()},
+                  {"Indices", buffers.indices}},
+                 {{"gaussian_count", shape.gaussian_count}});
+}
+
+}  // namespace
 
 gl::Defines tile_defines(const FrameShape& shape) {
   return {{"TILES", std::to_string(shape.settings.tiles)}, {"TILE_SIZE", std::to_string(shape.settings.tile_size)}};
 }
 
-void project(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuffers& model, FrameBuffers& buffers) {
+void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, const ModelBuffers& model,
+             FrameBuffers& buffers) {
+  const OrderGroup views = shape.groups[group];
+  cull(dispatcher, shape, views, model, buffers);
+  compact(dispatcher, shape, buffers);
   gl::Defines defines = tile_defines(shape);
   defines.emplace_back("SH_DEGREE", std::to_string(shape.degree));
-  dispatcher.run(dispatcher.context().program("project.comp", defines),
-                 gl::Work::threads(shape.gaussian_count, THREADS),
-                 {{"Views", buffers.views},
-                  {"Gaussians", model.gaussians},
-                  {"Harmonics", model.harmonics},
-                  {"Splats", buffers.splats},
-                  {"TileCounts", buffers.tile_counts},
-                  {"DepthKeys", buffers.depth_keys}},
-                 {{"gaussian_count", shape.gaussian_count}, {"view_count", shape.view_count()}});
+  const gl::Program& program = dispatcher.context().program("project.comp", defines);
+  for (const ModelBuffers::Page& page : model.pages) {
+    dispatcher.run(program, gl::Work::indirect(buffers.order_amounts, offsetof(shared::Amount, threads_x)),
+                   {{"Views", buffers.views},
+                    {"Gaussians", *page.gaussians},
+                    {"Harmonics", *page.harmonics},
+                    {"Amounts", buffers.order_amounts},
+                    {"Indices", buffers.indices},
+                    {"Splats", buffers.splats},
+                    {"TileCounts", buffers.tile_counts}},
+                   {{"page_first", page.first},
+                    {"page_count", page.count},
+                    {"view_begin", views.begin},
+                    {"view_end", views.end},
+                    {"slots", shape.slots}});
+  }
 }
 
 }  // namespace binosplat::render

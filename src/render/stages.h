@@ -6,11 +6,13 @@
 
 namespace binosplat::render {
 
-/// Every Gaussian as every view sees it: splats, tile counts, depth keys.
-void project(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuffers& model, FrameBuffers& buffers);
+/// The Gaussians that an order group draws, in index order, as each of its views sees them: splats and tile counts by
+/// slot, depths.
+void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, const ModelBuffers& model,
+             FrameBuffers& buffers);
 
-/// The Gaussians that an order group sees, front to back, ties by index.
-void order(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);
+/// Their slots front to back, ties by index.
+void order(gl::Dispatcher& dispatcher, FrameBuffers& buffers);
 
 /// (tile, splat) for every tile that a splat of the group touches, in depth order, appended to what is there.
 void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "base/error.h"
@@ -44,12 +46,32 @@ ViewResult reference_view(const Model& model, const shared::View& view, const Fr
   return result;
 }
 
+// What an order group draws, in index order, and where each Gaussian stands in it.
+struct Slots {
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> of;  // by Gaussian; only for those in `indices`
+};
+
+Slots make_slots(const FrameShape& shape, OrderGroup group, const std::vector<ViewResult>& results) {
+  Slots slots;
+  slots.of.resize(shape.gaussian_count);
+  for (std::uint32_t i = 0; i < shape.gaussian_count; ++i) {
+    const auto draws = [&](const ViewResult& r) { return r.tile_counts[i] > 0; };
+    if (!std::any_of(results.begin() + group.begin, results.begin() + group.end, draws)) continue;
+    slots.of[i] = static_cast<std::uint32_t>(slots.indices.size());
+    slots.indices.push_back(i);
+  }
+  return slots;
+}
+
 using Pair = std::pair<std::uint32_t, std::uint32_t>;  // list, splat
 
 // In depth order over the views of each group, as the stage pairs leaves them.
-std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vector<ViewResult>& results) {
+std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vector<Slots>& slots,
+                                       const std::vector<ViewResult>& results) {
   std::vector<std::pair<std::uint64_t, Pair>> ranked;  // (group, rank in its depth order), pair
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
+    const std::uint32_t group = shape.views[v].order_group;
     const std::vector<std::uint32_t> order = reference::depth_order(results[v].splats);
     std::vector<std::uint64_t> rank(shape.gaussian_count);
     for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
@@ -58,8 +80,7 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
         const std::uint32_t i = lists.gaussians[k];
-        ranked.push_back({std::uint64_t{shape.views[v].order_group} << 32 | rank[i],
-                          {first + t, v * shape.gaussian_count + i}});
+        ranked.push_back({std::uint64_t{group} << 32 | rank[i], {first + t, v * shape.slots + slots[group].of[i]}});
       }
     }
   }
@@ -85,35 +106,36 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t groups_max, Fram
   buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(count, groups_max)});
 }
 
-void upload_projection(const FrameShape& shape, const std::vector<ViewResult>& results, FrameBuffers& buffers) {
-  std::vector<shared::Splat> splats;
-  std::vector<std::uint32_t> tile_counts;
-  std::vector<std::uint32_t> depth_keys(shape.groups.size() * shape.gaussian_count, DEPTH_KEY_NONE);
+void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots, const std::vector<ViewResult>& results,
+                       FrameBuffers& buffers) {
+  std::vector<shared::Splat> splats(std::size_t{shape.view_count()} * shape.slots);
+  std::vector<std::uint32_t> tile_counts(splats.size());
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
-    for (std::uint32_t i = 0; i < shape.gaussian_count; ++i) {
-      splats.push_back(to_shared(results[v].splats[i]));
-      if (results[v].tile_counts[i] > 0) {
-        depth_keys[shape.views[v].order_group * shape.gaussian_count + i] = std::bit_cast<std::uint32_t>(splats.back().depth);
-      }
+    const std::vector<std::uint32_t>& indices = slots[shape.views[v].order_group].indices;
+    for (std::size_t slot = 0; slot < indices.size(); ++slot) {
+      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]]);
+      tile_counts[std::size_t{v} * shape.slots + slot] = results[v].tile_counts[indices[slot]];
     }
-    tile_counts.insert(tile_counts.end(), results[v].tile_counts.begin(), results[v].tile_counts.end());
   }
   buffers.splats.upload(splats);
   buffers.tile_counts.upload(tile_counts);
-  buffers.depth_keys.upload(depth_keys);
 }
 
-void upload_order(const FrameShape& shape, const std::vector<ViewResult>& results, std::uint32_t groups_max,
+// The slots as the stage project leaves them, or `sorted` as the stage order does.
+void upload_order(const Slots& slots, const std::vector<reference::Splat>& splats, bool sorted, std::uint32_t groups_max,
                   FrameBuffers& buffers) {
-  std::vector<std::uint32_t> order;
-  for (const std::uint32_t i : reference::depth_order(results.front().splats)) {
-    const bool seen = std::any_of(results.begin(), results.end(), [&](const ViewResult& r) { return r.tile_counts[i] > 0; });
-    if (seen) order.push_back(i);
+  std::vector<std::uint32_t> values(slots.indices.size());
+  std::iota(values.begin(), values.end(), 0u);
+  const auto depth = [&](std::uint32_t slot) { return splats[slots.indices[slot]].depth; };
+  if (sorted) {
+    std::stable_sort(values.begin(), values.end(), [&](std::uint32_t a, std::uint32_t b) { return depth(a) < depth(b); });
   }
-  buffers.order.values().upload(order);
-  const auto count = static_cast<std::uint32_t>(order.size());
+  std::vector<std::uint32_t> keys;
+  for (const std::uint32_t slot : values) keys.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(depth(slot))));
+  buffers.order.keys().upload(keys);
+  buffers.order.values().upload(values);
+  const auto count = static_cast<std::uint32_t>(values.size());
   buffers.order_amounts.upload(std::vector{primitives::make_sort_amounts(count, groups_max)});
-  (void)shape;
 }
 
 void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
@@ -138,22 +160,25 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
     }
     return pictures;
   }
+  if (until < Stage::pairs && shape.groups.size() > 1) {
+    fail("--reference-until {}: only for views that share one depth order (no --cant)", stage_names[static_cast<int>(until)]);
+  }
   std::vector<ViewResult> results;
   for (const shared::View& view : shape.views) results.push_back(reference_view(model, view, shape.settings));
-  upload_projection(shape, results, buffers);
-  if (until == Stage::order) {
-    if (shape.groups.size() > 1) fail("--reference-until order: only for views that share one depth order (no --cant)");
-    upload_order(shape, results, groups_max, buffers);
+  std::vector<Slots> slots;
+  for (const OrderGroup& group : shape.groups) slots.push_back(make_slots(shape, group, results));
+  upload_projection(shape, slots, results, buffers);
+  if (until < Stage::pairs) {
+    upload_order(slots.front(), results.front().splats, until == Stage::order, groups_max, buffers);
+    return pictures;
   }
-  if (until >= Stage::pairs) {
-    std::vector<Pair> pairs = pairs_in_depth_order(shape, results);
-    if (until >= Stage::tile_sort) {
-      std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.first < b.first; });
-    }
-    upload_pairs(pairs, groups_max, buffers);
-    if (until == Stage::ranges) upload_ranges(shape, pairs, buffers);
-    buffers.counters.upload(std::vector{shared::Counters{0, 0, static_cast<std::uint32_t>(pairs.size())}});
+  std::vector<Pair> pairs = pairs_in_depth_order(shape, slots, results);
+  if (until >= Stage::tile_sort) {
+    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.first < b.first; });
   }
+  upload_pairs(pairs, groups_max, buffers);
+  if (until == Stage::ranges) upload_ranges(shape, pairs, buffers);
+  buffers.counters.upload(std::vector{shared::Counters{.pairs = static_cast<std::uint32_t>(pairs.size())}});
   return pictures;
 }
 

@@ -120,12 +120,14 @@ class Baker {
     constexpr int rays = 16;
     for (int i = 0; i < rays; ++i) {  // more of them near the normal, as a diffuse surface weighs them
       const double r = std::sqrt((i + 0.5) / rays);
-      dome_.push_back({r * std::cos(golden * i), r * std::sin(golden * i), std::sqrt(1.0 - r * r)});
+      dome_.emplace_back(r * std::cos(golden * i), r * std::sin(golden * i), std::sqrt(1.0 - r * r));
     }
-    for (int i = 0; i < 12; ++i) {
-      const dvec2 share((i % 4 + 0.5) / 4.0, (i / 4 + 0.5) / 3.0);
-      const dvec2 at = light.opening_low + (light.opening_high - light.opening_low) * share;
-      opening_.push_back({at.x, at.y, light.room_high.z});
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 4; ++i) {
+        const dvec2 share((i + 0.5) / 4.0, (j + 0.5) / 3.0);
+        const dvec2 at = light.opening_low + (light.opening_high - light.opening_low) * share;
+        opening_.emplace_back(at.x, at.y, light.room_high.z);
+      }
     }
   }
 

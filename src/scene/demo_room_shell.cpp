@@ -25,17 +25,19 @@ dvec3 wood(const dvec3& colour, double u, double v, double seed) {
   return colour * (0.78 + 0.44 * grain) * (0.88 + 0.24 * hash(static_cast<std::int64_t>(seed), 3));
 }
 
-/// Painted boards up to the height of a sill, then wallpaper with a pattern of leaves. u and v from the lower
-/// left.
-Material panelled(double u, double up) {
-  if (up < 0.88) {
-    const bool board = up > 0.13 && up < 0.80;
-    const bool edge = std::abs(up - 0.12) < 0.012 || std::abs(up - 0.81) < 0.012;
-    const bool groove = board && std::abs(std::remainder(u, 0.12)) < 0.015;
-    return {.colour = off_white * (groove ? 0.80 : edge ? 0.70 : 1.0), .gloss = 0.3};
-  }
+/// Painted boards between a skirting and a rail; `up` from the floor to the panelling's height.
+constexpr double panelling = 0.88;
+Material boarding(double u, double up) {
+  const bool board = up > 0.13 && up < 0.80;
+  const bool edge = std::abs(up - 0.12) < 0.012 || std::abs(up - 0.81) < 0.012;
+  const bool groove = board && std::abs(std::remainder(u, 0.12)) < 0.015;
+  return {.colour = off_white * (groove ? 0.80 : edge ? 0.70 : 1.0), .gloss = 0.3};
+}
+
+/// A pattern of leaves.
+Material wallpaper(double u, double up) {
   const dvec3 ground = mix(dvec3(0.30, 0.47, 0.47), dvec3(0.34, 0.52, 0.51), fractal(3.0 * u, 3.0 * up));
-  // A leaf in every cell of a brick-like lattice, turned to and fro.
+  // One in every cell of a brick-like lattice, turned to and fro.
   const double row = std::floor(up / 0.36);
   const bool odd = (static_cast<std::int64_t>(row) & 1) != 0;
   const double x = std::remainder(u + (odd ? 0.19 : 0.0), 0.38), y = up - (row + 0.5) * 0.36;
@@ -46,6 +48,10 @@ Material panelled(double u, double up) {
   if (std::abs(across) < 0.012 && std::abs(along) < 1.1) return {.colour = ground};
   if (std::abs(across) < leaf && !vein) return {.colour = mix(ground, dvec3(0.84, 0.79, 0.60), 0.70)};
   return {.colour = ground};
+}
+
+Material plaster(double u, double up) {
+  return {.colour = dvec3(0.88, 0.80, 0.66) * (0.94 + 0.12 * fractal(2.0 * u, 2.0 * up))};
 }
 
 void add_bricks(Stage& stage) {
@@ -142,23 +148,32 @@ void add_rug(Stage& stage) {
 }
 
 void add_walls(Stage& stage) {
-  // The wall with the window. Its front looks towards the room, at lower z.
+  const auto boards = [](double u, double up) { return std::optional<Material>(boarding(u, up)); };
+  // The wall with the window.
+  const dvec3 back(room_low.x, 0, room_high.z);
+  const auto in_window = [](double u, double up) {
+    const double x = room_low.x + u, y = -up;
+    return x > window_low.x && x < window_high.x && y > window_low.y && y < window_high.y;
+  };
   stage.patch(
-      {room_low.x, room_high.y, room_high.z}, width * right, -height * down, Grain(0.028),
-      [](double u, double up) -> std::optional<Material> {
-        const double x = room_low.x + u, y = room_high.y - up;
-        const bool open = x > window_low.x && x < window_high.x && y > window_low.y && y < window_high.y;
-        if (open) return std::nullopt;
-        return panelled(u, up);
+      back, width * right, -panelling * down, {0.028, 0.035},
+      [&](double u, double up) {
+        return in_window(u, up) ? std::nullopt : std::optional<Material>(boarding(u, up));
+      },
+      Border::overlaps);
+  stage.patch(
+      back - panelling * down, width * right, (panelling - height) * down, Grain(0.028),
+      [&](double u, double v) {
+        return in_window(u, panelling + v) ? std::nullopt
+                                           : std::optional<Material>(wallpaper(u, panelling + v));
       },
       Border::overlaps);
   // Left: plaster above the same boards.
+  const dvec3 left(room_low.x, 0, room_low.z);
+  stage.patch(left, depth * away, -panelling * down, {0.028, 0.040}, boards, Border::overlaps);
   stage.patch(
-      {room_low.x, 0, room_low.z}, depth * away, -height * down, Grain(0.065),
-      [](double u, double up) -> std::optional<Material> {
-        if (up < 0.88) return panelled(u, up);
-        return Material{.colour = dvec3(0.88, 0.80, 0.66) * (0.94 + 0.12 * fractal(2.0 * u, 2.0 * up))};
-      },
+      left - panelling * down, depth * away, (panelling - height) * down, Grain(0.075),
+      [](double u, double v) { return std::optional<Material>(plaster(u, panelling + v)); },
       Border::overlaps);
   add_bricks(stage);
   // Behind the default camera: plaster, with a door.
@@ -171,7 +186,7 @@ void add_walls(Stage& stage) {
           return Material{.colour = dvec3(0.36, 0.44, 0.40) * (panel ? 0.88 : 1.0), .gloss = 0.3};
         }
         if (x < 0.53 && up < 2.13) return Material{.colour = off_white};
-        return Material{.colour = dvec3(0.88, 0.80, 0.66) * (0.94 + 0.12 * fractal(2.0 * u, 2.0 * up))};
+        return plaster(u, up);
       },
       Border::overlaps);
 }
@@ -180,15 +195,15 @@ void add_ceiling(Stage& stage) {
   stage.patch({room_low.x, room_low.y, room_low.z}, depth * away, width * right, Grain(0.14),
               plain({.colour = {0.93, 0.92, 0.89}}), Border::overlaps);
   const Frame world;
-  const auto plaster = plain({.colour = {0.94, 0.93, 0.90}});
+  const auto stucco = plain({.colour = {0.94, 0.93, 0.90}});
   for (int step = 0; step < 2; ++step) {  // a moulding of two steps
     const double out = 0.08 - 0.04 * step, top = room_low.y + 0.04 * step, low = top + 0.04;
     stage.box(world, {room_low.x, top, room_high.z - out}, {room_high.x, low, room_high.z}, {0.08, 0.04},
-              plaster);
+              stucco);
     stage.box(world, {room_low.x, top, room_low.z}, {room_low.x + out, low, room_high.z}, {0.08, 0.04},
-              plaster);
+              stucco);
     stage.box(world, {room_high.x - out, top, room_low.z}, {room_high.x, low, room_high.z}, {0.08, 0.04},
-              plaster);
+              stucco);
   }
 }
 

@@ -27,7 +27,7 @@ std::map<std::string, int> driver_offsets(const std::string& type) {
                    "layout(std430, binding = 0) buffer Items { " + type + " items[]; };\n"
                    "void main() { items[gl_WorkGroupID.x + 1u] = items[gl_WorkGroupID.x]; }\n");
   const Functions& gl = test::gl_context().gl();
-  const Program program(gl, "layout.comp", {}, folder.path());
+  const Program program(gl, "layout.comp", {}, folder.path(), ProgramCache({}, ""));
   std::map<std::string, int> offsets;
   int count = 0;
   gl.GetProgramInterfaceiv(program.id(), GL_BUFFER_VARIABLE, GL_ACTIVE_RESOURCES, &count);

@@ -149,6 +149,19 @@ TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
   }
 }
 
+TEST(Frame, AModelInPagesGivesTheSamePicture) {
+  const Model model = test::random_model(75, 3000, 2);
+  const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
+  const std::vector<Picture> whole = draw(model, std::vector(rig.views.begin(), rig.views.end()));
+  for (const std::uint32_t page_gaussians : {1000u, 1024u, 2999u}) {
+    render::Frame frame(test::gl_context(), model, page_gaussians);
+    frame.draw(rig.views);
+    const std::vector<Picture> paged = frame.read_pictures();
+    EXPECT_TRUE(same_bits(whole[0], paged[0])) << page_gaussians;
+    EXPECT_TRUE(same_bits(whole[1], paged[1])) << page_gaussians;
+  }
+}
+
 TEST(Frame, WorksWhenADriverAllowsFewGroups) {
   const Model model = test::random_model(72, 3000, 0);
   const shared::View view = make_view(test::front_camera(150, 90, 140));

@@ -9,7 +9,7 @@
 namespace binosplat {
 namespace {
 
-// A tile's list as (tile, splat index) pairs in the order of blending, for all tiles of all views.
+// Each tile's list in the order of blending, for all tiles of all views: view * Gaussians of the model + Gaussian.
 using Lists = std::vector<std::vector<std::uint32_t>>;
 
 Lists gpu_lists(test::StageRun& run) {
@@ -21,7 +21,11 @@ Lists gpu_lists(test::StageRun& run) {
   Lists lists(run.shape.tile_count);
   std::size_t total = 0;
   for (std::uint32_t t = 0; t < run.shape.tile_count; ++t) {
-    lists[t].assign(values.begin() + ranges[2 * t], values.begin() + ranges[2 * t + 1]);
+    for (std::uint32_t k = ranges[2 * t]; k < ranges[2 * t + 1]; ++k) {
+      const std::uint32_t view = values[k] / run.shape.slots;
+      const std::uint32_t gaussian = run.indices[run.shape.views[view].order_group][values[k] % run.shape.slots];
+      lists[t].push_back(view * run.shape.gaussian_count + gaussian);
+    }
     total += lists[t].size();
   }
   EXPECT_EQ(total, counters.pairs);
@@ -87,7 +91,7 @@ TEST_P(Pairs, AreInDepthOrderWithTiesByIndex) {
   for (std::size_t i = 0; i < 300; ++i) model.position[5 * i].z = 2.0f;  // 300 at equal depth
   test::StageRun run(model, {make_view(test::front_camera(160, 96, 150))}, {.tiles = tiles, .tile_size = tile_size});
   const Lists lists = gpu_lists(run);
-  const auto splats = run.frame.splats.read<shared::Splat>(run.splat_count());
+  const auto splats = run.projected(0).splats;
   const auto key = [&](std::uint32_t i) { return std::pair(splats[i].depth, i); };
   std::size_t ties = 0;
   for (const auto& list : lists) {

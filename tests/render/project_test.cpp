@@ -20,8 +20,7 @@ struct Distance {
 Distance distance(const Model& model, const shared::View& view) {
   test::StageRun run(model, {view});
   run.run_until(render::Stage::project);
-  const auto splats = run.frame.splats.read<shared::Splat>(run.splat_count());
-  const auto counts = run.frame.tile_counts.read<std::uint32_t>(run.splat_count());
+  const auto [splats, counts] = run.projected(0);
   Distance d;
   for (std::size_t i = 0; i < splats.size(); ++i) {
     const reference::Splat expected = reference::project(model, i, view);
@@ -83,8 +82,7 @@ TEST(Project, TheComparisonCatchesPlantedFaults) {
   EXPECT_LE(distance(model, view).worst(), 1.0);
   test::StageRun run(model, {view});
   run.run_until(render::Stage::project);
-  const auto splats = run.frame.splats.read<shared::Splat>(run.splat_count());
-  const auto counts = run.frame.tile_counts.read<std::uint32_t>(run.splat_count());
+  const auto [splats, counts] = run.projected(0);
 
   // The reference with one SH sign turned is as far away as a GPU with that fault would be.
   Model wrong = model;
@@ -116,7 +114,7 @@ TEST(Project, LeavesOutWhatIsBeforeTheNearPlane) {
   test::add(model, {0, 0, -1.0f}, glm::vec3(0.01f), 0.9f);
   test::StageRun run(model, {make_view(test::front_camera(64, 64, 64))});
   run.run_until(render::Stage::project);
-  const auto counts = run.frame.tile_counts.read<std::uint32_t>(3);
+  const auto counts = run.projected(0).tiles;
   EXPECT_EQ(counts[0], 0u);
   EXPECT_GT(counts[1], 0u);
   EXPECT_EQ(counts[2], 0u);
@@ -132,7 +130,7 @@ TEST(Project, SurvivesHostileSizes) {
   const shared::View view = make_view(test::front_camera(64, 48, 64));
   test::StageRun run(model, {view});
   run.run_until(render::Stage::project);
-  const auto counts = run.frame.tile_counts.read<std::uint32_t>(5);
+  const auto counts = run.projected(0).tiles;
   EXPECT_EQ(counts[0], 2u);  // centred on the edge of two tiles: (31.5, 23.5)
   EXPECT_EQ(counts[1], 12u);
   EXPECT_LE(counts[2], 12u);

@@ -52,21 +52,21 @@ inline double psnr(const Picture& a, const Picture& b) {
 /// The stages of a frame run one after another by themselves, with every buffer at hand.
 struct StageRun {
   StageRun(const Model& model, const std::vector<shared::View>& views, const render::FrameSettings& settings = {})
-      : shape(render::make_shape(views, settings, model)), frame(gl_context()), model_buffers(gl_context()) {
-    model_buffers.upload(model);
+      : shape(render::make_shape(views, settings, model)), frame(gl_context()), model_buffers(gl_context(), model) {
     frame.views.upload(shape.views);
     frame.counters.upload(std::vector{shared::Counters{}});
-    frame.reserve(shape, shape.gaussian_count, 1 << 20);
+    frame.reserve(shape, 1 << 20);
     const std::uint32_t blocks = (shape.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
     frame.block_amount.upload(std::vector{primitives::make_amount(blocks, gl_context().limits().groups)});
   }
 
   void run_until(render::Stage stage) {
     gl::Dispatcher dispatcher(gl_context());
-    render::project(dispatcher, shape, model_buffers, frame);
-    if (stage == render::Stage::project) return;
     for (std::uint32_t group = 0; group < shape.groups.size(); ++group) {
-      render::order(dispatcher, shape, group, frame);
+      render::project(dispatcher, shape, group, model_buffers, frame);
+      indices.push_back(frame.indices.read<std::uint32_t>(frame.order_amounts.read<shared::Amount>(1).front().count));
+      if (stage == render::Stage::project) continue;
+      render::order(dispatcher, frame);
       if (stage != render::Stage::order) render::pairs(dispatcher, shape, group, frame);
     }
     if (stage <= render::Stage::pairs) return;
@@ -75,11 +75,28 @@ struct StageRun {
     render::ranges(dispatcher, shape, frame);
   }
 
-  std::size_t splat_count() const { return std::size_t{shape.gaussian_count} * shape.view_count(); }
+  /// The splats of a view by Gaussian of the model; tiles 0 where the view does not draw it.
+  struct Projected {
+    std::vector<shared::Splat> splats;
+    std::vector<std::uint32_t> tiles;
+  };
+  Projected projected(std::uint32_t view) const {
+    const std::size_t all = std::size_t{shape.slots} * shape.view_count();
+    const auto splats = frame.splats.read<shared::Splat>(all);
+    const auto tiles = frame.tile_counts.read<std::uint32_t>(all);
+    Projected out{std::vector<shared::Splat>(shape.gaussian_count), std::vector<std::uint32_t>(shape.gaussian_count)};
+    const auto& drawn = indices[shape.views[view].order_group];
+    for (std::size_t slot = 0; slot < drawn.size(); ++slot) {
+      out.splats[drawn[slot]] = splats[view * std::size_t{shape.slots} + slot];
+      out.tiles[drawn[slot]] = tiles[view * std::size_t{shape.slots} + slot];
+    }
+    return out;
+  }
 
   render::FrameShape shape;
   render::FrameBuffers frame;
   render::ModelBuffers model_buffers;
+  std::vector<std::vector<std::uint32_t>> indices;  // Gaussian by slot, for each order group
 };
 
 }  // namespace binosplat::test

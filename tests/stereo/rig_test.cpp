@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <random>
@@ -15,7 +17,11 @@
 namespace binosplat::stereo {
 namespace {
 
-bool same_bits(const glm::vec4& a, const glm::vec4& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+template <typename T>
+bool same_bits(const T& a, const T& b) {
+  using Words = std::array<std::uint32_t, sizeof(T) / 4>;
+  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
+}
 
 Camera head_camera() {
   Camera head = look_at({1.5, -0.4, -3.0}, {0.2, 0.1, 1.0}, {0.1, -1.0, 0.05}, 60.0, 1280, 720);
@@ -186,11 +192,11 @@ TEST(Rig, NoDistanceBetweenTheEyesMakesEqualViews) {
       Camera{.name = "origin", .width = 64, .height = 48, .fx = 50, .fy = 50, .cx = 32, .cy = 24});
   for (const Camera& head : heads) {
     const EyePair pair = make_rig(head, settings);
-    ASSERT_EQ(std::memcmp(&pair.views[0], &pair.views[1], sizeof(shared::View)), 0);
+    ASSERT_TRUE(same_bits(pair.views[0], pair.views[1]));
   }
   settings.ipd = 1e-6;
   const EyePair apart = make_rig(head_camera(), settings);
-  EXPECT_NE(std::memcmp(&apart.views[0], &apart.views[1], sizeof(shared::View)), 0);
+  EXPECT_FALSE(same_bits(apart.views[0], apart.views[1]));
 }
 
 /// The largest error of fp32 positions in the eye, relative to the distance from it, of points around a head.

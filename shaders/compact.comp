@@ -1,5 +1,5 @@
-// Stage 2, order: the depths and numbers of the Gaussians seen, without gaps and in index order, so that the stable sort
-// after it breaks ties by index.
+// Stage 1, project, second part: the Gaussians drawn get slots without gaps, in index order, so that the stable sort of
+// the next stage breaks ties by index.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -10,9 +10,9 @@ layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 1) readonly buffer DepthKeys { uint depth_keys[]; };
 layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };  // scanned
 layout(std430, binding = 3) writeonly buffer Keys { uint keys[]; };
-layout(std430, binding = 4) writeonly buffer Values { uint values[]; };
+layout(std430, binding = 4) writeonly buffer Values { uint values[]; };    // the slots themselves
+layout(std430, binding = 5) writeonly buffer Indices { uint indices[]; };  // Gaussian of each slot
 uniform uint gaussian_count;
-uniform uint order_group;
 
 #define WORDS (THREADS / 32)
 shared uint masks[WORDS];
@@ -26,7 +26,7 @@ void main() {
     if (self < WORDS) masks[self] = 0u;
     barrier();
     uint at = block * COMPACT_BLOCK + i * THREADS + self;
-    uint key = at < gaussian_count ? depth_keys[order_group * gaussian_count + at] : DEPTH_KEY_NONE;
+    uint key = at < gaussian_count ? depth_keys[at] : DEPTH_KEY_NONE;
     if (key != DEPTH_KEY_NONE) atomicOr(masks[self / 32u], 1u << (self % 32u));
     barrier();
     uint rank = uint(bitCount(masks[self / 32u] & ((1u << (self % 32u)) - 1u)));
@@ -38,7 +38,8 @@ void main() {
     }
     if (key != DEPTH_KEY_NONE) {
       keys[before + rank] = key;
-      values[before + rank] = at;
+      values[before + rank] = before + rank;
+      indices[before + rank] = at;
     }
     before += all;
     barrier();

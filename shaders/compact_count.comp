@@ -1,4 +1,4 @@
-// Stage 2, order: how many Gaussians of each block of COMPACT_BLOCK are seen by the order group.
+// Stage 1, project, second part: how many Gaussians of each block of COMPACT_BLOCK are drawn.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -8,7 +8,6 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer DepthKeys { uint depth_keys[]; };
 layout(std430, binding = 1) writeonly buffer BlockCounts { uint block_counts[]; };
 uniform uint gaussian_count;
-uniform uint order_group;
 
 shared uint seen;
 
@@ -20,7 +19,7 @@ void main() {
   uint mine = 0u;
   for (uint i = 0u; i < COMPACT_BLOCK / THREADS; ++i) {
     uint at = block * COMPACT_BLOCK + i * THREADS + gl_LocalInvocationIndex;
-    if (at < gaussian_count) mine += uint(depth_keys[order_group * gaussian_count + at] != DEPTH_KEY_NONE);
+    if (at < gaussian_count) mine += uint(depth_keys[at] != DEPTH_KEY_NONE);
   }
   atomicAdd(seen, mine);
   barrier();

@@ -1,0 +1,79 @@
+// A Gaussian as a view sees it (METHOD 2), all but its colour. `precise` because several programs compute it and must get the
+// same bits.
+#include "shared/exact.glsl"
+
+// Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of METHOD 2.
+mat3 scaled_axes(Gaussian g) {
+  precise float w = g.rotation.x;
+  precise float x = g.rotation.y;
+  precise float y = g.rotation.z;
+  precise float z = g.rotation.w;
+  precise vec3 a = g.scale.x * vec3(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y));
+  precise vec3 b = g.scale.y * vec3(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x));
+  precise vec3 c = g.scale.z * vec3(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
+  return mat3(a, b, c);
+}
+
+float dot_precise(vec3 a, vec3 b) {
+  precise float d = fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+  return d;
+}
+
+// The point relative to the anchor in the eye's axes.
+vec3 to_eye(View view, vec3 d) {
+  precise float x = dot_precise(view.row_x.xyz, d) + view.row_x.w;
+  precise float y = dot_precise(view.row_y.xyz, d) + view.row_y.w;
+  precise float z = dot_precise(view.row_z.xyz, d) + view.row_z.w;
+  return vec3(x, y, z);
+}
+
+// Rows of J R^T M: the scaled axes as they fall on the picture, px. J is taken at v with its slopes clamped, because the
+// linearisation blows up far outside the picture.
+void axes_on_picture(View view, vec3 v, mat3 axes, out vec3 across, out vec3 down) {
+  vec2 focal = view.lens.xy;
+  vec2 centre = view.lens.zw;
+  vec2 size = vec2(view.width, view.height);
+  precise vec2 lowest = -(centre + float(CLAMP_MARGIN) * size) / focal;
+  precise vec2 highest = (size - centre + float(CLAMP_MARGIN) * size) / focal;
+  precise vec2 slope = clamp(v.xy / v.z, lowest, highest);
+  precise vec2 gain = focal / v.z;
+  precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
+  precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
+  across = vec3(dot_precise(jx, axes[0]), dot_precise(jx, axes[1]), dot_precise(jx, axes[2]));
+  down = vec3(dot_precise(jy, axes[0]), dot_precise(jy, axes[1]), dot_precise(jy, axes[2]));
+}
+
+// (Q.xx, Q.xy, Q.yy, sqrt(det C2)); det not positive is told by w = 0.
+vec4 conic_of(float xx, float xy, float yy) {
+  // A power of two takes the size out, so that no product overflows.
+  uint exponent = floatBitsToUint(max(xx, yy)) & 0x7f800000u;
+  precise float size = uintBitsToFloat(exponent);
+  precise float inverse = uintBitsToFloat(0x7f000000u - exponent);
+  precise float a = xx * inverse;
+  precise float b = xy * inverse;
+  precise float c = yy * inverse;
+  precise float det = difference_of_products(a, c, b, b);
+  if (!(det > 0.0) || exponent >= 0x7f000000u) return vec4(0.0);
+  precise vec3 q = vec3(c, -b, a) / det * inverse;
+  return vec4(q, sqrt(det) * size);
+}
+
+// Everything but the colour. False where this view does not draw it.
+bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
+  precise vec3 d = g.position.xyz - view.anchor.xyz;
+  vec3 v = to_eye(view, d);
+  if (!(v.z > view.anchor.w)) return false;
+  vec3 across;
+  vec3 down;
+  axes_on_picture(view, v, axes, across, down);
+  precise float xx = dot_precise(across, across) + float(KERNEL_PX2);
+  precise float xy = dot_precise(across, down);
+  precise float yy = dot_precise(down, down) + float(KERNEL_PX2);
+  splat.conic = conic_of(xx, xy, yy);
+  if (splat.conic.w == 0.0) return false;
+  precise vec2 mean = view.lens.xy * (v.xy / v.z) + view.lens.zw - 0.5;
+  splat.mean = mean;
+  splat.depth = v.z;
+  splat.opacity = g.position.w;
+  return true;
+}

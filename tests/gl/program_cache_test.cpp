@@ -1,0 +1,76 @@
+#include "gl/program_cache.h"
+
+#include <gtest/gtest.h>
+
+#include "gl/program.h"
+#include "support/gl.h"
+#include "support/program.h"
+
+namespace binosplat::gl {
+namespace {
+
+const char* const name = "ranges_clear.comp";
+
+std::filesystem::path only_file(const test::TempFolder& folder) {
+  EXPECT_EQ(folder.names().size(), 1u);
+  return folder / *folder.names().begin();
+}
+
+// Whether the cache has the program, asked as Program does.
+bool has(const ProgramCache& cache) {
+  const Functions& gl = test::gl_context().gl();
+  const std::uint32_t program = gl.CreateProgram();
+  const bool found = cache.load(gl, program, ShaderSource(name, {}, {}).text());
+  gl.DeleteProgram(program);
+  return found;
+}
+
+bool driver_has_binaries() {
+  int formats = 0;
+  test::gl_context().gl().GetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &formats);
+  return formats > 0;
+}
+
+TEST(ProgramCache, KeepsWhatWasCompiledForOneDriver) {
+  if (!driver_has_binaries()) GTEST_SKIP() << "this driver gives no program binaries";
+  const test::TempFolder folder;
+  const ProgramCache cache(folder.path(), "driver 1");
+  EXPECT_FALSE(has(cache));
+  const Program program(test::gl_context().gl(), name, {}, {}, cache);
+  EXPECT_TRUE(has(cache));
+  EXPECT_FALSE(has(ProgramCache(folder.path(), "driver 2")));
+  const Program again(test::gl_context().gl(), name, {}, {}, cache);  // this one from the cache
+  EXPECT_EQ(again.local_size(), program.local_size());
+  ASSERT_EQ(again.blocks().size(), 1u);
+  EXPECT_EQ(again.blocks()[0].name, program.blocks()[0].name);
+  EXPECT_EQ(again.uniforms().size(), program.uniforms().size());
+}
+
+TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
+  if (!driver_has_binaries()) GTEST_SKIP() << "this driver gives no program binaries";
+  const test::TempFolder folder;
+  const ProgramCache cache(folder.path(), "driver");
+  { const Program program(test::gl_context().gl(), name, {}, {}, cache); }
+  const std::string whole = test::read_text(only_file(folder));
+  std::string broken = whole;
+  for (std::size_t k = broken.size() / 2; k < broken.size(); ++k) broken[k] = static_cast<char>(~broken[k]);
+  const std::vector<std::string> damaged = {broken, whole.substr(0, whole.size() / 2), whole.substr(0, 10), std::string()};
+  for (const std::string& content : damaged) {
+    test::write_text(only_file(folder), content);
+    const Program program(test::gl_context().gl(), name, {}, {}, cache);
+    EXPECT_EQ(program.uniforms().size(), 1u);
+    EXPECT_TRUE(has(cache));  // mended
+  }
+}
+
+TEST(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
+  const test::TempFolder folder;
+  test::write_text(folder / "file", "");
+  const Program program(test::gl_context().gl(), name, {}, {}, ProgramCache(folder / "file" / "below", "driver"));
+  EXPECT_EQ(program.uniforms().size(), 1u);
+  const Program uncached(test::gl_context().gl(), name, {}, {}, ProgramCache({}, "driver"));
+  EXPECT_EQ(uncached.uniforms().size(), 1u);
+}
+
+}  // namespace
+}  // namespace binosplat::gl
