@@ -1,4 +1,5 @@
-// The choices that options, shader variants and charts name. Plain #defines only: GLSL and C++ include this file.
+// The choices that options, shader variants and charts name. Plain #defines only: GLSL and C++ include this
+// file.
 #ifndef BINOSPLAT_SHARED_AXES_H
 #define BINOSPLAT_SHARED_AXES_H
 

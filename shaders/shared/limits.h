@@ -10,9 +10,11 @@
 #define TRANSMITTANCE_MIN 1e-4
 // A pixel has a depth where more than this much of it is covered.
 #define COVERAGE_FOR_DEPTH 0.5
-// Variance in px^2 added to both axes of every projected Gaussian, a low-pass for splats thinner than a pixel (3D-GS).
+// Variance in px^2 added to both axes of every projected Gaussian, a low-pass for splats thinner than a pixel
+// (3D-GS).
 #define KERNEL_PX2 0.3
-// J is evaluated at most this share of the picture's size beyond its edges; 0.15 a side is INRIA's 1.3 (METHOD 2).
+// J is evaluated at most this share of the picture's size beyond its edges; 0.15 a side is INRIA's 1.3
+// (METHOD 2).
 #define CLAMP_MARGIN 0.15
 // Side of a tile in px unless --tile says otherwise.
 #define TILE_SIZE_DEFAULT 16
@@ -27,8 +29,9 @@
 #define SORT_BLOCK 4096
 // Values of one digit of the radix sorts.
 #define SORT_DIGITS 256
-// Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group of lanes
-// together), so a tile's list may have 8 times as many entries before it is cut; and then it is reported.
+// Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
+// of lanes together), so a tile's list may have 8 times as many entries before it is cut; and then it is
+// reported.
 #define BLEND_UNROLL 8
 
 #endif

@@ -1,5 +1,5 @@
-// Structs that GLSL and C++ share, laid out by std430. Members are float, uint, vec2 and vec4 only: vec3 and mat3 pad
-// differently in the two languages. C++ checks sizes here; tests/gl asks the driver for the offsets.
+// Structs that GLSL and C++ share, laid out by std430. Members are float, uint, vec2 and vec4 only: vec3 and
+// mat3 pad differently in the two languages. C++ checks sizes here; tests/gl asks the driver for the offsets.
 #ifndef BINOSPLAT_SHARED_TYPES_H
 #define BINOSPLAT_SHARED_TYPES_H
 
@@ -13,9 +13,10 @@ using vec2 = glm::vec2;
 using vec4 = glm::vec4;
 #endif
 
-// One eye's camera. World to eye is v = rows * (p - anchor) + translation, rows the camera's axes (x right, y down,
-// z forward) in the world. The anchor is a point near all views, the same number in the views of a rig: subtracting it
-// first keeps fp32 exact far from the origin, and views with equal anchors and third rows see equal depths to the bit.
+// One eye's camera. World to eye is v = rows * (p - anchor) + translation, rows the camera's axes (x right, y
+// down, z forward) in the world. The anchor is a point near all views, the same number in the views of a rig:
+// subtracting it first keeps fp32 exact far from the origin, and views with equal anchors and third rows see
+// equal depths to the bit.
 struct View {
   vec4 row_x;   // axis x, then translation x
   vec4 row_y;   // axis y, then translation y
@@ -49,8 +50,9 @@ struct Splat {
   vec4 colour;    // rgb, display-referred; w: unused
 };
 
-// What a frame counts on the GPU, read back after it. An overflow bit says that a buffer was too small for the number
-// wanted; the frame is then drawn again with larger ones. Counts stop at COUNT_MAX instead of wrapping.
+// What a frame counts on the GPU, read back after it. An overflow bit says that a buffer was too small for
+// the number wanted; the frame is then drawn again with larger ones. Counts stop at COUNT_MAX instead of
+// wrapping.
 struct Counters {
   uint visible;       // Gaussians in depth order, summed over the order groups
   uint order_wanted;  // the most Gaussians that one order group had
@@ -70,11 +72,11 @@ struct Counters {
 #define OVERFLOW_ORDER 1u
 #define OVERFLOW_PAIRS 2u
 
-// How many things there are, known to the GPU only, and the indirect dispatches that go over them. Group counts are
-// split into x and y for drivers that allow few along x.
+// How many things there are, known to the GPU only, and the indirect dispatches that go over them. Group
+// counts are split into x and y for drivers that allow few along x.
 struct Amount {
   uint count;
-  uint first;  // where they begin in their buffer
+  uint first;                            // where they begin in their buffer
   uint threads_x, threads_y, threads_z;  // THREADS things a group
   uint scan_x, scan_y, scan_z;           // SCAN_BLOCK things a group
   uint sort_x, sort_y, sort_z;           // SORT_BLOCK things a group

@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   binosplat::app::Command command;
   binosplat::app::add_render(program, command);
   binosplat::app::add_compare(program, command);
+  binosplat::app::add_devices(program, command);
   try {
     program.parse(argc, argv);
     return static_cast<int>(command());

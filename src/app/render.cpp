@@ -115,6 +115,7 @@ ExitCode render(const RenderOptions& options) {
   Demo demo = built_in ? demo_room() : Demo();
   CameraList list = listed_cameras(options, demo.cameras);
   const Model model = built_in ? std::move(demo.model) : load_model(options.scene);
+  log_info("{}: {} Gaussians, harmonics of degree {}", options.scene, model.count(), model.degree);
   if (!list.listed) list = made_up_cameras(options, model);
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));

@@ -1,6 +1,5 @@
 #include "app/render_options.h"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -101,7 +100,8 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
       ->check(one_of<std::string>({"preview", "headset"}))
       ->type_name("preview|headset")
       ->group(group);
-  sub.add_option("--near", o.near_plane, "Nothing nearer is drawn, in world units (0.2)")
+  sub.add_option("--near", o.near_plane,
+                 "Nothing nearer is drawn, in world units (0.2; less for tiny\nmodels without cameras)")
       ->type_name("DEPTH")
       ->check(positive)
       ->group(group);

@@ -30,8 +30,9 @@ Image depth_map(const Picture& picture) {
   Image image(picture.width, picture.height, 1);
   for (std::size_t k = 0; k < picture.colour.size(); ++k) {
     const float coverage = 1.0f - picture.colour[k].a;
-    image.data[k] = coverage > static_cast<float>(COVERAGE_FOR_DEPTH) ? picture.z_sum[k] / coverage
-                                                                      : std::numeric_limits<float>::infinity();
+    image.data[k] = coverage > static_cast<float>(COVERAGE_FOR_DEPTH)
+                        ? picture.z_sum[k] / coverage
+                        : std::numeric_limits<float>::infinity();
   }
   return image;
 }

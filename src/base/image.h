@@ -9,7 +9,8 @@
 
 namespace binosplat {
 
-/// Channels of floats, rows from the top, channels interleaved: value (x, y, c) is data[(y * width + x) * channels + c].
+/// Channels of floats, rows from the top, channels interleaved: value (x, y, c) is data[(y * width + x) *
+/// channels + c].
 struct Image {
   int width = 0;
   int height = 0;
@@ -17,18 +18,20 @@ struct Image {
   std::vector<float> data;
 
   Image() = default;
-  Image(int w, int h, int c)
-      : width(w), height(h), channels(c), data(static_cast<std::size_t>(w) * h * c) {}
+  Image(int w, int h, int c) : width(w), height(h), channels(c), data(static_cast<std::size_t>(w) * h * c) {}
   float& at(int x, int y, int c) { return data[(static_cast<std::size_t>(y) * width + x) * channels + c]; }
-  float at(int x, int y, int c) const { return data[(static_cast<std::size_t>(y) * width + x) * channels + c]; }
+  float at(int x, int y, int c) const {
+    return data[(static_cast<std::size_t>(y) * width + x) * channels + c];
+  }
 };
 
 /// What a blend leaves of one view (METHOD.md section 3), before any background. Rows from the top.
 struct Picture {
   int width = 0;
   int height = 0;
-  std::vector<glm::vec4> colour;  // C = sum of alpha T c (display-referred) in rgb; T, the transmittance left, in a
-  std::vector<float> z_sum;       // Z = sum of alpha T z, world units
+  std::vector<glm::vec4>
+      colour;  // C = sum of alpha T c (display-referred) in rgb; T, the transmittance left, in a
+  std::vector<float> z_sum;  // Z = sum of alpha T z, world units
 
   Picture() = default;
   Picture(int w, int h)
@@ -41,8 +44,8 @@ struct Picture {
 /// RGB behind the scene, display-referred; none: the picture keeps straight alpha.
 using Background = std::optional<glm::vec3>;
 
-/// The display-referred image of a picture: C + T * background as RGB or, without a background, RGBA with straight
-/// alpha, colour C/A (0 where A = 0).
+/// The display-referred image of a picture: C + T * background as RGB or, without a background, RGBA with
+/// straight alpha, colour C/A (0 where A = 0).
 Image composite(const Picture& picture, const Background& background);
 
 /// Depth Z/A where A > 0.5, +infinity elsewhere; view-space z in world units; one channel.

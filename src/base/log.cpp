@@ -1,11 +1,14 @@
 #include "base/log.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace binosplat {
 
 void log_line(const std::string& text) {
-  const std::string line = "binosplat: " + text + "\n";
+  const auto control = [](char c) { return (static_cast<unsigned char>(c) < ' ' && c != '\n') || c == 127; };
+  std::string line = "binosplat: " + text + "\n";
+  std::replace_if(line.begin(), line.end(), control, '?');
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

@@ -8,7 +8,8 @@
 
 namespace binosplat {
 
-/// Writes `binosplat: TEXT` and a newline to standard error.
+/// Writes `binosplat: TEXT` and a newline to standard error. Texts may quote files and libraries: control
+/// characters but newlines, which could drive the terminal, come out as '?'.
 void log_line(const std::string& text);
 
 /// Something worth knowing: which device is used, what was left out, that a frame was drawn again.

@@ -13,21 +13,23 @@ namespace binosplat {
 namespace fs = std::filesystem;
 
 OutputFile::OutputFile(const fs::path& path) : target_(path) {
-  std::error_code error;
+  std::error_code ignored;
   // A rename would replace the link and leave the file that it points to as it was.
-  if (fs::is_symlink(target_, error)) target_ = fs::weakly_canonical(target_, error);
+  if (fs::is_symlink(target_, ignored)) target_ = fs::weakly_canonical(target_, ignored);
   if (!target_.has_filename()) fail("cannot write '{}': expected the name of a file", path.string());
 
-  const fs::file_status status = fs::status(target_, error);
+  const fs::file_status status = fs::status(target_, ignored);
   if (fs::is_directory(status)) fail("cannot write {}: it is a folder; name a file in it", path.string());
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     fail("cannot write {}: it is a device or a pipe, which a finished file cannot replace", path.string());
   }
   const fs::path folder = target_.parent_path();
+  std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
-  if (error)
+  if (error) {
     fail("cannot write {}: the folder {} cannot be made: {}", path.string(), folder.string(),
          error.message());
+  }
 
   temporary_ = target_;
   temporary_ += fmt::format(".part-{}", getpid());

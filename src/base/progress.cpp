@@ -23,7 +23,8 @@ Progress::~Progress() {
 void Progress::update(std::uint64_t done) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
-  const int percent = total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
+  const int percent =
+      total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
   if (terminal_) {
     fmt::print(stderr, "\r\033[K{} {} %", label_, percent);
     std::fflush(stderr);

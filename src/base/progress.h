@@ -1,6 +1,6 @@
 #pragma once
-// Progress of long work: a line that is rewritten on a terminal, a line every few seconds in a log, nothing for work
-// that is over within a second.
+// Progress of long work: a line that is rewritten on a terminal, a line every few seconds in a log, nothing
+// for work that is over within a second.
 
 #include <chrono>
 #include <cstdint>

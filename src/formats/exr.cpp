@@ -7,14 +7,18 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <half.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
+#include <thread>
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "formats/content.h"
 #include "formats/picture_readers.h"
 
 namespace binosplat {
@@ -23,6 +27,15 @@ namespace {
 
 constexpr const char* encoding_name = "binosplatEncoding";
 constexpr const char* coverage_name = "coverage";
+
+/// OpenEXR compresses in threads of its own, none unless told.
+void use_all_cores() {
+  static const bool once = [] {
+    Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
+    return true;
+  }();
+  static_cast<void>(once);
+}
 
 /// What OpenEXR writes, kept in memory: on a file of its own it would swallow a full disk in a destructor.
 class MemoryStream : public Imf::OStream {
@@ -125,8 +138,33 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   return wanted;
 }
 
+/// OpenEXR makes room for an attribute of the header before it reads it: refuses sizes that the file does not
+/// have.
+void check_attributes(std::span<const std::byte> bytes) {
+  const std::string_view text = as_text(bytes);
+  if (text.size() < 8) throw std::runtime_error("the file is cut short");
+  const bool many_parts = (text[5] & 0x10) != 0;
+  std::size_t at = 8;
+  do {
+    while (at < text.size() && text[at] != '\0') {
+      const std::size_t type = text.find('\0', at);
+      const std::size_t name_end = type == std::string_view::npos ? type : text.find('\0', type + 1);
+      const std::size_t left = name_end < text.size() ? text.size() - name_end - 1 : 0;
+      std::size_t size = 0;  // four bytes, the lowest first
+      for (std::size_t i = 4; left >= 4 && i > 0; --i)
+        size = size << 8 | static_cast<unsigned char>(text[name_end + i]);
+      if (left < 4 || size > left - 4) {
+        throw std::runtime_error("an attribute of the header goes on beyond the file's end");
+      }
+      at = name_end + 5 + size;
+    }
+    ++at;
+  } while (many_parts && at < text.size() && text[at] != '\0');
+}
+
 /// Reads the wanted channels as they are stored, and whether they are display values.
-Image read_channels(const std::filesystem::path& path, bool& display) {
+Image read_channels(const std::filesystem::path& path, std::span<const std::byte> bytes, bool& display) {
+  check_attributes(bytes);
   Imf::InputFile file(path.c_str());
   const Imath::Box2i window = file.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
@@ -134,7 +172,7 @@ Image read_channels(const std::filesystem::path& path, bool& display) {
   const Imf::Compression compression = file.header().compression();
   const bool dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
   // Of one colour all over, 7,000 px a byte were seen with DWA, 500 with the others.
-  check_size(path, width, height, std::filesystem::file_size(path), dwa ? 16384 : 1024);
+  check_size(path, width, height, bytes.size(), dwa ? 16384 : 1024);
   const auto* encoding = file.header().findTypedAttribute<Imf::StringAttribute>(encoding_name);
   display = encoding != nullptr && encoding->value() == "display";
 
@@ -173,6 +211,7 @@ double linear_to_srgb(double v) {
 void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options) {
   OutputFile file(path);
   MemoryStream stream(path.c_str());
+  use_all_cores();
   try {
     std::vector<Plane> planes = planes_of(picture, options);
     write_planes(stream, picture.width, picture.height, planes, options);
@@ -187,11 +226,12 @@ void save_exr(const std::filesystem::path& path, const Picture& picture, const E
   file.commit();
 }
 
-Image load_exr(const std::filesystem::path& path) {
+Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   bool display = false;
   Image image;
+  use_all_cores();
   try {
-    image = read_channels(path, display);
+    image = read_channels(path, bytes, display);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -6,9 +6,12 @@
 // above 1 by the same power law; nothing is clamped. Z is view-space depth Z/A where A > 0.5, +infinity
 // elsewhere, always FLOAT. The header's attribute `binosplatEncoding`, "linear" or "display" (EOTF left out),
 // tells readers which it is.
+//
+// load_image (formats/image_file.h) reads R, G, B or Y of any OpenEXR file and brings them back to display
+// values by that attribute; a file without it is taken as scene-linear. A becomes straight alpha; of a file
+// that has `coverage`, and so its background, it is left out.
 
 #include <filesystem>
-#include <span>
 
 #include "base/image.h"
 #include "formats/image_file.h"
@@ -29,10 +32,5 @@ struct ExrOptions {
 
 /// Writes a picture. Throws Error naming the file.
 void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
-
-/// What load_image does with an OpenEXR file: display values of R, G, B (or Y), brought back by the header's
-/// encoding; a file without the attribute is taken as scene-linear. A becomes straight alpha; of a file that
-/// has `coverage`, and so its background, it is left out.
-Image load_exr(const std::filesystem::path& path);
 
 }  // namespace binosplat

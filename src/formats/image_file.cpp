@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "formats/content.h"
-#include "formats/exr.h"
 #include "formats/picture_readers.h"
 
 namespace binosplat {
@@ -17,7 +16,7 @@ Image load_image(const std::filesystem::path& path) {
     case Content::jpeg:
       return load_jpeg(path, file.bytes());
     case Content::exr:
-      return load_exr(path);
+      return load_exr(path, file.bytes());
     default:
       break;
   }

@@ -12,6 +12,7 @@ namespace binosplat {
 
 Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes);
+Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// Throws Error for a picture of more than 2^31 px, or of more than the file's bytes can hold at the best
 /// compression that its format reaches, before anyone makes room for it: a header costs nothing to forge.

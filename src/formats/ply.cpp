@@ -147,8 +147,8 @@ class PlyReader {
 
   /// Binary rows with lists, whose sizes only a walk can tell.
   void read_ragged(const PlyElement& element, bool gaussians) {
-    // Every row has a byte at least.
-    if (element.count > bytes_.size() - at_) fail_cut(element, bytes_.size() - at_);
+    const std::size_t most = (bytes_.size() - at_) / element.row_bytes();
+    if (element.count > most) fail_cut(element, most);
     if (gaussians) make_room();
     std::vector<std::size_t> offsets;
     for (std::uint64_t i = 0; i < element.count; ++i) {

@@ -169,7 +169,8 @@ bool PlyElement::has_list() const {
 
 std::size_t PlyElement::row_bytes() const {
   std::size_t bytes = 0;
-  for (const PlyProperty& property : properties) bytes += size_of(property.type);
+  for (const PlyProperty& property : properties)
+    bytes += size_of(property.count_type.value_or(property.type));
   return bytes;
 }
 

@@ -33,7 +33,7 @@ struct PlyElement {
 
   const PlyProperty* find(std::string_view property) const;
   bool has_list() const;
-  std::size_t row_bytes() const;  // of elements without lists
+  std::size_t row_bytes() const;  // with lists: the least, where all are empty
 };
 
 struct PlyHeader {

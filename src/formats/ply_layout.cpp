@@ -153,7 +153,9 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
     model.scale[i][c] = static_cast<float>(wider);
   }
   model.opacity[i] *= static_cast<float>(mass);
-  return good && std::isfinite(f);
+  const glm::vec3& scale = model.scale[i];
+  return good && std::isfinite(f) && std::isfinite(scale.x) && std::isfinite(scale.y) &&
+         std::isfinite(scale.z);
 }
 
 }  // namespace binosplat

@@ -10,8 +10,8 @@ namespace binosplat::gl {
 
 namespace {
 
-// Uploads and read-backs go through pieces of this size: NVIDIA moves data ten times faster through a mapped buffer than
-// through glGetNamedBufferSubData, and a piece bounds what the driver has to pin.
+// Uploads and read-backs go through pieces of this size: NVIDIA moves data ten times faster through a mapped
+// buffer than through glGetNamedBufferSubData, and a piece bounds what the driver has to pin.
 constexpr std::int64_t piece_bytes = std::int64_t{64} << 20;
 
 }  // namespace
@@ -33,9 +33,11 @@ void Buffer::reserve(std::int64_t bytes) {
   if (bytes <= bytes_) return;
   const std::int64_t limit = context_.limits().storage_block_bytes;
   if (bytes > limit) {
-    throw Error(ExitCode::out_of_memory,
-                fmt::format("{} needs {} MiB; a shader on {} reaches {} MiB of one buffer. Use a smaller picture or model.",
-                            label_, bytes >> 20, context_.renderer(), limit >> 20));
+    throw Error(
+        ExitCode::out_of_memory,
+        fmt::format(
+            "{} needs {} MiB; a shader on {} reaches {} MiB of one buffer. Use a smaller picture or model.",
+            label_, bytes >> 20, context_.renderer(), limit >> 20));
   }
   release();
   const Functions& gl = context_.gl();
@@ -45,9 +47,11 @@ void Buffer::reserve(std::int64_t bytes) {
   if (error != GL_NO_ERROR) {
     gl.DeleteBuffers(1, &id_);
     id_ = 0;
-    throw Error(ExitCode::out_of_memory,
-                fmt::format("no room on {} for {} MiB of {} ({} MiB in use by this program). Use a smaller picture or model.",
-                            context_.renderer(), bytes >> 20, label_, context_.allocated_bytes() >> 20));
+    throw Error(
+        ExitCode::out_of_memory,
+        fmt::format(
+            "no room on {} for {} MiB of {} ({} MiB in use by this program). Use a smaller picture or model.",
+            context_.renderer(), bytes >> 20, label_, context_.allocated_bytes() >> 20));
   }
   bytes_ = bytes;
   context_.count_allocation(bytes);

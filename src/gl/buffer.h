@@ -10,8 +10,8 @@
 
 namespace binosplat::gl {
 
-/// A shader storage buffer with a name for debuggers and error texts. Empty until reserved; contents are undefined until
-/// written.
+/// A shader storage buffer with a name for debuggers and error texts. Empty until reserved; contents are
+/// undefined until written.
 class Buffer {
  public:
   Buffer(Context& context, std::string label);
@@ -19,8 +19,8 @@ class Buffer {
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
 
-  /// Makes room for at least `bytes`; what was in it is lost when it has to grow. Throws Error(out_of_memory) if the GPU
-  /// has no room, or if a shader on this driver could not reach all of it.
+  /// Makes room for at least `bytes`; what was in it is lost when it has to grow. Throws Error(out_of_memory)
+  /// if the GPU has no room, or if a shader on this driver could not reach all of it.
   void reserve(std::int64_t bytes);
 
   template <typename T>

@@ -33,19 +33,45 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend) {
   functions_.GetIntegerv(GL_MAJOR_VERSION, &major);
   functions_.GetIntegerv(GL_MINOR_VERSION, &minor);
   if (10 * major + minor < 45) {
-    throw Error(ExitCode::no_gl, fmt::format("{} offers OpenGL {}.{}: binosplat needs 4.5 core", renderer_, major, minor));
+    throw Error(ExitCode::no_gl,
+                fmt::format("{} offers OpenGL {}.{}: binosplat needs 4.5 core", renderer_, major, minor));
   }
   functions_.DebugMessageCallback(on_message, nullptr);
   set_program_cache(ProgramCache::default_folder());
 
+  read_limits();
+  if (limits_.storage_blocks < storage_blocks_needed) {
+    throw Error(ExitCode::no_gl,
+                fmt::format("{} offers {} storage blocks to a compute shader: binosplat needs {}", renderer_,
+                            limits_.storage_blocks, storage_blocks_needed));
+  }
+}
+
+void Context::read_limits() {
+  const auto integer = [&](GLenum name) {
+    int value = 0;
+    functions_.GetIntegerv(name, &value);
+    return value;
+  };
   int groups = 0;
   functions_.GetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
   limits_.groups = static_cast<std::uint32_t>(groups);
-  int invocations = 0;
-  functions_.GetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &invocations);
-  limits_.invocations = static_cast<std::uint32_t>(invocations);
+  limits_.invocations = static_cast<std::uint32_t>(integer(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS));
+  limits_.storage_blocks = static_cast<std::uint32_t>(integer(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS));
+  limits_.shared_bytes = integer(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
+  limits_.program_binaries = static_cast<std::uint32_t>(integer(GL_NUM_PROGRAM_BINARY_FORMATS));
+  int bits = 0;
+  functions_.GetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
+  limits_.timestamp_bits = static_cast<std::uint32_t>(bits);
+  const int extensions = integer(GL_NUM_EXTENSIONS);
+  for (int i = 0; i < extensions; ++i) {
+    const auto* name =
+        reinterpret_cast<const char*>(functions_.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+    if (name != nullptr && std::string_view(name) == "GL_KHR_shader_subgroup") limits_.subgroups = true;
+  }
   functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
-  // llvmpipe states 128 MiB and works right up to 2 GiB, where a read crashes; no driver is trusted beyond that.
+  // llvmpipe states 128 MiB and works right up to 2 GiB, where a read crashes; no driver is trusted beyond
+  // that.
   const std::int64_t two_gib = std::int64_t{1} << 31;
   limits_.storage_block_bytes = software() ? two_gib : std::min(limits_.storage_block_bytes, two_gib);
 }
@@ -87,8 +113,9 @@ void Context::check(const std::string& what) const {
   const GLenum error = functions_.GetError();
   if (error == GL_NO_ERROR) return;
   if (error == GL_OUT_OF_MEMORY) {
-    throw Error(ExitCode::out_of_memory, fmt::format("{}: the GPU is out of memory ({} MiB in use by this program)", what,
-                                                     allocated_ >> 20));
+    throw Error(
+        ExitCode::out_of_memory,
+        fmt::format("{}: the GPU is out of memory ({} MiB in use by this program)", what, allocated_ >> 20));
   }
   throw std::runtime_error(fmt::format("{}: OpenGL error 0x{:04x}", what, error));
 }

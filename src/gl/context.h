@@ -1,6 +1,6 @@
 #pragma once
-// An OpenGL 4.5 core context without a window, or a caller's own, and everything that belongs to it: entry points,
-// limits, compiled programs, memory taken.
+// An OpenGL 4.5 core context without a window, or a caller's own, and everything that belongs to it: entry
+// points, limits, compiled programs, memory taken.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,21 +13,33 @@
 
 namespace binosplat::gl {
 
-/// Where a context comes from. `automatic` takes the first GPU that EGL's device platform offers, else Mesa's surfaceless
-/// platform (software: llvmpipe). None of them needs a display server.
+/// Where a context comes from. `automatic` takes the first GPU that EGL's device platform offers, else Mesa's
+/// surfaceless platform (software: llvmpipe). None of them needs a display server.
 enum class Backend { automatic, device, surfaceless };
+
+/// Storage blocks that binosplat's largest shader uses.
+constexpr std::uint32_t storage_blocks_needed = 9;
 
 struct Limits {
   std::int64_t storage_block_bytes = 0;  // largest binding of a storage buffer that is safe on this driver
   std::uint32_t groups = 0;              // work groups of one dispatch along x
   std::uint32_t invocations = 0;         // of one work group
+  std::uint32_t storage_blocks = 0;      // of one compute shader
+  std::int64_t shared_bytes = 0;         // of one work group
+  std::uint32_t program_binaries = 0;    // formats; 0: programs cannot be kept
+  std::uint32_t timestamp_bits = 0;      // 0: stages cannot be timed
+  bool subgroups = false;                // GL_KHR_shader_subgroup
 };
 
 class Context {
  public:
-  /// Opens and makes current. `device` counts EGL's devices (only for Backend::device and automatic; -1: the first GPU).
-  /// Throws Error(no_gl) that lists what was tried and what to install.
+  /// Opens and makes current. `device` counts EGL's devices (only for Backend::device and automatic; -1: the
+  /// first GPU). Throws Error(no_gl) that lists what was tried and what to install.
   static std::unique_ptr<Context> open(Backend backend = Backend::automatic, int device = -1);
+
+  /// How many devices EGL's device platform lists, software ones included; 0 where it has no such platform.
+  /// Throws Error(no_gl) without EGL.
+  static int device_count();
 
   /// Wraps a context of the caller's that is current; it stays the caller's.
   static std::unique_ptr<Context> adopt(GetProcAddress get_proc_address);
@@ -58,7 +70,8 @@ class Context {
   std::int64_t peak_bytes() const { return peak_; }
   void count_allocation(std::int64_t bytes);
 
-  /// Throws std::runtime_error naming `what` if GL has recorded an error, Error(out_of_memory) for GL_OUT_OF_MEMORY.
+  /// Throws std::runtime_error naming `what` if GL has recorded an error, Error(out_of_memory) for
+  /// GL_OUT_OF_MEMORY.
   void check(const std::string& what) const;
 
  protected:
@@ -68,6 +81,8 @@ class Context {
   void release_programs() { programs_.clear(); }
 
  private:
+  void read_limits();
+
   Functions functions_;
   Limits limits_;
   std::string backend_, vendor_, renderer_, version_;

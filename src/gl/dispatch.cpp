@@ -46,9 +46,10 @@ void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bin
     gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, block.binding, found->buffer.id(), 0, found->buffer.bytes());
   }
   for (const Program::Uniform& uniform : program.uniforms()) {
-    const auto* found =
-        std::find_if(uniforms.begin(), uniforms.end(), [&](const Uniform& u) { return uniform.name == u.name; });
-    if (found == uniforms.end()) throw std::logic_error(program.name() + ": no value for the uniform " + uniform.name);
+    const auto* found = std::find_if(uniforms.begin(), uniforms.end(),
+                                     [&](const Uniform& u) { return uniform.name == u.name; });
+    if (found == uniforms.end())
+      throw std::logic_error(program.name() + ": no value for the uniform " + uniform.name);
     gl.ProgramUniform1ui(program.id(), uniform.location, found->value);
   }
 }
@@ -77,7 +78,8 @@ std::vector<StageTime> Dispatcher::wait_and_time() {
   const GLsync fence = gl.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   constexpr std::uint64_t one_second = 1'000'000'000;
   GLenum state = GL_TIMEOUT_EXPIRED;
-  while (state == GL_TIMEOUT_EXPIRED) state = gl.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, one_second);
+  while (state == GL_TIMEOUT_EXPIRED)
+    state = gl.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, one_second);
   gl.DeleteSync(fence);
   if (state == GL_WAIT_FAILED) throw std::runtime_error("the GPU was lost while drawing a frame");
 

@@ -1,6 +1,7 @@
 #pragma once
-// The one place that launches work: it splits what exceeds a driver's group count, labels for debuggers, times by stage,
-// and refuses a dispatch with a buffer or uniform forgotten (GL would read zeros without a word).
+// The one place that launches work: it splits what exceeds a driver's group count, labels for debuggers,
+// times by stage, and refuses a dispatch with a buffer or uniform forgotten (GL would read zeros without a
+// word).
 
 #include <cstdint>
 #include <initializer_list>
@@ -12,15 +13,17 @@
 
 namespace binosplat::gl {
 
-/// How much to launch. Shaders find their place with group_index() and thread_index() of shared/grid.glsl and leave when
-/// it lies beyond their count: a split launch has some groups too many.
+/// How much to launch. Shaders find their place with group_index() and thread_index() of shared/grid.glsl and
+/// leave when it lies beyond their count: a split launch has some groups too many.
 struct Work {
-  std::uint64_t groups = 0;          // direct
+  std::uint64_t groups = 0;           // direct
   const Buffer* arguments = nullptr;  // or indirect: three uints at `offset`, already split
   std::int64_t offset = 0;
 
   /// One invocation for each of `count` things, at `local_size` a group.
-  static Work threads(std::uint64_t count, std::uint32_t local_size) { return {(count + local_size - 1) / local_size}; }
+  static Work threads(std::uint64_t count, std::uint32_t local_size) {
+    return {(count + local_size - 1) / local_size};
+  }
   static Work of_groups(std::uint64_t count) { return {count}; }
   static Work indirect(const Buffer& arguments, std::int64_t offset) { return {0, &arguments, offset}; }
 };
@@ -61,8 +64,8 @@ class Dispatcher {
   void run(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
            std::initializer_list<Uniform> uniforms = {});
 
-  /// Waits for the frame on the GPU, then the time of each stage in order of first appearance, from timestamps (llvmpipe
-  /// reports nothing between a GL_TIME_ELAPSED pair).
+  /// Waits for the frame on the GPU, then the time of each stage in order of first appearance, from
+  /// timestamps (llvmpipe reports nothing between a GL_TIME_ELAPSED pair).
   std::vector<StageTime> wait_and_time();
 
  private:
@@ -71,7 +74,8 @@ class Dispatcher {
     std::uint32_t query;
   };
   void mark(const std::string& stage);
-  void bind(const Program& program, std::initializer_list<Binding> bindings, std::initializer_list<Uniform> uniforms);
+  void bind(const Program& program, std::initializer_list<Binding> bindings,
+            std::initializer_list<Uniform> uniforms);
 
   Context& context_;
   std::vector<std::uint32_t> queries_;

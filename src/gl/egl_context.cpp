@@ -1,5 +1,5 @@
-// EGL contexts without a window. libEGL is loaded at run time: a machine without it gets a message instead of a loader
-// error, and the caller's-own-context use needs no EGL at all.
+// EGL contexts without a window. libEGL is loaded at run time: a machine without it gets a message instead of
+// a loader error, and the caller's-own-context use needs no EGL at all.
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -17,7 +17,8 @@ namespace binosplat::gl {
 namespace {
 
 constexpr const char* what_to_install =
-    "On Debian: apt install libegl1 and, for a GPU, its driver with EGL (NVIDIA: libnvidia-egl or the .run installer), or "
+    "On Debian: apt install libegl1 and, for a GPU, its driver with EGL (NVIDIA: libnvidia-egl or the .run "
+    "installer), or "
     "libegl-mesa0 libgl1-mesa-dri for software rendering.";
 
 // EGL's entry points that are used here.
@@ -39,7 +40,8 @@ struct Egl {
 template <typename F>
 void load(void* library, const char* name, F& function) {
   function = reinterpret_cast<F>(dlsym(library, name));
-  if (function == nullptr) throw Error(ExitCode::no_gl, fmt::format("libEGL.so.1 has no {}. {}", name, what_to_install));
+  if (function == nullptr)
+    throw Error(ExitCode::no_gl, fmt::format("libEGL.so.1 has no {}. {}", name, what_to_install));
 }
 
 const Egl& egl() {
@@ -76,7 +78,8 @@ class EglContext final : public Context {
   EglContext(EGLenum platform, void* native_display, const std::string& backend) {
     const Egl& e = egl();
     display_ = e.get_platform_display(platform, native_display, nullptr);
-    if (display_ == EGL_NO_DISPLAY || e.initialize(display_, nullptr, nullptr) == EGL_FALSE) refuse(backend, "no display");
+    if (display_ == EGL_NO_DISPLAY || e.initialize(display_, nullptr, nullptr) == EGL_FALSE)
+      refuse(backend, "no display");
     e.bind_api(EGL_OPENGL_API);
     const std::array<EGLint, 5> wanted = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     EGLConfig config = nullptr;
@@ -127,7 +130,8 @@ std::vector<EGLDeviceEXT> devices() {
 
 bool is_software(EGLDeviceEXT device) {
   const Egl& e = egl();
-  const char* names = e.query_device_string == nullptr ? nullptr : e.query_device_string(device, EGL_EXTENSIONS);
+  const char* names =
+      e.query_device_string == nullptr ? nullptr : e.query_device_string(device, EGL_EXTENSIONS);
   return names != nullptr && std::string(names).find("EGL_MESA_device_software") != std::string::npos;
 }
 
@@ -144,6 +148,8 @@ std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
 
 }  // namespace
 
+int Context::device_count() { return static_cast<int>(devices().size()); }
+
 std::unique_ptr<Context> Context::open(Backend backend, int device) {
   std::string reasons;
   if (backend != Backend::surfaceless) {
@@ -152,7 +158,8 @@ std::unique_ptr<Context> Context::open(Backend backend, int device) {
       fail("--device {}: EGL offers {} device(s), numbered from 0", device, list.size());
     }
     for (int i = 0; i < static_cast<int>(list.size()); ++i) {
-      // A software device is taken only when it is asked for: surfaceless is the plain way to the same llvmpipe.
+      // A software device is taken only when it is asked for: surfaceless is the plain way to the same
+      // llvmpipe.
       if (device >= 0 ? i != device : is_software(list[static_cast<std::size_t>(i)])) continue;
       auto context = attempt(
           [&] {
@@ -162,14 +169,19 @@ std::unique_ptr<Context> Context::open(Backend backend, int device) {
           reasons);
       if (context != nullptr) return context;
     }
-    if (reasons.empty()) reasons += fmt::format("\n  EGL device platform: no GPU among {} device(s)", list.size());
+    if (reasons.empty())
+      reasons += fmt::format("\n  EGL device platform: no GPU among {} device(s)", list.size());
   }
   if (backend == Backend::surfaceless || (backend == Backend::automatic && device < 0)) {
     auto context = attempt(
-        [] { return std::make_unique<EglContext>(EGL_PLATFORM_SURFACELESS_MESA, nullptr, "EGL surfaceless"); }, reasons);
+        [] {
+          return std::make_unique<EglContext>(EGL_PLATFORM_SURFACELESS_MESA, nullptr, "EGL surfaceless");
+        },
+        reasons);
     if (context != nullptr) return context;
   }
-  throw Error(ExitCode::no_gl, fmt::format("no usable OpenGL 4.5 context. Tried:{}\n{}", reasons, what_to_install));
+  throw Error(ExitCode::no_gl,
+              fmt::format("no usable OpenGL 4.5 context. Tried:{}\n{}", reasons, what_to_install));
 }
 
 }  // namespace binosplat::gl

@@ -1,63 +1,65 @@
 #pragma once
-// The OpenGL entry points that the project calls, filled from the context's own getProcAddress: EGL, OSMesa and a
-// caller's context may live in one process, and their pointers differ.
+// The OpenGL entry points that the project calls, filled from the context's own getProcAddress: EGL, OSMesa
+// and a caller's context may live in one process, and their pointers differ.
 
 #include <GL/glcorearb.h>
 
 namespace binosplat::gl {
 
 // X(name without gl, the upper-case name that GL's function pointer types use)
-#define BINOSPLAT_GL_FUNCTIONS(X)                                 \
-  X(AttachShader, ATTACHSHADER)                                   \
-  X(BindBuffer, BINDBUFFER)                                       \
-  X(BindBufferRange, BINDBUFFERRANGE)                             \
-  X(ClientWaitSync, CLIENTWAITSYNC)                               \
-  X(CompileShader, COMPILESHADER)                                 \
-  X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA)               \
-  X(CreateBuffers, CREATEBUFFERS)                                 \
-  X(CreateProgram, CREATEPROGRAM)                                 \
-  X(CreateQueries, CREATEQUERIES)                                 \
-  X(CreateShader, CREATESHADER)                                   \
-  X(DebugMessageCallback, DEBUGMESSAGECALLBACK)                   \
-  X(DeleteBuffers, DELETEBUFFERS)                                 \
-  X(DeleteProgram, DELETEPROGRAM)                                 \
-  X(DeleteQueries, DELETEQUERIES)                                 \
-  X(DeleteShader, DELETESHADER)                                   \
-  X(DeleteSync, DELETESYNC)                                       \
-  X(DispatchCompute, DISPATCHCOMPUTE)                             \
-  X(DispatchComputeIndirect, DISPATCHCOMPUTEINDIRECT)             \
-  X(FenceSync, FENCESYNC)                                         \
-  X(Finish, FINISH)                                               \
-  X(GetError, GETERROR)                                           \
-  X(GetInteger64v, GETINTEGER64V)                                 \
-  X(GetIntegeri_v, GETINTEGERI_V)                                 \
-  X(GetIntegerv, GETINTEGERV)                                     \
-  X(GetProgramBinary, GETPROGRAMBINARY)                           \
-  X(GetProgramInfoLog, GETPROGRAMINFOLOG)                         \
-  X(GetProgramInterfaceiv, GETPROGRAMINTERFACEIV)                 \
-  X(GetProgramResourceIndex, GETPROGRAMRESOURCEINDEX)             \
-  X(GetProgramResourceName, GETPROGRAMRESOURCENAME)               \
-  X(GetProgramResourceiv, GETPROGRAMRESOURCEIV)                   \
-  X(GetProgramiv, GETPROGRAMIV)                                   \
-  X(GetQueryObjectui64v, GETQUERYOBJECTUI64V)                     \
-  X(GetShaderInfoLog, GETSHADERINFOLOG)                           \
-  X(GetShaderiv, GETSHADERIV)                                     \
-  X(GetString, GETSTRING)                                         \
-  X(GetUniformLocation, GETUNIFORMLOCATION)                       \
-  X(LinkProgram, LINKPROGRAM)                                     \
-  X(MapNamedBufferRange, MAPNAMEDBUFFERRANGE)                     \
-  X(MemoryBarrier, MEMORYBARRIER)                                 \
-  X(NamedBufferStorage, NAMEDBUFFERSTORAGE)                       \
-  X(NamedBufferSubData, NAMEDBUFFERSUBDATA)                       \
-  X(ObjectLabel, OBJECTLABEL)                                     \
-  X(PopDebugGroup, POPDEBUGGROUP)                                 \
-  X(ProgramBinary, PROGRAMBINARY)                                 \
-  X(ProgramParameteri, PROGRAMPARAMETERI)                         \
-  X(ProgramUniform1ui, PROGRAMUNIFORM1UI)                         \
-  X(PushDebugGroup, PUSHDEBUGGROUP)                               \
-  X(QueryCounter, QUERYCOUNTER)                                   \
-  X(ShaderSource, SHADERSOURCE)                                   \
-  X(UnmapNamedBuffer, UNMAPNAMEDBUFFER)                           \
+#define BINOSPLAT_GL_FUNCTIONS(X)                     \
+  X(AttachShader, ATTACHSHADER)                       \
+  X(BindBuffer, BINDBUFFER)                           \
+  X(BindBufferRange, BINDBUFFERRANGE)                 \
+  X(ClientWaitSync, CLIENTWAITSYNC)                   \
+  X(CompileShader, COMPILESHADER)                     \
+  X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA)   \
+  X(CreateBuffers, CREATEBUFFERS)                     \
+  X(CreateProgram, CREATEPROGRAM)                     \
+  X(CreateQueries, CREATEQUERIES)                     \
+  X(CreateShader, CREATESHADER)                       \
+  X(DebugMessageCallback, DEBUGMESSAGECALLBACK)       \
+  X(DeleteBuffers, DELETEBUFFERS)                     \
+  X(DeleteProgram, DELETEPROGRAM)                     \
+  X(DeleteQueries, DELETEQUERIES)                     \
+  X(DeleteShader, DELETESHADER)                       \
+  X(DeleteSync, DELETESYNC)                           \
+  X(DispatchCompute, DISPATCHCOMPUTE)                 \
+  X(DispatchComputeIndirect, DISPATCHCOMPUTEINDIRECT) \
+  X(FenceSync, FENCESYNC)                             \
+  X(Finish, FINISH)                                   \
+  X(GetError, GETERROR)                               \
+  X(GetInteger64v, GETINTEGER64V)                     \
+  X(GetIntegeri_v, GETINTEGERI_V)                     \
+  X(GetIntegerv, GETINTEGERV)                         \
+  X(GetProgramBinary, GETPROGRAMBINARY)               \
+  X(GetProgramInfoLog, GETPROGRAMINFOLOG)             \
+  X(GetProgramInterfaceiv, GETPROGRAMINTERFACEIV)     \
+  X(GetProgramResourceIndex, GETPROGRAMRESOURCEINDEX) \
+  X(GetProgramResourceName, GETPROGRAMRESOURCENAME)   \
+  X(GetProgramResourceiv, GETPROGRAMRESOURCEIV)       \
+  X(GetProgramiv, GETPROGRAMIV)                       \
+  X(GetQueryiv, GETQUERYIV)                           \
+  X(GetStringi, GETSTRINGI)                           \
+  X(GetQueryObjectui64v, GETQUERYOBJECTUI64V)         \
+  X(GetShaderInfoLog, GETSHADERINFOLOG)               \
+  X(GetShaderiv, GETSHADERIV)                         \
+  X(GetString, GETSTRING)                             \
+  X(GetUniformLocation, GETUNIFORMLOCATION)           \
+  X(LinkProgram, LINKPROGRAM)                         \
+  X(MapNamedBufferRange, MAPNAMEDBUFFERRANGE)         \
+  X(MemoryBarrier, MEMORYBARRIER)                     \
+  X(NamedBufferStorage, NAMEDBUFFERSTORAGE)           \
+  X(NamedBufferSubData, NAMEDBUFFERSUBDATA)           \
+  X(ObjectLabel, OBJECTLABEL)                         \
+  X(PopDebugGroup, POPDEBUGGROUP)                     \
+  X(ProgramBinary, PROGRAMBINARY)                     \
+  X(ProgramParameteri, PROGRAMPARAMETERI)             \
+  X(ProgramUniform1ui, PROGRAMUNIFORM1UI)             \
+  X(PushDebugGroup, PUSHDEBUGGROUP)                   \
+  X(QueryCounter, QUERYCOUNTER)                       \
+  X(ShaderSource, SHADERSOURCE)                       \
+  X(UnmapNamedBuffer, UNMAPNAMEDBUFFER)               \
   X(UseProgram, USEPROGRAM)
 
 using GetProcAddress = void (*(*)(const char* name))();

@@ -10,7 +10,8 @@ namespace binosplat::gl {
 namespace {
 
 template <typename Visit>
-void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, GLenum property, const Visit& visit) {
+void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, GLenum property,
+                       const Visit& visit) {
   std::int32_t count = 0;
   gl.GetProgramInterfaceiv(program, kind, GL_ACTIVE_RESOURCES, &count);
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
@@ -71,19 +72,21 @@ void Program::compile(const ShaderSource& source) {
   if (compiled != 0 && linked != 0) return;
   gl_->DeleteProgram(std::exchange(id_, 0));
   log.resize(static_cast<std::size_t>(length));
-  throw Error(ExitCode::no_gl, fmt::format("shader {} does not {}:\n{}", name_, compiled == 0 ? "compile" : "link",
-                                           source.with_file_names(log)));
+  throw Error(ExitCode::no_gl, fmt::format("shader {} does not {}:\n{}", name_,
+                                           compiled == 0 ? "compile" : "link", source.with_file_names(log)));
 }
 
 void Program::reflect() {
   std::array<std::int32_t, 3> size{};
   gl_->GetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
   local_size_ = static_cast<std::uint32_t>(size[0] * size[1] * size[2]);
-  for_each_resource(*gl_, id_, GL_SHADER_STORAGE_BLOCK, GL_BUFFER_BINDING, [&](const char* name, std::int32_t binding) {
-    blocks_.push_back({name, static_cast<std::uint32_t>(binding)});
+  for_each_resource(*gl_, id_, GL_SHADER_STORAGE_BLOCK, GL_BUFFER_BINDING,
+                    [&](const char* name, std::int32_t binding) {
+                      blocks_.push_back({name, static_cast<std::uint32_t>(binding)});
+                    });
+  for_each_resource(*gl_, id_, GL_UNIFORM, GL_LOCATION, [&](const char* name, std::int32_t location) {
+    uniforms_.push_back({name, location});
   });
-  for_each_resource(*gl_, id_, GL_UNIFORM, GL_LOCATION,
-                    [&](const char* name, std::int32_t location) { uniforms_.push_back({name, location}); });
 }
 
 }  // namespace binosplat::gl

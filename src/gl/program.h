@@ -23,10 +23,10 @@ class Program {
     std::int32_t location;
   };
 
-  /// Takes the program from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log, places given
-  /// as file:line.
-  Program(const Functions& gl, const std::string& name, const Defines& defines, const std::filesystem::path& folder,
-          const ProgramCache& cache);
+  /// Takes the program from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log,
+  /// places given as file:line.
+  Program(const Functions& gl, const std::string& name, const Defines& defines,
+          const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();
   Program(Program&& other) noexcept;
   Program(const Program&) = delete;
@@ -35,8 +35,8 @@ class Program {
 
   std::uint32_t id() const { return id_; }
   const std::string& name() const { return name_; }
-  std::uint32_t local_size() const { return local_size_; }         // invocations of a work group
-  const std::vector<Block>& blocks() const { return blocks_; }      // storage blocks the shader really uses
+  std::uint32_t local_size() const { return local_size_; }            // invocations of a work group
+  const std::vector<Block>& blocks() const { return blocks_; }        // storage blocks the shader really uses
   const std::vector<Uniform>& uniforms() const { return uniforms_; }  // those the shader really uses
 
  private:

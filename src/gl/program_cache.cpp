@@ -32,7 +32,8 @@ std::filesystem::path ProgramCache::default_folder() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && *cache != '\0') return std::filesystem::path(cache) / "binosplat" / "programs";
   const char* home = std::getenv("HOME");
-  if (home != nullptr && *home != '\0') return std::filesystem::path(home) / ".cache" / "binosplat" / "programs";
+  if (home != nullptr && *home != '\0')
+    return std::filesystem::path(home) / ".cache" / "binosplat" / "programs";
   return {};
 }
 
@@ -50,7 +51,8 @@ bool ProgramCache::load(const Functions& gl, std::uint32_t program, const std::s
   std::ifstream in(file(wanted), std::ios::binary);
   const std::string content((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   GLenum format = 0;
-  if (content.size() <= wanted.size() + sizeof(format) || content.compare(0, wanted.size(), wanted) != 0) return false;
+  if (content.size() <= wanted.size() + sizeof(format) || content.compare(0, wanted.size(), wanted) != 0)
+    return false;
   std::memcpy(&format, content.data() + wanted.size(), sizeof(format));
   const std::size_t start = wanted.size() + sizeof(format);
   gl.ProgramBinary(program, format, content.data() + start, static_cast<GLsizei>(content.size() - start));

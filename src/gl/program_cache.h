@@ -1,6 +1,6 @@
 #pragma once
-// Compiled programs kept on disk: NVIDIA compiles a shader in a third of a second and loads its binary in a few
-// milliseconds.
+// Compiled programs kept on disk: NVIDIA compiles a shader in a third of a second and loads its binary in a
+// few milliseconds.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,14 +10,16 @@
 
 namespace binosplat::gl {
 
-/// A folder of program binaries. Nothing here is an error: a binary that is missing, damaged, of another driver or refused
-/// is compiled again, and a folder that cannot be written is left alone.
+/// A folder of program binaries. Nothing here is an error: a binary that is missing, damaged, of another
+/// driver or refused is compiled again, and a folder that cannot be written is left alone.
 class ProgramCache {
  public:
-  /// No folder, no cache. `driver` names the driver and its version: binaries of another are never offered to it.
+  /// No folder, no cache. `driver` names the driver and its version: binaries of another are never offered to
+  /// it.
   ProgramCache(std::filesystem::path folder, std::string driver);
 
-  /// The user's: $XDG_CACHE_HOME/binosplat/programs or ~/.cache/binosplat/programs; empty if there is no home.
+  /// The user's: $XDG_CACHE_HOME/binosplat/programs or ~/.cache/binosplat/programs; empty if there is no
+  /// home.
   static std::filesystem::path default_folder();
 
   /// Fills a program that was made from `source` before. False: compile it.

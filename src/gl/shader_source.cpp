@@ -11,7 +11,8 @@
 
 namespace binosplat::gl {
 
-ShaderSource::ShaderSource(const std::string& name, const Defines& defines, const std::filesystem::path& folder)
+ShaderSource::ShaderSource(const std::string& name, const Defines& defines,
+                           const std::filesystem::path& folder)
     : folder_(folder) {
   text_ = "#version 450 core\n";
   for (const auto& [key, value] : defines) text_ += fmt::format("#define {} {}\n", key, value);

@@ -6,9 +6,12 @@ namespace binosplat::primitives {
 
 namespace {
 
-std::uint32_t blocks_of(std::uint32_t count, std::uint32_t block) { return count / block + (count % block != 0 ? 1 : 0); }
+std::uint32_t blocks_of(std::uint32_t count, std::uint32_t block) {
+  return count / block + (count % block != 0 ? 1 : 0);
+}
 
-void split(std::uint32_t groups, std::uint32_t groups_max, std::uint32_t& x, std::uint32_t& y, std::uint32_t& z) {
+void split(std::uint32_t groups, std::uint32_t groups_max, std::uint32_t& x, std::uint32_t& y,
+           std::uint32_t& z) {
   y = groups == 0 ? 1 : (groups + groups_max - 1) / groups_max;
   x = (groups + y - 1) / y;
   z = 1;
@@ -26,7 +29,8 @@ shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max) {
 }
 
 SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t groups_max) {
-  return {make_amount(count, groups_max), make_amount(SORT_DIGITS * blocks_of(count, SORT_BLOCK), groups_max)};
+  return {make_amount(count, groups_max),
+          make_amount(SORT_DIGITS * blocks_of(count, SORT_BLOCK), groups_max)};
 }
 
 }  // namespace binosplat::primitives

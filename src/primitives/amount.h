@@ -1,5 +1,6 @@
 #pragma once
-// Amounts (shared/types.h): how many things there are, for dispatches whose size may be known to the GPU only.
+// Amounts (shared/types.h): how many things there are, for dispatches whose size may be known to the GPU
+// only.
 
 #include <cstdint>
 

@@ -23,12 +23,14 @@ void RadixSort::reserve(std::int64_t count) {
   scan_.reserve(counters);
 }
 
-void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs, std::uint32_t bits) {
+void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs,
+                    std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
   const auto blocks = gl::Work::indirect(amounts, offsetof(shared::Amount, sort_x));
   for (std::uint32_t shift = 0; shift < bits; shift += 8) {
     dispatcher.run(context.program("primitives/sort_count.comp"), blocks,
-                   {{"Amounts", amounts}, {"Keys", pairs.keys()}, {"Histogram", histogram_}}, {{"shift", shift}});
+                   {{"Amounts", amounts}, {"Keys", pairs.keys()}, {"Histogram", histogram_}},
+                   {{"shift", shift}});
     scan_.run(dispatcher, amounts, 1, histogram_);
     dispatcher.run(context.program("primitives/sort_scatter.comp"), blocks,
                    {{"Amounts", amounts},

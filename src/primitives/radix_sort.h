@@ -30,13 +30,14 @@ class PairBuffers {
 
 class RadixSort {
  public:
-  explicit RadixSort(gl::Context& context) : histogram_(context, "counters of the radix sort"), scan_(context) {}
+  explicit RadixSort(gl::Context& context)
+      : histogram_(context, "counters of the radix sort"), scan_(context) {}
 
   /// Room for `count` pairs.
   void reserve(std::int64_t count);
 
-  /// Sorts the first amounts[0].count pairs by the low `bits` bits of their keys; equal keys keep their order.
-  /// `amounts` holds SortAmounts. Afterwards pairs.keys() and pairs.values() are the sorted ones.
+  /// Sorts the first amounts[0].count pairs by the low `bits` bits of their keys; equal keys keep their
+  /// order. `amounts` holds SortAmounts. Afterwards pairs.keys() and pairs.values() are the sorted ones.
   void run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs, std::uint32_t bits);
 
  private:

@@ -12,7 +12,8 @@ void Scan::reserve(std::int64_t count) {
   total_.reserve(4);
 }
 
-void Scan::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which, const gl::Buffer& values) {
+void Scan::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which,
+               const gl::Buffer& values) {
   gl::Context& context = dispatcher.context();
   const auto blocks = gl::Work::indirect(
       amounts, static_cast<std::int64_t>(which * sizeof(shared::Amount) + offsetof(shared::Amount, scan_x)));

@@ -1,5 +1,6 @@
 #pragma once
-// Exclusive prefix sum on the GPU: reduce, then scan, in three dispatches; sums stop at COUNT_MAX instead of wrapping.
+// Exclusive prefix sum on the GPU: reduce, then scan, in three dispatches; sums stop at COUNT_MAX instead of
+// wrapping.
 
 #include "gl/dispatch.h"
 
@@ -7,14 +8,16 @@ namespace binosplat::primitives {
 
 class Scan {
  public:
-  explicit Scan(gl::Context& context) : block_sums_(context, "sums of the scan's blocks"), total_(context, "total") {}
+  explicit Scan(gl::Context& context)
+      : block_sums_(context, "sums of the scan's blocks"), total_(context, "total") {}
 
   /// Room for `count` values; no dispatch may be under way that uses this scan.
   void reserve(std::int64_t count);
 
-  /// Replaces each of the first amounts[which].count values (uint) by the sum of those before it; the sum of all is left
-  /// in total(). `amounts` holds Amounts.
-  void run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which, const gl::Buffer& values);
+  /// Replaces each of the first amounts[which].count values (uint) by the sum of those before it; the sum of
+  /// all is left in total(). `amounts` holds Amounts.
+  void run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which,
+           const gl::Buffer& values);
 
   const gl::Buffer& total() const { return total_; }
 

@@ -50,8 +50,10 @@ std::uint32_t FrameShape::list_bits() const {
   return static_cast<std::uint32_t>(std::bit_width(lists - 1));
 }
 
-FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model) {
-  if (views.empty() || views.size() > MAX_VIEWS) fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
+FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings,
+                      const Model& model) {
+  if (views.empty() || views.size() > MAX_VIEWS)
+    fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   if (settings.tile_size != 8 && settings.tile_size != 16 && settings.tile_size != 32) {
     fail("--tile {}: expected 8, 16 or 32", settings.tile_size);
   }
@@ -59,8 +61,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   shape.settings = settings;
   shape.degree = model.degree;
   shape.gaussian_count = static_cast<std::uint32_t>(model.count());
-  // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The reference's results
-  // need all the room they take at once.
+  // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The
+  // reference's results need all the room they take at once.
   const std::uint32_t half = shape.gaussian_count / 2;
   const std::uint32_t start = std::max(half, std::min(shape.gaussian_count, slots_start));
   shape.slots = settings.reference_until ? shape.gaussian_count : start;
@@ -68,7 +70,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   const auto tile = static_cast<std::uint32_t>(settings.tile_size);
   for (std::size_t v = 0; v < views.size(); ++v) {
     shared::View& view = shape.views[v];
-    if (view.width == 0 || view.height == 0) fail("a view of {} x {} px has no picture", view.width, view.height);
+    if (view.width == 0 || view.height == 0)
+      fail("a view of {} x {} px has no picture", view.width, view.height);
     view.tiles_x = (view.width + tile - 1) / tile;
     view.tiles_y = (view.height + tile - 1) / tile;
     view.tile_offset = shape.tile_count;
@@ -108,10 +111,12 @@ ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32
 
 MemoryNeeds memory_needs(const FrameShape& shape) {
   MemoryNeeds needs;
-  needs.model = shape.gaussian_count * (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
+  needs.model =
+      shape.gaussian_count * (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
   const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t);
   const std::int64_t slot_bytes = shape.view_count() * splat_bytes + 6 * 4;  // indices, order twice, offsets
-  needs.frame = shape.gaussian_count * 4LL + shape.slots * slot_bytes + shape.pixel_count * 20 + shape.tile_count * 8LL;
+  needs.frame =
+      shape.gaussian_count * 4LL + shape.slots * slot_bytes + shape.pixel_count * 20 + shape.tile_count * 8LL;
   return needs;
 }
 

@@ -28,7 +28,7 @@ struct FrameShape {
   std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
   std::vector<shared::View> views;
   std::vector<OrderGroup> groups;
-  std::uint32_t tile_count = 0;   // over all views
+  std::uint32_t tile_count = 0;  // over all views
   std::int64_t pixel_count = 0;  // over all views
 
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
@@ -80,8 +80,8 @@ struct FrameBuffers {
   gl::Buffer pair_offsets;        // uint by rank in the depth order, scanned
 
   // Of all views.
-  gl::Buffer splats;       // Splat (view, slot)
-  gl::Buffer tile_counts;  // uint (view, slot)
+  gl::Buffer splats;              // Splat (view, slot)
+  gl::Buffer tile_counts;         // uint (view, slot)
   gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
   primitives::PairBuffers pairs;  // tile (view with --tiles all), splat
   gl::Buffer ranges;              // begin, end by list

@@ -21,15 +21,20 @@ constexpr int attempts_max = 8;
 }  // namespace
 
 Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
-    : dispatcher_(context), model_(model), model_buffers_(context, model, page_gaussians), buffers_(context) {}
+    : dispatcher_(context),
+      model_(model),
+      model_buffers_(context, model, page_gaussians),
+      buffers_(context) {}
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
   shape_ = make_shape(views, settings, model_);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
   if (settings.order_capacity > 0) slots_ = settings.order_capacity;
   const std::int64_t pairs_guess =
-      std::clamp(shape_.slots * std::int64_t{shape_.view_count()} * pairs_per_splat_guess, pairs_guess_min, pairs_guess_max);
-  pair_capacity_ = settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, pairs_guess);
+      std::clamp(shape_.slots * std::int64_t{shape_.view_count()} * pairs_per_splat_guess, pairs_guess_min,
+                 pairs_guess_max);
+  pair_capacity_ =
+      settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, pairs_guess);
 
   buffers_.views.upload(shape_.views);
   const std::uint32_t groups_max = dispatcher_.context().limits().groups;
@@ -47,10 +52,12 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
     grow(counters);
   }
   if (counters.loop_cut != 0) {
-    throw Error(ExitCode::out_of_memory,
-                fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. Use a smaller "
-                            "--tile or a smaller model.",
-                            dispatcher_.context().renderer()));
+    throw Error(
+        ExitCode::out_of_memory,
+        fmt::format(
+            "{} ended a tile's list early: too many Gaussians in one tile for this driver. Use a smaller "
+            "--tile or a smaller model.",
+            dispatcher_.context().renderer()));
   }
   report.visible = counters.visible;
   report.pairs = counters.pairs;
@@ -65,7 +72,8 @@ shared::Counters Frame::draw_once(FrameReport& report) {
   buffers_.counters.upload(std::vector{shared::Counters{}});
   reference_pictures_.clear();
   if (shape_.settings.reference_until) {
-    reference_pictures_ = fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, buffers_);
+    reference_pictures_ =
+        fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, buffers_);
   }
   dispatcher_.begin_frame();
   for (std::uint32_t group = 0; group < shape_.groups.size(); ++group) {
@@ -102,7 +110,8 @@ shared::Counters Frame::draw_once(FrameReport& report) {
 void Frame::grow(const shared::Counters& counters) {
   const auto larger = [](std::uint32_t wanted) { return std::int64_t{wanted} + wanted / 8; };
   if (counters.pairs == COUNT_MAX) {
-    throw Error(ExitCode::out_of_memory, "more than 2^32 Gaussian-tile pairs in one frame: use a smaller picture");
+    throw Error(ExitCode::out_of_memory,
+                "more than 2^32 Gaussian-tile pairs in one frame: use a smaller picture");
   }
   if ((counters.overflow & OVERFLOW_ORDER) != 0) {
     log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, slots_);

@@ -1,5 +1,6 @@
 #pragma once
-// One frame: a model drawn in one or more views (both eyes of a rig) by compute shaders, without a read-back inside.
+// One frame: a model drawn in one or more views (both eyes of a rig) by compute shaders, without a read-back
+// inside.
 
 #include <span>
 #include <vector>
@@ -13,24 +14,26 @@ namespace binosplat::render {
 
 /// What drawing a frame took.
 struct FrameReport {
-  std::uint64_t visible = 0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes, else 2)
-  std::uint64_t pairs = 0;    // Gaussian-tile pairs over all views
+  std::uint64_t visible =
+      0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes, else 2)
+  std::uint64_t pairs = 0;  // Gaussian-tile pairs over all views
   std::uint32_t order_groups = 0;
-  int redrawn = 0;                       // times that buffers had to grow
-  std::vector<gl::StageTime> stages;     // GPU time of the last, complete drawing
-  double total_ms = 0;                   // their sum
-  std::int64_t gpu_bytes = 0;            // in buffers, the model's included
+  int redrawn = 0;                    // times that buffers had to grow
+  std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
+  double total_ms = 0;                // their sum
+  std::int64_t gpu_bytes = 0;         // in buffers, the model's included
 };
 
 class Frame {
  public:
-  /// Uploads the model; it must outlive the frame, and the context must be current in every call. `page_gaussians` is
-  /// for tests (see ModelBuffers). Throws Error(out_of_memory) if the GPU has no room.
+  /// Uploads the model; it must outlive the frame, and the context must be current in every call.
+  /// `page_gaussians` is for tests (see ModelBuffers). Throws Error(out_of_memory) if the GPU has no room.
   Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
 
-  /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to the bit)
-  /// share one depth order; each eye of a rig has the same bits drawn together with the other or alone. A frame that
-  /// overflows its buffers is drawn again with larger ones. Throws Error: bad views (bad_input), no room (out_of_memory).
+  /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to
+  /// the bit) share one depth order; each eye of a rig has the same bits drawn together with the other or
+  /// alone. A frame that overflows its buffers is drawn again with larger ones. Throws Error: bad views
+  /// (bad_input), no room (out_of_memory).
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {});
 
   /// The pictures of the last frame drawn, one a view.

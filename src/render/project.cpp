@@ -6,7 +6,8 @@ namespace binosplat::render {
 
 namespace {
 
-// Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no memory.
+// Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no
+// memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
   const gl::Program& program = dispatcher.context().program("cull.comp", tile_defines(shape));
@@ -14,7 +15,10 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
     dispatcher.run(
         program, gl::Work::threads(page.count, THREADS),
         {{"Views", buffers.views}, {"Gaussians", *page.gaussians}, {"DepthKeys", buffers.depth_keys}},
-        {{"page_first", page.first}, {"page_count", page.count}, {"view_begin", views.begin}, {"view_end", views.end}});
+        {{"page_first", page.first},
+         {"page_count", page.count},
+         {"view_begin", views.begin},
+         {"view_end", views.end}});
   }
 }
 
@@ -25,11 +29,12 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& 
                  {{"DepthKeys", buffers.depth_keys}, {"BlockCounts", buffers.block_counts}},
                  {{"gaussian_count", shape.gaussian_count}});
   buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
-  dispatcher.run(context.program("amount.comp"), gl::Work::of_groups(1),
-                 {{"Amounts", buffers.order_amounts},
-                  {"Total", buffers.scan.total()},
-                  {"FrameCounters", buffers.counters}},
-                 {{"kind", AMOUNT_ORDER}, {"capacity", shape.slots}, {"groups_max", context.limits().groups}});
+  dispatcher.run(
+      context.program("amount.comp"), gl::Work::of_groups(1),
+      {{"Amounts", buffers.order_amounts},
+       {"Total", buffers.scan.total()},
+       {"FrameCounters", buffers.counters}},
+      {{"kind", AMOUNT_ORDER}, {"capacity", shape.slots}, {"groups_max", context.limits().groups}});
   dispatcher.run(context.program("compact.comp"), blocks,
                  {{"Amounts", buffers.order_amounts},
                   {"DepthKeys", buffers.depth_keys},
@@ -43,11 +48,12 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& 
 }  // namespace
 
 gl::Defines tile_defines(const FrameShape& shape) {
-  return {{"TILES", std::to_string(shape.settings.tiles)}, {"TILE_SIZE", std::to_string(shape.settings.tile_size)}};
+  return {{"TILES", std::to_string(shape.settings.tiles)},
+          {"TILE_SIZE", std::to_string(shape.settings.tile_size)}};
 }
 
-void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, const ModelBuffers& model,
-             FrameBuffers& buffers) {
+void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
+             const ModelBuffers& model, FrameBuffers& buffers) {
   const OrderGroup views = shape.groups[group];
   cull(dispatcher, shape, views, model, buffers);
   compact(dispatcher, shape, buffers);

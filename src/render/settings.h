@@ -16,11 +16,11 @@ constexpr const char* stage_names[] = {"project", "order", "pairs", "tile_sort",
 struct FrameSettings {
   int tiles = TILES_ELLIPSE;          // TILES_ of shared/axes.h
   int tile_size = TILE_SIZE_DEFAULT;  // px: 8, 16 or 32; the picture does not depend on it
-  /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong picture is
-  /// bisected to its stage.
+  /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong
+  /// picture is bisected to its stage.
   std::optional<Stage> reference_until;
-  /// Room to start with, in Gaussians in view and in pairs; 0: chosen by the frame. A frame that needs more grows its
-  /// buffers and is drawn again.
+  /// Room to start with, in Gaussians in view and in pairs; 0: chosen by the frame. A frame that needs more
+  /// grows its buffers and is drawn again.
   std::int64_t order_capacity = 0;
   std::int64_t pair_capacity = 0;
 };

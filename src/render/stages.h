@@ -6,10 +6,10 @@
 
 namespace binosplat::render {
 
-/// The Gaussians that an order group draws, in index order, as each of its views sees them: splats and tile counts by
-/// slot, depths.
-void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, const ModelBuffers& model,
-             FrameBuffers& buffers);
+/// The Gaussians that an order group draws, in index order, as each of its views sees them: splats and tile
+/// counts by slot, depths.
+void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
+             const ModelBuffers& model, FrameBuffers& buffers);
 
 /// Their slots front to back, ties by index.
 void order(gl::Dispatcher& dispatcher, FrameBuffers& buffers);

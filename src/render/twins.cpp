@@ -37,7 +37,11 @@ ViewResult reference_view(const Model& model, const shared::View& view, const Fr
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
     // One list for the whole view, as on the GPU.
-    result.lists = {1, 1, static_cast<std::uint32_t>(settings.tile_size), {0, static_cast<std::uint32_t>(order.size())}, order};
+    result.lists = {1,
+                    1,
+                    static_cast<std::uint32_t>(settings.tile_size),
+                    {0, static_cast<std::uint32_t>(order.size())},
+                    order};
   } else {
     result.lists = reference::make_lists(result.splats, order, view, settings.tiles, settings.tile_size);
   }
@@ -80,11 +84,13 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
         const std::uint32_t i = lists.gaussians[k];
-        ranked.push_back({std::uint64_t{group} << 32 | rank[i], {first + t, v * shape.slots + slots[group].of[i]}});
+        ranked.push_back(
+            {std::uint64_t{group} << 32 | rank[i], {first + t, v * shape.slots + slots[group].of[i]}});
       }
     }
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Pair> pairs;
   pairs.reserve(ranked.size());
   for (const auto& entry : ranked) pairs.push_back(entry.second);
@@ -106,8 +112,8 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t groups_max, Fram
   buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(count, groups_max)});
 }
 
-void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots, const std::vector<ViewResult>& results,
-                       FrameBuffers& buffers) {
+void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
+                       const std::vector<ViewResult>& results, FrameBuffers& buffers) {
   std::vector<shared::Splat> splats(std::size_t{shape.view_count()} * shape.slots);
   std::vector<std::uint32_t> tile_counts(splats.size());
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
@@ -122,16 +128,18 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
 }
 
 // The slots as the stage project leaves them, or `sorted` as the stage order does.
-void upload_order(const Slots& slots, const std::vector<reference::Splat>& splats, bool sorted, std::uint32_t groups_max,
-                  FrameBuffers& buffers) {
+void upload_order(const Slots& slots, const std::vector<reference::Splat>& splats, bool sorted,
+                  std::uint32_t groups_max, FrameBuffers& buffers) {
   std::vector<std::uint32_t> values(slots.indices.size());
   std::iota(values.begin(), values.end(), 0u);
   const auto depth = [&](std::uint32_t slot) { return splats[slots.indices[slot]].depth; };
   if (sorted) {
-    std::stable_sort(values.begin(), values.end(), [&](std::uint32_t a, std::uint32_t b) { return depth(a) < depth(b); });
+    std::stable_sort(values.begin(), values.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return depth(a) < depth(b); });
   }
   std::vector<std::uint32_t> keys;
-  for (const std::uint32_t slot : values) keys.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(depth(slot))));
+  for (const std::uint32_t slot : values)
+    keys.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(depth(slot))));
   buffers.order.keys().upload(keys);
   buffers.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
@@ -150,8 +158,8 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
 
 }  // namespace
 
-std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& shape, std::uint32_t groups_max,
-                                         FrameBuffers& buffers) {
+std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& shape,
+                                         std::uint32_t groups_max, FrameBuffers& buffers) {
   const Stage until = *shape.settings.reference_until;
   std::vector<Picture> pictures;
   if (until == Stage::blend) {
@@ -161,7 +169,8 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
     return pictures;
   }
   if (until < Stage::pairs && shape.groups.size() > 1) {
-    fail("--reference-until {}: only for views that share one depth order (no --cant)", stage_names[static_cast<int>(until)]);
+    fail("--reference-until {}: only for views that share one depth order (no --cant)",
+         stage_names[static_cast<int>(until)]);
   }
   std::vector<ViewResult> results;
   for (const shared::View& view : shape.views) results.push_back(reference_view(model, view, shape.settings));
@@ -174,7 +183,8 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
   }
   std::vector<Pair> pairs = pairs_in_depth_order(shape, slots, results);
   if (until >= Stage::tile_sort) {
-    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.first < b.first; });
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const Pair& a, const Pair& b) { return a.first < b.first; });
   }
   upload_pairs(pairs, groups_max, buffers);
   if (until == Stage::ranges) upload_ranges(shape, pairs, buffers);

@@ -17,6 +17,12 @@ TEST(Log, WritesLinesToStandardError) {
             "binosplat: 3 Gaussians\nbinosplat: warning: 1 left out\n");
 }
 
+TEST(Log, KeepsControlCharactersFromTheTerminal) {
+  testing::internal::CaptureStderr();
+  log_line("a\x1b[2Jb\rc\x7f, \"\u00e4\"\n  next");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: a?[2Jb?c?, \"\u00e4\"\n  next\n");
+}
+
 TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
   testing::internal::CaptureStderr();
   Progress progress("reading x.ply", 200);

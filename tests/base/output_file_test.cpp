@@ -29,6 +29,17 @@ TEST(OutputFile, AppearsWholeWhenCommitted) {
   EXPECT_EQ(folder.names(), (Names{"a", "a/b", "a/b/out.txt"}));
 }
 
+TEST(OutputFile, MayBeInTheWorkingFolder) {
+  const test::TempFolder folder;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  OutputFile file("out.txt");
+  file.write("text");
+  file.commit();
+  fs::current_path(before);
+  EXPECT_EQ(read_text(folder / "out.txt"), "text");
+}
+
 TEST(OutputFile, LeavesNothingWhenNotCommitted) {
   const test::TempFolder folder;
   test::write_text(folder / "out.txt", "old");

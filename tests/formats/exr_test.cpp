@@ -250,6 +250,11 @@ TEST(Exr, BrokenFilesAreRefused) {
     EXPECT_TRUE(refuses(good.substr(0, size)));
   EXPECT_TRUE(refuses(good.substr(0, good.size() - 1)));
 
+  // An attribute of nearly 2^31 bytes.
+  std::string endless = good;
+  endless.replace(good.find("string") + 7, 4, "\xf0\xff\xff\x7f");
+  EXPECT_TRUE(refuses(endless));
+
   // The data window's far corner at 2^31 - 2 and at 60,000.
   const std::size_t window = good.find("box2i") + 10;
   for (const char* side : {"\xfe\xff\xff\x7f", "\x60\xea\x00\x00"}) {

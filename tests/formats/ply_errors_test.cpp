@@ -76,9 +76,11 @@ TEST(PlyErrors, CountsThatNoFileHolds) {
 
   const std::string many = "element vertex 9000000000000000000";
   EXPECT_TRUE(refuses(replaced(replaced(good, line, many), "binary_little_endian", "ascii"), {"cut short"}));
+  // A list adds a byte to every row at least: room is made for no more Gaussians than that allows.
+  const std::string lists = replaced(good, "end_header", "property list uchar int l\nend_header");
   EXPECT_TRUE(
-      refuses(replaced(replaced(good, line, many), "end_header", "property list uchar int l\nend_header"),
-              {"cut short"}));
+      refuses(replaced(lists, line, many), {"cut short", "element 'vertex' 99 of 9000000000000000000"}));
+  EXPECT_TRUE(refuses(replaced(lists, line, "element vertex 20000"), {"element 'vertex' 99 of 20000"}));
 }
 
 TEST(PlyErrors, Header) {

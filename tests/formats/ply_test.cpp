@@ -306,6 +306,30 @@ TEST(Ply, CutsDegreeFourToThree) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find("degree 4 are cut to degree 3"), std::string::npos);
 }
 
+TEST(Ply, FoldsTheFilterOfMipSplatting) {
+  PlyFile file = test::inria_file(0, 3);
+  const Model plain = load(file);
+  file.columns.emplace_back("filter_3D");
+  file.rows[0].push_back(0);
+  file.rows[1].push_back(0.25);
+  file.rows[2].push_back(3e38);
+  file.at(2, "scale_0") = 88.7;  // e^88.7 fits a float, but not with the filter
+  testing::internal::CaptureStderr();
+  const Model model = load(file);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("anti-aliasing"), std::string::npos);
+  ASSERT_EQ(model.count(), 2u);
+  EXPECT_EQ(model.left_out, 1u);
+  EXPECT_EQ(model.scale[0], plain.scale[0]);
+  EXPECT_EQ(model.opacity[0], plain.opacity[0]);
+  double mass = 1;
+  for (int c = 0; c < 3; ++c) {
+    const double wide = std::hypot(plain.scale[1][c], 0.25);
+    EXPECT_FLOAT_EQ(model.scale[1][c], static_cast<float>(wide));
+    mass *= plain.scale[1][c] / wide;
+  }
+  EXPECT_FLOAT_EQ(model.opacity[1], static_cast<float>(plain.opacity[1] * mass));
+}
+
 TEST(Ply, WarnsOfAntialiasedModelsAndTrailingBytes) {
   const auto warning = [](const std::string& comments, const std::string& after) {
     PlyFile file = test::inria_file(0, 2);

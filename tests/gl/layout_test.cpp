@@ -24,8 +24,10 @@ std::map<std::string, int> driver_offsets(const std::string& type) {
   // Every member must be used, or a driver may leave it out: copying the whole struct uses all.
   test::write_text(folder / "layout.comp",
                    "#include \"shared/types.h\"\nlayout(local_size_x = 1) in;\n"
-                   "layout(std430, binding = 0) buffer Items { " + type + " items[]; };\n"
-                   "void main() { items[gl_WorkGroupID.x + 1u] = items[gl_WorkGroupID.x]; }\n");
+                   "layout(std430, binding = 0) buffer Items { " +
+                       type +
+                       " items[]; };\n"
+                       "void main() { items[gl_WorkGroupID.x + 1u] = items[gl_WorkGroupID.x]; }\n");
   const Functions& gl = test::gl_context().gl();
   const Program program(gl, "layout.comp", {}, folder.path(), ProgramCache({}, ""));
   std::map<std::string, int> offsets;
@@ -45,33 +47,38 @@ std::map<std::string, int> driver_offsets(const std::string& type) {
 }
 
 using Offsets = std::map<std::string, int>;
-#define AT(type, member) {#member, static_cast<int>(offsetof(shared::type, member))}
-#define STRIDE(type) {"", static_cast<int>(sizeof(shared::type))}
+#define AT(type, member) \
+  { #member, static_cast < int>(offsetof(shared::type, member)) }
+#define STRIDE(type) \
+  { "", static_cast<int>(sizeof(shared::type)) }
 
 TEST(Layout, ViewIsWhereTheDriverPutsIt) {
-  const Offsets expected = {AT(View, row_x), AT(View, row_y), AT(View, row_z), AT(View, anchor), AT(View, eye),
-                            AT(View, lens), AT(View, width), AT(View, height), AT(View, tiles_x), AT(View, tiles_y),
-                            AT(View, tile_offset), AT(View, pixel_offset), AT(View, order_group), AT(View, th_group),
-                            STRIDE(View)};
+  const Offsets expected = {AT(View, row_x),       AT(View, row_y),       AT(View, row_z),
+                            AT(View, anchor),      AT(View, eye),         AT(View, lens),
+                            AT(View, width),       AT(View, height),      AT(View, tiles_x),
+                            AT(View, tiles_y),     AT(View, tile_offset), AT(View, pixel_offset),
+                            AT(View, order_group), AT(View, th_group),    STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
 }
 
 TEST(Layout, GaussianAndSplatAreWhereTheDriverPutsThem) {
-  const Offsets gaussian = {AT(Gaussian, position), AT(Gaussian, rotation), AT(Gaussian, scale), STRIDE(Gaussian)};
+  const Offsets gaussian = {AT(Gaussian, position), AT(Gaussian, rotation), AT(Gaussian, scale),
+                            STRIDE(Gaussian)};
   EXPECT_EQ(driver_offsets("Gaussian"), gaussian);
-  const Offsets splat = {AT(Splat, mean), AT(Splat, depth), AT(Splat, opacity), AT(Splat, conic), AT(Splat, colour),
-                         STRIDE(Splat)};
+  const Offsets splat = {AT(Splat, mean),  AT(Splat, depth),  AT(Splat, opacity),
+                         AT(Splat, conic), AT(Splat, colour), STRIDE(Splat)};
   EXPECT_EQ(driver_offsets("Splat"), splat);
 }
 
 TEST(Layout, CountersAndAmountAreWhereTheDriverPutsThem) {
-  const Offsets counters = {AT(Counters, visible), AT(Counters, order_wanted), AT(Counters, pairs),
-                            AT(Counters, overflow), AT(Counters, loop_cut), AT(Counters, unused_0),
-                            AT(Counters, unused_1), AT(Counters, unused_2), STRIDE(Counters)};
+  const Offsets counters = {AT(Counters, visible),  AT(Counters, order_wanted), AT(Counters, pairs),
+                            AT(Counters, overflow), AT(Counters, loop_cut),     AT(Counters, unused_0),
+                            AT(Counters, unused_1), AT(Counters, unused_2),     STRIDE(Counters)};
   EXPECT_EQ(driver_offsets("Counters"), counters);
-  const Offsets amount = {AT(Amount, count), AT(Amount, first), AT(Amount, threads_x), AT(Amount, threads_y),
-                          AT(Amount, threads_z), AT(Amount, scan_x), AT(Amount, scan_y), AT(Amount, scan_z),
-                          AT(Amount, sort_x), AT(Amount, sort_y), AT(Amount, sort_z), AT(Amount, unused),
+  const Offsets amount = {AT(Amount, count),     AT(Amount, first),     AT(Amount, threads_x),
+                          AT(Amount, threads_y), AT(Amount, threads_z), AT(Amount, scan_x),
+                          AT(Amount, scan_y),    AT(Amount, scan_z),    AT(Amount, sort_x),
+                          AT(Amount, sort_y),    AT(Amount, sort_z),    AT(Amount, unused),
                           STRIDE(Amount)};
   EXPECT_EQ(driver_offsets("Amount"), amount);
   Offsets wrong = amount;  // the comparison sees a member out of place

@@ -54,7 +54,8 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
   const std::string whole = test::read_text(only_file(folder));
   std::string broken = whole;
   for (std::size_t k = broken.size() / 2; k < broken.size(); ++k) broken[k] = static_cast<char>(~broken[k]);
-  const std::vector<std::string> damaged = {broken, whole.substr(0, whole.size() / 2), whole.substr(0, 10), std::string()};
+  const std::vector<std::string> damaged = {broken, whole.substr(0, whole.size() / 2), whole.substr(0, 10),
+                                            std::string()};
   for (const std::string& content : damaged) {
     test::write_text(only_file(folder), content);
     const Program program(test::gl_context().gl(), name, {}, {}, cache);
@@ -66,7 +67,8 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
 TEST(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
-  const Program program(test::gl_context().gl(), name, {}, {}, ProgramCache(folder / "file" / "below", "driver"));
+  const Program program(test::gl_context().gl(), name, {}, {},
+                        ProgramCache(folder / "file" / "below", "driver"));
   EXPECT_EQ(program.uniforms().size(), 1u);
   const Program uncached(test::gl_context().gl(), name, {}, {}, ProgramCache({}, "driver"));
   EXPECT_EQ(uncached.uniforms().size(), 1u);

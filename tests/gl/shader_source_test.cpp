@@ -21,8 +21,9 @@ TEST(ShaderSource, PutsDefinesFirstAndEachIncludeOnce) {
   test::write_text(folder / "a.comp", "#include \"b.glsl\"\n#include \"b.glsl\"\nint a;\n");
   test::write_text(folder / "b.glsl", "int b;\n");
   const ShaderSource source("a.comp", {{"SIZE", "16"}}, folder.path());
-  EXPECT_EQ(source.text(),
-            "#version 450 core\n#define SIZE 16\n#line 1 0\n#line 1 1\nint b;\n#line 2 0\n#line 3 0\nint a;\n");
+  EXPECT_EQ(
+      source.text(),
+      "#version 450 core\n#define SIZE 16\n#line 1 0\n#line 1 1\nint b;\n#line 2 0\n#line 3 0\nint a;\n");
 }
 
 TEST(ShaderSource, NamesTheFileInADriversMessage) {
@@ -30,14 +31,16 @@ TEST(ShaderSource, NamesTheFileInADriversMessage) {
   test::write_text(folder / "a.comp", "#include \"b.glsl\"\nint a;\n");
   test::write_text(folder / "b.glsl", "int b;\n");
   const ShaderSource source("a.comp", {}, folder.path());
-  EXPECT_EQ(source.with_file_names("1:14(3): error: x\n0(7) : error C1\n"), "b.glsl:14(3): error: x\na.comp:7 : error C1\n");
+  EXPECT_EQ(source.with_file_names("1:14(3): error: x\n0(7) : error C1\n"),
+            "b.glsl:14(3): error: x\na.comp:7 : error C1\n");
 }
 
 TEST(ShaderSource, SaysWhatIsMissingAndWhoWantsIt) {
   test::TempFolder folder;
   test::write_text(folder / "a.comp", "\n#include \"gone.glsl\"\n");
-  EXPECT_TRUE(fails_saying([&] { ShaderSource("a.comp", {}, folder.path()); }, {"gone.glsl", "a.comp:2"}));
-  EXPECT_TRUE(fails_saying([&] { ShaderSource("gone.comp", {}, {}); }, {"gone.comp"}));
+  EXPECT_TRUE(fails_saying([&] { const ShaderSource source("a.comp", {}, folder.path()); },
+                           {"gone.glsl", "a.comp:2"}));
+  EXPECT_TRUE(fails_saying([&] { const ShaderSource source("gone.comp", {}, {}); }, {"gone.comp"}));
 }
 
 TEST(ShaderSource, EmbeddedFilesAreTheOnesInTheTree) {
@@ -52,7 +55,7 @@ TEST(Program, SaysWhereAShaderDoesNotCompile) {
   test::write_text(folder / "wrong.comp",
                    "layout(local_size_x = 1) in;\nvoid main() {\n  int x = missing_name;\n}\n");
   try {
-    Program(test::gl_context().gl(), "wrong.comp", {}, folder.path(), ProgramCache({}, ""));
+    const Program program(test::gl_context().gl(), "wrong.comp", {}, folder.path(), ProgramCache({}, ""));
     FAIL() << "it compiled";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("wrong.comp:3"), std::string::npos) << error.what();

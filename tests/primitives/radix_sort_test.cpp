@@ -56,8 +56,9 @@ Keys random_keys(std::size_t count, std::uint32_t mask) {
 
 TEST(RadixSort, EqualsAStableSortAtEverySizeThatMatters) {
   const std::size_t block = SORT_BLOCK;
-  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{255}, std::size_t{257},
-                                 block - 1, block, block + 1, 5 * block + 33, std::size_t{200000}}) {
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{255}, std::size_t{257}, block - 1, block,
+        block + 1, 5 * block + 33, std::size_t{200000}}) {
     const Keys keys = random_keys(size, ~0u);
     EXPECT_EQ(sort_on_gpu(keys, 32), sort_on_cpu(keys, 32)) << size;
   }

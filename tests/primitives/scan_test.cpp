@@ -41,8 +41,9 @@ std::vector<std::uint32_t> random_values(std::size_t count, std::uint32_t below)
 
 TEST(Scan, EqualsTheStandardLibrarysAtEverySizeThatMatters) {
   const std::size_t block = SCAN_BLOCK;
-  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{255}, std::size_t{256}, std::size_t{257},
-                                 block - 1, block, block + 1, 3 * block + 17, block * THREADS + 5}) {
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{1}, std::size_t{255}, std::size_t{256}, std::size_t{257}, block - 1,
+        block, block + 1, 3 * block + 17, block * THREADS + 5}) {
     const std::vector<std::uint32_t> values = random_values(size, 100);
     std::vector<std::uint32_t> expected(size);
     std::exclusive_scan(values.begin(), values.end(), expected.begin(), 0u);

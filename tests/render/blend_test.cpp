@@ -14,8 +14,8 @@ Model layers() {
   for (int i = 0; i < 400; ++i) {
     const double z = 1.0 + 0.01 * i;
     const glm::vec3 colour(uniform(0, 1), uniform(0, 1), uniform(0, 1));
-    test::add(model, {uniform(-0.4, 0.4) * z, uniform(-0.4, 0.4) * z, z}, glm::vec3(0.2f), static_cast<float>(uniform(0.3, 1)),
-              colour);
+    test::add(model, {uniform(-0.4, 0.4) * z, uniform(-0.4, 0.4) * z, z}, glm::vec3(0.2f),
+              static_cast<float>(uniform(0.3, 1)), colour);
   }
   return model;
 }

@@ -17,7 +17,8 @@ TEST(Frame, EllipseEqualsBruteForceBitForBit) {
   struct Size {
     int width, height;
   };
-  for (const Size size : {Size{160, 96}, Size{1, 1}, Size{17, 1}, Size{1, 33}, Size{31, 47}, Size{160, 16}, Size{7, 95}}) {
+  for (const Size size :
+       {Size{160, 96}, Size{1, 1}, Size{17, 1}, Size{1, 33}, Size{31, 47}, Size{160, 16}, Size{7, 95}}) {
     const Model model = test::random_model(41, 5000, 1, static_cast<double>(size.height) / size.width);
     const shared::View view = make_view(test::front_camera(size.width, size.height, size.width));
     const Picture brute = draw(model, view, {.tiles = TILES_ALL});
@@ -51,7 +52,9 @@ TEST(Frame, EqualsTheReference) {
     const Model model = test::random_model(static_cast<std::uint32_t>(50 + degree), 3000, degree);
     const shared::View view = make_view(test::front_camera(150, 110, 140));
     for (const int tiles : {TILES_AABB, TILES_ELLIPSE}) {
-      EXPECT_GE(test::psnr(draw(model, view, {.tiles = tiles}), reference::render(model, view, {.tiles = tiles})), 80.0)
+      EXPECT_GE(
+          test::psnr(draw(model, view, {.tiles = tiles}), reference::render(model, view, {.tiles = tiles})),
+          80.0)
           << degree << " " << tiles;
     }
   }
@@ -66,7 +69,8 @@ TEST(Frame, TheComparisonWithTheReferenceCatchesASignAndATile) {
   EXPECT_LT(test::psnr(drawn, reference::render(sign, view)), 60.0);
   // Lists one tile further along: a tile off by one.
   const auto splats = reference::project_all(model, view);
-  reference::TileLists lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+  reference::TileLists lists =
+      reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
   std::vector<std::uint32_t> begin(lists.begin.begin() + 1, lists.begin.end());
   begin.push_back(begin.back());
   lists.begin = begin;
@@ -79,9 +83,11 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
   const std::vector views(eyes.views.begin(), eyes.views.end());
   for (const int tiles : {TILES_AABB, TILES_ELLIPSE, TILES_ALL}) {
     const Picture expected = reference::render(model, views[1], {.tiles = tiles});
-    for (const Stage stage : {Stage::project, Stage::order, Stage::pairs, Stage::tile_sort, Stage::ranges, Stage::blend}) {
+    for (const Stage stage :
+         {Stage::project, Stage::order, Stage::pairs, Stage::tile_sort, Stage::ranges, Stage::blend}) {
       const Picture drawn = draw(model, views, {.tiles = tiles, .reference_until = stage})[1];
-      EXPECT_GE(test::psnr(drawn, expected), 80.0) << render::stage_names[static_cast<int>(stage)] << " " << tiles;
+      EXPECT_GE(test::psnr(drawn, expected), 80.0)
+          << render::stage_names[static_cast<int>(stage)] << " " << tiles;
     }
   }
 }
@@ -90,7 +96,8 @@ class Eyes : public testing::TestWithParam<double> {};  // cant, degrees
 
 TEST_P(Eyes, EachEqualsItselfAloneBitForBit) {
   const Model model = test::random_model(61, 4000, 2);
-  const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = GetParam()});
+  const auto rig =
+      stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = GetParam()});
   render::Frame frame(test::gl_context(), model);
   const render::FrameReport report = frame.draw(rig.views);
   EXPECT_EQ(report.order_groups, GetParam() == 0.0 ? 1u : 2u);
@@ -136,8 +143,9 @@ TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
   const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
   const std::vector views(rig.views.begin(), rig.views.end());
   const std::vector<Picture> ample = draw(model, views);
-  for (const FrameSettings& settings : {FrameSettings{.order_capacity = 10}, FrameSettings{.pair_capacity = 10},
-                                        FrameSettings{.order_capacity = 10, .pair_capacity = 10}}) {
+  for (const FrameSettings& settings :
+       {FrameSettings{.order_capacity = 10}, FrameSettings{.pair_capacity = 10},
+        FrameSettings{.order_capacity = 10, .pair_capacity = 10}}) {
     render::Frame frame(test::gl_context(), model);
     testing::internal::CaptureStderr();
     const render::FrameReport report = frame.draw(views, settings);
@@ -178,7 +186,8 @@ TEST(Frame, ATileOfManySplatsIsNotCutByTheDriver) {
   test::Uniform uniform(73);
   for (int i = 0; i < 70000; ++i) {
     const double z = uniform(1, 2);
-    test::add(model, {uniform(-0.2, 0.2) * z, uniform(-0.2, 0.2) * z, z}, glm::vec3(0.02f), 0.006f, glm::vec3(uniform(0, 1)));
+    test::add(model, {uniform(-0.2, 0.2) * z, uniform(-0.2, 0.2) * z, z}, glm::vec3(0.02f), 0.006f,
+              glm::vec3(uniform(0, 1)));
   }
   const shared::View view = make_view(test::front_camera(16, 16, 40));
   const Picture drawn = draw(model, view);

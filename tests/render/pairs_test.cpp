@@ -9,7 +9,8 @@
 namespace binosplat {
 namespace {
 
-// Each tile's list in the order of blending, for all tiles of all views: view * Gaussians of the model + Gaussian.
+// Each tile's list in the order of blending, for all tiles of all views: view * Gaussians of the model +
+// Gaussian.
 using Lists = std::vector<std::vector<std::uint32_t>>;
 
 Lists gpu_lists(test::StageRun& run) {
@@ -23,7 +24,8 @@ Lists gpu_lists(test::StageRun& run) {
   for (std::uint32_t t = 0; t < run.shape.tile_count; ++t) {
     for (std::uint32_t k = ranges[2 * t]; k < ranges[2 * t + 1]; ++k) {
       const std::uint32_t view = values[k] / run.shape.slots;
-      const std::uint32_t gaussian = run.indices[run.shape.views[view].order_group][values[k] % run.shape.slots];
+      const std::uint32_t gaussian =
+          run.indices[run.shape.views[view].order_group][values[k] % run.shape.slots];
       lists[t].push_back(view * run.shape.gaussian_count + gaussian);
     }
     total += lists[t].size();
@@ -39,7 +41,8 @@ Lists reference_lists(const Model& model, const render::FrameShape& shape) {
     const auto tiles = reference::make_lists(splats, reference::depth_order(splats), shape.views[v],
                                              shape.settings.tiles, shape.settings.tile_size);
     for (std::uint32_t t = 0; t + 1 < tiles.begin.size(); ++t) {
-      auto& list = lists.emplace_back(tiles.gaussians.begin() + tiles.begin[t], tiles.gaussians.begin() + tiles.begin[t + 1]);
+      auto& list = lists.emplace_back(tiles.gaussians.begin() + tiles.begin[t],
+                                      tiles.gaussians.begin() + tiles.begin[t + 1]);
       for (std::uint32_t& i : list) i += v * shape.gaussian_count;
     }
   }
@@ -53,7 +56,8 @@ std::size_t differing(const Lists& a, const Lists& b) {
     const std::set<std::uint32_t> in_a(a[t].begin(), a[t].end());
     const std::set<std::uint32_t> in_b(b[t].begin(), b[t].end());
     std::vector<std::uint32_t> only;
-    std::set_symmetric_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(), std::back_inserter(only));
+    std::set_symmetric_difference(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(),
+                                  std::back_inserter(only));
     count += only.size();
   }
   return count;
@@ -71,7 +75,8 @@ TEST_P(Pairs, EqualTheReferences) {
   const auto [tiles, tile_size] = GetParam();
   const render::FrameSettings settings = {.tiles = tiles, .tile_size = tile_size};
   const Model model = test::random_model(21, 2000, 0);
-  const std::vector views = {make_view(test::front_camera(333, 131, 300)), make_view(test::front_camera(131, 222, 200))};
+  const std::vector views = {make_view(test::front_camera(333, 131, 300)),
+                             make_view(test::front_camera(131, 222, 200))};
   test::StageRun run(model, views, settings);
   const Lists lists = gpu_lists(run);
   const Lists expected = reference_lists(model, run.shape);
@@ -89,7 +94,8 @@ TEST_P(Pairs, AreInDepthOrderWithTiesByIndex) {
   const auto [tiles, tile_size] = GetParam();
   Model model = test::random_model(22, 1500, 0);
   for (std::size_t i = 0; i < 300; ++i) model.position[5 * i].z = 2.0f;  // 300 at equal depth
-  test::StageRun run(model, {make_view(test::front_camera(160, 96, 150))}, {.tiles = tiles, .tile_size = tile_size});
+  test::StageRun run(model, {make_view(test::front_camera(160, 96, 150))},
+                     {.tiles = tiles, .tile_size = tile_size});
   const Lists lists = gpu_lists(run);
   const auto splats = run.projected(0).splats;
   const auto key = [&](std::uint32_t i) { return std::pair(splats[i].depth, i); };
@@ -104,7 +110,8 @@ TEST_P(Pairs, AreInDepthOrderWithTiesByIndex) {
 }
 
 INSTANTIATE_TEST_SUITE_P(TilesAndSizes, Pairs,
-                         testing::Combine(testing::Values(TILES_AABB, TILES_ELLIPSE), testing::Values(8, 16, 32)));
+                         testing::Combine(testing::Values(TILES_AABB, TILES_ELLIPSE),
+                                          testing::Values(8, 16, 32)));
 
 TEST(PairsOf, OneSplatOverEveryTileHasEveryTile) {
   Model model;
@@ -116,14 +123,17 @@ TEST(PairsOf, OneSplatOverEveryTileHasEveryTile) {
 
 TEST(PairsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
   Model model;
-  // Means every quarter pixel across a tile's corner, and rows of them outside each side, with sizes from a point up.
+  // Means every quarter pixel across a tile's corner, and rows of them outside each side, with sizes from a
+  // point up.
   for (int i = -8; i <= 8; ++i) {
     for (const float size : {0.0f, 0.002f, 0.01f, 0.1f}) {
       const float at = 0.25f * static_cast<float>(i) / 64.0f;
       test::add(model, {at, at, 1}, glm::vec3(size), 0.9f);
       test::add(model, {-0.5f - at, 0.1f * at, 1}, glm::vec3(size), 0.9f);
-      test::add(model, {0.1f, 0.52f + at, 1}, glm::vec3(size, size, 0.0f), 0.9f, glm::vec3(1), {1, 0, 0, 0.4f});
-      test::add(model, {0.8f + at, -0.9f, 1}, glm::vec3(size * 4, size, size), 0.99f, glm::vec3(1), {1, 0, 0, -0.4f});
+      test::add(model, {0.1f, 0.52f + at, 1}, glm::vec3(size, size, 0.0f), 0.9f, glm::vec3(1),
+                {1, 0, 0, 0.4f});
+      test::add(model, {0.8f + at, -0.9f, 1}, glm::vec3(size * 4, size, size), 0.99f, glm::vec3(1),
+                {1, 0, 0, -0.4f});
     }
   }
   const std::vector views = {make_view(test::front_camera(64, 64, 64))};

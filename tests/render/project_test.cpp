@@ -10,7 +10,8 @@
 namespace binosplat {
 namespace {
 
-// How far the GPU's splats are from the reference's, in units of what fp32 may cost: at most 1 where the stage is right.
+// How far the GPU's splats are from the reference's, in units of what fp32 may cost: at most 1 where the
+// stage is right.
 struct Distance {
   double mean = 0, depth = 0, conic = 0, colour = 0, opacity = 0;
   int compared = 0;
@@ -31,8 +32,8 @@ Distance distance(const Model& model, const shared::View& view) {
     const double size = glm::length(expected.mean) + view.width;
     d.mean = std::max(d.mean, glm::length(glm::dvec2(s.mean) - expected.mean) / (2e-6 * size));
     d.depth = std::max(d.depth, std::abs(s.depth - expected.depth) / (2e-6 * (expected.depth + 1)));
-    // q is what the conic is for: its error over one standard deviation each way. Eight roundings on the way to C2
-    // (5e-7) are magnified by `stretch` in det, and again where the three terms of q cancel.
+    // q is what the conic is for: its error over one standard deviation each way. Eight roundings on the way
+    // to C2 (5e-7) are magnified by `stretch` in det, and again where the three terms of q cancel.
     const double stretch = expected.covariance.x * expected.covariance.z / expected.det;
     const glm::dvec3 q_error = glm::abs(glm::dvec3(s.conic) - expected.conic) * expected.covariance;
     d.conic = std::max(d.conic, (q_error.x + q_error.y + q_error.z) / (3e-6 * stretch * stretch));
@@ -102,14 +103,15 @@ TEST(Project, TheComparisonCatchesPlantedFaults) {
   double mean = 0;
   for (std::size_t i = 0; i < splats.size(); ++i) {
     if (counts[i] == 0) continue;
-    mean = std::max(mean, glm::length(glm::dvec2(splats[i].mean) - reference::project(model, i, shifted).mean) / 2e-3);
+    mean = std::max(
+        mean, glm::length(glm::dvec2(splats[i].mean) - reference::project(model, i, shifted).mean) / 2e-3);
   }
   EXPECT_GT(mean, 100.0);
 }
 
 TEST(Project, LeavesOutWhatIsBeforeTheNearPlane) {
   Model model;
-  test::add(model, {0, 0, 0.2f}, glm::vec3(0.01f), 0.9f);                           // at the near plane: not drawn
+  test::add(model, {0, 0, 0.2f}, glm::vec3(0.01f), 0.9f);  // at the near plane: not drawn
   test::add(model, {0, 0, std::nextafter(0.2f, 1.0f)}, glm::vec3(0.01f), 0.9f);  // just behind it
   test::add(model, {0, 0, -1.0f}, glm::vec3(0.01f), 0.9f);
   test::StageRun run(model, {make_view(test::front_camera(64, 64, 64))});
@@ -122,10 +124,10 @@ TEST(Project, LeavesOutWhatIsBeforeTheNearPlane) {
 
 TEST(Project, SurvivesHostileSizes) {
   Model model;
-  test::add(model, {0, 0, 1}, glm::vec3(0.0f), 0.9f);                      // a point: only the low-pass is left
-  test::add(model, {0, 0, 2}, glm::vec3(1e7f), 0.5f);                      // over everything
-  test::add(model, {1e7f, 0, 3}, glm::vec3(1e7f, 1e-7f, 1e-7f), 0.5f);     // a needle from far away
-  test::add(model, {0, 0, 4}, glm::vec3(1e30f), 0.5f);                     // its covariance is no fp32 number
+  test::add(model, {0, 0, 1}, glm::vec3(0.0f), 0.9f);                   // a point: only the low-pass is left
+  test::add(model, {0, 0, 2}, glm::vec3(1e7f), 0.5f);                   // over everything
+  test::add(model, {1e7f, 0, 3}, glm::vec3(1e7f, 1e-7f, 1e-7f), 0.5f);  // a needle from far away
+  test::add(model, {0, 0, 4}, glm::vec3(1e30f), 0.5f);                  // its covariance is no fp32 number
   test::add(model, {0, 0, 5}, glm::vec3(1.0f, 1e-20f, 1e-20f), 1.0f, glm::vec3(1), {1, 1, 1, 1});
   const shared::View view = make_view(test::front_camera(64, 48, 64));
   test::StageRun run(model, {view});

@@ -26,7 +26,8 @@ inline std::vector<Picture> draw(const Model& model, const std::vector<shared::V
   return frame.read_pictures();
 }
 
-inline Picture draw(const Model& model, const shared::View& view, const render::FrameSettings& settings = {}) {
+inline Picture draw(const Model& model, const shared::View& view,
+                    const render::FrameSettings& settings = {}) {
   return draw(model, std::vector{view}, settings).front();
 }
 
@@ -36,9 +37,10 @@ inline testing::AssertionResult same_bits(const Picture& a, const Picture& b) {
   for (std::size_t k = 0; k < a.colour.size(); ++k) {
     if (std::memcmp(&a.colour[k], &b.colour[k], sizeof(glm::vec4)) != 0 ||
         std::memcmp(&a.z_sum[k], &b.z_sum[k], sizeof(float)) != 0) {
-      return testing::AssertionFailure() << "pixel (" << k % static_cast<std::size_t>(a.width) << ", "
-                                         << k / static_cast<std::size_t>(a.width) << ") differs: " << a.colour[k].x << " "
-                                         << b.colour[k].x << ", T " << a.colour[k].w << " " << b.colour[k].w;
+      return testing::AssertionFailure()
+             << "pixel (" << k % static_cast<std::size_t>(a.width) << ", "
+             << k / static_cast<std::size_t>(a.width) << ") differs: " << a.colour[k].x << " "
+             << b.colour[k].x << ", T " << a.colour[k].w << " " << b.colour[k].w;
     }
   }
   return testing::AssertionSuccess();
@@ -51,8 +53,11 @@ inline double psnr(const Picture& a, const Picture& b) {
 
 /// The stages of a frame run one after another by themselves, with every buffer at hand.
 struct StageRun {
-  StageRun(const Model& model, const std::vector<shared::View>& views, const render::FrameSettings& settings = {})
-      : shape(render::make_shape(views, settings, model)), frame(gl_context()), model_buffers(gl_context(), model) {
+  StageRun(const Model& model, const std::vector<shared::View>& views,
+           const render::FrameSettings& settings = {})
+      : shape(render::make_shape(views, settings, model)),
+        frame(gl_context()),
+        model_buffers(gl_context(), model) {
     frame.views.upload(shape.views);
     frame.counters.upload(std::vector{shared::Counters{}});
     frame.reserve(shape, 1 << 20);
@@ -64,7 +69,8 @@ struct StageRun {
     gl::Dispatcher dispatcher(gl_context());
     for (std::uint32_t group = 0; group < shape.groups.size(); ++group) {
       render::project(dispatcher, shape, group, model_buffers, frame);
-      indices.push_back(frame.indices.read<std::uint32_t>(frame.order_amounts.read<shared::Amount>(1).front().count));
+      indices.push_back(
+          frame.indices.read<std::uint32_t>(frame.order_amounts.read<shared::Amount>(1).front().count));
       if (stage == render::Stage::project) continue;
       render::order(dispatcher, frame);
       if (stage != render::Stage::order) render::pairs(dispatcher, shape, group, frame);
@@ -84,7 +90,8 @@ struct StageRun {
     const std::size_t all = std::size_t{shape.slots} * shape.view_count();
     const auto splats = frame.splats.read<shared::Splat>(all);
     const auto tiles = frame.tile_counts.read<std::uint32_t>(all);
-    Projected out{std::vector<shared::Splat>(shape.gaussian_count), std::vector<std::uint32_t>(shape.gaussian_count)};
+    Projected out{std::vector<shared::Splat>(shape.gaussian_count),
+                  std::vector<std::uint32_t>(shape.gaussian_count)};
     const auto& drawn = indices[shape.views[view].order_group];
     for (std::size_t slot = 0; slot < drawn.size(); ++slot) {
       out.splats[drawn[slot]] = splats[view * std::size_t{shape.slots} + slot];

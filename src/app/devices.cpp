@@ -1,0 +1,73 @@
+// binosplat devices: what this machine has to draw with.
+
+#include "gl/devices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "app/command.h"
+
+namespace binosplat::app {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+void print(const gl::Device& device) {
+  fmt::print("{}\n", device.options);
+  if (!device.usable) {
+    fmt::print("  cannot be used: {}\n", device.trouble);
+    return;
+  }
+  const gl::Limits& l = device.limits;
+  fmt::print("  {}{}, OpenGL {}\n", device.renderer, device.software ? " (software)" : "", device.version);
+  fmt::print("  {} MiB of one buffer, {} groups, {} invocations a group, {} KiB shared, {} storage blocks\n",
+             l.storage_block_bytes >> 20, l.groups, l.invocations, l.shared_bytes >> 10, l.storage_blocks);
+  for (const std::string& lack : device.lacks) fmt::print("  lacks {}\n", lack);
+}
+
+ordered_json to_json(const gl::Device& device) {
+  if (!device.usable) return {{"options", device.options}, {"usable", false}, {"trouble", device.trouble}};
+  const gl::Limits& l = device.limits;
+  return {{"options", device.options},
+          {"usable", true},
+          {"renderer", device.renderer},
+          {"version", device.version},
+          {"software", device.software},
+          {"limits",
+           {{"storage_block_bytes", l.storage_block_bytes},
+            {"groups", l.groups},
+            {"invocations", l.invocations},
+            {"shared_bytes", l.shared_bytes},
+            {"storage_blocks", l.storage_blocks},
+            {"program_binaries", l.program_binaries},
+            {"timestamp_bits", l.timestamp_bits},
+            {"subgroups", l.subgroups}}},
+          {"lacks", device.lacks}};
+}
+
+ExitCode devices(const std::string& json) {
+  const std::vector<gl::Device> list = gl::list_devices();
+  ordered_json all = ordered_json::array();
+  for (const gl::Device& device : list) {
+    print(device);
+    all.push_back(to_json(device));
+  }
+  if (!json.empty()) save_json(json, all);
+  const bool any = std::any_of(list.begin(), list.end(), [](const gl::Device& d) { return d.usable; });
+  return any ? ExitCode::done : ExitCode::no_gl;
+}
+
+}  // namespace
+
+void add_devices(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("devices", "List what this machine has to draw with");
+  const auto json = std::make_shared<std::string>();
+  sub->add_option("--json", *json, "Write the list to this file");
+  sub->footer("The lines without indent are the options that choose a device in `binosplat render`.");
+  sub->callback([json, &command] { command = [json] { return devices(*json); }; });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,12 @@
+#pragma once
+// What a set of timings says.
+
+#include <vector>
+
+namespace binosplat {
+
+/// The smallest value that at least `share` (0 to 1) of the values do not exceed: 0.5 the median, 0.99 p99.
+/// The values must not be empty.
+double quantile(std::vector<double> values, double share);
+
+}  // namespace binosplat

@@ -1,0 +1,50 @@
+// binosplat devices.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+TEST(Devices, ListsWaysToDrawThatRenderTakes) {
+  const test::TempFolder folder;
+  const test::Outcome outcome = test::run_program({"devices", "--json", folder / "devices.json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("--backend surfaceless"), std::string::npos) << outcome.out;
+  const auto list = nlohmann::json::parse(test::read_text(folder / "devices.json"));
+  bool any = false;
+  for (const auto& device : list) {
+    if (!device.at("usable").get<bool>()) continue;
+    any = true;
+    EXPECT_GE(device.at("limits").at("storage_blocks").get<int>(), 9);
+    EXPECT_NE(outcome.out.find(device.at("renderer").get<std::string>()), std::string::npos);
+  }
+  EXPECT_TRUE(any);
+}
+
+TEST(Devices, WithoutEglSaysWhatToInstall) {
+  // A library of that name which is none stands before the real one.
+  const test::TempFolder folder;
+  test::write_text(folder / "libEGL.so.1", "no library");
+  const test::Surroundings none = {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};
+  const test::Outcome devices = test::run_program({"devices"}, none);
+  EXPECT_EQ(devices.code, 3) << devices.out << devices.err;
+  EXPECT_NE(devices.out.find("apt install libegl1"), std::string::npos) << devices.out;
+  const test::Outcome render = test::run_program({"render", "demo:room", "-o", folder / "out"}, none);
+  EXPECT_EQ(render.code, 3) << render.err;
+  EXPECT_NE(render.err.find("apt install libegl1"), std::string::npos) << render.err;
+}
+
+TEST(Devices, WithoutProgramBinariesSaysWhatThatCosts) {
+  const test::Outcome outcome =
+      test::run_program({"devices"}, {.variables = {{"MESA_SHADER_CACHE_DISABLE", "true"}}});
+  EXPECT_EQ(outcome.code, 0);
+  if (outcome.out.find("llvmpipe") == std::string::npos) GTEST_SKIP() << "no Mesa here";
+  EXPECT_NE(outcome.out.find("lacks program binaries"), std::string::npos) << outcome.out;
+}
+
+}  // namespace
+}  // namespace binosplat

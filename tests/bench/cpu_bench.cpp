@@ -1,0 +1,132 @@
+// Speeds of the CPU's side: files in and out, and the sort that the GPU's is compared with. Each is told in
+// bytes a second of the file, of the picture's 8-bit pixels or of the sorted pairs (M and G are 10^6 and
+// 10^9). With BINOSPLAT_SCENES (README.md), real scenes as well.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
+
+#include "formats/cameras_file.h"
+#include "formats/image_file.h"
+#include "formats/model_file.h"
+#include "support/ply.h"
+#include "support/program.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace binosplat;
+
+/// Times `work`, which goes through `bytes` bytes.
+template <typename Work>
+void measure(const std::string& name, double bytes, const Work& work) {
+  const auto body = [=](benchmark::State& state) {
+    for ([[maybe_unused]] auto _ : state) work();
+    state.counters["bytes"] = benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
+  };
+  benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+void measure_loading(const std::string& name, const fs::path& path) {
+  measure("load " + name, static_cast<double>(fs::file_size(path)),
+          [=] { benchmark::DoNotOptimize(load_model(path)); });
+}
+
+void measure_cameras(const std::string& name, const fs::path& path) {
+  measure("load " + name, static_cast<double>(fs::file_size(path)),
+          [=] { benchmark::DoNotOptimize(load_cameras(path)); });
+}
+
+void add_plys(const test::TempFolder& folder) {
+  const auto add = [&](const std::string& name, const std::string& format, std::size_t count) {
+    test::PlyFile file = test::inria_file(3, count);
+    file.format = format;
+    const fs::path path = folder / (name + ".ply");
+    test::write_text(path, to_bytes(file));
+    measure_loading(name + ".ply", path);
+  };
+  add("100k", "binary_little_endian", 100'000);
+  add("400k", "binary_little_endian", 400'000);
+  add("100k_big_endian", "binary_big_endian", 100'000);
+  add("20k_ascii", "ascii", 20'000);
+}
+
+void add_cameras(const test::TempFolder& folder) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) {
+    text += fmt::format(
+        "{}{{\"id\": {}, \"img_name\": \"{:04}\", \"width\": 1920, \"height\": 1080, \"position\": [{}, "
+        "1.25, -3.5], "
+        "\"rotation\": [[0.6, 0.0, 0.8], [0.0, 1.0, 0.0], [-0.8, 0.0, 0.6]], \"fx\": 1375.5, \"fy\": "
+        "1376.25}}",
+        i == 0 ? "[" : ",\n", i, i, i * 0.0123456789);
+  }
+  test::write_text(folder / "cameras.json", text + "]\n");
+  measure_cameras("1000 cameras", folder / "cameras.json");
+}
+
+/// Slow gradients with a little noise, about as hard to compress as a drawn picture.
+Image picture(int width, int height) {
+  Image image(width, height, 3);
+  test::Uniform uniform(5);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        const double wave = 0.5 + 0.4 * std::sin(0.01 * x + c) * std::cos(0.013 * y);
+        image.at(x, y, c) = static_cast<float>(wave + uniform(-0.01, 0.01));
+      }
+    }
+  }
+  return image;
+}
+
+void add_png(const test::TempFolder& folder) {
+  const Image image = picture(1920, 1080);
+  const fs::path path = folder / "picture.png";
+  measure("save 1920x1080 RGB as 8-bit PNG", static_cast<double>(image.data.size()),
+          [=] { save_png(path, image); });
+  save_png(path, image);
+  measure("load 1920x1080 RGB of 8-bit PNG", static_cast<double>(image.data.size()),
+          [=] { benchmark::DoNotOptimize(load_image(path)); });
+}
+
+/// As tests/primitives/radix_sort_test.cpp sorts to compare: values by their keys, equal keys in order.
+void add_sort() {
+  std::mt19937 engine(11);
+  std::vector<std::uint32_t> keys(1'000'000);
+  for (std::uint32_t& key : keys) key = engine();
+  measure("sort 1M pairs", 8.0 * static_cast<double>(keys.size()), [=] {
+    std::vector<std::uint32_t> values(keys.size());
+    std::iota(values.begin(), values.end(), 0u);
+    std::stable_sort(values.begin(), values.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
+    benchmark::DoNotOptimize(values);
+  });
+}
+
+void add_scenes() {
+  const char* scenes = std::getenv("BINOSPLAT_SCENES");
+  if (scenes == nullptr) return;
+  for (const std::string name : {"fox", "garden"}) {
+    const fs::path folder = fs::path(scenes) / name;
+    measure_loading(name + ".ply", folder / (name + ".ply"));
+    measure_cameras("cameras of " + name, folder / "cameras.json");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  const test::TempFolder folder;
+  add_plys(folder);
+  add_cameras(folder);
+  add_png(folder);
+  add_sort();
+  add_scenes();
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,0 +1,216 @@
+// gpu_bench: one case of the benchmark on this machine's GPU, checked before it is timed: the headset pair,
+// each eye by itself, and one large picture. bench_gpu runs all cases and keeps what they print.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "formats/cameras_file.h"
+#include "formats/model_file.h"
+#include "render/frame.h"
+#include "scene/demo_city.h"
+#include "scene/repeat.h"
+#include "stereo/rig.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+struct Case {
+  std::string name;     // scene, and how often it is repeated
+  std::string ply;      // below the folder of scenes; empty: the built-in city
+  std::string cameras;  // below the folder of views
+  int repeat = 1;       // times along x and z
+  double spacing = 0;   // world units
+  std::vector<std::string> views;
+};
+
+const std::vector<Case> cases = {
+    {"fox", "fox/fox.ply", "fox_bench.json", 1, 0, {"0001", "0042"}},
+    {"garden", "garden/garden.ply", "garden_bench.json", 1, 0, {"DSC07956", "DSC08060", "DSC08116"}},
+    {"fox 8 x 8", "fox/fox.ply", "fox_bench.json", 8, 10, {"0001", "0042"}},
+    {"garden 4 x 4", "garden/garden.ply", "garden_bench.json", 4, 20, {"DSC07956", "DSC08060", "DSC08116"}},
+    {"city of 4 million", "", "", 1, 0, {}},
+};
+
+// What is drawn of one view: a stereo pair and a large picture.
+struct Shot {
+  std::string name;
+  std::array<shared::View, 2> eyes;
+  shared::View large;
+};
+
+struct Loaded {
+  Model model;
+  std::vector<Shot> shots;
+};
+
+Loaded load(const Case& c, const fs::path& scenes, const fs::path& views) {
+  Loaded loaded;
+  if (c.ply.empty()) {
+    Demo demo = demo_city({.count = 4'000'000});
+    loaded.model = std::move(demo.model);
+    for (const Camera& head : demo.cameras) {
+      const Camera camera = stereo::apply_preset(head, "headset");
+      Camera large = resized(head, 4608, 3456);
+      loaded.shots.push_back({head.name, stereo::make_rig(camera, {.ipd = 0.064}).views, make_view(large)});
+    }
+    return loaded;
+  }
+  loaded.model = load_model(scenes / c.ply);
+  if (c.repeat > 1) loaded.model = repeat(std::move(loaded.model), c.repeat, c.repeat, c.spacing);
+  const std::vector<Camera> cameras = load_cameras(views / c.cameras);
+  for (const std::string& name : c.views) {
+    const auto pair = stereo::find_eyes(cameras, name + "_avp");
+    const auto large = std::find_if(cameras.begin(), cameras.end(),
+                                    [&](const Camera& k) { return k.name == name + "_4608"; });
+    if (!pair || large == cameras.end())
+      fail("{}: no {}_avp_left, _right and {}_4608", c.cameras, name, name);
+    loaded.shots.push_back({name, stereo::rig_from_eyes((*pair)[0], (*pair)[1]).views, make_view(*large)});
+  }
+  return loaded;
+}
+
+bool same(const Picture& a, const Picture& b) {
+  return std::memcmp(a.colour.data(), b.colour.data(), a.colour.size() * sizeof(glm::vec4)) == 0 &&
+         std::memcmp(a.z_sum.data(), b.z_sum.data(), a.z_sum.size() * sizeof(float)) == 0;
+}
+
+// Each eye must have the same bits drawn with the other and alone, and must not be empty.
+void check(render::Frame& frame, const Shot& shot) {
+  frame.draw(shot.eyes);
+  const std::vector<Picture> both = frame.read_pictures();
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    frame.draw(std::span(&shot.eyes[eye], 1));
+    if (!same(frame.read_pictures().front(), both[eye]))
+      fail("{}: eye {} differs from itself alone", shot.name, eye);
+    if (same(both[eye], Picture(both[eye].width, both[eye].height)))
+      fail("{}: eye {} is empty", shot.name, eye);
+  }
+  if (same(both[0], both[1])) fail("{}: both eyes are the same picture", shot.name);
+}
+
+// Medians of the stages and of the whole frame, with the quartiles.
+Json time(render::Frame& frame, std::span<const shared::View> views, int frames) {
+  std::map<std::string, std::vector<double>> stages;
+  std::vector<std::string> names;
+  render::FrameReport report;
+  for (int n = -5; n < frames; ++n) {  // five to warm up
+    report = frame.draw(views);
+    if (n < 0) continue;
+    for (const gl::StageTime& stage : report.stages) {
+      if (stages.find(stage.name) == stages.end()) names.push_back(stage.name);
+      stages[stage.name].push_back(stage.ms);
+    }
+    stages["frame"].push_back(report.total_ms);
+  }
+  names.emplace_back("frame");
+  Json json;
+  for (const std::string& name : names) json[name] = quantile(stages[name], 0.5);
+  json["quartiles"] = {quantile(stages["frame"], 0.25), quantile(stages["frame"], 0.75)};
+  json["visible"] = report.visible;
+  json["pairs"] = report.pairs;
+  json["gpu_mb"] = report.gpu_bytes / 1e6;
+  return json;
+}
+
+void print_row(const std::string& scene, const std::string& view, const char* what, const Json& t) {
+  fmt::print("| {} | {} | {} |", scene, view, what);
+  for (const char* stage : {"project", "order", "pairs", "tile_sort", "ranges", "blend", "frame"}) {
+    fmt::print(" {:.3f} |", t.at(stage).get<double>());
+  }
+  fmt::print(" {:.2f} | {:.2f} | {:.0f} |\n", t.at("visible").get<double>() * 1e-6,
+             t.at("pairs").get<double>() * 1e-6, t.at("gpu_mb").get<double>());
+  std::fflush(stdout);
+}
+
+Json run(const Case& c, const fs::path& scenes, const fs::path& views, int frames) {
+  const Clock::time_point start = Clock::now();
+  const auto context = gl::Context::open();
+  Json json = {{"scene", c.name}, {"gpu", context->renderer()}, {"driver", context->version()}};
+  json["context_ms"] = ms_since(start);
+  Clock::time_point phase = Clock::now();
+  const Loaded loaded = load(c, scenes, views);
+  json["gaussians"] = loaded.model.count();
+  json["load_ms"] = ms_since(phase);
+  phase = Clock::now();
+  render::Frame frame(*context, loaded.model);
+  frame.draw(loaded.shots.front().eyes);
+  const std::vector<Picture> first = frame.read_pictures();
+  json["upload_draw_read_ms"] = ms_since(phase);
+  json["first_picture_ms"] = ms_since(start);
+  for (const Shot& shot : loaded.shots) {
+    check(frame, shot);
+    Json row = {{"view", shot.name}};
+    row["pair"] = time(frame, shot.eyes, frames);
+    row["left"] = time(frame, std::span(&shot.eyes[0], 1), frames);
+    row["right"] = time(frame, std::span(&shot.eyes[1], 1), frames);
+    row["large"] = time(frame, std::span(&shot.large, 1), frames);
+    for (const char* what : {"pair", "left", "right", "large"}) print_row(c.name, shot.name, what, row[what]);
+    const auto front = [&](const char* what) {
+      return row[what]["project"].get<double>() + row[what]["order"].get<double>();
+    };
+    row["front_pair_over_one_eye"] = front("pair") / std::max(front("left"), front("right"));
+    row["pair_over_both_alone"] = row["pair"]["frame"].get<double>() /
+                                  (row["left"]["frame"].get<double>() + row["right"]["frame"].get<double>());
+    fmt::print(
+        "  project + order of the pair over one eye's: {:.2f}; the pair over its two mono frames: {:.2f}\n",
+        row["front_pair_over_one_eye"].get<double>(), row["pair_over_both_alone"].get<double>());
+    json["views"].push_back(row);
+  }
+  fmt::print(
+      "  first picture {:.0f} ms after start: context {:.0f}, model {:.0f}, upload, first pair and read-back "
+      "{:.0f}\n",
+      json["first_picture_ms"].get<double>(), json["context_ms"].get<double>(), json["load_ms"].get<double>(),
+      json["upload_draw_read_ms"].get<double>());
+  return json;
+}
+
+}  // namespace
+}  // namespace binosplat
+
+int main(int argc, char** argv) {
+  using namespace binosplat;
+  CLI::App app("One case of the benchmark on this machine's GPU.");
+  std::string name;
+  std::string scenes;
+  std::string views;
+  std::string json;
+  int frames = 20;
+  bool list = false;
+  app.add_flag("--list", list, "Print the names of the cases and end");
+  app.add_option("case", name, "A name from --list");
+  app.add_option("--scenes", scenes, "Folder of the unpacked scenes");
+  app.add_option("--views", views, "Folder of the bench views (SCENE_bench.json)");
+  app.add_option("--json", json, "Append the result to this file, one line");
+  app.add_option("--frames", frames, "Frames that the medians are of");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    for (const Case& c : cases) {
+      if (list) fmt::print("{}\n", c.name);
+      if (list || c.name != name) continue;
+      const Json result = run(c, scenes, views, frames);
+      if (!json.empty()) std::ofstream(json, std::ios::app) << result.dump() << "\n";
+      return 0;
+    }
+    if (!list) fail("no case named '{}': see --list", name);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "gpu_bench: {}\n", error.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,65 @@
+#include "fuzz/input.h"
+
+#include <sys/mman.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+
+namespace binosplat {
+
+namespace {
+
+std::span<const std::byte> current;
+
+}  // namespace
+
+// In place of src/base/mapped_file.cpp, which the linker leaves out for this: a mapped file may be read up to
+// the end of its last page without a trace, these bytes may not.
+MappedFile::MappedFile(const std::filesystem::path&) : data_(current.data()), size_(current.size()) {}
+MappedFile::~MappedFile() = default;
+
+namespace fuzz {
+
+namespace {
+
+void feed_as(const std::filesystem::path& path, std::span<const std::byte> bytes,
+             const std::function<void(const std::filesystem::path&)>& read) {
+  // One thread: the same input takes the same way again.
+  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  current = bytes;
+  try {
+    read(path);
+  } catch (const Error& error) {
+    demand(std::string(error.what()).find(path.string()) != std::string::npos,
+           "an error that does not name its file");
+  }
+}
+
+}  // namespace
+
+void feed(std::span<const std::byte> bytes, const std::function<void(const std::filesystem::path&)>& read) {
+  feed_as("fuzzed.bin", bytes, read);
+}
+
+void feed_file(std::span<const std::byte> bytes,
+               const std::function<void(const std::filesystem::path&)>& read) {
+  static const int file = memfd_create("fuzzed", MFD_CLOEXEC);
+  demand(ftruncate(file, 0) == 0 && pwrite(file, bytes.data(), bytes.size(), 0) == std::ssize(bytes),
+         "no file in memory");
+  feed_as("/proc/self/fd/" + std::to_string(file), bytes, read);
+}
+
+void demand(bool sound, const char* what) {
+  if (sound) return;
+  std::fprintf(stderr, "fuzzing found: %s\n", what);
+  std::abort();
+}
+
+}  // namespace fuzz
+}  // namespace binosplat

@@ -1,0 +1,44 @@
+// Models: load_model, and with it load_ply.
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/model_file.h"
+#include "fuzz/input.h"
+
+namespace {
+
+using namespace binosplat;
+
+bool finite(std::span<const float> values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+template <typename Vector>
+std::span<const float> floats(const std::vector<Vector>& values) {
+  return {&values[0].x, values.size() * static_cast<std::size_t>(Vector::length())};
+}
+
+/// What scene/model.h promises.
+void check(const Model& model) {
+  const std::size_t n = model.count();
+  fuzz::demand(n > 0, "a model without Gaussians");
+  fuzz::demand(model.degree >= 0 && model.degree <= 3, "a degree beyond 3");
+  fuzz::demand(model.scale.size() == n && model.rotation.size() == n && model.opacity.size() == n &&
+                   model.sh.size() == n * 3 * static_cast<std::size_t>(sh_count(model.degree)),
+               "arrays of different lengths");
+  fuzz::demand(finite(floats(model.position)) && finite(floats(model.scale)) && finite(model.sh),
+               "values that are not finite");
+  for (std::size_t i = 0; i < n; ++i) {
+    fuzz::demand(std::abs(glm::length(model.rotation[i]) - 1.0f) < 1e-5f, "a rotation not of unit length");
+    fuzz::demand(model.opacity[i] >= 0.0f && model.opacity[i] <= 1.0f, "an opacity beyond 0 to 1");
+    fuzz::demand(glm::all(glm::greaterThanEqual(model.scale[i], glm::vec3(0.0f))), "a negative scale");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::feed(fuzz::bytes_of(data, size), [](const std::filesystem::path& path) { check(load_model(path)); });
+  return 0;
+}
