@@ -34,7 +34,7 @@ void main() {
     uint tiles = project(view, g, axes, splat) ? tile_count(splat, view) : 0u;
     tile_counts[v * slots + slot] = tiles;
     if (tiles > 0u) {
-      splat.colour = vec4(sh_colour(i, normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz)), 0.0);
+      splat.colour.rgb = sh_colour(i, normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
       splats[v * slots + slot] = splat;
     }
   }

@@ -1,6 +1,7 @@
 // A Gaussian as a view sees it (METHOD 2), all but its colour. `precise` because several programs compute it and must get the
 // same bits.
 #include "shared/exact.glsl"
+#include "threshold/threshold.glsl"
 
 // Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of METHOD 2.
 mat3 scaled_axes(Gaussian g) {
@@ -75,5 +76,6 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   splat.mean = mean;
   splat.depth = v.z;
   splat.opacity = g.position.w;
+  splat.colour = vec4(0.0, 0.0, 0.0, tile_level(splat.opacity, splat.conic.w, 1.0));
   return true;
 }

@@ -47,7 +47,7 @@ struct Splat {
   float depth;    // view z, world units
   float opacity;  // sigma
   vec4 conic;     // Q.xx, Q.xy, Q.yy in px^-2; w: sqrt(det C2) in px^2
-  vec4 colour;    // rgb, display-referred; w: unused
+  vec4 colour;    // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by
 };
 
 // What a frame counts on the GPU, read back after it. An overflow bit says that a buffer was too small for

@@ -1,7 +1,10 @@
 // The square of 3D-GS (Kerbl 2023): three standard deviations of the longer axis, whatever the opacity, its tiles found by
-// C's truncation. It cuts tails that can be seen: alpha is still 0.011 there for an opaque splat.
+// C's truncation. Opacities below tau are not left out, as there. It cuts tails that can be seen: alpha is still 0.011 there for an opaque splat.
 
 uvec4 tile_box(Splat splat, View view) {
+#if TH != TH_TAU
+  if (splat.colour.w < RHO_NONE) return uvec4(0u);
+#endif
   // The covariance back from the conic; the half trace m and det of INRIA's lambda.
   precise float det = splat.conic.w * splat.conic.w;
   precise float m = 0.5 * (splat.conic.x + splat.conic.z) * det;

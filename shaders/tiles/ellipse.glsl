@@ -1,18 +1,13 @@
 // Exact (FlashGS, AdR-Gaussian): a tile is touched where the smallest q over the rectangle of its pixel centres is at most
-// rho = 2 ln(sigma / tau), that is where alpha reaches tau. The rounding of fp32 must not drop a pair that the blend would
+// rho = 2 ln(sigma / Th), that is where alpha reaches Th. The rounding of fp32 must not drop a pair that the blend would
 // show, so the test has a margin (METHOD 4).
-
-float ellipse_rho(Splat splat) {
-  precise float rho = 1.3862943611198906 * log2(splat.opacity / float(ALPHA_MIN));
-  return rho;
-}
 
 // The test itself, for pixel centres from `low` to `high`.
 bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {
   precise vec2 a = low - splat.mean;
   precise vec2 b = high - splat.mean;
   precise vec2 nearest = clamp(vec2(0.0), a, b);
-  if (nearest == vec2(0.0)) return rho >= -4e-6;
+  if (nearest == vec2(0.0)) return rho >= RHO_NONE;
   precise float xx = splat.conic.x;
   precise float xy = splat.conic.y;
   precise float yy = splat.conic.z;
@@ -38,24 +33,12 @@ bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {
   return best - margin <= rho;
 }
 
-vec2 tile_low(uvec2 tile) { return vec2(tile * uint(TILE_SIZE)); }
-
-vec2 tile_high(uvec2 tile, View view) {
-  return vec2(min(tile * uint(TILE_SIZE) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u)));
-}
-
 // What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.
 float ellipse_outer_rho(float rho) { return 1.001 * max(rho, 0.0) + 1e-3; }
 
-// C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
-vec3 covariance(Splat splat) {
-  float s = splat.conic.w;
-  return vec3(splat.conic.z * s * s, -splat.conic.y * s * s, splat.conic.x * s * s);
-}
-
 uvec4 tile_box(Splat splat, View view) {
-  float rho = ellipse_rho(splat);
-  if (rho < -4e-6) return uvec4(0u);
+  float rho = splat.colour.w;
+  if (rho < RHO_NONE) return uvec4(0u);
   vec3 c = covariance(splat);
   precise vec2 extent = sqrt(ellipse_outer_rho(rho) * c.xz) * 1.0001 + 0.01;
   uvec2 columns = tile_span(splat.mean.x - extent.x, splat.mean.x + extent.x, view.tiles_x);
@@ -64,7 +47,7 @@ uvec4 tile_box(Splat splat, View view) {
 }
 
 uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
-  float rho = ellipse_rho(splat);
+  float rho = splat.colour.w;
   precise float outer = ellipse_outer_rho(rho);
   vec3 c = covariance(splat);
   float low = tile_low(uvec2(0u, row)).y - splat.mean.y;

@@ -6,6 +6,9 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 
+// rho below this: alpha cannot reach the threshold. What fp32's log2 and exp2 may err by lies above it.
+#define RHO_NONE (-4e-6)
+
 // First and one-past-last tile along an axis for pixels [low, high]; beyond the grid is cut off. Clamped as floats, since
 // int() of a huge float is anything.
 uvec2 tile_span(float low, float high, uint tiles) {
@@ -14,15 +17,21 @@ uvec2 tile_span(float low, float high, uint tiles) {
   return uvec2(uint(first), max(uint(first), uint(last + 1.0)));
 }
 
-#if TILES == TILES_AABB
-#include "tiles/aabb.glsl"
-#elif TILES == TILES_ELLIPSE
-#include "tiles/ellipse.glsl"
-#else
-// TILES_ALL: one pair a view, whose tiles share one list of all its splats.
-uvec4 tile_box(Splat splat, View view) { return uvec4(0u, 0u, 1u, 1u); }
-uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }
-#endif
+// The first and the last pixel centre of a tile, the last one clipped to the picture.
+vec2 tile_low(uvec2 tile) { return vec2(tile * uint(TILE_SIZE)); }
+
+vec2 tile_high(uvec2 tile, View view) {
+  return vec2(min(tile * uint(TILE_SIZE) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u)));
+}
+
+// C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
+vec3 covariance(Splat splat) {
+  precise float s = splat.conic.w;
+  precise vec3 c = vec3(splat.conic.z * s * s, -splat.conic.y * s * s, splat.conic.x * s * s);
+  return c;
+}
+
+#include "tiles/{TILES_NAME}.glsl"
 
 uint tile_count(Splat splat, View view) {
   uvec4 box = tile_box(splat, view);

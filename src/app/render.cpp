@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/command.h"
+#include "app/open_scene.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/render_report.h"
@@ -11,11 +12,9 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/image_file.h"
-#include "formats/model_file.h"
 #include "gl/context.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
-#include "scene/demo_room.h"
 #include "scene/framing.h"
 
 namespace binosplat::app {
@@ -23,8 +22,6 @@ namespace binosplat::app {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr const char* demo_scene = "demo:room";
 
 // The file of a view's photo, or nothing.
 std::optional<fs::path> find_photo(const fs::path& folder, const Shot& shot) {
@@ -108,13 +105,9 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
 ExitCode render(const RenderOptions& options) {
   check(options);
   const OutputPlan plan = plan_outputs(options);
-  const bool built_in = options.scene == demo_scene;
-  if (!built_in && options.scene.rfind("demo:", 0) == 0) {
-    fail("{}: the scene that is built in is called {}", options.scene, demo_scene);
-  }
-  Demo demo = built_in ? demo_room() : Demo();
-  CameraList list = listed_cameras(options, demo.cameras);
-  const Model model = built_in ? std::move(demo.model) : load_model(options.scene);
+  const Scene scene = open_scene(options);
+  CameraList list = listed_cameras(options, scene.cameras);
+  const Model model = scene.model();
   log_info("{}: {} Gaussians, harmonics of degree {}", options.scene, model.count(), model.degree);
   if (!list.listed) list = made_up_cameras(options, model);
 
@@ -142,6 +135,7 @@ void add_render(CLI::App& program, Command& command) {
   sub->footer(
       "Examples:\n"
       "  binosplat render demo:room -o out/demo\n"
+      "  binosplat render demo:city --count 4250000 --view all\n"
       "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "scene/demo_city.h"
 
 namespace binosplat::app {
 
@@ -21,16 +22,16 @@ glm::dvec3 parse_three(const std::string& option, const std::string& text) {
   return v;
 }
 
-glm::ivec2 parse_size(const std::string& text) {
-  glm::ivec2 size{0};
+// "1280x720" as two numbers above zero; `expected` says what they mean.
+glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
+  glm::ivec2 two{0};
   char cross = 0;
   std::istringstream in(text);
-  in >> size.x >> cross >> size.y;
-  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || size.x < 1 ||
-      size.y < 1) {
-    fail("--size {}: expected pixels as WIDTHxHEIGHT, for one 1280x720", text);
+  in >> two.x >> cross >> two.y;
+  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || two.x < 1 || two.y < 1) {
+    fail("{} {}: expected {}", option, text, expected);
   }
-  return size;
+  return two;
 }
 
 Background parse_background(const std::string& text) {
@@ -62,6 +63,26 @@ CLI::Validator range(int low, int high) { return CLI::Range(low, high).descripti
 
 CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
 
+void add_scene(CLI::App& sub, RenderOptions& o) {
+  const char* const group = "Scene";
+  sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->group(group);
+  sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
+      ->type_name("N")
+      ->group(group);
+  sub.add_option_function<std::string>(
+         "--repeat",
+         [&o](const std::string& text) {
+           o.repeat = parse_two("--repeat", text, "copies along x and z as NXxNZ, for one 4x4");
+         },
+         "Copies of the scene along x and z; needs --spacing")
+      ->type_name("NXxNZ")
+      ->group(group);
+  sub.add_option("--spacing", o.spacing, "From one copy to the next, in world units")
+      ->type_name("S")
+      ->check(positive)
+      ->group(group);
+}
+
 void add_cameras(CLI::App& sub, RenderOptions& o) {
   const auto three = [&sub](const char* name, std::optional<glm::dvec3>& into, const char* help) {
     return sub
@@ -91,7 +112,10 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
       ->check(range(1, 10000))
       ->group(group);
   sub.add_option_function<std::string>(
-         "--size", [&o](const std::string& text) { o.size = parse_size(text); },
+         "--size", 
+         [&o](const std::string& text) {
+           o.size = parse_two("--size", text, "pixels as WIDTHxHEIGHT, for one 1280x720");
+         },
          "Pixels of each eye; keeps the vertical field of view")
       ->type_name("WxH")
       ->group(group);
@@ -197,7 +221,11 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
 }  // namespace
 
 void add_options(CLI::App& sub, RenderOptions& options) {
-  sub.add_option("SCENE", options.scene, "A model (.ply), or demo:room, the built-in room")->required();
+  sub.add_option("SCENE", options.scene,
+                 "A model (.ply), or one that is built in: demo:room, a room, or\ndemo:city, streets of any "
+                 "size")
+      ->required();
+  add_scene(sub, options);
   add_cameras(sub, options);
   add_rig(sub, options);
   add_frame(sub, options);
@@ -205,6 +233,11 @@ void add_options(CLI::App& sub, RenderOptions& options) {
 }
 
 void check(const RenderOptions& o) {
+  if (o.scene != demo_city_name && (o.seed || o.count)) {
+    fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
+  }
+  if (o.repeat.has_value() != o.spacing.has_value())
+    fail("--repeat and --spacing go together: how many copies, and how far apart");
   if (o.eye.has_value() != o.at.has_value())
     fail("--eye and --at go together: where the camera is, and what it looks at");
   const bool made_up = o.eye || o.orbit;

@@ -2,6 +2,7 @@
 // The options of `binosplat render`, as far as they can be checked by themselves.
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -13,7 +14,13 @@
 namespace binosplat::app {
 
 struct RenderOptions {
-  std::string scene;  // a model file, or demo:room
+  std::string scene;  // a model file, or one that the program makes
+
+  // Of scenes that the program makes, and how often a scene is repeated.
+  std::optional<std::uint64_t> seed;
+  std::optional<std::size_t> count;  // Gaussians
+  std::optional<glm::ivec2> repeat;  // along x and z
+  std::optional<double> spacing;     // world units
 
   // Cameras.
   std::string cameras;             // a file; empty: found beside the model

@@ -1,6 +1,7 @@
 // libpng reports errors by longjmp, which runs no destructors: what it may jump out of keeps its objects in a
 // struct of the caller.
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
@@ -116,6 +117,9 @@ bool write_image(Writer& writer, const Image& image, int bits) {
                static_cast<png_uint_32>(image.height), bits, colour, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  // Once filtered, drawn pictures hold runs and little else that repeats: looking for nothing else is five
+  // times as fast, and makes files 2 to 6 % larger.
+  png_set_compression_strategy(writer.png, Z_RLE);
   png_set_text(writer.png, writer.info, writer.texts.data(), static_cast<int>(writer.texts.size()));
   png_write_info(writer.png, writer.info);
   for (int y = 0; y < image.height; ++y) {

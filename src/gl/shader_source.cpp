@@ -13,7 +13,7 @@ namespace binosplat::gl {
 
 ShaderSource::ShaderSource(const std::string& name, const Defines& defines,
                            const std::filesystem::path& folder)
-    : folder_(folder) {
+    : defines_(defines), folder_(folder) {
   text_ = "#version 450 core\n";
   for (const auto& [key, value] : defines) text_ += fmt::format("#define {} {}\n", key, value);
   append(name, "the program");
@@ -32,6 +32,14 @@ std::string ShaderSource::read(const std::string& name, const std::string& from)
   return found->second;
 }
 
+std::string ShaderSource::filled(std::string path) const {
+  for (const auto& [key, value] : defines_) {
+    const std::size_t at = path.find("{" + key + "}");
+    if (at != std::string::npos) path.replace(at, key.size() + 2, value);
+  }
+  return path;
+}
+
 void ShaderSource::append(const std::string& name, const std::string& from) {
   if (std::find(files_.begin(), files_.end(), name) != files_.end()) return;
   const std::size_t number = files_.size();
@@ -42,7 +50,7 @@ void ShaderSource::append(const std::string& name, const std::string& from) {
   for (int at = 1; std::getline(body, line); ++at) {
     if (line.rfind("#include \"", 0) == 0) {
       const std::size_t end = line.find('"', 10);
-      append(line.substr(10, end - 10), fmt::format("{}:{}", name, at));
+      append(filled(line.substr(10, end - 10)), fmt::format("{}:{}", name, at));
       text_ += fmt::format("#line {} {}\n", at + 1, number);
     } else {
       text_ += line + "\n";

@@ -17,7 +17,8 @@ const std::map<std::string, std::string>& embedded_shaders();
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
 /// The whole source of a shader: `#version`, the defines, then the file with every `#include "path below
-/// shaders/"` put in its place once. `#line` numbers files in the order of `files`, so that file_names() can
+/// shaders/"` put in its place once; {NAME} in a path stands
+/// for the value of that define. `#line` numbers files in the order of `files`, so that file_names() can
 /// turn a driver's message back into a place. `folder`, when not empty, is read instead of the embedded text.
 class ShaderSource {
  public:
@@ -32,6 +33,9 @@ class ShaderSource {
   void append(const std::string& name, const std::string& from);
   std::string read(const std::string& name, const std::string& from) const;
 
+  std::string filled(std::string path) const;
+
+  Defines defines_;
   std::filesystem::path folder_;
   std::vector<std::string> files_;
   std::string text_;

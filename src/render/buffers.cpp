@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
@@ -57,6 +58,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   if (settings.tile_size != 8 && settings.tile_size != 16 && settings.tile_size != 32) {
     fail("--tile {}: expected 8, 16 or 32", settings.tile_size);
   }
+  if (!(settings.loss >= 0.0f) || !std::isfinite(settings.loss))
+    fail("--loss {}: expected zero or more", settings.loss);
   FrameShape shape;
   shape.settings = settings;
   shape.degree = model.degree;

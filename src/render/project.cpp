@@ -1,3 +1,4 @@
+#include <bit>
 #include <cstddef>
 
 #include "render/stages.h"
@@ -18,7 +19,8 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
         {{"page_first", page.first},
          {"page_count", page.count},
          {"view_begin", views.begin},
-         {"view_end", views.end}});
+         {"view_end", views.end},
+         {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)}});
   }
 }
 
@@ -48,8 +50,12 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& 
 }  // namespace
 
 gl::Defines tile_defines(const FrameShape& shape) {
-  return {{"TILES", std::to_string(shape.settings.tiles)},
-          {"TILE_SIZE", std::to_string(shape.settings.tile_size)}};
+  const FrameSettings& s = shape.settings;
+  return {{"TILES_NAME", tiles_choices[s.tiles].name},
+          {"TH", std::to_string(s.th)},
+          {"TH_NAME", th_choices[s.th].name},
+          {"TILES", std::to_string(s.tiles)},
+          {"TILE_SIZE", std::to_string(s.tile_size)}};
 }
 
 void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
@@ -73,7 +79,8 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"page_count", page.count},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
-                    {"slots", shape.slots}});
+                    {"slots", shape.slots},
+                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)}});
   }
 }
 

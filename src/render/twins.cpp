@@ -20,7 +20,7 @@ shared::Splat to_shared(const reference::Splat& s) {
   out.depth = static_cast<float>(s.depth);
   out.opacity = static_cast<float>(s.opacity);
   out.conic = glm::vec4(glm::dvec4(s.conic, std::sqrt(s.det)));
-  out.colour = glm::vec4(glm::dvec4(s.colour, 0.0));
+  out.colour = glm::vec4(glm::dvec4(s.colour, 2.0 * std::log(s.opacity / (ALPHA_MIN))));
   return out;
 }
 

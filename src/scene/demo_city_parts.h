@@ -57,6 +57,7 @@ struct House {
   dvec3 wall, trim, door, roof;
   std::uint32_t number;  // for whatever else differs from house to house
   double begin;          // along its row
+  std::uint32_t first_wall;  // its front; its back is the next
 };
 
 /// A side of a house that has windows.
@@ -183,6 +184,19 @@ class Builder {
   double grain_;
 };
 
+/// A window, door or shop window in a wall; metres from the wall's left end and from the ground.
+struct Opening {
+  enum class Kind { none, window, door, shop };
+  Kind kind;
+  double u0, u1, v0, v1;
+};
+Opening opening_of(const City& city, const Wall& wall, int floor, int column);
+
+// Paints of houses; their surfaces' subjects are a wall, a house and a house.
+Look paint_wall(const City& city, const Surface& surface, double u, double v);
+Look paint_masonry(const City& city, const Surface& surface, double u, double v);
+Look paint_roof(const City& city, const Surface& surface, double u, double v);
+
 // The cameras that demo_city gives, around which its detail lies: eye, and what it looks at, on the plan.
 struct Head {
   const char* name;
@@ -197,8 +211,6 @@ void add_houses(Builder& builder);     // demo_city_houses.cpp
 void add_streets(Builder& builder);    // demo_city_streets.cpp: ground
 void add_things(Builder& builder);     // demo_city_things.cpp: trees, lamps, cars
 void add_far_away(Builder& builder);   // demo_city_far.cpp: towers, hills, sky
-
-Look paint_wall(const City& city, const Surface& surface, double u, double v);
 
 /// Daylight on the city: a sun whose shadows are cast, a sky, and haze before what is far away.
 class Light {

@@ -172,6 +172,7 @@ class Planner {
   void add_neighbours(const Row& row) {
     for (std::uint32_t h = row.first; h < row.end; ++h) {
       House& house = city_.houses[h];
+      house.first_wall = static_cast<std::uint32_t>(city_.walls.size());
       house.left_eave = h > row.first ? city_.houses[h - 1].eave : 0.0;
       house.right_eave = h + 1 < row.end ? city_.houses[h + 1].eave : 0.0;
       const dmat3& axes = house.frame.axes;

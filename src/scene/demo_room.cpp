@@ -61,7 +61,7 @@ Demo demo_room() {
 
   Demo demo;
   demo.model = bake(stage, evening_light(to_sun));
-  demo.model.name = "demo:room";
+  demo.model.name = demo_room_name;
   demo.cameras = {head("room", {-0.95, -1.45, -1.75}, {0.30, -0.98, 1.0}, 62.0),
                   head("window", {0.62, -1.08, -0.75}, {-0.70, -1.35, 2.0}, 60.0),
                   head("table", {0.10, -1.25, -0.35}, {1.10, -0.80, 0.60}, 55.0)};

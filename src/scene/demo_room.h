@@ -8,6 +8,8 @@
 
 namespace binosplat {
 
+constexpr const char* demo_room_name = "demo:room";
+
 struct Demo {
   Model model;
   std::vector<Camera> cameras;  // heads, 1,280 x 720; the first is the one to show

@@ -3,21 +3,29 @@
 // 10^9). With BINOSPLAT_SCENES (README.md), real scenes as well.
 
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <numeric>
 
+#include "base/output_file.h"
 #include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "support/ply.h"
-#include "support/program.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace binosplat;
+
+void write_text(const fs::path& path, const std::string& text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
 
 /// Times `work`, which goes through `bytes` bytes.
 template <typename Work>
@@ -39,12 +47,12 @@ void measure_cameras(const std::string& name, const fs::path& path) {
           [=] { benchmark::DoNotOptimize(load_cameras(path)); });
 }
 
-void add_plys(const test::TempFolder& folder) {
+void add_plys(const fs::path& folder) {
   const auto add = [&](const std::string& name, const std::string& format, std::size_t count) {
     test::PlyFile file = test::inria_file(3, count);
     file.format = format;
     const fs::path path = folder / (name + ".ply");
-    test::write_text(path, to_bytes(file));
+    write_text(path, to_bytes(file));
     measure_loading(name + ".ply", path);
   };
   add("100k", "binary_little_endian", 100'000);
@@ -53,7 +61,7 @@ void add_plys(const test::TempFolder& folder) {
   add("20k_ascii", "ascii", 20'000);
 }
 
-void add_cameras(const test::TempFolder& folder) {
+void add_cameras(const fs::path& folder) {
   std::string text;
   for (int i = 0; i < 1000; ++i) {
     text += fmt::format(
@@ -63,7 +71,7 @@ void add_cameras(const test::TempFolder& folder) {
         "1376.25}}",
         i == 0 ? "[" : ",\n", i, i, i * 0.0123456789);
   }
-  test::write_text(folder / "cameras.json", text + "]\n");
+  write_text(folder / "cameras.json", text + "]\n");
   measure_cameras("1000 cameras", folder / "cameras.json");
 }
 
@@ -82,7 +90,7 @@ Image picture(int width, int height) {
   return image;
 }
 
-void add_png(const test::TempFolder& folder) {
+void add_png(const fs::path& folder) {
   const Image image = picture(1920, 1080);
   const fs::path path = folder / "picture.png";
   measure("save 1920x1080 RGB as 8-bit PNG", static_cast<double>(image.data.size()),
@@ -121,12 +129,13 @@ void add_scenes() {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const test::TempFolder folder;
+  const fs::path folder = fs::temp_directory_path() / fmt::format("binosplat-bench-{}", getpid());
   add_plys(folder);
   add_cameras(folder);
   add_png(folder);
   add_sort();
   add_scenes();
   benchmark::RunSpecifiedBenchmarks();
+  fs::remove_all(folder);
   return 0;
 }

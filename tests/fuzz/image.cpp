@@ -3,17 +3,23 @@
 #include "formats/image_file.h"
 #include "fuzz/input.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace binosplat;
-  fuzz::feed_file(fuzz::bytes_of(data, size), [](const std::filesystem::path& path) {
-    const Image image = load_image(path);
-    const int channels = image.channels;
-    fuzz::demand(image.width >= 1 && image.height >= 1, "a picture without pixels");
-    fuzz::demand(channels == 1 || channels == 3 || channels == 4, "a number of channels that is none");
-    fuzz::demand(image.data.size() == static_cast<std::size_t>(image.width) *
-                                          static_cast<std::size_t>(image.height) *
-                                          static_cast<std::size_t>(channels),
-                 "values missing");
-  });
-  return 0;
+namespace binosplat::fuzz {
+
+namespace {
+
+/// What base/image.h promises.
+void check(const Image& image) {
+  demand(image.width >= 1 && image.height >= 1, "a picture without pixels");
+  demand(image.channels == 1 || image.channels == 3 || image.channels == 4,
+         "an impossible number of channels");
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  demand(image.data.size() == pixels * static_cast<std::size_t>(image.channels), "values missing");
 }
+
+}  // namespace
+
+void target(std::span<const std::byte> bytes) {
+  feed_file(bytes, [](const std::filesystem::path& path) { check(load_image(path)); });
+}
+
+}  // namespace binosplat::fuzz

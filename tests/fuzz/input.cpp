@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -22,7 +23,7 @@ std::span<const std::byte> current;
 // In place of src/base/mapped_file.cpp, which the linker leaves out for this: a mapped file may be read up to
 // the end of its last page without a trace, these bytes may not.
 MappedFile::MappedFile(const std::filesystem::path&) : data_(current.data()), size_(current.size()) {}
-MappedFile::~MappedFile() = default;
+MappedFile::~MappedFile() { data_ = nullptr; }
 
 namespace fuzz {
 
@@ -63,3 +64,9 @@ void demand(bool sound, const char* what) {
 
 }  // namespace fuzz
 }  // namespace binosplat
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name for it.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  binosplat::fuzz::target({reinterpret_cast<const std::byte*>(data), size});
+  return 0;
+}

@@ -3,12 +3,14 @@
 // sound result, or an Error whose text names the file.
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
 
 namespace binosplat::fuzz {
+
+/// What a fuzzer does with each input; NAME.cpp defines it.
+void target(std::span<const std::byte> bytes);
 
 /// Calls `read` with a path under which MappedFile finds `bytes`, without a copy, so that a reader that
 /// leaves them is caught at the first byte. Error is the only exception that it may throw; whatever else
@@ -21,9 +23,5 @@ void feed_file(std::span<const std::byte> bytes,
 
 /// Ends the process as a finding unless `sound`.
 void demand(bool sound, const char* what);
-
-inline std::span<const std::byte> bytes_of(const std::uint8_t* data, std::size_t size) {
-  return {reinterpret_cast<const std::byte*>(data), size};
-}
 
 }  // namespace binosplat::fuzz

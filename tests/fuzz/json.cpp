@@ -5,28 +5,29 @@
 #include "formats/cameras_file.h"
 #include "fuzz/input.h"
 
-namespace {
+namespace binosplat::fuzz {
 
-using namespace binosplat;
+namespace {
 
 /// What formats/cameras_file.h promises.
 void check(const Camera& camera) {
-  fuzz::demand(camera.width >= 1 && camera.height >= 1, "a picture without pixels");
-  fuzz::demand(camera.fx > 0 && camera.fy > 0, "a focal length of 0");
+  demand(camera.width >= 1 && camera.height >= 1, "a picture without pixels");
+  demand(camera.fx > 0 && camera.fy > 0, "a focal length of 0");
   const glm::dvec3& p = camera.position;
   for (const double v : {camera.fx, camera.fy, camera.cx, camera.cy, p.x, p.y, p.z})
-    fuzz::demand(std::isfinite(v), "a value that is not finite");
-  fuzz::demand(!camera.time || std::isfinite(*camera.time), "a time that is not finite");
-  fuzz::demand(std::abs(glm::determinant(camera.rotation) - 1.0) < 2e-3, "a rotation that is none");
+    demand(std::isfinite(v), "a value that is not finite");
+  demand(!camera.time || std::isfinite(*camera.time), "a time that is not finite");
+  demand(std::abs(glm::determinant(camera.rotation) - 1.0) < 2e-3, "a rotation that is none");
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fuzz::feed(fuzz::bytes_of(data, size), [](const std::filesystem::path& path) {
+void target(std::span<const std::byte> bytes) {
+  feed(bytes, [](const std::filesystem::path& path) {
     const std::vector<Camera> cameras = load_cameras(path);
-    fuzz::demand(!cameras.empty(), "no cameras");
+    demand(!cameras.empty(), "no cameras");
     for (const Camera& camera : cameras) check(camera);
   });
-  return 0;
 }
+
+}  // namespace binosplat::fuzz

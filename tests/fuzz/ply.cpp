@@ -6,9 +6,9 @@
 #include "formats/model_file.h"
 #include "fuzz/input.h"
 
-namespace {
+namespace binosplat::fuzz {
 
-using namespace binosplat;
+namespace {
 
 bool finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
@@ -22,23 +22,24 @@ std::span<const float> floats(const std::vector<Vector>& values) {
 /// What scene/model.h promises.
 void check(const Model& model) {
   const std::size_t n = model.count();
-  fuzz::demand(n > 0, "a model without Gaussians");
-  fuzz::demand(model.degree >= 0 && model.degree <= 3, "a degree beyond 3");
-  fuzz::demand(model.scale.size() == n && model.rotation.size() == n && model.opacity.size() == n &&
-                   model.sh.size() == n * 3 * static_cast<std::size_t>(sh_count(model.degree)),
-               "arrays of different lengths");
-  fuzz::demand(finite(floats(model.position)) && finite(floats(model.scale)) && finite(model.sh),
-               "values that are not finite");
+  demand(n > 0, "a model without Gaussians");
+  demand(model.degree >= 0 && model.degree <= 3, "a degree beyond 3");
+  demand(model.scale.size() == n && model.rotation.size() == n && model.opacity.size() == n &&
+             model.sh.size() == n * 3 * static_cast<std::size_t>(sh_count(model.degree)),
+         "arrays of different lengths");
+  demand(finite(floats(model.position)) && finite(floats(model.scale)) && finite(model.sh),
+         "values that are not finite");
   for (std::size_t i = 0; i < n; ++i) {
-    fuzz::demand(std::abs(glm::length(model.rotation[i]) - 1.0f) < 1e-5f, "a rotation not of unit length");
-    fuzz::demand(model.opacity[i] >= 0.0f && model.opacity[i] <= 1.0f, "an opacity beyond 0 to 1");
-    fuzz::demand(glm::all(glm::greaterThanEqual(model.scale[i], glm::vec3(0.0f))), "a negative scale");
+    demand(std::abs(glm::length(model.rotation[i]) - 1.0f) < 1e-5f, "a rotation not of unit length");
+    demand(model.opacity[i] >= 0.0f && model.opacity[i] <= 1.0f, "an opacity beyond 0 to 1");
+    demand(glm::all(glm::greaterThanEqual(model.scale[i], glm::vec3(0.0f))), "a negative scale");
   }
 }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  fuzz::feed(fuzz::bytes_of(data, size), [](const std::filesystem::path& path) { check(load_model(path)); });
-  return 0;
+void target(std::span<const std::byte> bytes) {
+  feed(bytes, [](const std::filesystem::path& path) { check(load_model(path)); });
 }
+
+}  // namespace binosplat::fuzz

@@ -13,7 +13,7 @@ using render::Stage;
 using test::draw;
 using test::same_bits;
 
-TEST(Frame, EllipseEqualsBruteForceBitForBit) {
+TEST(Frame, EllipseAndSnugEqualBruteForceBitForBit) {
   struct Size {
     int width, height;
   };
@@ -23,8 +23,11 @@ TEST(Frame, EllipseEqualsBruteForceBitForBit) {
     const shared::View view = make_view(test::front_camera(size.width, size.height, size.width));
     const Picture brute = draw(model, view, {.tiles = TILES_ALL});
     for (const int tile_size : {8, 16, 32}) {
-      EXPECT_TRUE(same_bits(draw(model, view, {.tile_size = tile_size}), brute))
-          << size.width << " x " << size.height << ", tiles of " << tile_size;
+      for (const int tiles : {TILES_ELLIPSE, TILES_SNUG}) {
+        EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles, .tile_size = tile_size}), brute))
+            << tiles_choices[tiles].name << " " << size.width << " x " << size.height << ", tiles of "
+            << tile_size;
+      }
     }
   }
 }
@@ -32,7 +35,23 @@ TEST(Frame, EllipseEqualsBruteForceBitForBit) {
 TEST(Frame, TheComparisonWithBruteForceCatchesCutTails) {
   const Model model = test::random_model(41, 5000, 1);
   const shared::View view = make_view(test::front_camera(160, 96, 160));
-  EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_AABB}), draw(model, view, {.tiles = TILES_ALL})));
+  const Picture brute = draw(model, view, {.tiles = TILES_ALL});
+  EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_AABB}), brute));
+  EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_OBB}), brute));
+}
+
+TEST(Frame, ThresholdsWithoutLossAreExactBitForBit) {
+  const Model model = test::random_model(43, 5000, 1);
+  const shared::View view = make_view(test::front_camera(160, 96, 160));
+  const Picture exact = draw(model, view);
+  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
+    for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+      EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .loss = 0}), exact))
+          << tiles << " " << th;
+      EXPECT_FALSE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .loss = 1}), exact))
+          << tiles << " " << th;
+    }
+  }
 }
 
 TEST(Frame, TwoRunsAreEqualBitForBit) {

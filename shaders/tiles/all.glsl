@@ -1,0 +1,6 @@
+// The oracle for the tests of tiles: every splat is offered to every tile. One pair a view, whose tiles share one list of
+// all its splats (pairs.comp, blend.comp).
+
+uvec4 tile_box(Splat splat, View view) { return uvec4(0u, 0u, 1u, 1u); }
+
+uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }

@@ -1,0 +1,76 @@
+// GSCore's oriented box of three standard deviations against the tile's pixel centres, by separating axes. It cuts tails
+// that can be seen, as aabb does.
+
+struct OrientedBox {
+  vec2 axis;    // of the longer side; the other is perpendicular
+  vec2 extent;  // half lengths along the two, px
+};
+
+OrientedBox oriented_box(Splat splat) {
+  vec3 c = covariance(splat);
+  precise float half_difference = 0.5 * (c.x - c.z);
+  precise float root = sqrt(half_difference * half_difference + c.y * c.y);
+  precise float longer = 0.5 * (c.x + c.z) + root;
+  precise float shorter = splat.conic.w / longer * splat.conic.w;  // the product of both is det
+  OrientedBox box;
+  box.extent = 3.0 * sqrt(vec2(longer, shorter));
+  // The eigenvector from the row that does not cancel.
+  precise vec2 along = half_difference >= 0.0 ? vec2(half_difference + root, c.y) : vec2(c.y, root - half_difference);
+  box.axis = root > 0.0 ? normalize(along) : vec2(1.0, 0.0);
+  return box;
+}
+
+// Whether no axis separates the box from the pixel centres [low, high].
+bool box_touches(Splat splat, OrientedBox box, vec2 low, vec2 high) {
+  precise vec2 d = 0.5 * (low + high) - splat.mean;
+  precise vec2 half_size = 0.5 * (high - low);
+  precise vec2 a = abs(box.axis);
+  precise vec2 reach = vec2(box.extent.x * a.x + box.extent.y * a.y, box.extent.x * a.y + box.extent.y * a.x);
+  if (abs(d.x) > half_size.x + reach.x || abs(d.y) > half_size.y + reach.y) return false;
+  precise float along = d.x * box.axis.x + d.y * box.axis.y;
+  precise float across = d.y * box.axis.x - d.x * box.axis.y;
+  precise float size_along = half_size.x * a.x + half_size.y * a.y;
+  precise float size_across = half_size.x * a.y + half_size.y * a.x;
+  return abs(along) <= box.extent.x + size_along && abs(across) <= box.extent.y + size_across;
+}
+
+uvec4 tile_box(Splat splat, View view) {
+  if (splat.colour.w < RHO_NONE) return uvec4(0u);
+  OrientedBox box = oriented_box(splat);
+  vec2 a = abs(box.axis);
+  precise vec2 outer = 1.001 * vec2(box.extent.x * a.x + box.extent.y * a.y, box.extent.x * a.y + box.extent.y * a.x) + 0.01;
+  uvec2 columns = tile_span(splat.mean.x - outer.x, splat.mean.x + outer.x, view.tiles_x);
+  uvec2 rows = tile_span(splat.mean.y - outer.y, splat.mean.y + outer.y, view.tiles_y);
+  return uvec4(columns.x, rows.x, columns.y, rows.y);
+}
+
+// x of centres within `limit` of the box's line in this row, for an axis (ax, ay): |ax x + ay y| <= limit.
+vec2 strip(vec2 axis, float y, float limit) {
+  if (abs(axis.x) < 1e-6) return vec2(-3e38, 3e38);
+  precise vec2 ends = (vec2(-limit, limit) - axis.y * y) / axis.x;
+  return vec2(min(ends.x, ends.y), max(ends.x, ends.y));
+}
+
+uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
+  OrientedBox oriented = oriented_box(splat);
+  // Where the box's strips leave room for a tile's middle, a little too wide; then the test itself from both ends.
+  float y = 0.5 * (tile_low(uvec2(0u, row)).y + tile_high(uvec2(0u, row), view).y) - splat.mean.y;
+  float tile = float(TILE_SIZE);
+  vec2 a = abs(oriented.axis);
+  float size = tile * (a.x + a.y);
+  vec2 along = strip(oriented.axis, y, oriented.extent.x + size);
+  vec2 across = strip(vec2(-oriented.axis.y, oriented.axis.x), y, oriented.extent.y + size);
+  vec2 room = vec2(max(along.x, across.x), min(along.y, across.y));
+  float slack = tile + 1e-4 * (abs(room.x) + abs(room.y));
+  uvec2 columns = tile_span(splat.mean.x + room.x - slack, splat.mean.x + room.y + slack, view.tiles_x);
+  columns = clamp(columns, box.xx, box.zz);
+  while (columns.x < columns.y &&
+         !box_touches(splat, oriented, tile_low(uvec2(columns.x, row)), tile_high(uvec2(columns.x, row), view))) {
+    ++columns.x;
+  }
+  while (columns.x < columns.y && !box_touches(splat, oriented, tile_low(uvec2(columns.y - 1u, row)),
+                                               tile_high(uvec2(columns.y - 1u, row), view))) {
+    --columns.y;
+  }
+  return columns;
+}

@@ -1,0 +1,32 @@
+// The box around the ellipse where alpha reaches Th (SnugBox of Speedy-Splat) against the tile's pixel centres, touching
+// counts: makes every pair that can be seen, and those of the box's corners besides. rho is a little larger than it is, or
+// the rounding of fp32 would drop pairs (METHOD 4).
+
+vec2 snug_extent(Splat splat) {
+  vec3 c = covariance(splat);
+  // C2.xx C2.yy / det, at least 1: how far the rounding of a long leaning ellipse is magnified.
+  precise float stretch = c.x * splat.conic.x;
+  precise float rho = splat.colour.w * (1.0 + 8e-6 * stretch) + 4e-6;
+  precise vec2 extent = sqrt(max(0.0, rho) * c.xz);
+  return extent;
+}
+
+// The tiles of a span whose pixel centres reach within `extent` of the mean: `span` is a little too large.
+uvec2 snug_span(uvec2 span, float mean, float extent, uint pixels) {
+  while (span.x < span.y && float(min(span.x * uint(TILE_SIZE) + uint(TILE_SIZE - 1), pixels - 1u)) - mean < -extent) ++span.x;
+  while (span.x < span.y && float((span.y - 1u) * uint(TILE_SIZE)) - mean > extent) --span.y;
+  return span;
+}
+
+uvec4 tile_box(Splat splat, View view) {
+  if (splat.colour.w < RHO_NONE) return uvec4(0u);
+  vec2 extent = snug_extent(splat);
+  precise vec2 outer = 1.001 * extent + 0.01;
+  uvec2 columns = tile_span(splat.mean.x - outer.x, splat.mean.x + outer.x, view.tiles_x);
+  uvec2 rows = tile_span(splat.mean.y - outer.y, splat.mean.y + outer.y, view.tiles_y);
+  columns = snug_span(columns, splat.mean.x, extent.x, view.width);
+  rows = snug_span(rows, splat.mean.y, extent.y, view.height);
+  return uvec4(columns.x, rows.x, columns.y, rows.y);
+}
+
+uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }

@@ -1,0 +1,47 @@
+#include "app/open_scene.h"
+
+#include <memory>
+#include <utility>
+
+#include "base/error.h"
+#include "formats/model_file.h"
+#include "scene/demo_city.h"
+#include "scene/demo_room.h"
+#include "scene/repeat.h"
+
+namespace binosplat::app {
+
+namespace {
+
+Scene open_once(const RenderOptions& options) {
+  if (options.scene == demo_city_name) {
+    CitySettings settings;
+    settings.seed = options.seed.value_or(settings.seed);
+    settings.count = options.count.value_or(settings.count);
+    check(settings);
+    return {city_cameras(settings.seed), [settings] { return demo_city(settings).model; }};
+  }
+  if (options.scene == demo_room_name) {
+    const auto room = std::make_shared<Demo>(demo_room());
+    return {room->cameras, [room] { return std::move(room->model); }};
+  }
+  if (options.scene.rfind("demo:", 0) == 0) {
+    fail("{}: the scenes that are built in are called {} and {}", options.scene, demo_room_name,
+         demo_city_name);
+  }
+  return {{}, [&options] { return load_model(options.scene); }};
+}
+
+}  // namespace
+
+Scene open_scene(const RenderOptions& options) {
+  Scene scene = open_once(options);
+  if (!options.repeat) return scene;
+  const auto once = scene.model;
+  scene.model = [once, &options] {
+    return repeat(once(), options.repeat->x, options.repeat->y, *options.spacing);
+  };
+  return scene;
+}
+
+}  // namespace binosplat::app

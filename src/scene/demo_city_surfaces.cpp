@@ -1,0 +1,239 @@
+// demo:city: surfaces in pieces of even grain, and the Gaussians on them.
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "scene/demo_city_parts.h"
+
+namespace binosplat::city {
+
+namespace {
+
+// Of the SH basis: the constant function, and the three linear ones.
+constexpr double c0 = 0.28209479177387814, c1 = 0.4886025119029199;
+
+/// Gaussians a cell apart overlap enough to close a surface when their standard deviation is this share of
+/// the cell, although they stand a little off their places.
+constexpr double overlap = 0.78;
+constexpr double unrest = 0.12;  // cells
+/// At a border where a sheet ends its outermost Gaussians lie this many cells inside: half transparent there.
+constexpr double margin_at_end = 0.85;
+/// Thickness of a flat Gaussian as a share of its smaller side.
+constexpr double flatness = 0.08;
+constexpr float opacity = 0.97f;
+
+/// The grain doubles at this distance from the nearest camera.
+constexpr double near_distance = 5.0;
+/// Pieces of a sheet are no longer than this share of their distance, so that each has one grain.
+constexpr double piece = 0.5;
+
+/// Distance of the nearest camera; along the streets half of it, as people walk there.
+double distance_to_heads(const City& city, const dvec3& p) {
+  double nearest = 1e9;
+  for (const Head& head : heads) {
+    const dvec3 way = p - city.relief.at(head.eye.x, head.eye.z, head.eye.y);
+    nearest = std::min(nearest, glm::length(dvec3(way.x, way.y, 0.5 * way.z)));
+  }
+  return nearest;
+}
+
+/// How a length is divided into `count` cells.
+struct Cells {
+  double first, size;
+  Cells(double length, std::uint32_t count, bool ends_low, bool ends_high) {
+    const double low = ends_low ? margin_at_end : 0.5, high = ends_high ? margin_at_end : 0.5;
+    size = length / (count - 1 + low + high);
+    first = low * size;
+  }
+};
+
+/// The mean look of a cell: of more points, the larger the cell is.
+Look mean_look(const City& city, const Surface& surface, double a, double b, double wide, double tall) {
+  const double size = std::max(wide, tall);
+  const int n = size < 0.05 ? 1 : size < 0.4 ? 2 : size < 2.0 ? 3 : 4;
+  Look mean{dvec3(0.0), 0.0, 0.0};
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const Look look =
+          surface.paint(city, surface, a + ((i + 0.5) / n - 0.5) * wide, b + ((j + 0.5) / n - 0.5) * tall);
+      mean.colour += look.colour / double(n * n);
+      mean.gloss += look.gloss / (n * n);
+      mean.glow += look.glow / (n * n);
+    }
+  }
+  return mean;
+}
+
+glm::vec4 quaternion(const dmat3& axes) {
+  const glm::dquat q = glm::normalize(glm::quat_cast(axes));
+  return {q.w, q.x, q.y, q.z};
+}
+
+void put(Model& model, std::size_t i, const dvec3& position, const glm::vec4& rotation, const dvec3& scale,
+         const Light::Seen& seen) {
+  model.position[i] = position;
+  model.rotation[i] = rotation;
+  model.scale[i] = scale;
+  model.opacity[i] = opacity;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto channel = static_cast<int>(c);
+    float* sh = &model.sh[12 * i + c];
+    const double shine = seen.shine[channel] / c1;
+    sh[0] = static_cast<float>((seen.colour[channel] - 0.5) / c0);
+    sh[3] = static_cast<float>(-shine * seen.shine_axis.y);
+    sh[6] = static_cast<float>(shine * seen.shine_axis.z);
+    sh[9] = static_cast<float>(-shine * seen.shine_axis.x);
+  }
+}
+
+void fill_sheet(const City& city, const Light& light, const Surface& s, std::size_t first, Model& model) {
+  const double length_u = glm::length(s.u), length_v = glm::length(s.v);
+  const dvec3 u = s.u / length_u, v = s.v / length_v;
+  const dvec3 normal = glm::normalize(glm::cross(u, v));
+  const glm::vec4 rotation = quaternion(procedural::axes_from_normal(normal, u));
+  const std::uint64_t n = s.count;
+  const double even = std::sqrt(static_cast<double>(n) * length_v / length_u);
+  const auto rows = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(even + 0.5), 1, n);
+  const Cells high(length_v, static_cast<std::uint32_t>(rows), s.borders & border_low,
+                   s.borders & border_high);
+  std::size_t at = first;
+  for (std::uint64_t j = 0; j < rows; ++j) {
+    const std::uint64_t in_row = (j + 1) * n / rows - j * n / rows;
+    const Cells wide(length_u, static_cast<std::uint32_t>(in_row), s.borders & border_left,
+                     s.borders & border_right);
+    const double thin = s.thickness > 0.0 ? s.thickness : overlap * flatness * std::min(wide.size, high.size);
+    const dvec3 scale(overlap * wide.size, overlap * high.size, thin);
+    for (std::uint64_t i = 0; i < in_row; ++i, ++at) {
+      const auto key = static_cast<std::int64_t>(at);
+      const double shift_u = unrest * (2.0 * hash(key, 1) - 1.0), shift_v = unrest * (2.0 * hash(key, 2) - 1.0);
+      const double a = wide.first + (static_cast<double>(i) + shift_u) * wide.size;
+      const double b = high.first + (static_cast<double>(j) + shift_v) * high.size;
+      const dvec3 p = s.corner + a * u + b * v;
+      const Look look = mean_look(city, s, s.at.x + a, s.at.y + b, wide.size, high.size);
+      const Light::Seen seen = s.lit ? light.seen(p, normal, look, false) : Light::Seen{look.colour};
+      put(model, at, p, rotation, scale, seen);
+    }
+  }
+}
+
+/// A point within the unit ball.
+dvec3 in_ball(Random& random) {
+  while (true) {
+    dvec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = random.uniform(-1.0, 1.0);
+    const double square = glm::dot(p, p);
+    if (square > 0.01 && square <= 1.0) return p;
+  }
+}
+
+/// Leaves, most of them outside, in lumps.
+void fill_ball(const City& city, const Light& light, const Surface& s, std::size_t first, Model& model) {
+  const dvec3 radii = s.u;
+  const double mean = (radii.x + radii.y + radii.z) / 3.0;
+  const double area = 4.0 * procedural::pi * mean * mean;
+  const double size = std::min(0.55 * mean, 0.62 * std::sqrt(area / s.count));
+  for (std::uint32_t i = 0; i < s.count; ++i) {
+    Random random((std::uint64_t{s.subject} << 32) + i);
+    const dvec3 inside = in_ball(random);
+    const dvec3 out = glm::normalize(inside);
+    const double lump = noise(2.1 * out.x + 3.7 * s.subject, 2.1 * out.z + 2.1 * out.y);
+    const double deep = std::max(glm::length(inside), random.uniform());
+    // One Gaussian alone is the whole crown.
+    const double reach = s.count == 1 ? 0.0 : (1.0 - 0.7 * size / mean) * (0.78 + 0.36 * lump) * deep;
+    const dvec3 p = s.corner + reach * out * radii;
+    const dvec3 normal = glm::normalize(in_ball(random) + 0.6 * out);
+    const dvec3 along = in_ball(random);
+    Look look = s.paint(city, s, reach, lump);
+    look.colour *= 0.90 + 0.2 * random.uniform();
+    const glm::vec4 rotation = quaternion(procedural::axes_from_normal(normal, along));
+    put(model, first + i, p, rotation, dvec3(1.15, 0.85, 0.45) * size, light.seen(p, out, look, true));
+  }
+}
+
+}  // namespace
+
+double Builder::grain_at(const dvec3& p) const {
+  return grain_ * (1.0 + distance_to_heads(city, p) / near_distance);
+}
+
+void Builder::sheet(const Surface& surface) {
+  const double length_u = glm::length(surface.u), length_v = glm::length(surface.v);
+  const dvec3 middle = surface.corner + 0.5 * (surface.u + surface.v);
+  const double far = distance_to_heads(city, middle);
+  const double nearest = std::max(0.0, far - 0.5 * std::max(length_u, length_v));
+  Surface low = surface, high = surface;
+  if (std::max(length_u, length_v) <= piece * surface.coarseness * (near_distance + nearest)) {
+    const double grain = surface.coarseness * grain_at(middle);
+    low.weight = length_u * length_v / (grain * grain);
+    surfaces.push_back(low);
+  } else if (length_u > length_v) {
+    low.u = high.u = 0.5 * surface.u;
+    high.corner += low.u;
+    high.at.x += 0.5 * length_u;
+    low.borders &= ~border_right;
+    high.borders &= ~border_left;
+    sheet(low);
+    sheet(high);
+  } else {
+    low.v = high.v = 0.5 * surface.v;
+    high.corner += low.v;
+    high.at.y += 0.5 * length_v;
+    low.borders &= ~border_high;
+    high.borders &= ~border_low;
+    sheet(low);
+    sheet(high);
+  }
+}
+
+void Builder::ball(const Surface& surface) {
+  Surface whole = surface;
+  whole.ball = true;
+  const double grain = surface.coarseness * grain_at(surface.corner);
+  whole.weight = 4.0 * procedural::pi * surface.u.x * surface.u.x / (grain * grain);
+  surfaces.push_back(whole);
+}
+
+void Builder::rod(const dvec3& from, const dvec3& to, double radius, Paint paint, std::uint32_t subject) {
+  const dvec3 along = to - from;
+  const dvec3 side = glm::normalize(dvec3(along.y, -along.x, 0.0)) * (2.0 * radius);
+  Surface post{.corner = from - 0.5 * side,
+               .u = side,
+               .v = along,
+               .paint = paint,
+               .subject = subject,
+               .borders = all_borders,
+               .thickness = 0.6 * radius};
+  const double grain = grain_at(from + 0.5 * along);
+  post.weight = glm::length(along) * 2.0 * radius / (grain * grain);
+  surfaces.push_back(post);
+}
+
+void Builder::box(const Frame& frame, const dvec3& low, const dvec3& high, const Surface& like) {
+  const std::array<dvec2, 5> round = {dvec2(low.x, low.z), dvec2(high.x, low.z), dvec2(high.x, high.z),
+                                      dvec2(low.x, high.z), dvec2(low.x, low.z)};
+  Surface side = like;
+  side.borders = all_borders;
+  for (std::size_t k = 0; k < 4; ++k) {
+    side.corner = frame.at(round[k].x, high.y, round[k].y);
+    side.u = frame.at(round[k + 1].x, high.y, round[k + 1].y) - side.corner;
+    side.v = frame.axes[1] * (low.y - high.y);
+    sheet(side);
+    side.at.x += glm::length(side.u);
+  }
+  side.corner = frame.at(low.x, low.y, low.z);
+  side.u = frame.axes[0] * (high.x - low.x);
+  side.v = frame.axes[2] * (high.z - low.z);
+  side.at = like.at + dvec2(0.0, high.y - low.y);
+  sheet(side);
+}
+
+void fill(const City& city, const Light& light, const Surface& surface, std::size_t first, Model& model) {
+  if (surface.ball) {
+    fill_ball(city, light, surface, first, model);
+  } else {
+    fill_sheet(city, light, surface, first, model);
+  }
+}
+
+}  // namespace binosplat::city
