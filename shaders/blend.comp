@@ -1,24 +1,31 @@
 // Stage 6: the picture (METHOD 3). One work group a tile, one invocation a pixel; the tile's splats pass front to back
 // through shared memory.
+#include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
+#define PIXELS (TILE_SIZE * TILE_SIZE)
+#define BATCH (PIXELS < 256 ? PIXELS : 256)  // splats in shared memory at a time: 12 KiB at most
+
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
 layout(std430, binding = 2) readonly buffer Values { uint values[]; };
 layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
-layout(std430, binding = 4) writeonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot), bits of floats
+uniform uint remembers;  // whether `colours` still holds this view's last frame
+shared uint batch_measured[BATCH];
+#endif
 uniform uint view_count;
 uniform uint tile_count;
 uniform uint list_per_view;  // 1 with --tiles all: a view's tiles share one list
 
-#define PIXELS (TILE_SIZE * TILE_SIZE)
-#define BATCH (PIXELS < 256 ? PIXELS : 256)  // splats in shared memory at a time: 12 KiB at most
 shared vec4 batch_geometry[BATCH];  // mean, depth, opacity
 shared vec4 batch_conic[BATCH];
 shared vec4 batch_colour[BATCH];
@@ -29,6 +36,25 @@ vec3 colour = vec3(0.0);
 float z_sum = 0.0;
 float transmittance = 1.0;
 bool done = false;
+vec3 last = vec3(0.0);  // the pixel's colour in the last frame
+
+// The most that a splat's alpha counts for in any pixel: T, times its contrast (METHOD 5, squared). A maximum in shared
+// memory, and one a tile in the buffer, cost little beside the blend.
+void measure(uint at, float alpha) {
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+  float contrast = 1.0;
+#if CONTRAST != CONTRAST_OFF
+  vec3 other = last;
+#if CONTRAST == CONTRAST_BEHIND
+  // Of all that lies behind, as if it were seen without what is in front.
+  other = (last - colour - alpha * transmittance * batch_colour[at].rgb) / (transmittance * (1.0 - alpha));
+#endif
+  vec3 d = batch_colour[at].rgb - other;
+  if (remembers != 0u) contrast = min(1.0, sqrt(dot(d, d) / 3.0));
+#endif
+  atomicMax(batch_measured[at], floatBitsToUint(transmittance * contrast));
+#endif
+}
 
 void blend(uint at) {
   vec4 geometry = batch_geometry[at];
@@ -42,6 +68,7 @@ void blend(uint at) {
     done = true;
     return;
   }
+  measure(at, alpha);
   precise float weight = alpha * transmittance;
   precise vec3 sum = colour + weight * batch_colour[at].rgb;
   precise float z = z_sum + weight * geometry.z;
@@ -53,6 +80,9 @@ void blend(uint at) {
 void load(uint at, uint end) {
   uint self = gl_LocalInvocationIndex;
   if (self >= BATCH) return;
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+  batch_measured[self] = 0u;
+#endif
   if (at < end) {
     Splat splat = splats[values[at]];
     batch_geometry[self] = vec4(splat.mean, splat.depth, splat.opacity);
@@ -73,7 +103,8 @@ uint view_of(uint tile) {
 
 void main() {
   uint tile = group_index();
-  if (tile >= tile_count) return;
+  // A frame that is to be drawn again must leave the last one's colours, which contrast is measured against.
+  if (tile >= tile_count || counters.overflow != 0u) return;
   uint view_index = view_of(tile);
   View view = views[view_index];
   uint in_view = tile - view.tile_offset;
@@ -81,6 +112,10 @@ void main() {
   pixel = vec2(at);
   bool inside = at.x < view.width && at.y < view.height;
   done = !inside;
+  uint to = view.pixel_offset + at.y * view.width + at.x;
+#if TRANSMITTANCE != TRANSMITTANCE_ONE && CONTRAST != CONTRAST_OFF
+  if (inside && remembers != 0u) last = colours[to].rgb;
+#endif
 
   uint list = list_per_view != 0u ? view_index : tile;
   uint end = ranges[2u * list + 1u];
@@ -100,10 +135,13 @@ void main() {
     }
     cut = cut || (!done && next < size);
     barrier();
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+    uint self = gl_LocalInvocationIndex;
+    if (self < size && batch_measured[self] != 0u) atomicMax(measured[values[batch + self]], batch_measured[self]);
+#endif
   }
   if (cut || (!done && batch < end)) atomicAdd(counters.loop_cut, 1u);
   if (inside) {
-    uint to = view.pixel_offset + at.y * view.width + at.x;
     colours[to] = vec4(colour, transmittance);
     z_sums[to] = z_sum;
   }

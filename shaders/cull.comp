@@ -11,10 +11,27 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // of the page
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
+#endif
 uniform uint page_first;
 uniform uint page_count;
 uniform uint view_begin;
 uniform uint view_end;
+
+// What the next frame is to know of a Gaussian that this view does not draw: all the light again for one out of sight,
+// a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
+void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+  bool left_out = false;
+  if (projected && !drawn) {
+    splat.colour.w = visible_level(splat.opacity);
+    left_out = touches_a_tile(splat, views[v]);
+  }
+  float aged = remembers == 0u ? 1.0 : min(1.0, float(UPPER_AGEING) * upper[v * gaussian_count + gaussian]);
+  upper_next[v * gaussian_count + gaussian] = left_out ? aged : 1.0;
+#endif
+}
 
 void main() {
   uint i = thread_index();
@@ -22,10 +39,12 @@ void main() {
   Gaussian g = gaussians[i];
   mat3 axes = scaled_axes(g);
   uint key = DEPTH_KEY_NONE;
-  for (uint v = view_begin; v < view_end && key == DEPTH_KEY_NONE; ++v) {
+  for (uint v = view_begin; v < view_end; ++v) {
     Splat splat;
-    // The views of an order group see the same depth.
-    if (project(views[v], g, axes, splat) && touches_a_tile(splat, views[v])) key = floatBitsToUint(splat.depth);
+    bool projected = project(views[v], g, axes, upper_of(page_first + i, v), splat);
+    bool drawn = projected && touches_a_tile(splat, views[v]);
+    if (drawn) key = floatBitsToUint(splat.depth);  // the same in all views of an order group
+    remember(page_first + i, v, projected, drawn, splat);
   }
   depth_keys[page_first + i] = key;
 }

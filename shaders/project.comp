@@ -15,6 +15,9 @@ layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
 layout(std430, binding = 5) writeonly buffer Splats { Splat splats[]; };          // (view, slot)
 layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), bits of floats
+#endif
 uniform uint page_first;
 uniform uint page_count;
 uniform uint view_begin;
@@ -31,8 +34,11 @@ void main() {
   for (uint v = view_begin; v < view_end; ++v) {
     View view = views[v];
     Splat splat;
-    uint tiles = project(view, g, axes, splat) ? tile_count(splat, view) : 0u;
+    uint tiles = project(view, g, axes, upper_of(indices[slot], v), splat) ? tile_count(splat, view) : 0u;
     tile_counts[v * slots + slot] = tiles;
+#if TRANSMITTANCE != TRANSMITTANCE_ONE
+    measured[v * slots + slot] = 0u;
+#endif
     if (tiles > 0u) {
       splat.colour.rgb = sh_colour(i, normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
       splats[v * slots + slot] = splat;

@@ -60,7 +60,7 @@ vec4 conic_of(float xx, float xy, float yy) {
 }
 
 // Everything but the colour. False where this view does not draw it.
-bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
+bool project(View view, Gaussian g, mat3 axes, float upper, out Splat splat) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
   vec3 v = to_eye(view, d);
   if (!(v.z > view.anchor.w)) return false;
@@ -76,6 +76,6 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   splat.mean = mean;
   splat.depth = v.z;
   splat.opacity = g.position.w;
-  splat.colour = vec4(0.0, 0.0, 0.0, tile_level(splat.opacity, splat.conic.w, 1.0));
+  splat.colour = vec4(0.0, 0.0, 0.0, tile_level(splat.opacity, splat.conic.w, upper));
   return true;
 }

@@ -15,6 +15,17 @@
 #define TH_PERIPHERAL 1
 #define TH_SQUARED 2
 
+// --transmittance: where T_upper comes from, the most light that reaches a Gaussian.
+#define TRANSMITTANCE_ONE 0
+#define TRANSMITTANCE_LAST 1
+#define TRANSMITTANCE_OTHER_EYE 2
+#define TRANSMITTANCE_BOTH 3
+
+// --contrast: what that light is multiplied with, for --th squared.
+#define CONTRAST_OFF 0
+#define CONTRAST_FINAL 1
+#define CONTRAST_BEHIND 2
+
 #ifdef __cplusplus
 namespace binosplat {
 
@@ -36,6 +47,19 @@ inline constexpr Choice th_choices[] = {
     {"tau", "1/255: exact"},
     {"peripheral", "AdaGScale: the alpha that a Gaussian may lose beyond its tiles"},
     {"squared", "the squared error that a pair may cost"},
+};
+
+inline constexpr Choice transmittance_choices[] = {
+    {"one", "all of it"},
+    {"last", "as the last frame measured it in the same eye"},
+    {"other-eye", "as the last frame measured it in the other eye"},
+    {"both", "the larger of the two"},
+};
+
+inline constexpr Choice contrast_choices[] = {
+    {"off", "1"},
+    {"final", "the Gaussian's colour against the pixel's, as the last frame left it"},
+    {"behind", "the Gaussian's colour against what lies behind it"},
 };
 
 }  // namespace binosplat

@@ -19,4 +19,8 @@ Image load_exr(const std::filesystem::path& path, std::span<const std::byte> byt
 void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                 std::uint64_t file_bytes, std::uint64_t most_pixels_a_byte);
 
+/// Throws Error for an OpenEXR file whose headers promise what its bytes cannot hold: the library makes room
+/// for attributes, tables and blocks of pixels before it looks.
+void check_exr_header(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
 }  // namespace binosplat

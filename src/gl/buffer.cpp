@@ -66,7 +66,7 @@ void Buffer::write(const void* data, std::int64_t bytes) {
   context_.check("uploading " + label_);
 }
 
-void Buffer::read_bytes(void* out, std::int64_t bytes) const {
+void Buffer::read_bytes(void* out, std::int64_t offset, std::int64_t bytes) const {
   if (bytes == 0) return;
   const Functions& gl = context_.gl();
   gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -83,7 +83,7 @@ void Buffer::read_bytes(void* out, std::int64_t bytes) const {
   }
   for (std::int64_t at = 0; at < bytes; at += staging_bytes) {
     const std::int64_t piece = std::min(staging_bytes, bytes - at);
-    gl.CopyNamedBufferSubData(id_, staging, at, 0, piece);
+    gl.CopyNamedBufferSubData(id_, staging, offset + at, 0, piece);
     gl.Finish();
     std::memcpy(static_cast<std::byte*>(out) + at, mapped, static_cast<std::size_t>(piece));
   }

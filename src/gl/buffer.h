@@ -33,11 +33,12 @@ class Buffer {
     upload(std::span<const T>(data));
   }
 
-  /// `count` elements from the buffer's start, after everything before it has run.
+  /// `count` elements from element `first` on, after everything before it has run.
   template <typename T>
-  std::vector<T> read(std::size_t count) const {
+  std::vector<T> read(std::size_t count, std::size_t first = 0) const {
     std::vector<T> out(count);
-    read_bytes(out.data(), static_cast<std::int64_t>(count * sizeof(T)));
+    read_bytes(out.data(), static_cast<std::int64_t>(first * sizeof(T)),
+               static_cast<std::int64_t>(count * sizeof(T)));
     return out;
   }
 
@@ -48,7 +49,7 @@ class Buffer {
  private:
   void release();
   void write(const void* data, std::int64_t bytes);
-  void read_bytes(void* out, std::int64_t bytes) const;
+  void read_bytes(void* out, std::int64_t offset, std::int64_t bytes) const;
 
   Context& context_;
   std::string label_;

@@ -7,20 +7,22 @@
 #include <vector>
 
 #include "scene/model.h"
+#include "shared/limits.h"
 #include "shared/types.h"
 
 namespace binosplat::reference {
 
 /// One Gaussian in one view. Symmetric matrices are kept as (xx, xy, yy).
 struct Splat {
-  glm::dvec2 mean{0.0};        // px; the centre of pixel (i, j) lies at (i, j)
-  double depth = 0.0;          // view z, world units
-  double opacity = 0.0;        // sigma, in [0, 1]
-  glm::dvec3 covariance{0.0};  // C2 in px^2, low-pass included
-  glm::dvec3 conic{0.0};       // Q, the inverse of C2, in px^-2
-  double det = 0.0;            // of C2, px^4
-  glm::dvec3 colour{0.0};      // display-referred, not below 0, without an upper limit
-  bool drawn = false;          // deeper than the near plane, and det > 0; all else is 0 where not
+  glm::dvec2 mean{0.0};          // px; the centre of pixel (i, j) lies at (i, j)
+  double depth = 0.0;            // view z, world units
+  double opacity = 0.0;          // sigma, in [0, 1]
+  glm::dvec3 covariance{0.0};    // C2 in px^2, low-pass included
+  glm::dvec3 conic{0.0};         // Q, the inverse of C2, in px^-2
+  double det = 0.0;              // of C2, px^4
+  glm::dvec3 colour{0.0};        // display-referred, not below 0, without an upper limit
+  double threshold = ALPHA_MIN;  // Th, the alpha whose reach the tile tests go by; see threshold.h
+  bool drawn = false;            // deeper than the near plane, det > 0, and Th (threshold.h) not above sigma
 };
 
 /// Gaussian `i` of the model in a view.

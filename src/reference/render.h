@@ -1,18 +1,23 @@
 #pragma once
 // The float64 judge: one view from model to picture on the CPU, as METHOD.md defines it. The stages by
-// themselves are in project.h, tiles.h and blend.h.
+// themselves are in project.h, threshold.h, tiles.h and blend.h.
 
 #include "base/image.h"
 #include "reference/blend.h"
 #include "reference/project.h"
+#include "reference/threshold.h"
 #include "reference/tiles.h"
 #include "reference/trace.h"
+#include "reference/transmittance.h"
 
 namespace binosplat::reference {
 
 struct Settings {
   int tiles = TILES_ELLIPSE;
   int tile_size = TILE_SIZE_DEFAULT;  // px
+  int th = TH_TAU;
+  double loss = 0.0;          // of threshold()
+  std::vector<double> upper;  // T_upper or W by Gaussian; empty: 1 for all
 };
 
 /// The picture of a model in a view. The view's members for the frame (tiles_x to th_group) are not looked

@@ -35,19 +35,65 @@ TileRange aabb_tiles(const Splat& splat, int tile_size, int tiles_x, int tiles_y
           clamped_tile(high.y, tiles_y)};
 }
 
-/// rho: alpha is at least tau where q is at most this. Negative where sigma is below tau.
-double reach(const Splat& splat) { return 2.0 * std::log(splat.opacity / ALPHA_MIN); }
+/// rho: alpha is at least Th where q is at most this. Negative where sigma is below Th.
+double reach(const Splat& splat) { return 2.0 * std::log(splat.opacity / splat.threshold); }
 
-/// The tiles that the box around the ellipse q = rho meets, one pixel larger so that rounding loses none;
+/// A box of three standard deviations along the axes of the ellipse: unit vector of the longer axis, half
+/// lengths along it and across it (GSCore; the eigenvalues as they are, without the floor of 3D-GS).
+struct OrientedBox {
+  glm::dvec2 axis;
+  double along, across;
+};
+
+OrientedBox oriented_box(const Splat& splat) {
+  const glm::dvec3& c = splat.covariance;
+  const double half_difference = 0.5 * (c.x - c.z);
+  const double spread = std::hypot(half_difference, c.y);
+  const double lambda1 = 0.5 * (c.x + c.z) + spread, lambda2 = splat.det / lambda1;
+  // The angle of the longer axis is half that of (half_difference, xy); a circle may have any.
+  const double angle = 0.5 * std::atan2(c.y, half_difference);
+  return {{std::cos(angle), std::sin(angle)}, 3.0 * std::sqrt(lambda1), 3.0 * std::sqrt(lambda2)};
+}
+
+/// Half the width and height of what the tile test asks about: the oriented box, or the ellipse q = rho.
+/// That one goes by C2, the blend by Q, and det's rounding parts the two: the box is larger by that much.
+glm::dvec2 half_extents(const Splat& splat, int tiles) {
+  if (tiles == TILES_OBB) {
+    const OrientedBox box = oriented_box(splat);
+    return glm::abs(box.axis) * box.along + glm::abs(glm::dvec2(box.axis.y, box.axis.x)) * box.across;
+  }
+  const glm::dvec3& c = splat.covariance;
+  const double rho = reach(splat) * (1.0 + 1e-14 * c.x * c.z / splat.det) + 1e-14;
+  return {std::sqrt(rho * c.x), std::sqrt(rho * c.z)};
+}
+
+/// The tiles that half_extents() around the mean meet, one pixel larger so that rounding loses none;
 /// touches() decides.
-TileRange ellipse_candidates(const Splat& splat, int tile_size, int tiles_x, int tiles_y) {
-  const double rho = reach(splat);
-  if (!(rho >= 0.0)) return {0, 0, 0, 0};
-  const glm::dvec2 half(std::sqrt(rho * splat.covariance.x) + 1.0, std::sqrt(rho * splat.covariance.z) + 1.0);
+TileRange candidates_around(const Splat& splat, int tiles, int tile_size, int tiles_x, int tiles_y) {
+  if (!(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
+  const glm::dvec2 half = half_extents(splat, tiles) + 1.0;
   const glm::dvec2 low = glm::floor((splat.mean - half) / double(tile_size));
   const glm::dvec2 high = glm::floor((splat.mean + half) / double(tile_size)) + 1.0;
   return {clamped_tile(low.x, tiles_x), clamped_tile(low.y, tiles_y), clamped_tile(high.x, tiles_x),
           clamped_tile(high.y, tiles_y)};
+}
+
+/// Whether an upright box of these half extents around the mean meets a rectangle of pixel centres, given
+/// relative to the mean; touching counts.
+bool upright_box_meets(const glm::dvec2& half, const glm::dvec2& low, const glm::dvec2& high) {
+  return low.x <= half.x && high.x >= -half.x && low.y <= half.y && high.y >= -half.y;
+}
+
+/// The same for the oriented box, by separating axes: the two of the picture, where the box reaches as far
+/// as its half extents, and the two of the box, where the rectangle reaches as far as its sides projected.
+bool oriented_box_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high) {
+  if (!upright_box_meets(half_extents(splat, TILES_OBB), low, high)) return false;
+  const OrientedBox box = oriented_box(splat);
+  const glm::dvec2 middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  const auto apart = [&](const glm::dvec2& axis, double reach_of_box) {
+    return std::abs(glm::dot(axis, middle)) > reach_of_box + glm::dot(glm::abs(axis), half);
+  };
+  return !apart(box.axis, box.along) && !apart({-box.axis.y, box.axis.x}, box.across);
 }
 
 /// Whether the smallest q over a rectangle of pixel centres, given relative to the mean, is at most rho.
@@ -60,7 +106,7 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
       glm::clamp(glm::dvec2(0.0), low, high);  // 0 in an axis whose side does not face the mean
   const auto within_reach = [&](double dx, double dy) {
     const double xx = c.x * dx * dx, xy = 2 * c.y * dx * dy, yy = c.z * dy * dy;
-    // Rounding must not leave out a tile in which the blend, rounding otherwise, finds an alpha of tau.
+    // Rounding must not leave out a tile in which the blend, rounding otherwise, finds an alpha of Th.
     const double margin = 1e-14 * (xx + std::abs(xy) + yy + 1.0);
     return xx + xy + yy - margin <= rho;
   };
@@ -68,17 +114,32 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
          within_reach(std::clamp(-c.y * nearest.y / c.x, low.x, high.x), nearest.y);
 }
 
+/// The tiles that touches() is worth asking about. Exactly the splat's tiles for TILES_AABB and TILES_ALL.
 TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
   const int tiles_x = tiles_along(view.width, tile_size), tiles_y = tiles_along(view.height, tile_size);
+  if (!splat.drawn) return {0, 0, 0, 0};
   switch (tiles) {
     case TILES_AABB:
       return aabb_tiles(splat, tile_size, tiles_x, tiles_y);
+    case TILES_OBB:
+    case TILES_SNUG:
     case TILES_ELLIPSE:
-      return ellipse_candidates(splat, tile_size, tiles_x, tiles_y);
+      return candidates_around(splat, tiles, tile_size, tiles_x, tiles_y);
     case TILES_ALL:
       return {0, 0, tiles_x, tiles_y};
   }
   fail("tile test {}: expected one of shared/axes.h", tiles);
+}
+
+/// Whether the shape of `tiles` meets tile (tx, ty), which is one of the candidates.
+bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
+  const glm::dvec2 first(tx * tile_size, ty * tile_size);
+  const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
+  const glm::dvec2 low = first - splat.mean, high = last - splat.mean;
+  if (tiles == TILES_OBB) return oriented_box_meets(splat, low, high);
+  if (tiles == TILES_SNUG) return upright_box_meets(half_extents(splat, tiles), low, high);
+  if (tiles == TILES_ELLIPSE) return ellipse_meets(splat, low, high);
+  return true;
 }
 
 /// Calls visit(tile number) for every tile that the splat touches.
@@ -89,7 +150,7 @@ void for_each_tile(const Splat& splat, int tiles, int tile_size, const shared::V
   const TileRange range = candidate_tiles(splat, tiles, tile_size, view);
   for (int ty = range.y0; ty < range.y1; ++ty) {
     for (int tx = range.x0; tx < range.x1; ++tx) {
-      if (tiles != TILES_ELLIPSE || touches(splat, tiles, tile_size, tx, ty, view)) {
+      if (shape_meets(splat, tiles, tile_size, tx, ty, view)) {
         visit(static_cast<std::size_t>(ty) * tiles_x + tx);
       }
     }
@@ -99,13 +160,9 @@ void for_each_tile(const Splat& splat, int tiles, int tile_size, const shared::V
 }  // namespace
 
 bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
-  if (tiles == TILES_ELLIPSE) {
-    const glm::dvec2 first(tx * tile_size, ty * tile_size);
-    const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
-    return ellipse_meets(splat, first - splat.mean, last - splat.mean);
-  }
   const TileRange range = candidate_tiles(splat, tiles, tile_size, view);
-  return range.x0 <= tx && tx < range.x1 && range.y0 <= ty && ty < range.y1;
+  const bool candidate = range.x0 <= tx && tx < range.x1 && range.y0 <= ty && ty < range.y1;
+  return candidate && shape_meets(splat, tiles, tile_size, tx, ty, view);
 }
 
 std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats) {

@@ -29,12 +29,18 @@ struct TileLists {
   std::span<const std::uint32_t> at_pixel(int x, int y) const;
 };
 
-/// Whether a drawn splat belongs to tile (tx, ty) of the view. `tiles` is one of shared/axes.h: TILES_AABB,
-/// exactly as 3D-GS; TILES_ELLIPSE: the smallest q over the tile's rectangle of pixel centres, clipped to the
-/// picture, is at most 2 ln(sigma / tau); TILES_ALL: always.
+/// Whether a splat belongs to tile (tx, ty) of the view; never where it is not drawn. `tiles` is one of
+/// shared/axes.h. With R the tile's rectangle of pixel centres, clipped to the picture, and
+/// rho = 2 ln(sigma / Th), Th the splat's own threshold:
+/// - TILES_AABB: exactly as 3D-GS, whatever sigma and Th are.
+/// - TILES_OBB: the box of three standard deviations along the ellipse's axes meets R (GSCore); sigma >= Th.
+/// - TILES_SNUG: the upright box around q <= rho meets R (Speedy-Splat).
+/// - TILES_ELLIPSE: the smallest q over R is at most rho.
+/// - TILES_ALL: always.
 bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view);
 
-/// The lists of all tiles of a view. `order` is from depth_order().
+/// The lists of all tiles of a view. `order` is from depth_order(); what has lost its `drawn` since is passed
+/// over.
 TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& order,
                      const shared::View& view, int tiles, int tile_size = TILE_SIZE_DEFAULT);
 

@@ -4,7 +4,9 @@ namespace binosplat::render {
 
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   // The tile test is no part of this program: with every test the same lists give the same bits.
-  const gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)}};
+  const gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+                               {"TRANSMITTANCE", std::to_string(shape.settings.transmittance)},
+                               {"CONTRAST", std::to_string(shape.settings.contrast)}};
   dispatcher.run(dispatcher.context().program("blend.comp", defines), gl::Work::of_groups(shape.tile_count),
                  {{"Views", buffers.views},
                   {"Ranges", buffers.ranges},
@@ -12,8 +14,10 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
                   {"Splats", buffers.splats},
                   {"Colours", buffers.colours},
                   {"ZSums", buffers.z_sums},
-                  {"FrameCounters", buffers.counters}},
+                  {"FrameCounters", buffers.counters},
+                  {"Measured", buffers.measured}},
                  {{"view_count", shape.view_count()},
+                  {"remembers", shape.remembers ? 1u : 0u},
                   {"tile_count", shape.tile_count},
                   {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
 }

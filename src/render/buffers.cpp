@@ -60,6 +60,13 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   }
   if (!(settings.loss >= 0.0f) || !std::isfinite(settings.loss))
     fail("--loss {}: expected zero or more", settings.loss);
+  if (settings.transmittance > TRANSMITTANCE_LAST && views.size() % 2 != 0) {
+    fail("--transmittance {}: only for both eyes together",
+         transmittance_choices[settings.transmittance].name);
+  }
+  if (settings.contrast != CONTRAST_OFF && settings.transmittance == TRANSMITTANCE_ONE) {
+    fail("--contrast {}: only with a measured --transmittance", contrast_choices[settings.contrast].name);
+  }
   FrameShape shape;
   shape.settings = settings;
   shape.degree = model.degree;
@@ -129,10 +136,11 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       depth_keys(context, "depth keys"),
       block_amount(context, "amount of blocks"),
       block_counts(context, "block counts"),
-      order_amounts(context, "amounts of the depth order"),
-      indices(context, "indices of the Gaussians drawn"),
       order(context, "depth order"),
       pair_offsets(context, "pair offsets"),
+      upper(std::make_unique<gl::Buffer>(context, "remembered transmittance")),
+      upper_next(std::make_unique<gl::Buffer>(context, "transmittance to remember")),
+      measured(context, "measured transmittance"),
       splats(context, "splats"),
       tile_counts(context, "tile counts"),
       pair_amounts(context, "amounts of pairs"),
@@ -141,7 +149,8 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       colours(context, "pixels"),
       z_sums(context, "depth of pixels"),
       scan(context),
-      sort(context) {}
+      sort(context),
+      context_(context) {}
 
 void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) {
   const std::int64_t gaussians = shape.gaussian_count;
@@ -150,8 +159,16 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) 
   counters.reserve(sizeof(shared::Counters));
   depth_keys.reserve(gaussians * 4);
   block_counts.reserve(blocks * 4);
-  order_amounts.reserve(sizeof(primitives::SortAmounts));
-  indices.reserve(slots * 4);
+  while (drawn.size() < shape.groups.size()) drawn.push_back(std::make_unique<DrawnBuffers>(context_));
+  for (const auto& group : drawn) {
+    group->amounts.reserve(sizeof(primitives::SortAmounts));
+    group->indices.reserve(slots * 4);
+  }
+  if (shape.settings.transmittance != TRANSMITTANCE_ONE) {
+    upper->reserve(gaussians * shape.view_count() * 4);
+    upper_next->reserve(gaussians * shape.view_count() * 4);
+    measured.reserve(slots * shape.view_count() * 4);
+  }
   order.reserve(slots);
   pair_offsets.reserve(slots * 4);
   splats.reserve(slots * shape.view_count() * static_cast<std::int64_t>(sizeof(shared::Splat)));

@@ -25,6 +25,7 @@ struct FrameShape {
   FrameSettings settings;
   int degree = 0;  // of the model's SH
   std::uint32_t gaussian_count = 0;
+  bool remembers = false;   // the last frame was of the same views, a moment ago
   std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
   std::vector<shared::View> views;
   std::vector<OrderGroup> groups;
@@ -61,6 +62,15 @@ struct MemoryNeeds {
 };
 MemoryNeeds memory_needs(const FrameShape& shape);
 
+/// The Gaussians that an order group draws.
+struct DrawnBuffers {
+  explicit DrawnBuffers(gl::Context& context)
+      : amounts(context, "amounts of the depth order"), indices(context, "indices of the Gaussians drawn") {}
+
+  gl::Buffer amounts;  // SortAmounts
+  gl::Buffer indices;  // Gaussian by slot
+};
+
 struct FrameBuffers {
   explicit FrameBuffers(gl::Context& context);
 
@@ -74,10 +84,16 @@ struct FrameBuffers {
   gl::Buffer depth_keys;          // uint by Gaussian
   gl::Buffer block_amount;        // Amount of the compaction's blocks
   gl::Buffer block_counts;        // uint, Gaussians drawn by block of COMPACT_BLOCK, scanned
-  gl::Buffer order_amounts;       // SortAmounts of the Gaussians drawn
-  gl::Buffer indices;             // Gaussian by slot
   primitives::PairBuffers order;  // depth bits, slot
   gl::Buffer pair_offsets;        // uint by rank in the depth order, scanned
+
+  std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
+
+  // What is remembered for the next frame's Th, float (view, Gaussian): T_upper, or W with contrast; written
+  // while the last frame's is read. Empty with TRANSMITTANCE_ONE.
+  std::unique_ptr<gl::Buffer> upper;
+  std::unique_ptr<gl::Buffer> upper_next;
+  gl::Buffer measured;  // uint (view, slot), bits of the largest float
 
   // Of all views.
   gl::Buffer splats;              // Splat (view, slot)
@@ -91,6 +107,9 @@ struct FrameBuffers {
 
   primitives::Scan scan;
   primitives::RadixSort sort;
+
+ private:
+  gl::Context& context_;
 };
 
 }  // namespace binosplat::render

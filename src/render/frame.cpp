@@ -1,10 +1,13 @@
 #include "render/frame.h"
 
 #include <algorithm>
+#include <bit>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "primitives/amount.h"
+#include "render/continuity.h"
 #include "render/stages.h"
 #include "render/twins.h"
 
@@ -28,6 +31,7 @@ Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussi
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
   shape_ = make_shape(views, settings, model_);
+  shape_.remembers = continues(last_shape_, shape_, last_median_depth_);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
   if (settings.order_capacity > 0) slots_ = settings.order_capacity;
   const std::int64_t pairs_guess =
@@ -59,6 +63,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
             "--tile or a smaller model.",
             dispatcher_.context().renderer()));
   }
+  keep_measurements(counters);
   report.visible = counters.visible;
   report.pairs = counters.pairs;
   report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
@@ -83,7 +88,7 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     }
     if (!twin(Stage::order)) {
       dispatcher_.begin_stage("order");
-      order(dispatcher_, buffers_);
+      order(dispatcher_, group, buffers_);
     }
     if (!twin(Stage::pairs)) {
       dispatcher_.begin_stage("pairs");
@@ -101,10 +106,24 @@ shared::Counters Frame::draw_once(FrameReport& report) {
   if (!twin(Stage::blend)) {
     dispatcher_.begin_stage("blend");
     blend(dispatcher_, shape_, buffers_);
+    remember(dispatcher_, shape_, buffers_);
   }
   dispatcher_.end_frame();
   report.stages = dispatcher_.wait_and_time();
   return buffers_.counters.read<shared::Counters>(1).front();
+}
+
+void Frame::keep_measurements(const shared::Counters& counters) {
+  last_shape_ = shape_;
+  if (shape_.settings.transmittance == TRANSMITTANCE_ONE) return;
+  std::swap(buffers_.upper, buffers_.upper_next);
+  // The last order group's, which is as good as any: the depth in the middle of the depth order.
+  const std::size_t middle =
+      buffers_.drawn[shape_.groups.size() - 1]->amounts.read<shared::Amount>(1).front().count / 2;
+  last_median_depth_ =
+      counters.visible == 0
+          ? 0.0
+          : std::bit_cast<float>(buffers_.order.keys().read<std::uint32_t>(1, middle).front());
 }
 
 void Frame::grow(const shared::Counters& counters) {

@@ -42,12 +42,15 @@ class Frame {
  private:
   shared::Counters draw_once(FrameReport& report);
   void grow(const shared::Counters& counters);
+  void keep_measurements(const shared::Counters& counters);
 
   gl::Dispatcher dispatcher_;
   const Model& model_;
   ModelBuffers model_buffers_;
   FrameBuffers buffers_;
   FrameShape shape_;
+  FrameShape last_shape_;  // of the last frame drawn
+  double last_median_depth_ = 0;
   std::int64_t slots_ = 0;
   std::int64_t pair_capacity_ = 0;
   std::vector<Picture> reference_pictures_;  // with --reference-until blend

@@ -8,16 +8,17 @@ namespace binosplat::render {
 void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   const OrderGroup views = shape.groups[group];
+  const gl::Buffer& drawn = buffers.drawn[group]->amounts;
   const auto each = [](const gl::Buffer& amounts) {
     return gl::Work::indirect(amounts, offsetof(shared::Amount, threads_x));
   };
-  dispatcher.run(context.program("pairs_count.comp"), each(buffers.order_amounts),
-                 {{"Amounts", buffers.order_amounts},
+  dispatcher.run(context.program("pairs_count.comp"), each(drawn),
+                 {{"Amounts", drawn},
                   {"Order", buffers.order.values()},
                   {"TileCounts", buffers.tile_counts},
                   {"PairOffsets", buffers.pair_offsets}},
                  {{"slots", shape.slots}, {"view_begin", views.begin}, {"view_end", views.end}});
-  buffers.scan.run(dispatcher, buffers.order_amounts, 0, buffers.pair_offsets);
+  buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
   dispatcher.run(context.program("amount.comp"), gl::Work::of_groups(1),
                  {{"Amounts", buffers.pair_amounts},
                   {"Total", buffers.scan.total()},
@@ -25,8 +26,8 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                  {{"kind", AMOUNT_PAIRS},
                   {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
                   {"groups_max", context.limits().groups}});
-  dispatcher.run(context.program("pairs.comp", tile_defines(shape)), each(buffers.pair_amounts),
-                 {{"OrderAmounts", buffers.order_amounts},
+  dispatcher.run(context.program("pairs.comp", pair_defines(shape)), each(buffers.pair_amounts),
+                 {{"OrderAmounts", drawn},
                   {"PairAmounts", buffers.pair_amounts},
                   {"Views", buffers.views},
                   {"Order", buffers.order.values()},

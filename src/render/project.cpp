@@ -11,20 +11,26 @@ namespace {
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
-  const gl::Program& program = dispatcher.context().program("cull.comp", tile_defines(shape));
+  const gl::Program& program = dispatcher.context().program("cull.comp", pair_defines(shape));
   for (const ModelBuffers::Page& page : model.pages) {
-    dispatcher.run(
-        program, gl::Work::threads(page.count, THREADS),
-        {{"Views", buffers.views}, {"Gaussians", *page.gaussians}, {"DepthKeys", buffers.depth_keys}},
-        {{"page_first", page.first},
-         {"page_count", page.count},
-         {"view_begin", views.begin},
-         {"view_end", views.end},
-         {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)}});
+    dispatcher.run(program, gl::Work::threads(page.count, THREADS),
+                   {{"Views", buffers.views},
+                    {"Gaussians", *page.gaussians},
+                    {"DepthKeys", buffers.depth_keys},
+                    {"Upper", *buffers.upper},
+                    {"UpperNext", *buffers.upper_next}},
+                   {{"page_first", page.first},
+                    {"page_count", page.count},
+                    {"view_begin", views.begin},
+                    {"view_end", views.end},
+                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
+                    {"gaussian_count", shape.gaussian_count},
+                    {"remembers", shape.remembers ? 1u : 0u}});
   }
 }
 
-void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuffers& drawn,
+             FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   const auto blocks = gl::Work::threads(shape.gaussian_count, COMPACT_BLOCK);
   dispatcher.run(context.program("compact_count.comp"), blocks,
@@ -33,54 +39,55 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& 
   buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
   dispatcher.run(
       context.program("amount.comp"), gl::Work::of_groups(1),
-      {{"Amounts", buffers.order_amounts},
-       {"Total", buffers.scan.total()},
-       {"FrameCounters", buffers.counters}},
+      {{"Amounts", drawn.amounts}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
       {{"kind", AMOUNT_ORDER}, {"capacity", shape.slots}, {"groups_max", context.limits().groups}});
   dispatcher.run(context.program("compact.comp"), blocks,
-                 {{"Amounts", buffers.order_amounts},
+                 {{"Amounts", drawn.amounts},
                   {"DepthKeys", buffers.depth_keys},
                   {"BlockCounts", buffers.block_counts},
                   {"Keys", buffers.order.keys()},
                   {"Values", buffers.order.values()},
-                  {"Indices", buffers.indices}},
+                  {"Indices", drawn.indices}},
                  {{"gaussian_count", shape.gaussian_count}});
 }
 
 }  // namespace
 
-gl::Defines tile_defines(const FrameShape& shape) {
+gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  return {{"TILES_NAME", tiles_choices[s.tiles].name},
-          {"TH", std::to_string(s.th)},
-          {"TH_NAME", th_choices[s.th].name},
-          {"TILES", std::to_string(s.tiles)},
-          {"TILE_SIZE", std::to_string(s.tile_size)}};
+  return {{"TILES_NAME", tiles_choices[s.tiles].name}, {"TH", std::to_string(s.th)},
+          {"TH_NAME", th_choices[s.th].name},          {"TRANSMITTANCE", std::to_string(s.transmittance)},
+          {"TILES", std::to_string(s.tiles)},          {"TILE_SIZE", std::to_string(s.tile_size)}};
 }
 
 void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
              const ModelBuffers& model, FrameBuffers& buffers) {
   const OrderGroup views = shape.groups[group];
   cull(dispatcher, shape, views, model, buffers);
-  compact(dispatcher, shape, buffers);
-  gl::Defines defines = tile_defines(shape);
+  const DrawnBuffers& drawn = *buffers.drawn[group];
+  compact(dispatcher, shape, drawn, buffers);
+  gl::Defines defines = pair_defines(shape);
   defines.emplace_back("SH_DEGREE", std::to_string(shape.degree));
   const gl::Program& program = dispatcher.context().program("project.comp", defines);
   for (const ModelBuffers::Page& page : model.pages) {
-    dispatcher.run(program, gl::Work::indirect(buffers.order_amounts, offsetof(shared::Amount, threads_x)),
+    dispatcher.run(program, gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
                    {{"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
                     {"Harmonics", *page.harmonics},
-                    {"Amounts", buffers.order_amounts},
-                    {"Indices", buffers.indices},
+                    {"Amounts", drawn.amounts},
+                    {"Indices", drawn.indices},
                     {"Splats", buffers.splats},
-                    {"TileCounts", buffers.tile_counts}},
+                    {"TileCounts", buffers.tile_counts},
+                    {"Upper", *buffers.upper},
+                    {"Measured", buffers.measured}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"slots", shape.slots},
-                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)}});
+                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
+                    {"gaussian_count", shape.gaussian_count},
+                    {"remembers", shape.remembers ? 1u : 0u}});
   }
 }
 

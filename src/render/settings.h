@@ -14,9 +14,11 @@ enum class Stage { project, order, pairs, tile_sort, ranges, blend };
 constexpr const char* stage_names[] = {"project", "order", "pairs", "tile_sort", "ranges", "blend"};
 
 struct FrameSettings {
-  int tiles = TILES_ELLIPSE;  // TILES_ of shared/axes.h
-  int th = TH_TAU;            // TH_ of shared/axes.h
-  float loss = 0.0f;          // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
+  int tiles = TILES_ELLIPSE;              // TILES_ of shared/axes.h
+  int th = TH_TAU;                        // TH_ of shared/axes.h
+  int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: where Th takes T_upper from
+  int contrast = CONTRAST_OFF;            // CONTRAST_; with TH_SQUARED and a measured transmittance only
+  float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
   int tile_size = TILE_SIZE_DEFAULT;  // px: 8, 16 or 32; the picture does not depend on it
   /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong
   /// picture is bisected to its stage.

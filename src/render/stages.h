@@ -12,7 +12,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
              const ModelBuffers& model, FrameBuffers& buffers);
 
 /// Their slots front to back, ties by index.
-void order(gl::Dispatcher& dispatcher, FrameBuffers& buffers);
+void order(gl::Dispatcher& dispatcher, std::uint32_t group, FrameBuffers& buffers);
 
 /// (tile, splat) for every tile that a splat of the group touches, in depth order, appended to what is there.
 void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);
@@ -23,10 +23,13 @@ void tile_sort(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers
 /// Where each tile's list lies among the pairs.
 void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
-/// The pictures.
+/// The pictures; and, for a transmittance that is measured, the most that each splat counted for.
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
-/// Shader defines that pick the variant of a stage which depends on tiles.
-gl::Defines tile_defines(const FrameShape& shape);
+/// Keeps what was measured for the next frame. Nothing to do for TRANSMITTANCE_ONE.
+void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+
+/// Shader defines that pick the variant of a stage which decides pairs.
+gl::Defines pair_defines(const FrameShape& shape);
 
 }  // namespace binosplat::render

@@ -143,7 +143,7 @@ void upload_order(const Slots& slots, const std::vector<reference::Splat>& splat
   buffers.order.keys().upload(keys);
   buffers.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
-  buffers.order_amounts.upload(std::vector{primitives::make_sort_amounts(count, groups_max)});
+  buffers.drawn.front()->amounts.upload(std::vector{primitives::make_sort_amounts(count, groups_max)});
 }
 
 void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {

@@ -22,7 +22,7 @@ constexpr const char* demo_city_name = "demo:city";
 /// Throws Error, naming --count, for a city too small or too large.
 void check(const CitySettings& settings);
 
-/// The cameras of a city: a head in the main street that looks along it, one on a roof and one at a corner.
+/// The cameras of a city: a head in the main street that looks along it, one above it and one at a corner.
 std::vector<Camera> city_cameras(std::uint64_t seed = CitySettings().seed);
 
 /// Streets of houses with trees, lamps and cars on a bending, rising ground, 0.6 km wide and 1.2 km long

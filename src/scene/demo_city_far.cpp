@@ -65,18 +65,21 @@ dvec3 around(double way, double radius) {
 }
 
 void add_hills(Builder& builder, std::uint32_t range, double radius, double tallest) {
-  constexpr int columns = 192;
+  constexpr int columns = 96;
+  const auto ridge = [&](int k) {
+    const double height = tallest * (0.25 + fractal(0.09 * std::abs(k - 0.5 * columns), 3.0 + 8.0 * range));
+    return around(8.0 * (k % columns) / columns, radius) - dvec3(0.0, height, 0.0);
+  };
+  const dvec3 down(0.0, tallest + 60.0, 0.0);
   for (int k = 0; k < columns; ++k) {
-    const dvec3 a = around(8.0 * k / columns, radius);
-    const dvec3 b = around(k + 1 == columns ? 0.0 : 8.0 * (k + 1) / columns, radius);
-    const double ridge = tallest * (0.25 + fractal(0.045 * std::abs(k - 0.5 * columns), 3.0 + 8.0 * range));
-    const dvec3 foot(0.0, 60.0, 0.0);
-    builder.sheet({.corner = b + foot,
+    const dvec3 a = ridge(k), b = ridge(k + 1);
+    builder.sheet({.corner = b + down,
                    .u = a - b,
-                   .v = dvec3(0.0, -ridge - foot.y, 0.0),
+                   .v = -down,
                    .paint = paint_hill,
                    .subject = range,
                    .at = {30.0 * k, 0.0},
+                   .borders = border_high,
                    .coarseness = 3.0,
                    .lit = false});
   }
@@ -84,7 +87,7 @@ void add_hills(Builder& builder, std::uint32_t range, double radius, double tall
 
 /// The upper half of a cube, brought to a ball.
 void add_sky(Builder& builder) {
-  constexpr int cells = 12;
+  constexpr int cells = 8;
   const auto point = [](const dvec3& p) { return sky_centre + sky_distance * glm::normalize(p); };
   const auto face = [&](const dvec3& middle, const dvec3& right, const dvec3& up, int from_row) {
     for (int j = from_row; j < cells; ++j) {

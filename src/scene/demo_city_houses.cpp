@@ -15,6 +15,7 @@ namespace {
 constexpr double grain_of_rows = 3.5, grain_of_openings = 0.25, grain_of_trim = 0.12;
 constexpr double foot = 0.8;  // how far walls reach below the ground, where it slopes
 constexpr double overhang = 0.3;
+constexpr double hidden = 1.6, roof_coarseness = 1.25;  // what streets see little of has fewer Gaussians
 
 /// The house of a row at a place along it.
 std::uint32_t house_at(const City& city, const Row& row, double along) {
@@ -83,7 +84,7 @@ class HouseBuilder {
                     .paint = paint_wall,
                     .subject = w,
                     .at = {u0, v0},
-                    .coarseness = wall.is_front ? 1.0 : 1.25});
+                    .coarseness = wall.is_front ? 1.0 : hidden});
   }
 
   void add_wall(std::uint32_t w) {
@@ -160,7 +161,7 @@ class HouseBuilder {
     if (neighbour > house_.eave + 0.5 * house_.roof_rise) return;
     const dvec3 along = house_.frame.axes[2] * (left ? -row_depth : row_depth);
     const dvec3 low = house_.frame.at(left ? 0.0 : house_.width, 0.0, left ? row_depth : 0.0);
-    Surface side{.paint = paint_masonry, .subject = number_, .coarseness = 1.25};
+    Surface side{.paint = paint_masonry, .subject = number_, .coarseness = hidden};
     if (neighbour > 0.0 && neighbour < house_.eave) {
       side.corner = low + house_.frame.axes[1] * -neighbour;
       side.u = along;
@@ -186,7 +187,7 @@ class HouseBuilder {
     const dvec3 right = house_.frame.axes[0] * house_.width;
     const unsigned ends = (house_.left_eave < house_.eave ? border_left : 0u) |
                           (house_.right_eave < house_.eave ? border_right : 0u);
-    Surface roof{.u = right, .paint = paint_roof, .subject = number_};
+    Surface roof{.u = right, .paint = paint_roof, .subject = number_, .coarseness = roof_coarseness};
     if (house_.roof_rise == 0.0) {
       roof.corner = house_.frame.at(0.0, -house_.eave + 0.15, 0.0);
       roof.v = house_.frame.axes[2] * row_depth;

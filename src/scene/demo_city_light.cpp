@@ -129,7 +129,7 @@ Light::Seen Light::seen(const dvec3& p, const dvec3& normal, const Look& look, b
     seen.shine_axis = to_sun;
   } else {  // the brighter half of the sky, mirrored
     const dvec3 bright = glm::normalize(to_sun + dvec3(0.0, -1.0, 0.0));
-    seen.shine = dvec3(0.40, 0.43, 0.46) * (look.gloss * (1.0 - hazy));
+    seen.shine = dvec3(0.28, 0.30, 0.32) * (look.gloss * (1.0 - hazy));
     seen.shine_axis = bright - normal * (2.0 * glm::dot(bright, normal));
   }
   return seen;

@@ -56,7 +56,7 @@ Look shop_look(const Wall& wall, const House& house, const Opening& opening, int
   const bool goods = shelf - row < size && std::abs(place - std::floor(place) - 0.5) < 0.4 && row < 3;
   dvec3 colour = mix(dvec3(0.62, 0.52, 0.38), dvec3(0.86, 0.74, 0.54), b / tall);
   if (goods) {
-    for (int c = 0; c < 3; ++c) colour[c] = 0.2 + 0.65 * lot(wall, 10 * key + c, 200 + column);
+    for (int c = 0; c < 3; ++c) colour[c] = 0.30 + 0.45 * lot(wall, 10 * key + c, 200 + column);
   } else if (shelf - row < 0.06) {
     colour = {0.36, 0.26, 0.18};
   }

@@ -181,6 +181,8 @@ class Builder {
   std::vector<Surface> surfaces;
 
  private:
+  double grain_of(const Surface& surface, const dvec3& p) const;
+
   double grain_;
 };
 
@@ -204,8 +206,8 @@ struct Head {
   double fov_degrees;
 };
 constexpr std::array<Head, 3> heads = {Head{"street", {-1.2, 1.6, -9.0}, {0.6, 2.6, 60.0}, 60.0},
-                                       Head{"roof", {-12.0, 19.0, -14.0}, {6.0, 4.0, 70.0}, 60.0},
-                                       Head{"corner", {-5.6, 1.72, 71.0}, {14.0, 2.6, 92.0}, 65.0}};
+                                       Head{"air", {2.5, 25.0, -40.0}, {0.0, 6.0, 60.0}, 60.0},
+                                       Head{"corner", {-5.6, 1.72, 75.2}, {9.0, 2.4, 96.0}, 65.0}};
 
 void add_houses(Builder& builder);     // demo_city_houses.cpp
 void add_streets(Builder& builder);    // demo_city_streets.cpp: ground

@@ -10,7 +10,7 @@ namespace binosplat::city {
 namespace {
 
 constexpr double edge_x = streets_beside * street_pitch + front + 4.0;  // of the city
-constexpr double grain_of_kerbs = 0.8, grain_of_yard_walls = 1.5;
+constexpr double grain_of_kerbs = 0.8, grain_of_slopes = 1.0, grain_of_yard_walls = 1.5, grain_of_blocks = 2.5;
 
 double part_of(double value, double period) { return value - period * std::floor(value / period); }
 
@@ -70,6 +70,12 @@ Look paint_yard(const City&, const Surface&, double x, double z) {
   return {.colour = grass * (0.88 + 0.24 * blades)};
 }
 
+/// A whole block: a yard with pavements around it.
+Look paint_block(const City& city, const Surface& surface, double x, double z) {
+  const bool yard = x > front && x < street_pitch - front && z > side_front && z < crossing_pitch - side_front;
+  return yard ? paint_yard(city, surface, x, z) : paint_pavement(city, surface, x, z);
+}
+
 Look paint_yard_wall(const City&, const Surface&, double u, double v) {
   return {.colour = dvec3(0.62, 0.55, 0.47) * (0.85 + 0.2 * fractal(1.5 * u, 2.0 * v))};
 }
@@ -89,7 +95,8 @@ Look paint_fields(const City&, const Surface&, double x, double z) {
 void add_ground(Builder& builder, const dvec2& low, const dvec2& high, double height, Paint paint,
                 const dvec2& middle, double coarseness = 1.0) {
   const Relief& relief = builder.city.relief;
-  const int pieces = std::max(1, static_cast<int>((high.y - low.y) / 12.5));
+  const bool coarse = builder.grain_at(relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) > grain_of_slopes;
+  const int pieces = std::max(1, static_cast<int>((high.y - low.y) / (coarse ? 100.0 : 20.0)));
   for (int k = 0; k < pieces; ++k) {
     const double z0 = low.y + (high.y - low.y) * k / pieces, z1 = low.y + (high.y - low.y) * (k + 1) / pieces;
     const dvec3 corner = relief.at(low.x, z0, height);
@@ -115,13 +122,17 @@ void add_block(Builder& builder, double x, double z) {
   const dvec2 low(x + road, z + side_road), high(x + street_pitch - road, z + crossing_pitch - side_road);
   const dvec2 yard_low(x + front, z + side_front), yard_high(x + street_pitch - front, z + crossing_pitch - side_front);
   const dvec2 zero(0.0);
+  if (builder.grain_at(builder.city.relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) > grain_of_blocks) {
+    add_ground(builder, low, high, kerb, paint_block, {x, z});
+    return;
+  }
   add_ground(builder, low, {yard_low.x, high.y}, kerb, paint_pavement, zero);
   add_ground(builder, {yard_high.x, low.y}, high, kerb, paint_pavement, zero);
   add_ground(builder, {yard_low.x, low.y}, {yard_high.x, yard_low.y}, kerb, paint_pavement, zero);
   add_ground(builder, {yard_low.x, yard_high.y}, {yard_high.x, high.y}, kerb, paint_pavement, zero);
   const double inner = row_depth - 1.0;
   add_ground(builder, {yard_low.x + inner, yard_low.y}, {yard_high.x - inner, yard_high.y}, kerb, paint_yard, zero,
-             1.5);
+             2.0);
   constexpr int pieces = 8;
   for (int k = 0; k < pieces; ++k) {
     const auto at = [&](int i) { return low + (high - low) * (static_cast<double>(i) / pieces); };

@@ -19,14 +19,22 @@ constexpr double overlap = 0.78;
 constexpr double unrest = 0.12;  // cells
 /// At a border where a sheet ends its outermost Gaussians lie this many cells inside: half transparent there.
 constexpr double margin_at_end = 0.85;
-/// Thickness of a flat Gaussian as a share of its smaller side.
-constexpr double flatness = 0.08;
+/// Thickness of a flat Gaussian as a share of its smaller side, and at most: kilometres of ground must not
+/// become fog.
+constexpr double flatness = 0.08, thickest = 0.25;
 constexpr float opacity = 0.97f;
 
+/// Of leaves in a crown of radius 1.
+constexpr double ball_area = 22.0;
+
 /// The grain doubles at this distance from the nearest camera.
-constexpr double near_distance = 5.0;
-/// Pieces of a sheet are no longer than this share of their distance, so that each has one grain.
-constexpr double piece = 0.5;
+constexpr double near_distance = 4.0;
+/// Pieces of a sheet are no longer than this share of their distance, so that each has one grain; or a few
+/// Gaussians.
+constexpr double piece = 0.5, piece_grains = 4.0;
+/// Coarse surfaces are no coarser than this share of their distance: Gaussians that reach around a camera
+/// are drawn as fog.
+constexpr double coarsest = 0.1;
 
 /// Distance of the nearest camera; along the streets half of it, as people walk there.
 double distance_to_heads(const City& city, const dvec3& p) {
@@ -102,7 +110,8 @@ void fill_sheet(const City& city, const Light& light, const Surface& s, std::siz
     const std::uint64_t in_row = (j + 1) * n / rows - j * n / rows;
     const Cells wide(length_u, static_cast<std::uint32_t>(in_row), s.borders & border_left,
                      s.borders & border_right);
-    const double thin = s.thickness > 0.0 ? s.thickness : overlap * flatness * std::min(wide.size, high.size);
+    const double flat = std::min(thickest, overlap * flatness * std::min(wide.size, high.size));
+    const double thin = s.thickness > 0.0 ? s.thickness : flat;
     const dvec3 scale(overlap * wide.size, overlap * high.size, thin);
     for (std::uint64_t i = 0; i < in_row; ++i, ++at) {
       const auto key = static_cast<std::int64_t>(at);
@@ -127,27 +136,33 @@ dvec3 in_ball(Random& random) {
   }
 }
 
-/// Leaves, most of them outside, in lumps.
+/// Leaves on the outside of lumps that overlap.
 void fill_ball(const City& city, const Light& light, const Surface& s, std::size_t first, Model& model) {
-  const dvec3 radii = s.u;
-  const double mean = (radii.x + radii.y + radii.z) / 3.0;
-  const double area = 4.0 * procedural::pi * mean * mean;
-  const double size = std::min(0.55 * mean, 0.62 * std::sqrt(area / s.count));
+  constexpr std::uint32_t lumps = 11;
+  constexpr double lump_radius = 0.50;  // of the crown's
+  std::array<dvec3, lumps> middles;
+  Random of_crown(std::uint64_t{s.subject} * 77 + 5);
+  for (std::uint32_t k = 0; k < lumps; ++k) {
+    middles[k] = glm::normalize(in_ball(of_crown)) * (k == 0 ? 0.0 : 1.0 - lump_radius);
+  }
+  const double mean = (s.u.x + s.u.y + s.u.z) / 3.0;
+  const double area = ball_area * mean * mean;
+  const double size = std::min(0.5 * mean, 0.62 * std::sqrt(area / s.count));
   for (std::uint32_t i = 0; i < s.count; ++i) {
     Random random((std::uint64_t{s.subject} << 32) + i);
-    const dvec3 inside = in_ball(random);
-    const dvec3 out = glm::normalize(inside);
-    const double lump = noise(2.1 * out.x + 3.7 * s.subject, 2.1 * out.z + 2.1 * out.y);
-    const double deep = std::max(glm::length(inside), random.uniform());
-    // One Gaussian alone is the whole crown.
-    const double reach = s.count == 1 ? 0.0 : (1.0 - 0.7 * size / mean) * (0.78 + 0.36 * lump) * deep;
-    const dvec3 p = s.corner + reach * out * radii;
+    const dvec3 out = glm::normalize(in_ball(random));
+    const double deep = std::max(random.uniform(), random.uniform()) * 0.35 + 0.65;
+    // A few Gaussians alone are the whole crown.
+    const double shell = lump_radius * deep * (1.0 - 0.5 * size / mean);
+    const dvec3 place = s.count < lumps ? dvec3(0.0) : middles[i % lumps] + shell * out;
+    const dvec3 p = s.corner + place * s.u;
     const dvec3 normal = glm::normalize(in_ball(random) + 0.6 * out);
     const dvec3 along = in_ball(random);
-    Look look = s.paint(city, s, reach, lump);
+    Look look = s.paint(city, s, glm::length(place), glm::dot(place, out));
     look.colour *= 0.90 + 0.2 * random.uniform();
     const glm::vec4 rotation = quaternion(procedural::axes_from_normal(normal, along));
-    put(model, first + i, p, rotation, dvec3(1.15, 0.85, 0.45) * size, light.seen(p, out, look, true));
+    const Light::Seen seen = light.seen(p, glm::normalize(out + place), look, true);
+    put(model, first + i, p, rotation, dvec3(1.15, 0.85, 0.45) * size, seen);
   }
 }
 
@@ -157,14 +172,20 @@ double Builder::grain_at(const dvec3& p) const {
   return grain_ * (1.0 + distance_to_heads(city, p) / near_distance);
 }
 
+double Builder::grain_of(const Surface& surface, const dvec3& p) const {
+  const double grain = grain_at(p);
+  return std::clamp(coarsest * distance_to_heads(city, p), grain, surface.coarseness * grain);
+}
+
 void Builder::sheet(const Surface& surface) {
   const double length_u = glm::length(surface.u), length_v = glm::length(surface.v);
   const dvec3 middle = surface.corner + 0.5 * (surface.u + surface.v);
   const double far = distance_to_heads(city, middle);
   const double nearest = std::max(0.0, far - 0.5 * std::max(length_u, length_v));
   Surface low = surface, high = surface;
-  if (std::max(length_u, length_v) <= piece * surface.coarseness * (near_distance + nearest)) {
-    const double grain = surface.coarseness * grain_at(middle);
+  const double grain = grain_of(surface, middle);
+  const double longest = std::max(piece * (near_distance + nearest), piece_grains * grain);
+  if (std::max(length_u, length_v) <= longest) {
     low.weight = length_u * length_v / (grain * grain);
     surfaces.push_back(low);
   } else if (length_u > length_v) {
@@ -189,8 +210,8 @@ void Builder::sheet(const Surface& surface) {
 void Builder::ball(const Surface& surface) {
   Surface whole = surface;
   whole.ball = true;
-  const double grain = surface.coarseness * grain_at(surface.corner);
-  whole.weight = 4.0 * procedural::pi * surface.u.x * surface.u.x / (grain * grain);
+  const double grain = grain_of(surface, surface.corner);
+  whole.weight = ball_area * surface.u.x * surface.u.x / (grain * grain);
   surfaces.push_back(whole);
 }
 

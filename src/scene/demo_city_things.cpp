@@ -11,9 +11,10 @@ namespace {
 
 constexpr double grain_of_trees = 3.0, grain_of_trunks = 1.0, grain_of_lamps = 0.6, grain_of_cars = 0.7;
 
-Look paint_leaves(const City& city, const Surface& surface, double reach, double lump) {
+/// `reach`: how far from the middle of the crown; `out`: how far outside its lump. Deep inside it is dark.
+Look paint_leaves(const City& city, const Surface& surface, double reach, double out) {
   const Tree& tree = city.trees[surface.subject];
-  return {.colour = tree.leaves * (0.45 + 0.45 * ramp(0.3, 0.95, reach) + 0.25 * lump)};
+  return {.colour = tree.leaves * (0.50 + 0.35 * ramp(0.25, 0.95, reach) + 0.25 * ramp(-0.2, 0.8, out))};
 }
 
 Look paint_bark(const City&, const Surface& surface, double u, double v) {
@@ -90,7 +91,7 @@ Look paint_car(const City& city, const Surface& surface, double u, double v) {
     const bool pillar = across > car_half - 0.13 && std::abs(p.z + 0.30) < 0.05;
     const bool before_or_behind = across < car_half - 0.08;
     const bool beside = across > car_half - 0.2 && !pillar;
-    if (before_or_behind || beside) return {.colour = dvec3(0.17, 0.20, 0.23), .gloss = 0.9};
+    if (before_or_behind || beside) return {.colour = dvec3(0.26, 0.30, 0.34), .gloss = 0.9};
   }
   if (along > 1.98 && p.y > -0.78 && p.y < -0.56 && across > 0.5) {
     if (p.z > 0.0) return {.colour = dvec3(0.93, 0.94, 0.92), .gloss = 0.6};

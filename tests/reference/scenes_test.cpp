@@ -1,8 +1,6 @@
 // The reference against the numbers of METHOD.md section 8 and against INRIA's own pictures of the shared
 // scenes. One view of each model by default; all that have a picture or a figure with BINOSPLAT_LONG=1.
 
-#include "support/scenes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,28 +8,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "formats/cameras_file.h"
 #include "formats/image_file.h"
-#include "formats/ply.h"
 #include "measure/metrics.h"
-#include "reference/render.h"
+#include "reference/trained.h"
 
 namespace binosplat::reference {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A trained model of the shared scenes, and what belongs to it.
-struct Trained {
-  const char* scene;
-  const char* ply;
-  const char* inria;   // folder of INRIA's 8-bit pictures
-  const char* psnr;    // PSNR of those against the photos
-  double inria_bound;  // dB: METHOD's smallest figure for these pictures, less 0.1
-};
-constexpr Trained fox{"fox", "fox.ply", "inria", "psnr.json", 81.7};
-constexpr Trained fox_pruned{"fox", "fox_pruned.ply", "inria_pruned", "psnr_pruned.json", 87.4};
-constexpr Trained garden{"garden", "garden.ply", "inria", "psnr.json", 81.3};
 
 struct Case {
   Trained model;
@@ -69,29 +53,9 @@ const Case cases[] = {
     {garden, "DSC08116", false},
 };
 
-/// One view of a case, projected and in order.
-struct Scene {
-  fs::path folder;
-  shared::View view;
-  std::vector<Splat> splats;
-  std::vector<std::uint32_t> order;
-
-  Scene(const fs::path& f, const Case& c, const Model& model) : folder(f) {
-    const std::vector<Camera> cameras = load_cameras(folder / "cameras.json");
-    const auto camera =
-        std::find_if(cameras.begin(), cameras.end(), [&](const Camera& each) { return each.name == c.view; });
-    if (camera == cameras.end()) throw std::runtime_error(std::string("no camera ") + c.view);
-    view = make_view(*camera);
-    splats = project_all(model, view);
-    order = depth_order(splats);
-  }
-  Scene(const fs::path& f, const Case& c) : Scene(f, c, load_ply(f / c.model.ply)) {}
-
-  TileLists lists(int tiles) const { return make_lists(splats, order, view, tiles); }
-  double pixels() const { return double(view.width) * view.height; }
-};
-
-Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0f)); }
+Scene load_scene(const fs::path& folder, const Case& c) {
+  return {load_ply(folder / c.model.ply), camera_named(folder, c.view)};
+}
 
 class ReferenceOnScenes : public testing::TestWithParam<Case> {};
 
@@ -104,7 +68,7 @@ class ReferenceOnScenes : public testing::TestWithParam<Case> {};
 TEST_P(ReferenceOnScenes, AabbMatchesInriaAndThePhotos) {
   REQUIRE_CASE(folder);
   const Case& c = GetParam();
-  const Scene scene(folder, c);
+  const Scene scene = load_scene(folder, c);
   const Image aabb = quantised(on_black(blend(scene.splats, scene.lists(TILES_AABB), scene.view)));
   const fs::path inria = folder / c.model.inria / (std::string(c.view) + ".png");
   if (fs::exists(inria)) {
@@ -119,7 +83,7 @@ TEST_P(ReferenceOnScenes, CountsAndLossOfAabb) {
   REQUIRE_CASE(folder);
   const Case& c = GetParam();
   if (c.aabb == 0) GTEST_SKIP() << "METHOD.md has no figures for this view";
-  const Scene scene(folder, c);
+  const Scene scene = load_scene(folder, c);
   const TileLists aabb = scene.lists(TILES_AABB), ellipse = scene.lists(TILES_ELLIPSE);
   // The camera is rounded to fp32, which moves means by up to 1e-4 px: a few pairs at tile edges.
   EXPECT_NEAR(double(aabb.pairs()), double(c.aabb), 2e-5 * double(c.aabb));
@@ -184,7 +148,7 @@ Explained explain_all(const Scene& scene, const TileLists& lists, const Image& e
 
 TEST_P(ReferenceOnScenes, RoundingTurnsOnlyWhatTheTraceExplains) {
   REQUIRE_CASE(folder);
-  const Scene scene(folder, GetParam());
+  const Scene scene = load_scene(folder, GetParam());
   const TileLists lists = scene.lists(TILES_ELLIPSE);
   const Image exact = on_black(blend(scene.splats, lists, scene.view));
   const auto compare = [&](const std::vector<Splat>& splats) {
@@ -209,7 +173,7 @@ TEST(ReferenceFaults, FallShortOfInriasPicture) {
   REQUIRE_SCENE("fox", folder);
   const Case& c = cases[0];
   const Model model = load_ply(folder / c.model.ply);
-  const Scene scene(folder, c, model);
+  const Scene scene(model, camera_named(folder, c.view));
   const Image inria = load_image(folder / c.model.inria / (std::string(c.view) + ".png"));
   const auto against_inria = [&](const Picture& picture) {
     return measure::psnr(quantised(on_black(picture)), inria);

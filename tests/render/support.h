@@ -69,10 +69,10 @@ struct StageRun {
     gl::Dispatcher dispatcher(gl_context());
     for (std::uint32_t group = 0; group < shape.groups.size(); ++group) {
       render::project(dispatcher, shape, group, model_buffers, frame);
-      indices.push_back(
-          frame.indices.read<std::uint32_t>(frame.order_amounts.read<shared::Amount>(1).front().count));
+      indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(
+          frame.drawn[group]->amounts.read<shared::Amount>(1).front().count));
       if (stage == render::Stage::project) continue;
-      render::order(dispatcher, frame);
+      render::order(dispatcher, group, frame);
       if (stage != render::Stage::order) render::pairs(dispatcher, shape, group, frame);
     }
     if (stage <= render::Stage::pairs) return;

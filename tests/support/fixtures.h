@@ -25,7 +25,7 @@ inline nlohmann::json load_json(const std::filesystem::path& path) {
 /// Declares `path_variable`, the folder of the files; skips or fails the test where there is none.
 #define REQUIRE_FIXTURES(path_variable)                                                                   \
   const std::filesystem::path path_variable = ::binosplat::test::fixtures_folder();                       \
-  if ((path_variable).empty()) {                                                                            \
+  if ((path_variable).empty()) {                                                                          \
     if (::binosplat::test::switched_on("BINOSPLAT_REQUIRE_SCENES"))                                       \
       FAIL() << "files of every format not found: set BINOSPLAT_FORMATS to their folder, scenes/formats"; \
     GTEST_SKIP() << "files of every format not found: BINOSPLAT_FORMATS is not set to their folder";      \

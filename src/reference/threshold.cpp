@@ -1,0 +1,45 @@
+#include "reference/threshold.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.h"
+
+namespace binosplat::reference {
+
+namespace {
+
+/// The largest area in px that a pair is charged for: a tile of 16 x 16, whatever the tile.
+constexpr double largest_area = 256.0;
+
+}  // namespace
+
+double threshold(int th, double loss, const Splat& splat, double upper) {
+  if (!(upper > 0.0)) fail("a transmittance of {} behind a threshold: expected more than 0", upper);
+  const double sqrt_det = std::sqrt(splat.det);
+  switch (th) {
+    case TH_TAU:
+      return ALPHA_MIN;
+    case TH_PERIPHERAL:
+      return loss / (upper * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
+    case TH_SQUARED:
+      return std::max(ALPHA_MIN,
+                      std::sqrt(loss / std::min(largest_area, std::numbers::pi * sqrt_det)) / upper);
+  }
+  fail("threshold {}: expected one of shared/axes.h", th);
+}
+
+void set_thresholds(std::vector<Splat>& splats, int th, double loss, std::span<const double> upper) {
+  if (!upper.empty() && upper.size() != splats.size()) {
+    fail("{} transmittances for {} Gaussians: expected as many", upper.size(), splats.size());
+  }
+  for (std::size_t i = 0; i < splats.size(); ++i) {
+    Splat& splat = splats[i];
+    if (!splat.drawn) continue;
+    splat.threshold = threshold(th, loss, splat, upper.empty() ? 1.0 : upper[i]);
+    if (th != TH_TAU && splat.threshold > splat.opacity) splat.drawn = false;
+  }
+}
+
+}  // namespace binosplat::reference

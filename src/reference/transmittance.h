@@ -1,0 +1,28 @@
+#pragma once
+// How much of each Gaussian a view shows: what Th may go by in the next frame (METHOD.md section 5).
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "reference/project.h"
+#include "reference/tiles.h"
+
+namespace binosplat::reference {
+
+/// What measure_transmittance() says of a Gaussian in no tile's list: outside the view or left out by Th.
+constexpr double not_seen = -1.0;
+
+/// For each Gaussian the largest T in front of it, times contrast, over the pixels that blend it: max(T), or
+/// W for TH_SQUARED, one maximum of the product. `contrast` is a CONTRAST_ of shared/axes.h: 1, or the RMS
+/// over channels of the Gaussian's colour against the pixel's final colour, or against the colour of all that
+/// lies behind it there. 0 where no pixel blends it, because each had ended before it or because its alpha is
+/// below tau in all; not_seen where no tile has it. `background` is behind all; only the contrast depends on
+/// it. The same bits with any number of threads.
+std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
+                                          const shared::View& view, int contrast = CONTRAST_OFF,
+                                          const glm::dvec3& background = glm::dvec3(0.0));
+
+/// A measurement as set_thresholds() takes it: at least `floor`, and 1 where the Gaussian was not seen.
+std::vector<double> floored(std::vector<double> measured, double floor);
+
+}  // namespace binosplat::reference

@@ -1,0 +1,167 @@
+// What one frame measures for the next: the largest transmittance, and contrast, of each Gaussian.
+
+#include "render/continuity.h"
+#include "render/support.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+
+namespace binosplat {
+namespace {
+
+using render::FrameSettings;
+using test::same_bits;
+
+// A wall of opaque splats at depth 2, and as many behind it that nobody sees; `seen_behind` stand free beside
+// it.
+Model wall() {
+  Model model;
+  for (const float z : {2.0f, 4.0f, 5.0f, 6.0f}) {
+    for (int y = -12; y <= 12; ++y) {
+      for (int x = -12; x <= 12; ++x) {
+        const glm::vec3 colour = z == 2.0f ? glm::vec3(0.7f, 0.5f, 0.3f) : glm::vec3(0.1f, 0.2f, 0.9f);
+        test::add(model, {0.05f * z * static_cast<float>(x), 0.05f * z * static_cast<float>(y), z},
+                  glm::vec3(0.04f * z), 0.98f, colour);
+      }
+    }
+  }
+  return model;
+}
+
+shared::View front() { return make_view(test::front_camera(96, 80, 90)); }
+
+TEST(Remember, MeasuringDoesNotChangeThePicture) {
+  const Model model = test::random_model(81, 4000, 1);
+  const shared::View view = make_view(test::front_camera(160, 96, 160));
+  const Picture exact = test::draw(model, view);
+  for (const int contrast : {CONTRAST_OFF, CONTRAST_FINAL, CONTRAST_BEHIND}) {
+    render::Frame frame(test::gl_context(), model);
+    const FrameSettings settings = {.transmittance = TRANSMITTANCE_LAST, .contrast = contrast};
+    for (int n = 0; n < 3; ++n) frame.draw(std::vector{view}, settings);
+    EXPECT_TRUE(same_bits(frame.read_pictures().front(), exact)) << contrast_choices[contrast].name;
+  }
+}
+
+TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
+  const Model model = wall();
+  const FrameSettings one = {.th = TH_SQUARED, .loss = 0.05f};
+  const FrameSettings last = {
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_FINAL, .loss = 0.05f};
+  const Picture expected = test::draw(model, front(), one);
+  render::Frame frame(test::gl_context(), model);
+  frame.draw(std::vector{front()}, last);
+  EXPECT_TRUE(same_bits(frame.read_pictures().front(), expected));
+  frame.draw(std::vector{front()}, last);
+  EXPECT_FALSE(same_bits(frame.read_pictures().front(), expected));  // the second one knows what is hidden
+  Camera elsewhere = test::front_camera(96, 80, 90);
+  elsewhere.position = {1.5, 0, 0};
+  frame.draw(std::vector{make_view(elsewhere)}, last);
+  EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(model, make_view(elsewhere), one)));
+}
+
+TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
+  const Model model = wall();
+  const Picture exact = test::draw(model, front());
+  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+    const FrameSettings settings = {
+        .th = th, .transmittance = TRANSMITTANCE_LAST, .loss = th == TH_SQUARED ? 1e-3f : 0.3f};
+    render::Frame frame(test::gl_context(), model);
+    const auto first = frame.draw(std::vector{front()}, settings);
+    auto report = first;
+    for (int n = 0; n < 10; ++n) report = frame.draw(std::vector{front()}, settings);
+    EXPECT_LT(static_cast<double>(report.pairs), 0.8 * static_cast<double>(first.pairs))
+        << th_choices[th].name;
+    EXPECT_GT(test::psnr(frame.read_pictures().front(), exact), 45.0) << th_choices[th].name;
+  }
+}
+
+TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
+  // The wall before the others is gone in the next frame: so are the measurements of what it hid, within a
+  // few frames.
+  const Model model = wall();
+  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.01f};
+  render::Frame frame(test::gl_context(), model);
+  for (int n = 0; n < 5; ++n) frame.draw(std::vector{front()}, settings);
+  // Through the near plane instead of another model: what is nearer than 3 is not drawn.
+  const shared::View opened = make_view(test::front_camera(96, 80, 90), 3.0);
+  const Picture exact = test::draw(model, opened);
+  double db = 0;
+  for (int n = 0; n < 25; ++n) {
+    frame.draw(std::vector{opened}, settings);
+    db = test::psnr(frame.read_pictures().front(), exact);
+  }
+  EXPECT_GT(db, 35.0);
+}
+
+TEST(Remember, BothEyesServeEachOther) {
+  const Model model = test::random_model(82, 4000, 1);
+  const auto rig = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.06});
+  std::uint64_t pairs[4] = {};
+  for (const int source :
+       {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST, TRANSMITTANCE_OTHER_EYE, TRANSMITTANCE_BOTH}) {
+    render::Frame frame(test::gl_context(), model);
+    for (int n = 0; n < 3; ++n) {
+      pairs[source] =
+          frame.draw(rig.views, {.th = TH_PERIPHERAL, .transmittance = source, .loss = 1.0f}).pairs;
+    }
+  }
+  EXPECT_LT(pairs[TRANSMITTANCE_LAST], pairs[TRANSMITTANCE_ONE]);
+  EXPECT_LT(pairs[TRANSMITTANCE_OTHER_EYE], pairs[TRANSMITTANCE_ONE]);
+  EXPECT_GE(pairs[TRANSMITTANCE_BOTH], pairs[TRANSMITTANCE_LAST]);  // the larger of the two keeps more
+}
+
+TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
+  const Model model = test::random_model(83, 4000, 1);
+  const std::vector views = {make_view(test::front_camera(120, 90, 110))};
+  FrameSettings settings = {
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_FINAL, .loss = 0.05f};
+  render::Frame ample(test::gl_context(), model);
+  render::Frame tight(test::gl_context(), model);
+  for (int n = 0; n < 3; ++n) {
+    ample.draw(views, settings);
+    FrameSettings few = settings;
+    few.order_capacity = 10 + n;
+    tight.draw(views, few);
+    EXPECT_TRUE(same_bits(ample.read_pictures().front(), tight.read_pictures().front())) << n;
+  }
+}
+
+TEST(Remember, WhatMakesNoSenseIsNamed) {
+  const Model model = test::random_model(84, 10, 0);
+  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, front(), {.transmittance = TRANSMITTANCE_BOTH}); },
+                                 {"--transmittance both", "both eyes"}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .contrast = CONTRAST_FINAL}); },
+                         {"--contrast final"}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .loss = -1}); }, {"--loss -1"}));
+}
+
+TEST(Continuity, TellsAMomentFromACut) {
+  const Model model = test::random_model(85, 10, 0);
+  const FrameSettings settings = {.transmittance = TRANSMITTANCE_LAST};
+  const auto shape = [&](const Camera& camera) {
+    return render::make_shape(std::vector{make_view(camera)}, settings, model);
+  };
+  const Camera before = test::front_camera(64, 64, 64);
+  const auto turned = [&](double degrees) {
+    Camera camera = before;
+    const double a = glm::radians(degrees);
+    camera.rotation = glm::dmat3(std::cos(a), 0, -std::sin(a), 0, 1, 0, std::sin(a), 0, std::cos(a));
+    return camera;
+  };
+  const auto moved = [&](double by) {
+    Camera camera = before;
+    camera.position.x += by;
+    return camera;
+  };
+  EXPECT_TRUE(render::continues(shape(before), shape(before), 2.0));
+  EXPECT_TRUE(render::continues(shape(before), shape(turned(14)), 2.0));
+  EXPECT_FALSE(render::continues(shape(before), shape(turned(16)), 2.0));
+  EXPECT_TRUE(render::continues(shape(before), shape(moved(0.19)), 2.0));
+  EXPECT_FALSE(render::continues(shape(before), shape(moved(0.21)), 2.0));
+  EXPECT_FALSE(render::continues(shape(before), shape(test::front_camera(64, 65, 64)), 2.0));
+  EXPECT_FALSE(render::continues(render::FrameShape(), shape(before), 2.0));
+}
+
+}  // namespace
+}  // namespace binosplat
