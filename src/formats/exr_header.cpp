@@ -10,6 +10,48 @@ namespace binosplat {
 
 namespace {
 
+/// Types of attributes whose values OpenEXR reads without a look at the size that the file gives.
+struct FixedType {
+  std::string_view name;
+  std::size_t bytes;
+};
+constexpr FixedType fixed_types[] = {{"box2f", 16},
+                                     {"box2i", 16},
+                                     {"chromaticities", 32},
+                                     {"compression", 1},
+                                     {"deepImageState", 1},
+                                     {"double", 8},
+                                     {"envmap", 1},
+                                     {"float", 4},
+                                     {"int", 4},
+                                     {"keycode", 28},
+                                     {"lineOrder", 1},
+                                     {"m33d", 72},
+                                     {"m33f", 36},
+                                     {"m44d", 128},
+                                     {"m44f", 64},
+                                     {"rational", 8},
+                                     {"tiledesc", 9},
+                                     {"timecode", 8},
+                                     {"v2d", 16},
+                                     {"v2f", 8},
+                                     {"v2i", 8},
+                                     {"v3d", 24},
+                                     {"v3f", 12},
+                                     {"v3i", 12}};
+
+std::uint32_t number(std::string_view value, std::size_t at) {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 4; i > 0; --i) bits = bits << 8 | static_cast<unsigned char>(value[at + i - 1]);
+  return bits;
+}
+
+/// Length along an axis of a box2i: two corners, both within.
+std::int64_t extent(std::string_view box, std::size_t axis) {
+  const auto corner = [&](std::size_t at) { return static_cast<std::int32_t>(number(box, at)); };
+  return std::int64_t{corner(8 + 4 * axis)} - corner(4 * axis) + 1;
+}
+
 /// What decides how much memory OpenEXR takes for a part of a file.
 struct Part {
   std::int64_t width = 0;  // px
@@ -29,7 +71,7 @@ class Walker {
       : path_(path), text_(as_text(bytes)) {}
 
   void check() {
-    if (text_.size() < 8) fail_cut();
+    if (text_.size() < 8) fail_broken();
     const bool tiled = (text_[5] & 0x02) != 0;
     const bool many_parts = (text_[5] & 0x10) != 0;
     do {
@@ -42,12 +84,12 @@ class Walker {
   }
 
  private:
-  [[noreturn]] void fail_cut() const {
-    fail("{}: broken OpenEXR: its header goes on beyond the file's end", path_.string());
+  [[noreturn]] void fail_broken() const {
+    fail("{}: broken OpenEXR: at byte {} of its header", path_.string(), at_);
   }
 
   std::string_view take(std::size_t size) {
-    if (size > text_.size() - at_) fail_cut();
+    if (size > text_.size() - at_) fail_broken();
     const std::string_view taken = text_.substr(at_, size);
     at_ += size;
     return taken;
@@ -55,40 +97,45 @@ class Walker {
 
   std::string_view take_name() {
     const std::size_t end = text_.find('\0', at_);
-    if (end == std::string_view::npos) fail_cut();
+    if (end == std::string_view::npos || end - at_ > 255) fail_broken();
     const std::string_view name = take(end - at_);
     ++at_;
     return name;
   }
 
-  static std::uint32_t number(std::string_view value, std::size_t at) {
-    std::uint32_t bits = 0;
-    for (std::size_t i = 4; i > 0; --i) bits = bits << 8 | static_cast<unsigned char>(value[at + i - 1]);
-    return bits;
-  }
-
-  static std::int64_t extent(std::string_view box, std::size_t axis) {
-    const auto corner = [&](std::size_t at) { return static_cast<std::int32_t>(number(box, at)); };
-    return std::int64_t{corner(8 + 4 * axis)} - corner(4 * axis) + 1;
-  }
-
   void read_attribute(Part& part) {
     const std::string_view name = take_name();
-    take_name();
-    const std::string_view value = take(number(take(4), 0));
-    if (name == "dataWindow" && value.size() == 16) {
-      part.width = std::max(part.width, extent(value, 0));
-      part.height = std::max(part.height, extent(value, 1));
-    } else if (name == "tiles" && value.size() == 9) {
+    const std::string_view type = take_name();
+    const std::uint32_t size = number(take(4), 0);
+    for (const FixedType& fixed : fixed_types) {
+      if (fixed.name == type && fixed.bytes != size) fail_broken();
+    }
+    const std::size_t end = at_ + size;
+    if (type == "chlist") part.channels = count_channels();
+    const std::string_view value = type == "chlist" ? std::string_view() : take(size);
+    if (at_ != end) fail_broken();
+
+    if (name == "dataWindow" && type == "box2i") {
+      part.width = extent(value, 0);
+      part.height = extent(value, 1);
+    } else if (name == "tiles" && type == "tiledesc") {
       part.tile_width = std::max<std::int64_t>(1, number(value, 0));
       part.tile_height = std::max<std::int64_t>(1, number(value, 4));
-    } else if (name == "channels") {
-      part.channels = static_cast<std::int64_t>(value.size() / 18);  // bytes of one with a name of one letter
-    } else if (name == "compression" && value.size() == 1) {
+    } else if (name == "compression" && type == "compression") {
       part.compression = static_cast<unsigned char>(value[0]);
     } else if (name == "type") {
       part.tiled = value.find("tile") != std::string_view::npos;
     }
+  }
+
+  /// Of a list that ends with an empty name.
+  std::int64_t count_channels() {
+    std::int64_t count = 0;
+    while (!take_name().empty()) {
+      take(16);
+      ++count;
+    }
+    return count;
   }
 
   void check_part(const Part& part) const {

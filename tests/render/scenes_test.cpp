@@ -12,6 +12,7 @@
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "render/support.h"
+#include "scene/demo_room.h"
 #include "stereo/rig.h"
 
 namespace binosplat {
@@ -32,6 +33,13 @@ struct Case {
   const char* view;
   std::size_t aabb = 0, ellipse = 0;  // pairs (METHOD 8); 0: no figure there
 };
+
+std::string name_of(const Case& c) {
+  const std::string ply = c.trained.ply;
+  return ply.substr(0, ply.size() - 4) + "_" + c.view;
+}
+
+void PrintTo(const Case& c, std::ostream* out) { *out << name_of(c); }
 
 constexpr Trained fox = {"fox", "fox.ply", "inria", "psnr.json"};
 constexpr Trained fox_pruned = {"fox", "fox_pruned.ply", "inria_pruned", "psnr_pruned.json"};
@@ -148,37 +156,44 @@ TEST_P(Scenes, ExactEqualsTheReference) {
   EXPECT_LT(measure::psnr(image, over_black(reference::blend(splats, thinned, drawn.view))), 68.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases), [](const auto& one) {
-  return std::string(one.param.trained.ply, std::string(one.param.trained.ply).size() - 4) + "_" +
-         one.param.view;
-});
+INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases),
+                         [](const auto& one) { return name_of(one.param); });
+
+// Each eye has the same bits drawn with the other and alone, for parallel and for canted eyes; without a
+// distance between them both are equal.
+void expect_eyes_equal_themselves_alone(const Model& model, const Camera& head, double units_per_metre) {
+  render::Frame frame(test::gl_context(), model);
+  for (const double cant : {0.0, 5.0}) {
+    const auto rig = stereo::make_rig(head, {.units_per_metre = units_per_metre, .cant_degrees = cant});
+    frame.draw(rig.views);
+    const auto both = frame.read_pictures();
+    for (const std::size_t eye : {0, 1}) {
+      frame.draw(std::span(&rig.views[eye], 1));
+      const auto alone = frame.read_pictures().front();
+      EXPECT_TRUE(test::same_bits(both[eye], alone)) << model.name << " cant " << cant;
+      EXPECT_FALSE(test::same_bits(both[1 - eye], alone)) << model.name << " cant " << cant;
+    }
+  }
+  const auto together = stereo::make_rig(head, {.ipd = 0.0});
+  frame.draw(together.views);
+  const auto equal = frame.read_pictures();
+  EXPECT_TRUE(test::same_bits(equal[0], equal[1])) << model.name;
+}
 
 TEST(SceneEyes, EachEqualsItselfAloneBitForBit) {
   for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
     REQUIRE_SCENE(c.trained.scene, folder);
-    const Model model = load_model(folder / c.trained.ply);
     const auto cameras = load_cameras(folder / "cameras.json");
-    const Camera* head =
-        &*std::find_if(cameras.begin(), cameras.end(), [&](const Camera& k) { return k.name == c.view; });
-    render::Frame frame(test::gl_context(), model);
-    for (const double cant : {0.0, 5.0}) {
-      const auto rig =
-          stereo::make_rig(resized(*head, 320, 240), {.units_per_metre = 1.7, .cant_degrees = cant});
-      frame.draw(rig.views);
-      const auto both = frame.read_pictures();
-      for (const int eye : {0, 1}) {
-        frame.draw(std::span(&rig.views[static_cast<std::size_t>(eye)], 1));
-        const auto alone = frame.read_pictures().front();
-        EXPECT_TRUE(test::same_bits(both[static_cast<std::size_t>(eye)], alone))
-            << c.trained.ply << " cant " << cant;
-        EXPECT_FALSE(test::same_bits(both[static_cast<std::size_t>(1 - eye)], alone));
-      }
-    }
-    const auto together = stereo::make_rig(resized(*head, 320, 240), {.ipd = 0.0});
-    frame.draw(together.views);
-    const auto equal = frame.read_pictures();
-    EXPECT_TRUE(test::same_bits(equal[0], equal[1]));
+    const auto head =
+        std::find_if(cameras.begin(), cameras.end(), [&](const Camera& k) { return k.name == c.view; });
+    ASSERT_NE(head, cameras.end());
+    expect_eyes_equal_themselves_alone(load_model(folder / c.trained.ply), resized(*head, 320, 240), 1.7);
   }
+}
+
+TEST(DemoEyes, EachEqualsItselfAloneBitForBit) {
+  const Demo demo = demo_room();
+  expect_eyes_equal_themselves_alone(demo.model, resized(demo.cameras.front(), 240, 135), 1.0);
 }
 
 TEST(SceneBruteForce, EllipseEqualsItBitForBit) {
