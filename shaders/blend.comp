@@ -20,6 +20,9 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 #if TRANSMITTANCE != TRANSMITTANCE_ONE
 layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot), bits of floats
 uniform uint remembers;  // whether `colours` still holds this view's last frame
+#if CONTRAST != CONTRAST_OFF
+uniform uint background_r, background_g, background_b;  // bits of floats
+#endif
 shared uint batch_measured[BATCH];
 #endif
 uniform uint view_count;
@@ -36,7 +39,7 @@ vec3 colour = vec3(0.0);
 float z_sum = 0.0;
 float transmittance = 1.0;
 bool done = false;
-vec3 last = vec3(0.0);  // the pixel's colour in the last frame
+vec3 last = vec3(0.0);  // the pixel's colour in the last frame, background included
 
 // The most that a splat's alpha counts for in any pixel: T, times its contrast (METHOD 5, squared). A maximum in shared
 // memory, and one a tile in the buffer, cost little beside the blend.
@@ -114,7 +117,10 @@ void main() {
   done = !inside;
   uint to = view.pixel_offset + at.y * view.width + at.x;
 #if TRANSMITTANCE != TRANSMITTANCE_ONE && CONTRAST != CONTRAST_OFF
-  if (inside && remembers != 0u) last = colours[to].rgb;
+  if (inside && remembers != 0u) {
+    vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
+    last = colours[to].rgb + colours[to].a * background;
+  }
 #endif
 
   uint list = list_per_view != 0u ? view_index : tile;

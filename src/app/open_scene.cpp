@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "formats/model_file.h"
-#include "scene/demo_city.h"
 #include "scene/demo_room.h"
 #include "scene/repeat.h"
 
@@ -15,9 +14,7 @@ namespace {
 
 Scene open_once(const RenderOptions& options) {
   if (options.scene == demo_city_name) {
-    CitySettings settings;
-    settings.seed = options.seed.value_or(settings.seed);
-    settings.count = options.count.value_or(settings.count);
+    const CitySettings settings = city_settings(options);
     check(settings);
     return {city_cameras(settings.seed), [settings] { return demo_city(settings).model; }};
   }
@@ -33,6 +30,13 @@ Scene open_once(const RenderOptions& options) {
 }
 
 }  // namespace
+
+CitySettings city_settings(const RenderOptions& options) {
+  CitySettings settings;
+  settings.seed = options.seed.value_or(settings.seed);
+  settings.count = options.count.value_or(settings.count);
+  return settings;
+}
 
 Scene open_scene(const RenderOptions& options) {
   Scene scene = open_once(options);

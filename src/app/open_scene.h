@@ -6,16 +6,21 @@
 
 #include "app/render_options.h"
 #include "scene/camera.h"
+#include "scene/demo_city.h"
 #include "scene/model.h"
 
 namespace binosplat::app {
 
 struct Scene {
-  std::vector<Camera> cameras;   // that come with a scene the program makes; of a file: none
-  std::function<Model()> model;  // the long part: reads or makes it, and repeats it where options ask for that
+  std::vector<Camera> cameras;  // that come with a scene the program makes; of a file: none
+  /// The long part: reads or makes it, and repeats it where the options ask for that.
+  std::function<Model()> model;
 };
 
-/// The scene that the options name. Throws Error for a built-in one that there is not.
+/// The city that the options ask for.
+CitySettings city_settings(const RenderOptions& options);
+
+/// The scene that the options name; they must outlive it. Throws Error for a built-in one that there is not.
 Scene open_scene(const RenderOptions& options);
 
 }  // namespace binosplat::app

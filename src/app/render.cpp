@@ -1,5 +1,6 @@
 // binosplat render: from options to pictures, in the order in which mistakes are cheapest to find.
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -61,10 +62,22 @@ gl::Backend backend_of(const std::string& name) {
   return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
 }
 
+// The number of a choice of shared/axes.h.
+template <std::size_t n>
+int number_of(const std::string& name, const Choice (&choices)[n]) {
+  const auto* found = std::find_if(choices, choices + n, [&](const Choice& c) { return c.name == name; });
+  return static_cast<int>(found - choices);
+}
+
 render::FrameSettings settings_of(const RenderOptions& options) {
   render::FrameSettings settings;
-  settings.tiles = options.tiles == "aabb" ? TILES_AABB : options.tiles == "all" ? TILES_ALL : TILES_ELLIPSE;
+  settings.tiles = number_of(options.tiles, tiles_choices);
+  settings.th = number_of(threshold_name(options), th_choices);
+  settings.loss = options.loss.value_or(0.0f);
+  settings.transmittance = number_of(options.transmittance, transmittance_choices);
+  settings.contrast = number_of(options.contrast, contrast_choices);
   settings.tile_size = options.tile;
+  settings.background = options.background.value_or(settings.background);
   for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
     if (options.reference_until == render::stage_names[i])
       settings.reference_until = static_cast<render::Stage>(i);
@@ -77,6 +90,19 @@ std::unique_ptr<gl::Context> open_context(const RenderOptions& options) {
   log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
   if (!options.shader_dir.empty()) context->set_shader_folder(options.shader_dir);
   return context;
+}
+
+// What the model takes on the GPU, and the shot that takes most.
+render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& model,
+                                 const std::vector<Shot>& shots) {
+  render::MemoryNeeds most;
+  for (const Shot& shot : shots) {
+    std::vector<shared::View> views;
+    for (const Eye& eye : shot.eyes) views.push_back(eye.view);
+    const auto needs = render::memory_needs(render::make_shape(views, settings_of(options), model));
+    most = {needs.model, std::max(most.frame, needs.frame)};
+  }
+  return most;
 }
 
 // Draws every shot options.frames times and writes its last frame.
@@ -119,7 +145,8 @@ ExitCode render(const RenderOptions& options) {
   if (!options.photos.empty()) check_photos(options.photos, shots);
 
   const auto context = open_context(options);
-  RenderReport report{options, model, *context, near_plane, {}, {}};
+  RenderReport report{options, model, *context, near_plane, memory_needs(options, model, shots), {}, {}};
+  print_needs(report.needs);
   draw_all(*context, plan, std::move(shots), report);
   print(report);
   if (!options.json.empty()) save_json(options.json, to_json(report));

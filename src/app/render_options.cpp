@@ -1,10 +1,13 @@
 #include "app/render_options.h"
 
+#include <fmt/ranges.h>
+
 #include <cmath>
 #include <sstream>
 
 #include "base/error.h"
 #include "scene/demo_city.h"
+#include "shared/axes.h"
 
 namespace binosplat::app {
 
@@ -59,6 +62,21 @@ CLI::Validator one_of(std::initializer_list<T> choices) {
   return CLI::IsMember(std::vector<T>(choices)).description("");
 }
 
+// The names of a list of shared/axes.h, as a check, as the option's type, and as lines of help.
+template <std::size_t n>
+CLI::Option* choose(CLI::App& sub, const char* option, std::string& into, const std::string& help,
+                    const Choice (&choices)[n]) {
+  std::vector<std::string> names;
+  std::string lines;
+  for (const Choice& choice : choices) {
+    names.emplace_back(choice.name);
+    lines += fmt::format("\n  {}: {}", choice.name, choice.help);
+  }
+  return sub.add_option(option, into, help + lines)
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name(fmt::format("{}", fmt::join(names, "|")));
+}
+
 CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }
 
 CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
@@ -99,6 +117,11 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
                  "NAME_right")
       ->type_name("NAME")
       ->group(group);
+  sub.add_option(
+         "--path", o.path,
+         "cameras.json whose cameras are frames of one path: each goes by\nwhat the last one measured")
+      ->type_name("FILE")
+      ->group(group);
   three("--eye", o.eye, "Camera position instead, in world units")->group(group);
   three("--at", o.at, "What it looks at")->group(group);
   three("--up", o.up, "What is up in the picture (0,-1,0); for --eye, --orbit and\nmodels without cameras")
@@ -112,7 +135,7 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
       ->check(range(1, 10000))
       ->group(group);
   sub.add_option_function<std::string>(
-         "--size", 
+         "--size",
          [&o](const std::string& text) {
            o.size = parse_two("--size", text, "pixels as WIDTHxHEIGHT, for one 1280x720");
          },
@@ -151,11 +174,21 @@ void add_rig(CLI::App& sub, RenderOptions& o) {
 
 void add_frame(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Drawing";
-  sub.add_option("--tiles", o.tiles,
-                 "Which tiles a Gaussian is drawn in: ellipse is exact, aabb is\n3D-GS's square, all is for "
-                 "tests (ellipse)")
-      ->check(one_of<std::string>({"aabb", "ellipse", "all"}))
-      ->type_name("aabb|ellipse|all")
+  choose(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices)
+      ->group(group);
+  choose(sub, "--th", o.th,
+         "The alpha below which a Gaussian is left out of a tile (tau;\nwith --loss: squared)", th_choices)
+      ->group(group);
+  sub.add_option("--loss", o.loss,
+                 "How much that may cost: alpha * px^2 (peripheral) or px * squared\ncolour (squared)")
+      ->type_name("X")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->group(group);
+  choose(sub, "--transmittance", o.transmittance, "The light that reaches a Gaussian, for --th (one)",
+         transmittance_choices)
+      ->group(group);
+  choose(sub, "--contrast", o.contrast, "What that light is weighed with, for --th squared (off)",
+         contrast_choices)
       ->group(group);
   sub.add_option("--tile", o.tile, "Side of a tile in px (16)")
       ->check(one_of({8, 16, 32}))
@@ -232,6 +265,30 @@ void add_options(CLI::App& sub, RenderOptions& options) {
   add_outputs(sub, options);
 }
 
+namespace {
+
+void check_threshold(const RenderOptions& o) {
+  const std::string th = threshold_name(o);
+  if (th != "tau" && !o.loss) fail("--th {} needs --loss: how much it may cost", th);
+  if (th == "tau" && o.loss) fail("--loss has no effect with --th tau, which is exact");
+  if (o.contrast != "off" && (th != "squared" || o.transmittance == "one")) {
+    fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
+  }
+  if ((o.transmittance == "other-eye" || o.transmittance == "both") && (o.mono || !o.only.empty())) {
+    fail("--transmittance {} needs both eyes: leave --mono and --only out", o.transmittance);
+  }
+  if (!o.reference_until.empty() && (th != "tau" || o.transmittance != "one")) {
+    fail("--reference-until is for --th tau: the reference has no thresholds yet");
+  }
+}
+
+}  // namespace
+
+std::string threshold_name(const RenderOptions& o) {
+  if (!o.th.empty()) return o.th;
+  return o.loss ? "squared" : "tau";
+}
+
 void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
@@ -245,6 +302,12 @@ void check(const RenderOptions& o) {
   if (made_up && (!o.cameras.empty() || !o.views.empty())) {
     fail("{} makes its own camera: leave --cameras and --view out", o.eye ? "--eye" : "--orbit");
   }
+  if (!o.path.empty() && (made_up || !o.cameras.empty() || !o.views.empty() || o.frames > 1)) {
+    fail(
+        "--path names its own cameras, each drawn once: leave --cameras, --view, --eye, --orbit and --frames "
+        "out");
+  }
+  check_threshold(o);
   if (o.fov && o.preset == "headset")
     fail("--fov with --preset headset: the preset's lens has 100 degrees across");
   if (o.mono && !o.only.empty())

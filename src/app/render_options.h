@@ -24,6 +24,7 @@ struct RenderOptions {
 
   // Cameras.
   std::string cameras;             // a file; empty: found beside the model
+  std::string path;                // a file whose cameras are the frames of a path, instead
   std::vector<std::string> views;  // names, or "all"; empty: the first
   std::optional<glm::dvec3> eye, at, up;
   std::optional<double> fov;  // degrees
@@ -42,6 +43,10 @@ struct RenderOptions {
 
   // The frame and where it is drawn.
   std::string tiles = "ellipse";
+  std::string th;             // empty: tau, or squared with a loss
+  std::optional<float> loss;  // K or kappa
+  std::string transmittance = "one";
+  std::string contrast = "off";
   int tile = TILE_SIZE_DEFAULT;
   std::string reference_until;
   std::string backend = "auto";
@@ -62,6 +67,10 @@ struct RenderOptions {
 /// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
+
+/// What --th is: squared where only a loss is given, which costs less at equal error than the paper's rule
+/// (METHOD 8).
+std::string threshold_name(const RenderOptions& options);
 
 /// Throws Error for options that contradict each other.
 void check(const RenderOptions& options);

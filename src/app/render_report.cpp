@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/open_scene.h"
+#include "base/log.h"
+
 namespace binosplat::app {
 
 namespace {
@@ -31,6 +34,16 @@ std::optional<double> mean_photo_psnr(const RenderReport& report) {
   return sum / count;
 }
 
+// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
+std::string megabytes(std::int64_t bytes) {
+  const double whole = std::round(static_cast<double>(bytes) / 1e6);
+  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+  std::string digits = fmt::format("{:.0f}", whole);
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), ",");
+  return digits + " MB";
+}
+
 ordered_json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 ordered_json eye_json(const Eye& eye) {
@@ -54,6 +67,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   json["visible"] = drawn.report.visible;
   json["pairs"] = drawn.report.pairs;
+  json["gpu_ms"] = drawn.report.total_ms;
   json["depth_orders"] = drawn.report.order_groups;
   json["drawn_again"] = drawn.report.redrawn;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
@@ -63,9 +77,25 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
 
 ordered_json settings_json(const RenderReport& report) {
   const RenderOptions& o = report.options;
-  ordered_json json = {{"tiles", o.tiles}, {"tile", o.tile}, {"near", report.near_plane}};
+  ordered_json json = {
+      {"tiles", o.tiles}, {"tile", o.tile}, {"near", report.near_plane}, {"th", threshold_name(o)}};
+  if (o.loss) json["loss"] = *o.loss;
+  json["transmittance"] = o.transmittance;
+  json["contrast"] = o.contrast;
   json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
   if (!o.reference_until.empty()) json["reference_until"] = o.reference_until;
+  return json;
+}
+
+ordered_json scene_json(const RenderReport& report) {
+  const RenderOptions& o = report.options;
+  ordered_json json = {{"name", o.scene}};
+  if (o.scene == demo_city_name) json["seed"] = city_settings(o).seed;
+  if (o.scene == demo_city_name) json["count"] = city_settings(o).count;
+  if (o.repeat) json["repeat"] = {{"x", o.repeat->x}, {"z", o.repeat->y}, {"spacing", *o.spacing}};
+  json["gaussians"] = report.model.count();
+  json["left_out"] = report.model.left_out;
+  json["degree"] = report.model.degree;
   return json;
 }
 
@@ -90,10 +120,15 @@ std::vector<StageTimes::Row> StageTimes::rows() const {
   return rows;
 }
 
+void print_needs(const render::MemoryNeeds& needs) {
+  log_info("GPU memory: {} for the model, at least {} for a frame", megabytes(needs.model),
+           megabytes(needs.frame));
+}
+
 void print(const RenderReport& report) {
   for (const Drawn& drawn : report.drawn) {
     std::string line = fmt::format("{}: {}", drawn.shot.name, fmt::join(drawn.files, ", "));
-    line += fmt::format("  ({} pairs", drawn.report.pairs);
+    line += fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
   }
@@ -110,11 +145,7 @@ void print(const RenderReport& report) {
 
 ordered_json to_json(const RenderReport& report) {
   ordered_json json = {{"version", BINOSPLAT_VERSION},
-                       {"scene",
-                        {{"name", report.options.scene},
-                         {"gaussians", report.model.count()},
-                         {"left_out", report.model.left_out},
-                         {"degree", report.model.degree}}},
+                       {"scene", scene_json(report)},
                        {"device",
                         {{"backend", report.context.backend()},
                          {"renderer", report.context.renderer()},
@@ -128,7 +159,9 @@ ordered_json to_json(const RenderReport& report) {
   for (const StageTimes::Row& row : report.times.rows()) {
     json["stages"].push_back({{"stage", row.stage}, {"median_ms", row.median_ms}, {"p99_ms", row.p99_ms}});
   }
-  json["memory"] = {{"gpu_bytes", report.context.allocated_bytes()},
+  json["memory"] = {{"model_bytes", report.needs.model},
+                    {"frame_bytes_at_least", report.needs.frame},
+                    {"gpu_bytes", report.context.allocated_bytes()},
                     {"gpu_peak_bytes", report.context.peak_bytes()}};
   return json;
 }

@@ -10,6 +10,7 @@
 #include "app/render_options.h"
 #include "app/shots.h"
 #include "gl/context.h"
+#include "render/buffers.h"
 #include "render/frame.h"
 #include "scene/model.h"
 
@@ -45,11 +46,14 @@ struct RenderReport {
   const RenderOptions& options;
   const Model& model;
   const gl::Context& context;
-  double near_plane = 0.0;  // world units
+  double near_plane = 0.0;    // world units
+  render::MemoryNeeds needs;  // of the model, and of the view that needs most
   std::vector<Drawn> drawn;
   StageTimes times;
 };
 
+/// The line about memory, before anything is uploaded.
+void print_needs(const render::MemoryNeeds& needs);
 void print(const RenderReport& report);
 nlohmann::ordered_json to_json(const RenderReport& report);
 

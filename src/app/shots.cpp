@@ -67,7 +67,8 @@ Choice choose(const std::string& name, const CameraList& list, bool mono) {
 }
 
 std::vector<Choice> chosen(const RenderOptions& options, const CameraList& list) {
-  const bool everything = !list.listed || options.views == std::vector<std::string>{"all"};
+  const bool everything =
+      !list.listed || !options.path.empty() || options.views == std::vector<std::string>{"all"};
   if (everything || options.views.empty()) {
     std::vector<Choice> choices = all_choices(list.cameras, !options.mono);
     if (everything || choices.size() == 1) return choices;
@@ -150,7 +151,7 @@ std::string stem_of(std::string name, std::set<std::string>& taken) {
 
 CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera>& built_in) {
   if (options.eye || options.orbit) return {};
-  std::string file = options.cameras;
+  std::string file = options.path.empty() ? options.cameras : options.path;
   if (file.empty() && built_in.empty()) {
     const auto found = find_cameras(options.scene);
     if (found) file = found->string();

@@ -1,8 +1,11 @@
+#include <bit>
+
 #include "render/stages.h"
 
 namespace binosplat::render {
 
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+  const glm::vec3& background = shape.settings.background;
   // The tile test is no part of this program: with every test the same lists give the same bits.
   const gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
                                {"TRANSMITTANCE", std::to_string(shape.settings.transmittance)},
@@ -18,6 +21,9 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
                   {"Measured", buffers.measured}},
                  {{"view_count", shape.view_count()},
                   {"remembers", shape.remembers ? 1u : 0u},
+                  {"background_r", std::bit_cast<std::uint32_t>(background.r)},
+                  {"background_g", std::bit_cast<std::uint32_t>(background.g)},
+                  {"background_b", std::bit_cast<std::uint32_t>(background.b)},
                   {"tile_count", shape.tile_count},
                   {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
 }

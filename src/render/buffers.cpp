@@ -123,10 +123,12 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   MemoryNeeds needs;
   needs.model =
       shape.gaussian_count * (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
-  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t);
+  const bool measures = shape.settings.transmittance != TRANSMITTANCE_ONE;
+  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measures ? 2 : 1);
+  const std::int64_t gaussian_bytes = 4 + (measures ? shape.view_count() * 8 : 0);
   const std::int64_t slot_bytes = shape.view_count() * splat_bytes + 6 * 4;  // indices, order twice, offsets
-  needs.frame =
-      shape.gaussian_count * 4LL + shape.slots * slot_bytes + shape.pixel_count * 20 + shape.tile_count * 8LL;
+  needs.frame = shape.gaussian_count * gaussian_bytes + shape.slots * slot_bytes + shape.pixel_count * 20 +
+                shape.tile_count * 8LL;
   return needs;
 }
 

@@ -30,7 +30,8 @@ double moved(const shared::View& a, const shared::View& b) {
 bool continues(const FrameShape& before, const FrameShape& now, double median_depth) {
   if (before.views.size() != now.views.size() || before.gaussian_count != now.gaussian_count) return false;
   if (now.settings.transmittance == TRANSMITTANCE_ONE || before.settings.transmittance == TRANSMITTANCE_ONE ||
-      before.settings.contrast != now.settings.contrast) {
+      before.settings.contrast != now.settings.contrast ||
+      before.settings.background != now.settings.background) {
     return false;
   }
   for (std::size_t v = 0; v < now.views.size(); ++v) {

@@ -2,6 +2,7 @@
 // What a caller may choose about a frame.
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <optional>
 
 #include "shared/axes.h"
@@ -20,6 +21,7 @@ struct FrameSettings {
   int contrast = CONTRAST_OFF;            // CONTRAST_; with TH_SQUARED and a measured transmittance only
   float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
   int tile_size = TILE_SIZE_DEFAULT;  // px: 8, 16 or 32; the picture does not depend on it
+  glm::vec3 background{0.0f};         // behind the scene, for contrast only: the pictures are without
   /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong
   /// picture is bisected to its stage.
   std::optional<Stage> reference_until;

@@ -242,9 +242,9 @@ TEST(Exr, BrokenFilesAreRefused) {
   const test::TempFolder folder;
   save_exr(folder / "a.exr", random_picture(), {});
   const std::string good = test::read_text(folder / "a.exr");
-  const auto refuses = [&](const std::string& bytes) {
+  const auto refuses = [&](const std::string& bytes, const char* reason = "") {
     test::write_text(folder / "b.exr", bytes);
-    return test::fails_saying([&] { load_image(folder / "b.exr"); }, {"b.exr"});
+    return test::fails_saying([&] { load_image(folder / "b.exr"); }, {"b.exr", reason});
   };
   for (std::size_t size = 4; size < good.size(); size += good.size() / 50)
     EXPECT_TRUE(refuses(good.substr(0, size)));
@@ -255,6 +255,11 @@ TEST(Exr, BrokenFilesAreRefused) {
   endless.replace(good.find("string") + 7, 4, "\xf0\xff\xff\x7f");
   EXPECT_TRUE(refuses(endless));
 
+  // A number of five bytes: OpenEXR would read four and take the rest for the next attribute's name.
+  std::string shifted = good;
+  shifted[good.find("float") + 6] = 5;
+  EXPECT_TRUE(refuses(shifted, "broken OpenEXR"));
+
   // The data window's far corner at 2^31 - 2 and at 60,000.
   const std::size_t window = good.find("box2i") + 10;
   for (const char* side : {"\xfe\xff\xff\x7f", "\x60\xea\x00\x00"}) {
@@ -262,6 +267,14 @@ TEST(Exr, BrokenFilesAreRefused) {
     for (const std::size_t at : {window + 8, window + 12}) forged.replace(at, 4, std::string(side, 4));
     EXPECT_TRUE(refuses(forged));
   }
+  // One line of 2^24 px, for which OpenEXR would make room in blocks of 16; lines without a place in the
+  // file.
+  std::string forged = good;
+  forged.replace(window + 8, 8, std::string("\xff\xff\xff\0\0\0\0\0", 8));
+  EXPECT_TRUE(refuses(forged, "16777216 x 1 px, which"));
+  forged = good;
+  forged.replace(window + 12, 4, std::string("\x20\x4e\0\0", 4));
+  EXPECT_TRUE(refuses(forged, "1251 blocks, which"));
 }
 
 TEST(Exr, FullDisksAreReported) {

@@ -125,6 +125,23 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   }
 }
 
+TEST(Remember, ContrastIsAgainstTheBackgroundThatIsThere) {
+  // One pale splat: it counts for much before black, and for nothing before a wall of its own colour.
+  Model model;
+  test::add(model, {0, 0, 2}, glm::vec3(0.2f), 0.5f, glm::vec3(0.8f));
+  const auto measured = [&](const glm::vec3& background) {
+    FrameSettings settings = {
+        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_BEHIND, .loss = 0.01f};
+    settings.background = background;
+    render::Frame frame(test::gl_context(), model);
+    std::uint64_t pairs = 0;
+    for (int n = 0; n < 3; ++n) pairs = frame.draw(std::vector{front()}, settings).pairs;
+    return pairs;
+  };
+  EXPECT_GT(measured(glm::vec3(0.0f)), 1u);
+  EXPECT_LT(measured(glm::vec3(0.8f)), measured(glm::vec3(0.0f)));
+}
+
 TEST(Remember, WhatMakesNoSenseIsNamed) {
   const Model model = test::random_model(84, 10, 0);
   EXPECT_TRUE(test::fails_saying([&] { test::draw(model, front(), {.transmittance = TRANSMITTANCE_BOTH}); },
