@@ -199,27 +199,6 @@ TEST(Frame, WorksWhenADriverAllowsFewGroups) {
   test::gl_context().limit_groups(before);
 }
 
-TEST(Frame, ATileOfManySplatsIsNotCutByTheDriver) {
-  // 70,000 faint ones in one tile: more than llvmpipe's loops go round (65,535), each leaving its mark.
-  Model model;
-  test::Uniform uniform(73);
-  for (int i = 0; i < 70000; ++i) {
-    const double z = uniform(1, 2);
-    test::add(model, {uniform(-0.2, 0.2) * z, uniform(-0.2, 0.2) * z, z}, glm::vec3(0.02f), 0.006f,
-              glm::vec3(uniform(0, 1)));
-  }
-  const shared::View view = make_view(test::front_camera(16, 16, 40));
-  const Picture drawn = draw(model, view);
-  EXPECT_GE(test::psnr(drawn, reference::render(model, view)), 80.0);
-  Model fewer = model;  // a list cut at 65,535 entries is caught
-  const auto splats = reference::project_all(model, view);
-  auto order = reference::depth_order(splats);
-  ASSERT_GT(order.size(), 65535u);
-  order.resize(65535);
-  const auto lists = reference::make_lists(splats, order, view, TILES_ELLIPSE);
-  EXPECT_LT(test::psnr(drawn, reference::blend(splats, lists, view)), 70.0);
-}
-
 TEST(Frame, BadShapesAreNamed) {
   const Model model = test::random_model(74, 10, 0);
   EXPECT_TRUE(test::fails_saying([&] { draw(model, std::vector<shared::View>{}); }, {"1 to 8 views"}));
