@@ -2,6 +2,7 @@
 
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -56,6 +57,16 @@ const CLI::Validator positive(
     },
     "");
 
+// From 0 to 2^64 - 1; CLI11 by itself would take -1 for the largest.
+const CLI::Validator whole(
+    [](std::string& text) {
+      std::uint64_t value = 0;
+      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      const bool good = error == std::errc() && end == text.data() + text.size();
+      return good ? std::string() : text + ": expected a whole number";
+    },
+    "");
+
 // A choice of words or numbers; the help names them as the option's type, and once is enough.
 template <typename T>
 CLI::Validator one_of(std::initializer_list<T> choices) {
@@ -83,9 +94,10 @@ CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).descript
 
 void add_scene(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Scene";
-  sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->group(group);
+  sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
       ->type_name("N")
+      ->check(whole)
       ->group(group);
   sub.add_option_function<std::string>(
          "--repeat",

@@ -8,19 +8,13 @@
 
 #include "app/open_scene.h"
 #include "base/log.h"
+#include "base/statistics.h"
 
 namespace binosplat::app {
 
 namespace {
 
 using nlohmann::ordered_json;
-
-// The smallest value that at least `share` of the values do not exceed.
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
-}
 
 std::optional<double> mean_photo_psnr(const RenderReport& report) {
   double sum = 0.0;

@@ -119,6 +119,12 @@ ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32
   }
 }
 
+std::int64_t starting_pairs(const FrameShape& shape) {
+  constexpr std::int64_t pairs_per_splat = 16;
+  return std::clamp(shape.slots * std::int64_t{shape.view_count()} * pairs_per_splat, std::int64_t{1} << 16,
+                    std::int64_t{1} << 24);
+}
+
 MemoryNeeds memory_needs(const FrameShape& shape) {
   MemoryNeeds needs;
   needs.model =
@@ -126,9 +132,10 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   const bool measures = shape.settings.transmittance != TRANSMITTANCE_ONE;
   const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measures ? 2 : 1);
   const std::int64_t gaussian_bytes = 4 + (measures ? shape.view_count() * 8 : 0);
+  const std::int64_t pair_bytes = 4 * 4;                                     // tile and splat, twice
   const std::int64_t slot_bytes = shape.view_count() * splat_bytes + 6 * 4;  // indices, order twice, offsets
   needs.frame = shape.gaussian_count * gaussian_bytes + shape.slots * slot_bytes + shape.pixel_count * 20 +
-                shape.tile_count * 8LL;
+                shape.tile_count * 8LL + starting_pairs(shape) * pair_bytes;
   return needs;
 }
 

@@ -55,7 +55,10 @@ struct ModelBuffers {
   std::vector<Page> pages;
 };
 
-/// Bytes that the model takes on the GPU, and what a frame of it at least takes besides, before any pair.
+/// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
+std::int64_t starting_pairs(const FrameShape& shape);
+
+/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides.
 struct MemoryNeeds {
   std::int64_t model = 0;
   std::int64_t frame = 0;

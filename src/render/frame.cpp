@@ -15,10 +15,6 @@ namespace binosplat::render {
 
 namespace {
 
-// Room that a first frame starts with: most models need some tiles a Gaussian; what is missing is grown.
-constexpr std::int64_t pairs_per_splat_guess = 16;
-constexpr std::int64_t pairs_guess_min = 1 << 16;
-constexpr std::int64_t pairs_guess_max = std::int64_t{1} << 24;
 constexpr int attempts_max = 8;
 
 }  // namespace
@@ -34,11 +30,8 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   shape_.remembers = continues(last_shape_, shape_, last_median_depth_);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
   if (settings.order_capacity > 0) slots_ = settings.order_capacity;
-  const std::int64_t pairs_guess =
-      std::clamp(shape_.slots * std::int64_t{shape_.view_count()} * pairs_per_splat_guess, pairs_guess_min,
-                 pairs_guess_max);
   pair_capacity_ =
-      settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, pairs_guess);
+      settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, starting_pairs(shape_));
 
   buffers_.views.upload(shape_.views);
   const std::uint32_t groups_max = dispatcher_.context().limits().groups;

@@ -54,7 +54,8 @@ std::vector<std::size_t> share_out(std::vector<Surface>& surfaces, std::size_t c
     begins.push_back(k + given);
     reached += std::max(0.0, surfaces[k].weight - 1.0);
     const bool last = k + 1 == surfaces.size();
-    const auto due = last ? rest : std::min(rest, static_cast<std::size_t>(reached / sum * static_cast<double>(rest)));
+    const auto due =
+        last ? rest : std::min(rest, static_cast<std::size_t>(reached / sum * static_cast<double>(rest)));
     surfaces[k].count = static_cast<std::uint32_t>(1 + due - given);
     given = due;
   }

@@ -15,13 +15,15 @@ Look paint_tower(const City& city, const Surface& surface, double u, double v) {
   const std::uint32_t number = surface.subject;
   const dvec3 wall = mix(dvec3(0.78, 0.73, 0.66), dvec3(0.52, 0.55, 0.60), hash(number, 1));
   if (city.towers[number].tiers == 5) {  // the church
-    const bool slit = std::abs(u / 5.0 - std::floor(u / 5.0) - 0.5) < 0.12 && v - 14.0 * std::floor(v / 14.0) > 8.0;
+    const bool slit =
+        std::abs(u / 5.0 - std::floor(u / 5.0) - 0.5) < 0.12 && v - 14.0 * std::floor(v / 14.0) > 8.0;
     return {.colour = slit ? dvec3(0.25, 0.24, 0.23) : dvec3(0.80, 0.74, 0.62)};
   }
   const double a = u / 3.2, b = v / 3.4;
   const bool window = std::abs(a - std::floor(a) - 0.5) < 0.34 && std::abs(b - std::floor(b) - 0.5) < 0.32;
   if (!window) return {.colour = wall};
-  const double own = hash(static_cast<std::int64_t>(std::floor(a)) + 100 * number, static_cast<std::int64_t>(std::floor(b)));
+  const double own =
+      hash(static_cast<std::int64_t>(std::floor(a)) + 100 * number, static_cast<std::int64_t>(std::floor(b)));
   return {.colour = mix(dvec3(0.26, 0.31, 0.37), dvec3(0.50, 0.57, 0.63), own), .gloss = 0.5};
 }
 
@@ -59,7 +61,10 @@ void add_tower(Builder& builder, std::uint32_t number) {
 dvec3 around(double way, double radius) {
   const int side = static_cast<int>(way / 2.0);
   const double t = way - 2.0 * side - 1.0;
-  const dvec2 corner = side == 0 ? dvec2(t, 1) : side == 1 ? dvec2(1, -t) : side == 2 ? dvec2(-t, -1) : dvec2(-1, t);
+  const dvec2 corner = side == 0   ? dvec2(t, 1)
+                       : side == 1 ? dvec2(1, -t)
+                       : side == 2 ? dvec2(-t, -1)
+                                   : dvec2(-1, t);
   const dvec2 unit = glm::normalize(corner);
   return sky_centre + radius * dvec3(unit.x, 0.0, unit.y);
 }

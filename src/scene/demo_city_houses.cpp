@@ -1,5 +1,5 @@
-// demo:city: houses: far away a row of them at once, nearer as blocks with painted windows, and near with every
-// window set into the wall.
+// demo:city: houses: far away a row of them at once, nearer as blocks with painted windows, and near with
+// every window set into the wall.
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +51,8 @@ Look paint_chimney(const City& city, const Surface& surface, double u, double v)
 
 Look paint_awning(const City& city, const Surface& surface, double u, double) {
   const bool stripe = (static_cast<int>(u / 0.3) & 1) != 0;
-  return {.colour = stripe ? dvec3(0.90, 0.88, 0.82) : mix(city.houses[surface.subject].door, dvec3(0.6), 0.15)};
+  return {.colour =
+              stripe ? dvec3(0.90, 0.88, 0.82) : mix(city.houses[surface.subject].door, dvec3(0.6), 0.15)};
 }
 
 class HouseBuilder {
@@ -208,7 +209,8 @@ class HouseBuilder {
     const double x = house_.width * (0.15 + 0.7 * hash(house_.number, 31));
     const double ridge = house_.eave + house_.roof_rise;
     builder_.box(house_.frame, {x - 0.35, -ridge - 0.9, 0.5 * row_depth - 0.9},
-                 {x + 0.35, -ridge + 0.9, 0.5 * row_depth + 0.3}, {.paint = paint_chimney, .subject = number_});
+                 {x + 0.35, -ridge + 0.9, 0.5 * row_depth + 0.3},
+                 {.paint = paint_chimney, .subject = number_});
   }
 
   void add_cornice() {

@@ -28,6 +28,10 @@ int cell_at(double from, double at, int count) {
   return std::clamp(static_cast<int>((at - from) / cell), 0, count - 1);
 }
 
+std::size_t cell_index(int i, int j) {
+  return static_cast<std::size_t>(j) * cells_x + static_cast<std::size_t>(i);
+}
+
 /// Part of a ray that lies in a half space: where gap + t * step >= 0.
 void cut(double gap, double step, double& enter, double& leave) {
   if (step > 0.0) {
@@ -80,8 +84,9 @@ Light::Light(const City& city) : city_(city), cells_(static_cast<std::size_t>(ce
     const dvec3 throws = -to_sun * ((height + 8.0) / -to_sun.y);
     dvec2 low(1e9), high(-1e9);
     for (const dvec2 corner : {dvec2(0, 0), dvec2(1, 0), dvec2(0, 1), dvec2(1, 1)}) {
-      const dvec3 p = ball ? c.frame.at(c.radius * (2.0 * corner.x - 1.0), 0, c.radius * (2.0 * corner.y - 1.0))
-                           : c.frame.at(c.width * corner.x, 0, c.depth * corner.y);
+      const dvec3 p =
+          ball ? c.frame.at(c.radius * (2.0 * corner.x - 1.0), 0, c.radius * (2.0 * corner.y - 1.0))
+               : c.frame.at(c.width * corner.x, 0, c.depth * corner.y);
       for (const dvec3& q : {p, p + throws}) {
         low = glm::min(low, dvec2(q.x, q.z));
         high = glm::max(high, dvec2(q.x, q.z));
@@ -89,7 +94,7 @@ Light::Light(const City& city) : city_(city), cells_(static_cast<std::size_t>(ce
     }
     for (int j = cell_at(cells_z0, low.y, cells_z); j <= cell_at(cells_z0, high.y, cells_z); ++j) {
       for (int i = cell_at(cells_x0, low.x, cells_x); i <= cell_at(cells_x0, high.x, cells_x); ++i) {
-        cells_[static_cast<std::size_t>(j * cells_x + i)].push_back(static_cast<std::uint32_t>(k));
+        cells_[cell_index(i, j)].push_back(static_cast<std::uint32_t>(k));
       }
     }
   }
@@ -101,7 +106,7 @@ double Light::sun_at(const dvec3& p, const dvec3& normal, bool leaves) const {
   const dvec3 from = p + lift * normal;
   const int i = cell_at(cells_x0, from.x, cells_x), j = cell_at(cells_z0, from.z, cells_z);
   double share = 1.0;
-  for (const std::uint32_t k : cells_[static_cast<std::size_t>(j * cells_x + i)]) {
+  for (const std::uint32_t k : cells_[cell_index(i, j)]) {
     const Caster& caster = city_.casters[k];
     const bool ball = caster.shape == Caster::Shape::ball;
     if ((ball && leaves) || !shades(caster, from)) continue;

@@ -68,7 +68,8 @@ Look brick_look(const House& house, double u, double v) {
   const double along = u / 0.225 + 0.5 * (static_cast<std::int64_t>(row) & 1), column = std::floor(along);
   const bool joint = course - row < 0.14 || along - column < 0.05;
   if (joint) return {.colour = mix(house.wall, dvec3(0.72, 0.68, 0.62), 0.6)};
-  const double own = hash(static_cast<std::int64_t>(row) * 4099 + house.number, static_cast<std::int64_t>(column));
+  const double own =
+      hash(static_cast<std::int64_t>(row) * 4099 + house.number, static_cast<std::int64_t>(column));
   return {.colour = house.wall * (0.82 + 0.34 * own)};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// demo:city inside. Three steps: the plan (what stands where), the surfaces that show it at a given grain, and
-// the Gaussians on each surface with their light.
+// demo:city inside. Three steps: the plan (what stands where), the surfaces that show it at a given grain,
+// and the Gaussians on each surface with their light.
 //
 // Only +, -, *, / and square roots are used, which IEEE 754 rounds alike everywhere: sines and powers may
 // differ in their last bit from library to library, and the city must not.
@@ -55,8 +55,8 @@ struct House {
   bool brick, shop;
   double left_eave, right_eave;  // of the houses beside it; 0 where the row ends
   dvec3 wall, trim, door, roof;
-  std::uint32_t number;  // for whatever else differs from house to house
-  double begin;          // along its row
+  std::uint32_t number;      // for whatever else differs from house to house
+  double begin;              // along its row
   std::uint32_t first_wall;  // its front; its back is the next
 };
 
@@ -152,7 +152,7 @@ struct Surface {
   double coarseness = 1.0;  // of its Gaussians, compared with others
   double thickness = 0.0;   // standard deviation along the normal; 0: flat
   bool ball = false;
-  bool lit = true;  // false: the colour is what is seen
+  bool lit = true;          // false: the colour is what is seen
   double weight = 0.0;      // how many Gaussians its grain asks for
   std::uint32_t count = 0;  // how many it has
 
@@ -205,14 +205,14 @@ struct Head {
   dvec3 eye, at;  // x, height above the ground, z
   double fov_degrees;
 };
-constexpr std::array<Head, 3> heads = {Head{"street", {-1.2, 1.6, -9.0}, {0.6, 2.6, 60.0}, 60.0},
+constexpr std::array<Head, 3> heads = {Head{"street", {-1.2, 1.6, -12.0}, {0.6, 2.6, 60.0}, 60.0},
                                        Head{"air", {2.5, 25.0, -40.0}, {0.0, 6.0, 60.0}, 60.0},
-                                       Head{"corner", {-5.6, 1.72, 75.2}, {9.0, 2.4, 96.0}, 65.0}};
+                                       Head{"corner", {-5.8, 1.72, 73.4}, {8.0, 2.2, 96.0}, 65.0}};
 
-void add_houses(Builder& builder);     // demo_city_houses.cpp
-void add_streets(Builder& builder);    // demo_city_streets.cpp: ground
-void add_things(Builder& builder);     // demo_city_things.cpp: trees, lamps, cars
-void add_far_away(Builder& builder);   // demo_city_far.cpp: towers, hills, sky
+void add_houses(Builder& builder);    // demo_city_houses.cpp
+void add_streets(Builder& builder);   // demo_city_streets.cpp: ground
+void add_things(Builder& builder);    // demo_city_things.cpp: trees, lamps, cars
+void add_far_away(Builder& builder);  // demo_city_far.cpp: towers, hills, sky
 
 /// Daylight on the city: a sun whose shadows are cast, a sky, and haze before what is far away.
 class Light {

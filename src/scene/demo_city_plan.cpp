@@ -70,7 +70,7 @@ class Planner {
   void add_street_side(double x, double crossing, double side, bool outside) {
     const double z0 = crossing + side_front, z1 = crossing + crossing_pitch - side_front;
     if (!outside) add_row(x + side * front, z0, z1, side);
-    for (double z = z0 + 3.0; z < z1 - 2.0; z += random_.uniform(10.0, 15.0)) {
+    for (double z = z0 + 3.0; z < z1 - 5.0; z += random_.uniform(10.0, 15.0)) {
       if (random_.uniform() < 0.25) continue;
       add_tree(x + side * 5.6, z, 1.7, 2.4);
     }
@@ -78,7 +78,7 @@ class Planner {
       const dvec3 foot = city_.relief.at(x + side * 5.0, z, kerb);
       city_.lamps.push_back({Frame{foot, dmat3(dvec3(-side, 0, 0), down, dvec3(0, 0, -side))}});
     }
-    for (double z = z0 + 4.0; z < z1 - 4.0; z += 5.4) {
+    for (double z = z0 + 8.5; z < z1 - 8.0; z += 5.4) {
       if (random_.uniform() < 0.45) continue;
       add_car(x + side * 3.45, z + random_.uniform(-0.3, 0.3), side);
     }
@@ -179,8 +179,8 @@ class Planner {
       const auto add = [&](const dvec3& corner, const dvec3& right, double width, bool is_front) {
         const int columns = std::max(1, static_cast<int>(width / 2.45));
         const dmat3 own(right, down, glm::cross(right, down));
-        city_.walls.push_back(
-            {Frame{corner, own}, width, columns, is_front, h, static_cast<std::uint32_t>(city_.walls.size())});
+        city_.walls.push_back({Frame{corner, own}, width, columns, is_front, h,
+                               static_cast<std::uint32_t>(city_.walls.size())});
       };
       add(house.frame.origin, axes[0], house.width, true);
       add(house.frame.at(house.width, 0, row_depth), -axes[0], house.width, false);
@@ -199,8 +199,8 @@ class Planner {
   }
 
   void add_tower(double x, double z, double width, double height, int tiers) {
-    city_.towers.push_back({city_.relief.at(x, z), width, height, tiers,
-                            static_cast<std::uint32_t>(city_.towers.size())});
+    city_.towers.push_back(
+        {city_.relief.at(x, z), width, height, tiers, static_cast<std::uint32_t>(city_.towers.size())});
   }
 
   /// A church tower where the main street ends, and high houses behind and beside the streets.

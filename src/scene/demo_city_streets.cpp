@@ -10,7 +10,8 @@ namespace binosplat::city {
 namespace {
 
 constexpr double edge_x = streets_beside * street_pitch + front + 4.0;  // of the city
-constexpr double grain_of_kerbs = 0.8, grain_of_slopes = 1.0, grain_of_yard_walls = 1.5, grain_of_blocks = 2.5;
+constexpr double grain_of_kerbs = 0.8, grain_of_slopes = 1.0, grain_of_yard_walls = 1.5,
+                 grain_of_blocks = 2.5;
 
 double part_of(double value, double period) { return value - period * std::floor(value / period); }
 
@@ -36,7 +37,8 @@ Look paint_road(const City&, const Surface&, double x, double z) {
       if (std::abs(x) < 0.07 && part_of(z, 5.0) < 2.2) return marking(x, z);
       if (std::abs(std::abs(x) - 2.45) < 0.05 && part_of(z, 5.4) < 4.9) return marking(x, z);  // parking
     }
-    if (from_crossing > 8.6 && from_crossing < 8.95 && (along < 50.0 ? x > 0.1 : x < -0.1)) return marking(x, z);
+    if (from_crossing > 8.6 && from_crossing < 8.95 && (along < 50.0 ? x > 0.1 : x < -0.1))
+      return marking(x, z);
   }
   const double cover = glm::length(dvec2(x - 1.2, part_of(z, 37.0) - 18.0));
   if (cover < 0.34) return {.colour = dvec3(cover > 0.29 ? 0.22 : 0.31), .gloss = 0.25};
@@ -72,7 +74,8 @@ Look paint_yard(const City&, const Surface&, double x, double z) {
 
 /// A whole block: a yard with pavements around it.
 Look paint_block(const City& city, const Surface& surface, double x, double z) {
-  const bool yard = x > front && x < street_pitch - front && z > side_front && z < crossing_pitch - side_front;
+  const bool yard =
+      x > front && x < street_pitch - front && z > side_front && z < crossing_pitch - side_front;
   return yard ? paint_yard(city, surface, x, z) : paint_pavement(city, surface, x, z);
 }
 
@@ -82,8 +85,10 @@ Look paint_yard_wall(const City&, const Surface&, double u, double v) {
 
 /// Fields with hedges, each of its own green or yellow.
 Look paint_fields(const City&, const Surface&, double x, double z) {
-  const double u = x / 90.0 + 0.6 * noise(x / 240.0, z / 240.0), v = z / 70.0 + 0.6 * noise(z / 200.0, x / 200.0);
-  const double own = hash(static_cast<std::int64_t>(std::floor(u)), static_cast<std::int64_t>(std::floor(v)) + 70);
+  const double u = x / 90.0 + 0.6 * noise(x / 240.0, z / 240.0),
+               v = z / 70.0 + 0.6 * noise(z / 200.0, x / 200.0);
+  const double own =
+      hash(static_cast<std::int64_t>(std::floor(u)), static_cast<std::int64_t>(std::floor(v)) + 70);
   const double hedge = std::min(part_of(u, 1.0), part_of(v, 1.0));
   if (hedge < 0.06) return {.colour = dvec3(0.22, 0.31, 0.15)};
   const dvec3 field = mix(dvec3(0.33, 0.45, 0.19), dvec3(0.66, 0.61, 0.33), own * own);
@@ -95,7 +100,8 @@ Look paint_fields(const City&, const Surface&, double x, double z) {
 void add_ground(Builder& builder, const dvec2& low, const dvec2& high, double height, Paint paint,
                 const dvec2& middle, double coarseness = 1.0) {
   const Relief& relief = builder.city.relief;
-  const bool coarse = builder.grain_at(relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) > grain_of_slopes;
+  const bool coarse =
+      builder.grain_at(relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) > grain_of_slopes;
   const int pieces = std::max(1, static_cast<int>((high.y - low.y) / (coarse ? 100.0 : 20.0)));
   for (int k = 0; k < pieces; ++k) {
     const double z0 = low.y + (high.y - low.y) * k / pieces, z1 = low.y + (high.y - low.y) * (k + 1) / pieces;
@@ -120,9 +126,11 @@ void add_kerb(Builder& builder, const dvec2& from, const dvec2& to) {
 /// The pavements, the yard and the kerbs of the block right of the street at x, from a crossing at z on.
 void add_block(Builder& builder, double x, double z) {
   const dvec2 low(x + road, z + side_road), high(x + street_pitch - road, z + crossing_pitch - side_road);
-  const dvec2 yard_low(x + front, z + side_front), yard_high(x + street_pitch - front, z + crossing_pitch - side_front);
+  const dvec2 yard_low(x + front, z + side_front),
+      yard_high(x + street_pitch - front, z + crossing_pitch - side_front);
   const dvec2 zero(0.0);
-  if (builder.grain_at(builder.city.relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) > grain_of_blocks) {
+  if (builder.grain_at(builder.city.relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) >
+      grain_of_blocks) {
     add_ground(builder, low, high, kerb, paint_block, {x, z});
     return;
   }
@@ -131,8 +139,8 @@ void add_block(Builder& builder, double x, double z) {
   add_ground(builder, {yard_low.x, low.y}, {yard_high.x, yard_low.y}, kerb, paint_pavement, zero);
   add_ground(builder, {yard_low.x, yard_high.y}, {yard_high.x, high.y}, kerb, paint_pavement, zero);
   const double inner = row_depth - 1.0;
-  add_ground(builder, {yard_low.x + inner, yard_low.y}, {yard_high.x - inner, yard_high.y}, kerb, paint_yard, zero,
-             2.0);
+  add_ground(builder, {yard_low.x + inner, yard_low.y}, {yard_high.x - inner, yard_high.y}, kerb, paint_yard,
+             zero, 2.0);
   constexpr int pieces = 8;
   for (int k = 0; k < pieces; ++k) {
     const auto at = [&](int i) { return low + (high - low) * (static_cast<double>(i) / pieces); };
@@ -158,8 +166,8 @@ void add_streets(Builder& builder) {
     for (int j = 0; j <= blocks_along; ++j) {
       const double z = first_crossing + crossing_pitch * j;
       if (j < blocks_along) {
-        add_ground(builder, {x - road, z - side_road}, {x + road, z + crossing_pitch - side_road}, 0.0, paint_road,
-                   {x, 0.0});
+        add_ground(builder, {x - road, z - side_road}, {x + road, z + crossing_pitch - side_road}, 0.0,
+                   paint_road, {x, 0.0});
       } else {
         add_ground(builder, {x - road, z - side_road}, {x + road, z + side_road}, 0.0, paint_road, {x, 0.0});
       }

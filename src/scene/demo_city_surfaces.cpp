@@ -29,6 +29,7 @@ constexpr double ball_area = 22.0;
 
 /// The grain doubles at this distance from the nearest camera.
 constexpr double near_distance = 4.0;
+constexpr double along_streets = 0.33;  // how much a metre along them counts
 /// Pieces of a sheet are no longer than this share of their distance, so that each has one grain; or a few
 /// Gaussians.
 constexpr double piece = 0.5, piece_grains = 4.0;
@@ -36,12 +37,12 @@ constexpr double piece = 0.5, piece_grains = 4.0;
 /// are drawn as fog.
 constexpr double coarsest = 0.1;
 
-/// Distance of the nearest camera; along the streets half of it, as people walk there.
+/// Distance of the nearest camera; less of it along the streets, as people walk there.
 double distance_to_heads(const City& city, const dvec3& p) {
   double nearest = 1e9;
   for (const Head& head : heads) {
     const dvec3 way = p - city.relief.at(head.eye.x, head.eye.z, head.eye.y);
-    nearest = std::min(nearest, glm::length(dvec3(way.x, way.y, 0.5 * way.z)));
+    nearest = std::min(nearest, glm::length(dvec3(way.x, way.y, along_streets * way.z)));
   }
   return nearest;
 }
@@ -102,7 +103,7 @@ void fill_sheet(const City& city, const Light& light, const Surface& s, std::siz
   const glm::vec4 rotation = quaternion(procedural::axes_from_normal(normal, u));
   const std::uint64_t n = s.count;
   const double even = std::sqrt(static_cast<double>(n) * length_v / length_u);
-  const auto rows = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(even + 0.5), 1, n);
+  const auto rows = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(even)), 1, n);
   const Cells high(length_v, static_cast<std::uint32_t>(rows), s.borders & border_low,
                    s.borders & border_high);
   std::size_t at = first;
@@ -115,7 +116,8 @@ void fill_sheet(const City& city, const Light& light, const Surface& s, std::siz
     const dvec3 scale(overlap * wide.size, overlap * high.size, thin);
     for (std::uint64_t i = 0; i < in_row; ++i, ++at) {
       const auto key = static_cast<std::int64_t>(at);
-      const double shift_u = unrest * (2.0 * hash(key, 1) - 1.0), shift_v = unrest * (2.0 * hash(key, 2) - 1.0);
+      const double shift_u = unrest * (2.0 * hash(key, 1) - 1.0),
+                   shift_v = unrest * (2.0 * hash(key, 2) - 1.0);
       const double a = wide.first + (static_cast<double>(i) + shift_u) * wide.size;
       const double b = high.first + (static_cast<double>(j) + shift_v) * high.size;
       const dvec3 p = s.corner + a * u + b * v;
@@ -174,7 +176,7 @@ double Builder::grain_at(const dvec3& p) const {
 
 double Builder::grain_of(const Surface& surface, const dvec3& p) const {
   const double grain = grain_at(p);
-  return std::clamp(coarsest * distance_to_heads(city, p), grain, surface.coarseness * grain);
+  return std::min(surface.coarseness * grain, std::max(grain, coarsest * distance_to_heads(city, p)));
 }
 
 void Builder::sheet(const Surface& surface) {
@@ -186,7 +188,8 @@ void Builder::sheet(const Surface& surface) {
   const double grain = grain_of(surface, middle);
   const double longest = std::max(piece * (near_distance + nearest), piece_grains * grain);
   if (std::max(length_u, length_v) <= longest) {
-    low.weight = length_u * length_v / (grain * grain);
+    // Strips much narrower than the grain are not to become needles.
+    low.weight = std::max(length_u * length_v / grain, 0.5 * std::max(length_u, length_v)) / grain;
     surfaces.push_back(low);
   } else if (length_u > length_v) {
     low.u = high.u = 0.5 * surface.u;

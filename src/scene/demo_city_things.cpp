@@ -47,8 +47,9 @@ void add_tree(Builder& builder, std::uint32_t number) {
   }
   // Six sides, narrower above.
   const double half = 0.5, tall = 0.5 * std::sqrt(3.0);
-  const std::array<dvec2, 7> hexagon = {dvec2(1, 0),     dvec2(half, tall),   dvec2(-half, tall), dvec2(-1, 0),
-                                        dvec2(-half, -tall), dvec2(half, -tall), dvec2(1, 0)};
+  const std::array<dvec2, 7> hexagon = {dvec2(1, 0),  dvec2(half, tall),   dvec2(-half, tall),
+                                        dvec2(-1, 0), dvec2(-half, -tall), dvec2(half, -tall),
+                                        dvec2(1, 0)};
   for (std::size_t k = 0; k < 6; ++k) {
     const dvec2 a = thick * hexagon[k + 1], b = thick * hexagon[k];
     const dvec3 corner = tree.foot + dvec3(a.x, 0.1, a.y);
@@ -71,10 +72,10 @@ void add_lamp(Builder& builder, std::uint32_t number) {
 }
 
 // The side view of a car: where it is along its length (z, forwards) and how high (y, downwards).
-constexpr std::array<dvec2, 9> outline = {dvec2(2.08, -0.28),  dvec2(2.12, -0.62), dvec2(1.96, -0.80),
-                                          dvec2(0.98, -0.92),  dvec2(0.28, -1.40), dvec2(-0.95, -1.43),
+constexpr std::array<dvec2, 9> outline = {dvec2(2.08, -0.28),  dvec2(2.12, -0.62),  dvec2(1.96, -0.80),
+                                          dvec2(0.98, -0.92),  dvec2(0.28, -1.40),  dvec2(-0.95, -1.43),
                                           dvec2(-1.68, -0.97), dvec2(-2.06, -0.86), dvec2(-2.10, -0.28)};
-constexpr double car_half = 0.85, belt = -0.94;
+constexpr double car_half = 0.85, belt = -0.94, side_top = -0.84;
 
 /// Painted by where a point is in the car's frame.
 Look paint_car(const City& city, const Surface& surface, double u, double v) {
@@ -106,11 +107,11 @@ Look paint_car(const City& city, const Surface& surface, double u, double v) {
 void add_cabin_side(Builder& builder, const Frame& frame, double side, Surface sheet) {
   constexpr int strips = 4;
   for (int k = 0; k < strips; ++k) {
-    const double t = (k + 0.5) / strips, tall = (1.41 + belt) / strips;
+    const double t = (k + 0.5) / strips, tall = (1.41 + side_top) / strips;
     const double ahead = 0.98 + (0.30 - 0.98) * t, behind = -1.68 + (-0.95 + 1.68) * t;
     const double x = side * (car_half - 0.10 * t);
     const double from = side > 0.0 ? behind : ahead, to = side > 0.0 ? ahead : behind;
-    sheet.corner = frame.at(x, belt - k * tall, from);
+    sheet.corner = frame.at(x, side_top - k * tall, from);
     sheet.u = frame.axes[2] * (to - from);
     sheet.v = frame.axes[1] * -tall;
     builder.sheet(sheet);
@@ -131,11 +132,14 @@ void add_car(Builder& builder, std::uint32_t number) {
   }
   for (const double side : {-1.0, 1.0}) {
     sheet.borders = border_left | border_right;
-    const double behind = side > 0.0 ? -2.10 : 2.10;
-    sheet.corner = frame.at(side * car_half, -0.02, behind);
-    sheet.u = frame.axes[2] * (-2.0 * behind);
-    sheet.v = frame.axes[1] * (belt + 0.10);
-    builder.sheet(sheet);
+    // The body, and the wheels that reach below it.
+    for (const dvec3& part : {dvec3(2.10, -0.28, side_top), dvec3(1.68, -0.02, -0.28)}) {
+      const double behind = side > 0.0 ? -part.x : part.x;
+      sheet.corner = frame.at(side * car_half, part.y, behind);
+      sheet.u = frame.axes[2] * (-2.0 * behind);
+      sheet.v = frame.axes[1] * (part.z - part.y);
+      builder.sheet(sheet);
+    }
     add_cabin_side(builder, frame, side, sheet);
   }
 }

@@ -44,7 +44,8 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   glm::vec3* p = model.position.data();
   for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
     for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
-      for (std::size_t k = 0; k < once; ++k, ++p) *p = glm::vec3(glm::dvec3(*p) + glm::dvec3(i * spacing, 0.0, j * spacing));
+      for (std::size_t k = 0; k < once; ++k, ++p)
+        *p = glm::vec3(glm::dvec3(*p) + glm::dvec3(i * spacing, 0.0, j * spacing));
     }
   }
   return model;

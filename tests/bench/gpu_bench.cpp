@@ -109,7 +109,7 @@ Json time(render::Frame& frame, std::span<const shared::View> views, int frames)
   std::map<std::string, std::vector<double>> stages;
   std::vector<std::string> names;
   render::FrameReport report;
-  for (int n = -5; n < frames; ++n) {  // five to warm up
+  for (int n = -std::min(5, frames); n < frames; ++n) {  // some to warm up
     report = frame.draw(views);
     if (n < 0) continue;
     for (const gl::StageTime& stage : report.stages) {

@@ -199,6 +199,21 @@ TEST(Frame, WorksWhenADriverAllowsFewGroups) {
   test::gl_context().limit_groups(before);
 }
 
+TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
+  const Model model = test::random_model(76, 20000, 2);
+  const auto rig = stereo::make_rig(test::front_camera(300, 200, 300), {.ipd = 0.1});
+  const std::int64_t before = test::gl_context().allocated_bytes();
+  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
+    const FrameSettings settings = {.transmittance = transmittance};
+    const auto needs = render::memory_needs(render::make_shape(rig.views, settings, model));
+    render::Frame frame(test::gl_context(), model);
+    EXPECT_EQ(test::gl_context().allocated_bytes() - before, needs.model);
+    const double taken = static_cast<double>(frame.draw(rig.views, settings).gpu_bytes - before);
+    const double said = static_cast<double>(needs.model + needs.frame);
+    EXPECT_NEAR(said / taken, 1.0, 0.03);  // what the sorts count in besides is small
+  }
+}
+
 TEST(Frame, BadShapesAreNamed) {
   const Model model = test::random_model(74, 10, 0);
   EXPECT_TRUE(test::fails_saying([&] { draw(model, std::vector<shared::View>{}); }, {"1 to 8 views"}));

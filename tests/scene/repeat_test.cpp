@@ -1,0 +1,80 @@
+#include "scene/repeat.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+using Places = std::multiset<std::pair<int, int>>;  // copies along x and z
+
+/// Where the copies of a model of one Gaussian at (100, 5, 200) are, in steps of 10.
+Places places_of(const Model& repeated) {
+  Places places;
+  for (const glm::vec3& p : repeated.position) {
+    EXPECT_EQ(p.y, 5.0f);
+    places.insert({static_cast<int>((p.x - 100.0f) / 10.0f), static_cast<int>((p.z - 200.0f) / 10.0f)});
+  }
+  return places;
+}
+
+Places places_from(int x_low, int x_high, int z_low, int z_high) {
+  Places places;
+  for (int i = x_low; i <= x_high; ++i) {
+    for (int j = z_low; j <= z_high; ++j) places.insert({i, j});
+  }
+  return places;
+}
+
+Model one() {
+  Model model;
+  model.degree = 1;
+  test::add(model, {100, 5, 200}, {1, 2, 3}, 0.5f, {0.2f, 0.4f, 0.6f});
+  return model;
+}
+
+TEST(Repeat, CopiesLieAsTheMeasurementsOfOthersHaveThem) {
+  EXPECT_EQ(places_of(repeat(one(), 8, 4, 10.0)), places_from(-3, 4, -1, 2));
+  EXPECT_EQ(places_of(repeat(one(), 2, 8, 10.0)), places_from(0, 1, -3, 4));
+  EXPECT_EQ(places_of(repeat(one(), 3, 1, 10.0)), places_from(-1, 1, 0, 0));
+  EXPECT_NE(places_of(repeat(one(), 8, 4, 10.0)), places_from(-4, 3, -2, 1)) << "shifted by one";
+  EXPECT_NE(places_of(repeat(one(), 8, 4, 10.0)), places_from(-1, 2, -3, 4)) << "x and z swapped";
+}
+
+TEST(Repeat, EverythingElseIsCopied) {
+  Model model = test::random_model(3, 500, 2);
+  model.left_out = 7;
+  const Model once = repeat(model, 1, 1, 4.0);
+  EXPECT_EQ(once.position, model.position);
+  const Model many = repeat(model, 2, 3, 4.0);
+  ASSERT_EQ(many.count(), 3000u);
+  EXPECT_EQ(many.left_out, 7u);
+  EXPECT_EQ(many.degree, 2);
+  EXPECT_EQ(many.name, model.name);
+  ASSERT_EQ(many.sh.size(), 3000u * 27);
+  EXPECT_EQ(many.sh.capacity(), many.sh.size());
+  EXPECT_EQ(many.rotation.capacity(), 3000u);
+  for (std::size_t i = 0; i < many.count(); ++i) {
+    ASSERT_EQ(many.scale[i], model.scale[i % 500]);
+    ASSERT_EQ(many.rotation[i], model.rotation[i % 500]);
+    ASSERT_EQ(many.opacity[i], model.opacity[i % 500]);
+    ASSERT_EQ(many.sh[27 * i + 26], model.sh[27 * (i % 500) + 26]);
+    ASSERT_EQ(many.position[i].y, model.position[i % 500].y);
+  }
+}
+
+TEST(Repeat, WhatIsTooMuchIsRefused) {
+  EXPECT_TRUE(test::fails_saying([] { repeat(one(), 0, 2, 1.0); }, {"--repeat 0x2"}));
+  EXPECT_TRUE(test::fails_saying([] { repeat(one(), 2, -1, 1.0); }, {"--repeat 2x-1"}));
+  EXPECT_TRUE(test::fails_saying([] { repeat(one(), 65536, 65536, 1.0); }, {"more than 2^31"}));
+  EXPECT_TRUE(test::fails_saying([] { repeat(one(), 2147483647, 2147483647, 1.0); }, {"more than 2^31"}));
+  EXPECT_TRUE(test::fails_saying([] { repeat(one(), 2, 2, 1e39); }, {"--spacing 1e+39"}));
+  EXPECT_TRUE(test::fails_saying([] { repeat(one(), 2, 2, std::nan("")); }, {"--spacing nan"}));
+}
+
+}  // namespace
+}  // namespace binosplat
