@@ -38,7 +38,7 @@ float ellipse_outer_rho(float rho) { return 1.001 * max(rho, 0.0) + 1e-3; }
 
 uvec4 tile_box(Splat splat, View view) {
   float rho = splat.colour.w;
-  if (rho < RHO_NONE) return uvec4(0u);
+  if (!holds_a_centre(splat, view, level_extent(splat))) return uvec4(0u);
   vec3 c = covariance(splat);
   precise vec2 extent = sqrt(ellipse_outer_rho(rho) * c.xz) * 1.0001 + 0.01;
   uvec2 columns = tile_span(splat.mean.x - extent.x, splat.mean.x + extent.x, view.tiles_x);

@@ -1,15 +1,5 @@
 // The box around the ellipse where alpha reaches Th (SnugBox of Speedy-Splat) against the tile's pixel centres, touching
-// counts: makes every pair that can be seen, and those of the box's corners besides. rho is a little larger than it is, or
-// the rounding of fp32 would drop pairs (METHOD 4).
-
-vec2 snug_extent(Splat splat) {
-  vec3 c = covariance(splat);
-  // C2.xx C2.yy / det, at least 1: how far the rounding of a long leaning ellipse is magnified.
-  precise float stretch = c.x * splat.conic.x;
-  precise float rho = splat.colour.w * (1.0 + 8e-6 * stretch) + 4e-6;
-  precise vec2 extent = sqrt(max(0.0, rho) * c.xz);
-  return extent;
-}
+// counts: makes every pair that can be seen, and those of the box's corners besides.
 
 // The tiles of a span whose pixel centres reach within `extent` of the mean: `span` is a little too large.
 uvec2 snug_span(uvec2 span, float mean, float extent, uint pixels) {
@@ -19,8 +9,8 @@ uvec2 snug_span(uvec2 span, float mean, float extent, uint pixels) {
 }
 
 uvec4 tile_box(Splat splat, View view) {
-  if (splat.colour.w < RHO_NONE) return uvec4(0u);
-  vec2 extent = snug_extent(splat);
+  vec2 extent = level_extent(splat);
+  if (!holds_a_centre(splat, view, extent)) return uvec4(0u);
   precise vec2 outer = 1.001 * extent + 0.01;
   uvec2 columns = tile_span(splat.mean.x - outer.x, splat.mean.x + outer.x, view.tiles_x);
   uvec2 rows = tile_span(splat.mean.y - outer.y, splat.mean.y + outer.y, view.tiles_y);

@@ -31,6 +31,25 @@ vec3 covariance(Splat splat) {
   return c;
 }
 
+// Half the box around {alpha >= Th}, px. rho is taken a little larger than it is, or the rounding of fp32 would drop pairs
+// (METHOD 4).
+vec2 level_extent(Splat splat) {
+  vec3 c = covariance(splat);
+  // C2.xx C2.yy / det, at least 1: how far the rounding of a long leaning ellipse is magnified.
+  precise float stretch = c.x * splat.conic.x;
+  precise float rho = max(0.0, splat.colour.w) * (1.0 + 8e-6 * stretch) + 4e-6;
+  precise vec2 extent = sqrt(rho * c.xz);
+  return extent;
+}
+
+// Whether that box holds the centre of a pixel of the picture: a splat between centres is seen by none.
+bool holds_a_centre(Splat splat, View view, vec2 extent) {
+  if (splat.colour.w < RHO_NONE) return false;
+  precise vec2 nearest = clamp(round(splat.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u));
+  precise vec2 d = abs(nearest - splat.mean);
+  return d.x <= extent.x && d.y <= extent.y;
+}
+
 #include "tiles/{TILES_NAME}.glsl"
 
 uint tile_count(Splat splat, View view) {

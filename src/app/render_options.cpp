@@ -289,8 +289,8 @@ void check_threshold(const RenderOptions& o) {
   if ((o.transmittance == "other-eye" || o.transmittance == "both") && (o.mono || !o.only.empty())) {
     fail("--transmittance {} needs both eyes: leave --mono and --only out", o.transmittance);
   }
-  if (!o.reference_until.empty() && (th != "tau" || o.transmittance != "one")) {
-    fail("--reference-until is for --th tau: the reference has no thresholds yet");
+  if (!o.reference_until.empty() && o.transmittance != "one") {
+    fail("--reference-until: the reference goes by no earlier frame: leave --transmittance out");
   }
 }
 

@@ -55,39 +55,37 @@ OrientedBox oriented_box(const Splat& splat) {
   return {{std::cos(angle), std::sin(angle)}, 3.0 * std::sqrt(lambda1), 3.0 * std::sqrt(lambda2)};
 }
 
-/// Half the width and height of what the tile test asks about: the oriented box, or the ellipse q = rho.
-/// That one goes by C2, the blend by Q, and det's rounding parts the two: the box is larger by that much.
-glm::dvec2 half_extents(const Splat& splat, int tiles) {
-  if (tiles == TILES_OBB) {
-    const OrientedBox box = oriented_box(splat);
-    return glm::abs(box.axis) * box.along + glm::abs(glm::dvec2(box.axis.y, box.axis.x)) * box.across;
-  }
+/// Half the width and height of the oriented box.
+glm::dvec2 oriented_half_extents(const Splat& splat) {
+  const OrientedBox box = oriented_box(splat);
+  return glm::abs(box.axis) * box.along + glm::abs(glm::dvec2(box.axis.y, box.axis.x)) * box.across;
+}
+
+/// Half the width and height of the ellipse q = rho. They go by C2, the blend by Q, and det's rounding parts
+/// the two: the box is larger by that much.
+glm::dvec2 snug_half_extents(const Splat& splat) {
   const glm::dvec3& c = splat.covariance;
   const double rho = reach(splat) * (1.0 + 1e-14 * c.x * c.z / splat.det) + 1e-14;
   return {std::sqrt(rho * c.x), std::sqrt(rho * c.z)};
 }
 
-/// The tiles that half_extents() around the mean meet, one pixel larger so that rounding loses none;
-/// touches() decides.
-TileRange candidates_around(const Splat& splat, int tiles, int tile_size, int tiles_x, int tiles_y) {
-  if (!(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
-  const glm::dvec2 half = half_extents(splat, tiles) + 1.0;
-  const glm::dvec2 low = glm::floor((splat.mean - half) / double(tile_size));
-  const glm::dvec2 high = glm::floor((splat.mean + half) / double(tile_size)) + 1.0;
-  return {clamped_tile(low.x, tiles_x), clamped_tile(low.y, tiles_y), clamped_tile(high.x, tiles_x),
-          clamped_tile(high.y, tiles_y)};
+/// The tiles with a pixel centre of the picture in the upright box of these half extents around the mean. A
+/// box between two neighbouring columns or rows of centres has none: no alpha there reaches Th.
+TileRange tiles_with_centres(const glm::dvec2& mean, const glm::dvec2& half, int tile_size,
+                             const shared::View& view) {
+  const glm::dvec2 first = glm::max(glm::ceil(mean - half), 0.0);
+  const glm::dvec2 last = glm::min(glm::floor(mean + half), glm::dvec2(view.width, view.height) - 1.0);
+  if (!(first.x <= last.x && first.y <= last.y)) return {0, 0, 0, 0};
+  const glm::ivec2 low = glm::ivec2(first) / tile_size, high = glm::ivec2(last) / tile_size;
+  return {low.x, low.y, high.x + 1, high.y + 1};
 }
 
-/// Whether an upright box of these half extents around the mean meets a rectangle of pixel centres, given
-/// relative to the mean; touching counts.
-bool upright_box_meets(const glm::dvec2& half, const glm::dvec2& low, const glm::dvec2& high) {
-  return low.x <= half.x && high.x >= -half.x && low.y <= half.y && high.y >= -half.y;
-}
-
-/// The same for the oriented box, by separating axes: the two of the picture, where the box reaches as far
-/// as its half extents, and the two of the box, where the rectangle reaches as far as its sides projected.
+/// Whether the oriented box meets a rectangle of pixel centres, given relative to the mean, by separating
+/// axes: the two of the picture, where the box reaches as far as its half extents, and the two of the box,
+/// where the rectangle reaches as far as its sides projected.
 bool oriented_box_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high) {
-  if (!upright_box_meets(half_extents(splat, TILES_OBB), low, high)) return false;
+  const glm::dvec2 upright = oriented_half_extents(splat);
+  if (low.x > upright.x || high.x < -upright.x || low.y > upright.y || high.y < -upright.y) return false;
   const OrientedBox box = oriented_box(splat);
   const glm::dvec2 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   const auto apart = [&](const glm::dvec2& axis, double reach_of_box) {
@@ -114,32 +112,34 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
          within_reach(std::clamp(-c.y * nearest.y / c.x, low.x, high.x), nearest.y);
 }
 
-/// The tiles that touches() is worth asking about. Exactly the splat's tiles for TILES_AABB and TILES_ALL.
+/// The tiles that shape_meets() is worth asking about.
 TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
   const int tiles_x = tiles_along(view.width, tile_size), tiles_y = tiles_along(view.height, tile_size);
   if (!splat.drawn) return {0, 0, 0, 0};
   switch (tiles) {
     case TILES_AABB:
       return aabb_tiles(splat, tile_size, tiles_x, tiles_y);
-    case TILES_OBB:
+    case TILES_OBB:  // one pixel larger: it may touch a rectangle between its pixel centres
+      if (!(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
+      return tiles_with_centres(splat.mean, oriented_half_extents(splat) + 1.0, tile_size, view);
     case TILES_SNUG:
     case TILES_ELLIPSE:
-      return candidates_around(splat, tiles, tile_size, tiles_x, tiles_y);
+      if (!(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
+      return tiles_with_centres(splat.mean, snug_half_extents(splat), tile_size, view);
     case TILES_ALL:
       return {0, 0, tiles_x, tiles_y};
   }
   fail("tile test {}: expected one of shared/axes.h", tiles);
 }
 
-/// Whether the shape of `tiles` meets tile (tx, ty), which is one of the candidates.
+/// Whether the shape of `tiles` meets tile (tx, ty), one of the candidates.
 bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
   const glm::dvec2 first(tx * tile_size, ty * tile_size);
   const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
   const glm::dvec2 low = first - splat.mean, high = last - splat.mean;
   if (tiles == TILES_OBB) return oriented_box_meets(splat, low, high);
-  if (tiles == TILES_SNUG) return upright_box_meets(half_extents(splat, tiles), low, high);
   if (tiles == TILES_ELLIPSE) return ellipse_meets(splat, low, high);
-  return true;
+  return true;  // the candidates of the others are the splat's tiles
 }
 
 /// Calls visit(tile number) for every tile that the splat touches.

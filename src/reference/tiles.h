@@ -34,8 +34,8 @@ struct TileLists {
 /// rho = 2 ln(sigma / Th), Th the splat's own threshold:
 /// - TILES_AABB: exactly as 3D-GS, whatever sigma and Th are.
 /// - TILES_OBB: the box of three standard deviations along the ellipse's axes meets R (GSCore); sigma >= Th.
-/// - TILES_SNUG: the upright box around q <= rho meets R (Speedy-Splat).
-/// - TILES_ELLIPSE: the smallest q over R is at most rho.
+/// - TILES_SNUG: the upright box around q <= rho holds one of R's pixel centres (Speedy-Splat).
+/// - TILES_ELLIPSE: that, and the smallest q over R is at most rho.
 /// - TILES_ALL: always.
 bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view);
 

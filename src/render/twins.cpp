@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "primitives/amount.h"
 #include "reference/render.h"
+#include "reference/threshold.h"
 
 namespace binosplat::render {
 
@@ -20,8 +21,12 @@ shared::Splat to_shared(const reference::Splat& s) {
   out.depth = static_cast<float>(s.depth);
   out.opacity = static_cast<float>(s.opacity);
   out.conic = glm::vec4(glm::dvec4(s.conic, std::sqrt(s.det)));
-  out.colour = glm::vec4(glm::dvec4(s.colour, 2.0 * std::log(s.opacity / (ALPHA_MIN))));
+  out.colour = glm::vec4(glm::dvec4(s.colour, 2.0 * std::log(s.opacity / s.threshold)));
   return out;
+}
+
+reference::Settings reference_settings(const FrameSettings& s) {
+  return {.tiles = s.tiles, .tile_size = s.tile_size, .th = s.th, .loss = s.loss};
 }
 
 // What the reference makes of one view.
@@ -34,6 +39,7 @@ struct ViewResult {
 ViewResult reference_view(const Model& model, const shared::View& view, const FrameSettings& settings) {
   ViewResult result;
   result.splats = reference::project_all(model, view);
+  reference::set_thresholds(result.splats, settings.th, settings.loss);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
     // One list for the whole view, as on the GPU.
@@ -161,10 +167,13 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
 std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& shape,
                                          std::uint32_t groups_max, FrameBuffers& buffers) {
   const Stage until = *shape.settings.reference_until;
+  if (shape.settings.transmittance != TRANSMITTANCE_ONE) {
+    fail("--reference-until: the reference goes by no earlier frame: leave --transmittance out");
+  }
   std::vector<Picture> pictures;
   if (until == Stage::blend) {
     for (const shared::View& view : shape.views) {
-      pictures.push_back(reference::render(model, view, {shape.settings.tiles, shape.settings.tile_size}));
+      pictures.push_back(reference::render(model, view, reference_settings(shape.settings)));
     }
     return pictures;
   }

@@ -47,7 +47,7 @@ TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
       {{"--th", "peripheral", "--loss", "1", "--transmittance", "last", "--contrast", "final"},
        "--contrast final"},
       {{"--loss", "1", "--transmittance", "both", "--mono"}, "needs both eyes"},
-      {{"--loss", "1", "--reference-until", "project"}, "--reference-until"},
+      {{"--loss", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
       {{"--path", "x.json", "--frames", "3"}, "--path names its own cameras"},
   };
   for (const auto& [options, message] : wrong) {

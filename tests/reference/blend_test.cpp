@@ -5,13 +5,10 @@
 #include <cmath>
 
 #include "measure/metrics.h"
-#include "reference/render.h"
-#include "support/models.h"
+#include "reference/splats.h"
 
 namespace binosplat::reference {
 namespace {
-
-shared::View view_of(int width, int height) { return make_view(test::front_camera(width, height, width)); }
 
 /// A round splat of variance 4 px^2 at pixel (8, 8).
 Splat round_splat(double depth, double opacity, const glm::dvec3& colour) {

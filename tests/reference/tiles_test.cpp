@@ -2,50 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstring>
+#include <functional>
+#include <limits>
 
-#include "reference/render.h"
-#include "support/models.h"
+#include "reference/splats.h"
 
 namespace binosplat::reference {
 namespace {
-
-using test::front_camera;
-
-shared::View view_of(int width, int height) { return make_view(front_camera(width, height, width)); }
-
-/// A splat by its covariance in px^2 and mean in px.
-Splat make_splat(const glm::dvec2& mean, const glm::dvec3& covariance, double opacity) {
-  Splat splat;
-  splat.mean = mean;
-  splat.depth = 1.0;
-  splat.opacity = opacity;
-  splat.covariance = covariance;
-  splat.det = covariance.x * covariance.z - covariance.y * covariance.y;
-  splat.conic = glm::dvec3(covariance.z, -covariance.y, covariance.x) / splat.det;
-  splat.colour = glm::dvec3(1.0);
-  splat.drawn = true;
-  return splat;
-}
-
-std::vector<Splat> random_splats(std::uint32_t seed, int count, int width, int height) {
-  test::Uniform uniform(seed);
-  std::vector<Splat> splats;
-  for (int i = 0; i < count; ++i) {
-    const double a = std::exp(uniform(-1.0, 3.5)), b = std::exp(uniform(-1.0, 3.5)), turn = uniform(0, M_PI);
-    const double c = std::cos(turn), s = std::sin(turn);
-    const glm::dvec3 covariance(a * a * c * c + b * b * s * s + 0.3, (a * a - b * b) * c * s,
-                                a * a * s * s + b * b * c * c + 0.3);
-    const double opacity = uniform(0, 1);
-    Splat splat =
-        make_splat({uniform(-30, width + 30), uniform(-30, height + 30)}, covariance, opacity * opacity);
-    splat.depth = uniform(1, 9);
-    splat.colour = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
-    splats.push_back(splat);
-  }
-  return splats;
-}
 
 /// The columns of tiles, as 'first..last', that a splat of variance `variance` at x touches in row 1 of 64 x
 /// 64 px.
@@ -94,47 +57,165 @@ TEST(Tiles, EllipseByHand) {
   EXPECT_EQ(columns(24, 4.0, TILES_ALL, 0.0), "0123");
 }
 
-TEST(Tiles, EllipseStopsAtThePicturesEdge) {
-  // 50 px wide: the last tile's centres end at 49, not at 63.
-  const shared::View view = view_of(50, 50);
-  const double reach = std::sqrt(4.0 * 2 * std::log(255.0));
-  EXPECT_TRUE(touches(make_splat({49 + reach - 0.01, 40}, {4, 0, 4}, 1.0), TILES_ELLIPSE, 16, 3, 2, view));
-  EXPECT_FALSE(touches(make_splat({49 + reach + 0.01, 40}, {4, 0, 4}, 1.0), TILES_ELLIPSE, 16, 3, 2, view));
+TEST(Tiles, ObbByHand) {
+  // Three standard deviations of a variance of 4 are 6 px; touching counts.
+  EXPECT_EQ(columns(24, 4.0, TILES_OBB), "1");
+  EXPECT_EQ(columns(15 + 6, 4.0, TILES_OBB), "01");
+  EXPECT_EQ(columns(15 + 6.01, 4.0, TILES_OBB), "1");
+  EXPECT_EQ(columns(32 - 6, 4.0, TILES_OBB), "12");
+  EXPECT_EQ(columns(32 - 6.01, 4.0, TILES_OBB), "1");
+  EXPECT_EQ(columns(-6.01, 4.0, TILES_OBB), "");
+  EXPECT_EQ(columns(30, 1e30, TILES_OBB), "0123");
+  EXPECT_EQ(columns(24, 4.0, TILES_OBB, 0.00392), "") << "just below tau";
+  EXPECT_EQ(columns(24, 4.0, TILES_OBB, 0.003922), "1") << "the shape does not depend on the opacity";
+  EXPECT_EQ(columns(21, 4.0, TILES_OBB, 0.003922), "01");
 }
 
-/// Smallest q over a dense grid of points on the tile's rectangle of pixel centres.
-double dense_smallest_q(const Splat& splat, int tx, int ty, const shared::View& view, int steps) {
+/// The tiles of 64 x 64 px that a splat touches, row by row.
+std::string map_of(const Splat& splat, int tiles) {
+  std::string text;
+  for (int t = 0; t < 16; ++t) text += touches(splat, tiles, 16, t % 4, t / 4, view_of(64, 64)) ? '#' : '.';
+  return text;
+}
+
+TEST(Tiles, NeedlesByHand) {
+  // Standard deviations of 10 and 1 px along the two diagonals: the upright box of 3 sigma reaches 21.3 px,
+  // that of alpha >= tau 23.7 px, from (24, 24) to 47.7 and 0.3. The needle passes between four tiles'
+  // corners.
+  const double long2 = 100, short2 = 1;
+  const glm::dvec3 down((long2 + short2) / 2, (long2 - short2) / 2, (long2 + short2) / 2);
+  const glm::dvec3 up(down.x, -down.y, down.z);
+  EXPECT_EQ(map_of(make_splat({24, 24}, down, 1.0), TILES_OBB), "##..###..##.....");
+  EXPECT_EQ(map_of(make_splat({24, 24}, up, 1.0), TILES_OBB), ".##.###.##......");
+  EXPECT_EQ(map_of(make_splat({24, 24}, down, 1.0), TILES_ELLIPSE), "##..###..##.....");
+  EXPECT_EQ(map_of(make_splat({24, 24}, down, 1.0), TILES_SNUG), "###.###.###.....");
+  EXPECT_EQ(map_of(make_splat({24, 24}, up, 1.0), TILES_SNUG), "###.###.###.....");
+  // Standard deviations of 10 px across and 1 px down.
+  EXPECT_EQ(map_of(make_splat({24, 24}, {100, 0, 1}, 1.0), TILES_OBB), "....####........");
+  EXPECT_EQ(map_of(make_splat({24, 24}, {100, 0, 1}, 1.0), TILES_SNUG), "....####........");
+  EXPECT_EQ(map_of(make_splat({24, 24}, {1, 0, 100}, 1.0), TILES_OBB), ".#...#...#...#..");
+}
+
+TEST(Tiles, SnugByHand) {
+  // The same columns as the ellipse where the mean lies in the row of tiles.
+  EXPECT_EQ(columns(15 + 6.66, 4.0, TILES_SNUG), "1");
+  EXPECT_EQ(columns(15 + 6.65, 4.0, TILES_SNUG), "01");
+  EXPECT_EQ(columns(32 - 6.65, 4.0, TILES_SNUG), "12");
+  EXPECT_EQ(columns(32 - 6.66, 4.0, TILES_SNUG), "1");
+  EXPECT_EQ(columns(24, 4.0, TILES_SNUG, 0.00392), "") << "just below tau";
+  EXPECT_EQ(columns(24, 4.0, TILES_SNUG, 0.003922), "1") << "just above tau";
+  EXPECT_EQ(columns(1e30, 4.0, TILES_SNUG), "");
+  EXPECT_EQ(columns(30, 1e30, TILES_SNUG), "0123");
+}
+
+TEST(Tiles, WhatReachesNoPixelCentreMakesNoPair) {
+  // sigma just above tau: alpha reaches tau within 0.02 px of the mean.
+  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
+    EXPECT_EQ(columns(24.01, 4.0, tiles, 0.003922), "1");
+    EXPECT_EQ(columns(24.5, 4.0, tiles, 0.003922), "") << "between pixel centres of one tile";
+  }
+  EXPECT_EQ(columns(24.5, 4.0, TILES_OBB, 0.003922), "1");
+}
+
+TEST(Tiles, TheReachIsThatOfTh) {
+  // Th = 1/e^2: q reaches 4 at 4 px.
+  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
+    for (const auto& [x, wanted] : {std::pair(15 + 3.99, "01"), {15 + 4.01, "1"}, {32 - 3.99, "12"}}) {
+      Splat splat = make_splat({x, 24}, {4, 0, 4}, 1.0);
+      splat.threshold = std::exp(-2.0);
+      const std::string row = map_of(splat, tiles).substr(4, 4);
+      std::string got;
+      for (int tx = 0; tx < 4; ++tx) got += row[tx] == '#' ? std::to_string(tx) : "";
+      EXPECT_EQ(got, wanted) << x;
+    }
+  }
+  // The other shapes do not depend on it, but obb leaves out what Th exceeds.
+  Splat splat = make_splat({21, 24}, {4, 0, 4}, 0.5);
+  const std::string at_tau = map_of(splat, TILES_OBB);
+  splat.threshold = 0.49;
+  EXPECT_EQ(map_of(splat, TILES_OBB), at_tau);
+  splat.threshold = 0.51;
+  for (const int tiles : {TILES_OBB, TILES_SNUG, TILES_ELLIPSE}) {
+    EXPECT_EQ(map_of(splat, tiles), "................");
+  }
+}
+
+TEST(Tiles, ShapesStopAtThePicturesEdge) {
+  // 50 px wide: the last tile's centres end at 49, not at 63.
+  const shared::View view = view_of(50, 50);
+  const double to_tau = std::sqrt(4.0 * 2 * std::log(255.0));
+  for (const auto& [tiles, reach] :
+       {std::pair(TILES_ELLIPSE, to_tau), {TILES_SNUG, to_tau}, {TILES_OBB, 6.0}}) {
+    EXPECT_TRUE(touches(make_splat({49 + reach - 0.01, 40}, {4, 0, 4}, 1.0), tiles, 16, 3, 2, view));
+    EXPECT_FALSE(touches(make_splat({49 + reach + 0.01, 40}, {4, 0, 4}, 1.0), tiles, 16, 3, 2, view));
+  }
+}
+
+/// How far a shape's norm reaches: a point d from the mean belongs to it where norm(d) <= limit. `steepest`
+/// is the norm of the unit vector that has the largest.
+struct Shape {
+  std::function<double(const glm::dvec2&)> norm;
+  double limit, steepest;
+};
+
+Shape ellipse_of(const Splat& splat) {
+  const glm::dvec3 c = splat.conic;
+  const double half_trace = 0.5 * (c.x + c.z);
+  const double largest = half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - 1 / splat.det));
+  return {
+      [c](const glm::dvec2& d) { return std::sqrt(c.x * d.x * d.x + 2 * c.y * d.x * d.y + c.z * d.y * d.y); },
+      std::sqrt(2 * std::log(splat.opacity / splat.threshold)), std::sqrt(largest)};
+}
+
+/// The box of three standard deviations along the eigenvectors, by the textbook: (lambda - C2.yy, C2.xy).
+Shape oriented_box_of(const Splat& splat) {
+  const glm::dvec3 c = splat.covariance;
+  const double half_trace = 0.5 * (c.x + c.z), spread = std::sqrt(half_trace * half_trace - splat.det);
+  const glm::dvec2 axis = glm::normalize(glm::dvec2(half_trace + spread - c.z, c.y));
+  const double sigma1 = std::sqrt(half_trace + spread), sigma2 = std::sqrt(half_trace - spread);
+  return {[=](const glm::dvec2& d) {
+            return std::max(std::abs(glm::dot(axis, d)) / sigma1,
+                            std::abs(axis.x * d.y - axis.y * d.x) / sigma2);
+          },
+          3.0, std::hypot(1 / sigma1, 1 / sigma2)};
+}
+
+/// Smallest norm over a dense grid of points on the tile's rectangle of pixel centres.
+double dense_smallest(const Shape& shape, const glm::dvec2& mean, int tx, int ty, const shared::View& view,
+                      int steps) {
   const double x0 = tx * 16, x1 = std::min(x0 + 16, double(view.width)) - 1;
   const double y0 = ty * 16, y1 = std::min(y0 + 16, double(view.height)) - 1;
   double smallest = std::numeric_limits<double>::infinity();
   for (int j = 0; j <= steps; ++j) {
     for (int i = 0; i <= steps; ++i) {
-      const double dx = x0 + (x1 - x0) * i / steps - splat.mean.x,
-                   dy = y0 + (y1 - y0) * j / steps - splat.mean.y;
-      smallest =
-          std::min(smallest, splat.conic.x * dx * dx + 2 * splat.conic.y * dx * dy + splat.conic.z * dy * dy);
+      const glm::dvec2 point(x0 + (x1 - x0) * i / steps, y0 + (y1 - y0) * j / steps);
+      smallest = std::min(smallest, shape.norm(point - mean));
     }
   }
   return smallest;
 }
 
+/// Splats with a threshold of their own each, from tau to beyond their opacity.
+std::vector<Splat> with_thresholds(std::vector<Splat> splats) {
+  test::Uniform uniform(8);
+  for (Splat& splat : splats) splat.threshold = std::max(ALPHA_MIN, splat.opacity * uniform(-0.5, 1.1));
+  return splats;
+}
+
 /// How many (splat, tile) answers disagree with a dense search; `shift` plants a tile that is off by so many.
-int disagreements(int shift) {
+int disagreements(int tiles, int shift) {
   const shared::View view = view_of(75, 53);
   int wrong = 0;
-  for (const Splat& splat : random_splats(3, 400, 75, 53)) {
-    const double rho = 2 * std::log(splat.opacity / ALPHA_MIN);
-    if (rho < 0) continue;
-    // sqrt(q) is a norm: no point of the rectangle is farther from the grid than half a cell's diagonal in
-    // it.
-    const double half_trace = 0.5 * (splat.conic.x + splat.conic.z);
-    const double steepest = half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - 1 / splat.det));
-    const double slack = std::sqrt(steepest) * 15.0 / 60 * std::sqrt(0.5);
+  for (const Splat& splat : with_thresholds(random_splats(3, 400, 75, 53))) {
+    if (splat.opacity < splat.threshold) continue;
+    const Shape shape = tiles == TILES_OBB ? oriented_box_of(splat) : ellipse_of(splat);
+    // No point of the rectangle is farther from the grid than half a cell's diagonal.
+    const double slack = shape.steepest * 15.0 / 60 * std::sqrt(0.5);
     for (int ty = 0; ty < 4; ++ty) {
       for (int tx = 0; tx < 5; ++tx) {
-        const double q = dense_smallest_q(splat, tx, ty, view, 60);
-        const bool answer = touches(splat, TILES_ELLIPSE, 16, tx + shift, ty, view);
-        if (q <= rho ? !answer : answer && std::sqrt(q) > std::sqrt(rho) + slack) ++wrong;
+        const double smallest = dense_smallest(shape, splat.mean, tx, ty, view, 60);
+        const bool answer = touches(splat, tiles, 16, tx + shift, ty, view);
+        if (smallest <= shape.limit ? !answer : answer && smallest > shape.limit + slack) ++wrong;
       }
     }
   }
@@ -142,8 +223,40 @@ int disagreements(int shift) {
 }
 
 TEST(Tiles, EllipseAgreesWithADenseSearch) {
-  EXPECT_EQ(disagreements(0), 0);
-  EXPECT_GT(disagreements(1), 100) << "a tile off by one goes unnoticed";
+  EXPECT_EQ(disagreements(TILES_ELLIPSE, 0), 0);
+  EXPECT_GT(disagreements(TILES_ELLIPSE, 1), 100) << "a tile off by one goes unnoticed";
+}
+
+TEST(Tiles, ObbAgreesWithADenseSearch) {
+  EXPECT_EQ(disagreements(TILES_OBB, 0), 0);
+  EXPECT_GT(disagreements(TILES_OBB, 1), 100) << "a tile off by one goes unnoticed";
+}
+
+/// How many answers of snug disagree with asking every pixel centre of the tile whether it lies in the box.
+/// `scale` plants half extents that are wrong.
+int snug_disagreements(double scale) {
+  const shared::View view = view_of(75, 53);
+  int wrong = 0;
+  for (const Splat& splat : with_thresholds(random_splats(4, 1000, 75, 53))) {
+    const double rho = 2 * std::log(splat.opacity / splat.threshold) * scale;
+    for (int t = 0; t < 20; ++t) {
+      const int tx = t % 5, ty = t / 5;
+      bool wanted = false;
+      for (int y = ty * 16; y < std::min(ty * 16 + 16, 53); ++y) {
+        for (int x = tx * 16; x < std::min(tx * 16 + 16, 75); ++x) {
+          const glm::dvec2 d = glm::dvec2(x, y) - splat.mean;
+          wanted |= d.x * d.x <= rho * splat.covariance.x && d.y * d.y <= rho * splat.covariance.z;
+        }
+      }
+      if (touches(splat, TILES_SNUG, 16, tx, ty, view) != wanted) ++wrong;
+    }
+  }
+  return wrong;
+}
+
+TEST(Tiles, SnugAgreesWithEveryPixelCentre) {
+  EXPECT_EQ(snug_disagreements(1.0), 0);
+  EXPECT_GT(snug_disagreements(0.98), 20) << "a box that is too small goes unnoticed";
 }
 
 TEST(Tiles, DepthOrderBreaksTiesByIndex) {
@@ -155,10 +268,10 @@ TEST(Tiles, DepthOrderBreaksTiesByIndex) {
 }
 
 TEST(Tiles, ListsHoldWhatTouchesInDepthOrder) {
-  for (const int tiles : {TILES_AABB, TILES_ELLIPSE, TILES_ALL}) {
+  for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE, TILES_ALL}) {
     for (const int size : {8, 16, 32}) {
       const shared::View view = view_of(75, 53);
-      const std::vector<Splat> splats = random_splats(5, 300, 75, 53);
+      const std::vector<Splat> splats = with_thresholds(random_splats(5, 300, 75, 53));
       const std::vector<std::uint32_t> order = depth_order(splats);
       const TileLists lists = make_lists(splats, order, view, tiles, size);
       ASSERT_EQ(lists.tiles_x, (75u + size - 1) / size);
@@ -179,17 +292,6 @@ TEST(Tiles, ListsHoldWhatTouchesInDepthOrder) {
   }
 }
 
-bool equal_bits(const Picture& a, const Picture& b) {
-  return a.colour.size() == b.colour.size() && a.z_sum.size() == b.z_sum.size() &&
-         std::memcmp(a.colour.data(), b.colour.data(), a.colour.size() * sizeof(glm::vec4)) == 0 &&
-         std::memcmp(a.z_sum.data(), b.z_sum.data(), a.z_sum.size() * sizeof(float)) == 0;
-}
-
-Picture picture_of(const std::vector<Splat>& splats, const shared::View& view, int tiles,
-                   int tile_size = 16) {
-  return blend(splats, make_lists(splats, depth_order(splats), view, tiles, tile_size), view);
-}
-
 /// Splats for a picture of any size: random ones, some exactly on tile edges and some centred beyond the
 /// picture.
 std::vector<Splat> splats_for(int width, int height) {
@@ -201,35 +303,37 @@ std::vector<Splat> splats_for(int width, int height) {
   return splats;
 }
 
-TEST(Tiles, EllipseMakesTheBruteForcePictureBitForBit) {
+TEST(Tiles, SnugAndEllipseMakeTheBruteForcePictureBitForBit) {
   const int sizes[][2] = {{75, 53}, {1, 1}, {16, 16}, {17, 15}, {301, 5}, {3, 257}, {64, 48}};
   for (const auto& [width, height] : sizes) {
     const shared::View view = view_of(width, height);
     const std::vector<Splat> splats = splats_for(width, height);
     const Picture brute_force = picture_of(splats, view, TILES_ALL);
-    EXPECT_TRUE(equal_bits(picture_of(splats, view, TILES_ELLIPSE), brute_force)) << width << " x " << height;
-    EXPECT_TRUE(equal_bits(picture_of(splats, view, TILES_ELLIPSE, 8), brute_force))
-        << width << " x " << height;
-    EXPECT_TRUE(equal_bits(picture_of(splats, view, TILES_ELLIPSE, 32), brute_force))
-        << width << " x " << height;
-    // Tiles that are off by one must be seen.
-    std::vector<Splat> moved = splats;
-    for (Splat& splat : moved) splat.mean.x += 16;
-    const TileLists off_by_a_tile = make_lists(moved, depth_order(moved), view, TILES_ELLIPSE);
-    EXPECT_FALSE(equal_bits(blend(splats, off_by_a_tile, view), brute_force)) << width << " x " << height;
+    for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
+      for (const int tile_size : {8, 16, 32}) {
+        EXPECT_TRUE(equal_bits(picture_of(splats, view, tiles, tile_size), brute_force))
+            << width << " x " << height << ", tiles of " << tile_size;
+      }
+      // Tiles that are off by one must be seen.
+      std::vector<Splat> moved = splats;
+      for (Splat& splat : moved) splat.mean.x += 16;
+      const TileLists off_by_a_tile = make_lists(moved, depth_order(moved), view, tiles);
+      EXPECT_FALSE(equal_bits(blend(splats, off_by_a_tile, view), brute_force)) << width << " x " << height;
+    }
   }
 }
 
-TEST(Tiles, AabbCutsVisibleTails) {
+TEST(Tiles, AabbAndObbCutVisibleTails) {
   const shared::View view = view_of(75, 53);
   const std::vector<Splat> splats = splats_for(75, 53);
   EXPECT_FALSE(equal_bits(picture_of(splats, view, TILES_AABB), picture_of(splats, view, TILES_ALL)));
+  EXPECT_FALSE(equal_bits(picture_of(splats, view, TILES_OBB), picture_of(splats, view, TILES_ALL)));
 }
 
 TEST(Tiles, RenderIsItsStagesInOrder) {
   const Model model = test::random_model(2, 400, 2);
   const shared::View view = view_of(75, 53);
-  for (const int tiles : {TILES_AABB, TILES_ELLIPSE, TILES_ALL}) {
+  for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE, TILES_ALL}) {
     const Picture rendered = render(model, view, {tiles, 16});
     EXPECT_TRUE(equal_bits(rendered, picture_of(project_all(model, view), view, tiles)));
     EXPECT_TRUE(equal_bits(rendered, render(model, view, {tiles, 16}))) << "two runs differ";

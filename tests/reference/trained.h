@@ -26,9 +26,9 @@ inline constexpr Trained fox{"fox", "fox.ply", "inria", "psnr.json", 81.7};
 inline constexpr Trained fox_pruned{"fox", "fox_pruned.ply", "inria_pruned", "psnr_pruned.json", 87.4};
 inline constexpr Trained garden{"garden", "garden.ply", "inria", "psnr.json", 81.3};
 
-/// The camera of that name in a scene's folder.
-inline Camera camera_named(const std::filesystem::path& folder, const std::string& name) {
-  const std::vector<Camera> cameras = load_cameras(folder / "cameras.json");
+/// The camera of that name in a file.
+inline Camera camera_named(const std::filesystem::path& file, const std::string& name) {
+  const std::vector<Camera> cameras = load_cameras(file);
   const auto camera =
       std::find_if(cameras.begin(), cameras.end(), [&](const Camera& each) { return each.name == name; });
   if (camera == cameras.end()) throw std::runtime_error("no camera " + name);

@@ -100,13 +100,19 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
   const Model model = test::random_model(52, 2000, 1);
   const auto eyes = stereo::make_rig(test::front_camera(90, 70, 80), {.ipd = 0.1});
   const std::vector views(eyes.views.begin(), eyes.views.end());
-  for (const int tiles : {TILES_AABB, TILES_ELLIPSE, TILES_ALL}) {
-    const Picture expected = reference::render(model, views[1], {.tiles = tiles});
+  for (const FrameSettings& way : {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.tiles = TILES_ELLIPSE},
+                                   FrameSettings{.tiles = TILES_ALL}, FrameSettings{.tiles = TILES_OBB},
+                                   FrameSettings{.tiles = TILES_SNUG, .th = TH_PERIPHERAL, .loss = 1.0f},
+                                   FrameSettings{.tiles = TILES_ELLIPSE, .th = TH_SQUARED, .loss = 0.05f}}) {
+    const Picture expected = reference::render(
+        model, views[1], {.tiles = way.tiles, .th = way.th, .loss = static_cast<double>(way.loss)});
+    EXPECT_GE(test::psnr(draw(model, views, way)[1], expected), 80.0) << tiles_choices[way.tiles].name;
     for (const Stage stage :
          {Stage::project, Stage::order, Stage::pairs, Stage::tile_sort, Stage::ranges, Stage::blend}) {
-      const Picture drawn = draw(model, views, {.tiles = tiles, .reference_until = stage})[1];
-      EXPECT_GE(test::psnr(drawn, expected), 80.0)
-          << render::stage_names[static_cast<int>(stage)] << " " << tiles;
+      FrameSettings settings = way;
+      settings.reference_until = stage;
+      EXPECT_GE(test::psnr(draw(model, views, settings)[1], expected), 80.0)
+          << render::stage_names[static_cast<int>(stage)] << " " << tiles_choices[way.tiles].name;
     }
   }
 }

@@ -31,7 +31,7 @@ struct Trained {
 struct Case {
   Trained trained;
   const char* view;
-  std::size_t aabb = 0, ellipse = 0;  // pairs (METHOD 8); 0: no figure there
+  std::size_t aabb = 0, ellipse = 0, obb = 0, snug = 0;  // pairs (METHOD 8); 0: no figure there
 };
 
 std::string name_of(const Case& c) {
@@ -46,21 +46,21 @@ constexpr Trained fox_pruned = {"fox", "fox_pruned.ply", "inria_pruned", "psnr_p
 constexpr Trained garden = {"garden", "garden.ply", "inria", "psnr.json"};
 
 const Case cases[] = {
-    {fox, "0001", 885634, 371596},
+    {fox, "0001", 885634, 371596, 429637, 460218},
     {fox, "0012"},
     {fox, "0027"},
-    {fox, "0042", 866737, 308963},
+    {fox, "0042", 866737, 308963, 358935, 423519},
     {fox, "0073"},
     {fox, "0089"},
     {fox, "0110"},
-    {fox_pruned, "0001", 637863, 229701},
+    {fox_pruned, "0001", 637863, 229701, 261959, 308840},
     {fox_pruned, "0012"},
     {fox_pruned, "0027"},
     {fox_pruned, "0042"},
     {fox_pruned, "0073"},
     {fox_pruned, "0089"},
     {fox_pruned, "0110"},
-    {garden, "DSC07956", 1827306, 728346},
+    {garden, "DSC07956", 1827306, 728346, 823308, 906690},
     {garden, "DSC07988"},
     {garden, "DSC08020"},
     {garden, "DSC08052"},
@@ -97,6 +97,22 @@ fs::path photo(const fs::path& folder, const std::string& view) {
 }
 
 class Scenes : public testing::TestWithParam<Case> {};
+
+TEST_P(Scenes, ObbAndSnugMakeTheirPairs) {
+  const Case& c = GetParam();
+  if (c.obb == 0) return;  // METHOD has no figures of this view
+  REQUIRE_SCENE(c.trained.scene, folder);
+  Drawn drawn(folder, c);
+  const auto within = [&](int tiles, std::size_t expected, double share) {
+    const auto pairs = static_cast<double>(drawn.draw(tiles).pairs);
+    EXPECT_NEAR(pairs, static_cast<double>(expected), share * static_cast<double>(expected));
+  };
+  within(TILES_OBB, c.obb, 0.0002);
+  within(TILES_SNUG, c.snug, 0.0005);
+  const Picture snug = drawn.picture;
+  drawn.draw(TILES_ELLIPSE);
+  EXPECT_TRUE(test::same_bits(snug, drawn.picture));
+}
 
 TEST_P(Scenes, AabbIsInriasPictureAndPsnr) {
   const Case& c = GetParam();

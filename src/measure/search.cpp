@@ -1,0 +1,76 @@
+#include "measure/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+
+namespace binosplat::measure {
+
+namespace {
+
+/// One answer: the logarithm of a loss, in which PSNR falls nearly in a line, and how far the value there
+/// lies above what is aimed at.
+struct Asked {
+  double log_loss, above;
+};
+
+/// Between a loss that holds and one that does not: where a line through the two meets the aim, but not
+/// close to either end, so that the bracket shrinks whatever the values do.
+double between(const Asked& holds, const Asked& fails) {
+  double share = holds.above / (holds.above - fails.above);
+  if (!std::isfinite(share)) share = 0.5;
+  return std::lerp(holds.log_loss, fails.log_loss, std::clamp(share, 0.05, 0.95));
+}
+
+}  // namespace
+
+FoundLoss find_loss(const std::function<double(double loss)>& value, double target,
+                    const LossSearch& search) {
+  if (!(search.smallest > 0.0 && search.smallest <= search.start && search.start <= search.largest)) {
+    fail("a search for a loss from {} within {} to {}: expected numbers above 0, in order", search.start,
+         search.smallest, search.largest);
+  }
+  const double low = std::log(search.smallest), high = std::log(search.largest);
+  const double aim = target + 0.5 * search.tolerance;
+  FoundLoss found;
+  std::optional<Asked> holds, fails;
+  bool last_held = false;
+  double next = std::log(search.start), step = std::log(2.0);
+  while (found.evaluations < search.evaluations) {
+    const double loss = std::clamp(std::exp(next), search.smallest, search.largest);
+    const double at_loss = value(loss);
+    ++found.evaluations;
+    // An end of the bracket that stays where it is for two rounds counts for half as much from then on: the
+    // line then passes beyond the aim, and the bracket closes from both sides (the Illinois rule).
+    if (at_loss >= target) {
+      if (fails && last_held) fails->above *= 0.5;
+      holds = {next, at_loss - aim};
+      found.loss = loss;
+      found.value = at_loss;
+      if (at_loss - target <= search.tolerance || next >= high) return found;
+    } else {
+      if (holds && !last_held) holds->above *= 0.5;
+      fails = {next, at_loss - aim};
+      if (next <= low) break;
+    }
+    last_held = at_loss >= target;
+    if (holds && fails) {
+      if (fails->log_loss - holds->log_loss < 1e-6) return found;  // the value has a step here
+      next = between(*holds, *fails);
+    } else {
+      next = std::clamp(next + (holds ? step : -step), low, high);
+      step *= 2;
+    }
+  }
+  if (holds) return found;
+  found.value = value(0.0);
+  ++found.evaluations;
+  if (!(found.value >= target)) {
+    fail("no loss reaches {}: even without any the value is {}", target, found.value);
+  }
+  return found;
+}
+
+}  // namespace binosplat::measure
