@@ -1,6 +1,6 @@
 #pragma once
-// Errors that end a command. Their text is for the user: it names the file, the place in it, what was expected and what
-// to do.
+// Errors that end a command. Their text is for the user: it names the file, the place in it, what was
+// expected and what to do.
 
 #include <fmt/format.h>
 
