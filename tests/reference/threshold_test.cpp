@@ -118,9 +118,9 @@ double largest_left_out(int th, double loss, double planted) {
   std::vector<Splat> rated = splats;
   set_thresholds(rated, th, loss);
   std::vector<Splat> listed = rated;
-  for (std::size_t i = 0; i < listed.size(); ++i) {
-    listed[i].threshold *= planted;
-    listed[i].drawn = listed[i].threshold <= listed[i].opacity;
+  for (Splat& splat : listed) {
+    splat.threshold *= planted;
+    splat.drawn = splat.threshold <= splat.opacity;
   }
   const TileLists lists = make_lists(listed, order, view, TILES_ELLIPSE);
   double largest = 0.0;

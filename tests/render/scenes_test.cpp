@@ -39,7 +39,10 @@ std::string name_of(const Case& c) {
   return ply.substr(0, ply.size() - 4) + "_" + c.view;
 }
 
-void PrintTo(const Case& c, std::ostream* out) { *out << name_of(c); }
+// The name that GoogleTest asks for.
+void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming)
+  *out << name_of(c);
+}
 
 constexpr Trained fox = {"fox", "fox.ply", "inria", "psnr.json"};
 constexpr Trained fox_pruned = {"fox", "fox_pruned.ply", "inria_pruned", "psnr_pruned.json"};

@@ -147,7 +147,7 @@ inline Model transparent(const Camera& camera, float opacity, int count = 200) {
 inline Model exactly_tau(const Camera& camera) {
   Model model;
   model.name = "exactly tau";
-  add(model, behind_pixel(camera, camera.width / 2, camera.height / 2, 2.0), glm::vec3(0.25f), tau,
+  add(model, behind_pixel(camera, 0.5 * camera.width, 0.5 * camera.height, 2.0), glm::vec3(0.25f), tau,
       glm::vec3(1.0f));
   return model;
 }
