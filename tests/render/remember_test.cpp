@@ -1,5 +1,9 @@
 // What one frame measures for the next: the largest transmittance, and contrast, of each Gaussian.
 
+#include <algorithm>
+#include <cmath>
+
+#include "reference/transmittance.h"
 #include "render/continuity.h"
 #include "render/support.h"
 #include "stereo/rig.h"
@@ -38,6 +42,41 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
     const FrameSettings settings = {.transmittance = TRANSMITTANCE_LAST, .contrast = contrast};
     for (int n = 0; n < 3; ++n) frame.draw(std::vector{view}, settings);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), exact)) << contrast_choices[contrast].name;
+  }
+}
+
+// What a first frame leaves for the next, by Gaussian.
+std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
+  test::StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
+  run.run_until(render::Stage::ranges);
+  gl::Dispatcher dispatcher(test::gl_context());
+  render::blend(dispatcher, run.shape, run.frame);
+  render::remember(dispatcher, run.shape, run.frame);
+  return run.frame.upper_next->read<float>(model.count());
+}
+
+// How many Gaussians have another measurement in the reference than these.
+std::size_t differing(const std::vector<float>& measured, const Model& model, const shared::View& view) {
+  const auto splats = reference::project_all(model, view);
+  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+  const auto expected =
+      reference::floored(reference::measure_transmittance(splats, lists, view), UPPER_FLOOR);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    count += std::abs(measured[i] - expected[i]) > 1e-4 ? 1 : 0;
+  return count;
+}
+
+TEST(Remember, MeasuresWhatTheReferenceMeasures) {
+  for (const Model& model : {test::random_model(86, 4000, 0), wall()}) {
+    const std::vector<float> measured = measured_on_gpu(model, front());
+    // A few may lie where fp32 blends a pixel more or less.
+    const std::size_t few = model.count() / 500;
+    EXPECT_LE(differing(measured, model, front()), few);
+    EXPECT_GT(std::count_if(measured.begin(), measured.end(), [](float m) { return m < 0.5f; }), 100);
+    Model fainter = model;  // a transmittance that is a little off is told apart
+    for (float& opacity : fainter.opacity) opacity *= 0.98f;
+    EXPECT_GT(differing(measured, fainter, front()), 10 * few);
   }
 }
 
