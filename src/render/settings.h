@@ -10,7 +10,7 @@
 
 namespace binosplat::render {
 
-/// The stages of a frame, in order. DESIGN: each is a shader, a file here and a test of one name.
+/// The stages of a frame, in order. Each is a shader, a file here and a test of one name.
 enum class Stage { project, order, pairs, tile_sort, ranges, blend };
 constexpr const char* stage_names[] = {"project", "order", "pairs", "tile_sort", "ranges", "blend"};
 
