@@ -92,14 +92,19 @@ std::unique_ptr<gl::Context> open_context(const RenderOptions& options) {
   return context;
 }
 
+std::vector<shared::View> views_of(const Shot& shot) {
+  std::vector<shared::View> views;
+  for (const Eye& eye : shot.eyes) views.push_back(eye.view);
+  return views;
+}
+
 // What the model takes on the GPU, and the shot that takes most.
 render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& model,
                                  const std::vector<Shot>& shots) {
+  const render::FrameSettings settings = settings_of(options);
   render::MemoryNeeds most;
   for (const Shot& shot : shots) {
-    std::vector<shared::View> views;
-    for (const Eye& eye : shot.eyes) views.push_back(eye.view);
-    const auto needs = render::memory_needs(render::make_shape(views, settings_of(options), model));
+    const auto needs = render::memory_needs(render::make_shape(views_of(shot), settings, model));
     most = {needs.model, std::max(most.frame, needs.frame)};
   }
   return most;
@@ -115,8 +120,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   for (Shot& shot : shots) {
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
-    std::vector<shared::View> views;
-    for (const Eye& eye : drawn.shot.eyes) views.push_back(eye.view);
+    const std::vector<shared::View> views = views_of(drawn.shot);
     for (int n = 0; n < options.frames; ++n) {
       drawn.report = frame.draw(views, settings);
       report.times.add(drawn.report);
