@@ -47,6 +47,8 @@ struct RenderOptions {
   std::optional<float> loss;  // K or kappa
   std::string transmittance = "one";
   std::string contrast = "off";
+  std::string th_eyes = "per-eye";
+  std::optional<float> quality;  // dB
   int tile = TILE_SIZE_DEFAULT;
   std::string reference_until;
   std::string backend = "auto";
@@ -68,8 +70,8 @@ struct RenderOptions {
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
-/// What --th is: squared where only a loss is given, which costs less at equal error than the paper's rule
-/// (METHOD 8).
+/// What --th is: squared where only a loss or a quality is given, which costs less at equal error than the
+/// paper's rule (METHOD 8).
 std::string threshold_name(const RenderOptions& options);
 
 /// Throws Error for options that contradict each other.

@@ -18,12 +18,16 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"Gaussians", *page.gaussians},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
+                    {"DepthTable", buffers.depth_table},
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
+                    {"exact_from", shape.asked},
+                    {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
+                    {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
@@ -57,7 +61,8 @@ gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
   return {{"TILES_NAME", tiles_choices[s.tiles].name}, {"TH", std::to_string(s.th)},
           {"TH_NAME", th_choices[s.th].name},          {"TRANSMITTANCE", std::to_string(s.transmittance)},
-          {"TILES", std::to_string(s.tiles)},          {"TILE_SIZE", std::to_string(s.tile_size)}};
+          {"TH_EYES", std::to_string(s.th_eyes)},      {"TILES", std::to_string(s.tiles)},
+          {"TILE_SIZE", std::to_string(s.tile_size)}};
 }
 
 void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
@@ -79,6 +84,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Splats", buffers.splats},
                     {"TileCounts", buffers.tile_counts},
                     {"Upper", *buffers.upper},
+                    {"DepthTable", buffers.depth_table},
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
@@ -86,6 +92,9 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"view_end", views.end},
                     {"slots", shape.slots},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
+                    {"exact_from", shape.asked},
+                    {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
+                    {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }

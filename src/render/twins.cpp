@@ -167,8 +167,11 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
 std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& shape,
                                          std::uint32_t groups_max, FrameBuffers& buffers) {
   const Stage until = *shape.settings.reference_until;
-  if (shape.settings.transmittance != TRANSMITTANCE_ONE) {
-    fail("--reference-until: the reference goes by no earlier frame: leave --transmittance out");
+  if (shape.settings.transmittance != TRANSMITTANCE_ONE || shape.settings.quality > 0.0f ||
+      shape.settings.th_eyes != TH_EYES_PER_EYE) {
+    fail(
+        "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
+        "--quality and --th-eyes out");
   }
   std::vector<Picture> pictures;
   if (until == Stage::blend) {
