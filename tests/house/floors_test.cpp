@@ -32,8 +32,11 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"render", {"primitives", "gl", "reference", "scene", "base", "shared"}},
     {"measure", {"render", "primitives", "gl", "reference", "scene", "base", "shared"}},
     {"stereo", {"measure", "render", "primitives", "gl", "reference", "scene", "base", "shared"}},
-    {"app",
+    {"study",
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
+    {"app",
+     {"study", "stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base",
+      "shared"}},
 };
 
 // Files of more than 400 lines, each with the reason why it is better whole.
