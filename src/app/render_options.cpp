@@ -94,6 +94,11 @@ CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).descript
 
 void add_scene(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Scene";
+  sub.add_option("--lod", o.lod,
+                 "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)")
+      ->type_name("N")
+      ->check(range(0, 100))
+      ->group(group);
   sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
       ->type_name("N")
@@ -276,7 +281,8 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
 
 void add_options(CLI::App& sub, RenderOptions& options) {
   sub.add_option("SCENE", options.scene,
-                 "A model (.ply), or one that is built in: demo:room, a room, or\ndemo:city, streets of any "
+                 "A model (ply; SOG as folder, .sog or streamed), or one that is\nbuilt in: demo:room, a "
+                 "room, or\ndemo:city, streets of any "
                  "size")
       ->required();
   add_scene(sub, options);
@@ -322,6 +328,7 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
+  if (o.scene.rfind("demo:", 0) == 0 && o.lod) fail("--lod is for model files, and {} is none", o.scene);
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");
   if (o.eye.has_value() != o.at.has_value())

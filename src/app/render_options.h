@@ -16,6 +16,8 @@ namespace binosplat::app {
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 
+  std::optional<int> lod;  // of a model file that has levels of detail
+
   // Of scenes that the program makes, and how often a scene is repeated.
   std::optional<std::uint64_t> seed;
   std::optional<std::size_t> count;  // Gaussians

@@ -2,14 +2,20 @@
 // The entrance for model files: what a file is, is decided by its content, never by its name.
 
 #include <filesystem>
+#include <optional>
 
 #include "scene/model.h"
 
 namespace binosplat {
 
-/// Reads a trained model; now INRIA's ply (formats/ply.h). Says on standard error how many Gaussians were
-/// left out because a value is not finite or the quaternion is zero. Throws Error for anything that is not
-/// such a model; the text says what the file looks like instead.
-Model load_model(const std::filesystem::path& path);
+struct ModelOptions {
+  std::optional<int> lod;  // the level of detail of a model that has several; 0 is the finest
+};
+
+/// Reads a trained model: INRIA's ply (formats/ply.h), PlayCanvas' SOG as a folder, a .sog archive, or
+/// streamed (formats/sog.h). `path` may be a folder that holds lod-meta.json or meta.json. Says on standard
+/// error how many Gaussians were left out because a value is not finite or the quaternion is zero. Throws
+/// Error for anything that is not such a model; the text says what the file looks like instead.
+Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
 }  // namespace binosplat

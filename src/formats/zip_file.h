@@ -1,0 +1,39 @@
+#pragma once
+// Files in a zip archive, by name. Nothing is ever written to a disk by a name that an archive gives.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+struct zip;
+
+namespace binosplat {
+
+class ZipFile {
+ public:
+  /// Opens an archive whose bytes outlive this; `source` names it in errors. Throws Error where the list of
+  /// files at its end is damaged or missing.
+  ZipFile(std::string source, std::span<const std::byte> bytes);
+
+  bool has(const std::string& name) const;
+
+  /// The names of its files for an error's text, the first few.
+  std::string names() const;
+
+  /// A whole file, stored or deflated, its checksum tested. Throws Error where it is missing, damaged or
+  /// promises more than its bytes can unfold to.
+  std::vector<std::byte> read(const std::string& name) const;
+
+ private:
+  [[noreturn]] void fail_entry(const std::string& name, const std::string& reason) const;
+
+  struct Close {
+    void operator()(zip* archive) const;
+  };
+  std::string source_;
+  std::unique_ptr<zip, Close> archive_;
+};
+
+}  // namespace binosplat
