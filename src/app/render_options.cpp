@@ -26,18 +26,6 @@ glm::dvec3 parse_three(const std::string& option, const std::string& text) {
   return v;
 }
 
-// "1280x720" as two numbers above zero; `expected` says what they mean.
-glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
-  glm::ivec2 two{0};
-  char cross = 0;
-  std::istringstream in(text);
-  in >> two.x >> cross >> two.y;
-  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || two.x < 1 || two.y < 1) {
-    fail("{} {}: expected {}", option, text, expected);
-  }
-  return two;
-}
-
 Background parse_background(const std::string& text) {
   if (text == "none") return std::nullopt;
   const glm::dvec3 rgb = parse_three("--background", text);
@@ -278,6 +266,17 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
 }
 
 }  // namespace
+
+glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
+  glm::ivec2 two{0};
+  char cross = 0;
+  std::istringstream in(text);
+  in >> two.x >> cross >> two.y;
+  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || two.x < 1 || two.y < 1) {
+    fail("{} {}: expected {}", option, text, expected);
+  }
+  return two;
+}
 
 void add_options(CLI::App& sub, RenderOptions& options) {
   sub.add_option("SCENE", options.scene,

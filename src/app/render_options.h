@@ -68,6 +68,9 @@ struct RenderOptions {
   std::string json;
 };
 
+/// "1280x720" as two numbers above zero. Throws Error for anything else: `expected` says what they mean.
+glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected);
+
 /// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);

@@ -121,6 +121,7 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
   if (measures(shape_.settings.transmittance)) std::swap(buffers_.upper, buffers_.upper_next);
   report.loss = shape_.settings.loss;
+  report.remembered = shape_.remembers;
   if (!shape_.probe) return;
   if (shape_.remembers || !measures(shape_.settings.transmittance))
     loss_control_.measured(probed_error(shape_, counters));

@@ -24,6 +24,7 @@ struct FrameReport {
   double total_ms = 0;                // their sum
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   float loss = 0.0f;                  // K or kappa that the frame went by
+  bool remembered = false;            // it went by what the last frame measured
   double quality = 0.0;               // with settings.quality: the PSNR in dB that its probes so far tell of
 };
 
