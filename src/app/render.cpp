@@ -170,7 +170,7 @@ ExitCode render(const RenderOptions& options) {
   if (!list.listed) list = made_up_cameras(options, model);
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
-  std::vector<Shot> shots = make_shots(options, list, near_plane);
+  std::vector<Shot> shots = make_shots(options, list, near_plane, model.axes);
   if (!plan.file.empty() && shots.size() > 1) {
     fail("-o {} is one file and {} views are to be drawn: name a folder", options.output, shots.size());
   }

@@ -2,11 +2,13 @@
 
 #include <fmt/ranges.h>
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "base/error.h"
+#include "scene/axes.h"
 #include "scene/demo_city.h"
 #include "shared/axes.h"
 
@@ -98,6 +100,17 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
                  "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)")
       ->type_name("N")
       ->check(range(0, 100))
+      ->group(group);
+  sub.add_option_function<std::string>(
+         "--axes",
+         [&o](const std::string& text) {
+           for (const char c : text) o.axes += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+           world_from_axes(o.axes);
+         },
+         "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
+         "or Back, "
+         "as in rdf, rub (the format's)")
+      ->type_name("XYZ")
       ->group(group);
   sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
@@ -328,7 +341,9 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
-  if (o.scene.rfind("demo:", 0) == 0 && o.lod) fail("--lod is for model files, and {} is none", o.scene);
+  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || !o.axes.empty())) {
+    fail("{} is for model files, and {} is none", o.lod ? "--lod" : "--axes", o.scene);
+  }
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");
   if (o.eye.has_value() != o.at.has_value())

@@ -12,17 +12,9 @@ namespace binosplat {
 
 namespace {
 
-constexpr float sh_c0 = 0.28209479177387814f;
-
 /// Refuses files that are well-formed but hold something else.
 void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header) {
   const std::string name = path.string();
-  if (!header.elements.empty() && header.elements[0].name == "chunk") {
-    fail(
-        "{} is a PlayCanvas compressed ply; convert it to a plain one (splat-transform IN.compressed.ply "
-        "OUT.ply)",
-        name);
-  }
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr)
     fail("{}: the ply header has no element 'vertex'; it is no model of Gaussians", name);
@@ -137,7 +129,7 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(layout.degree));
   std::copy_n(&raw[11], values, sh.begin());
   if (layout.rgb) {
-    for (int c = 0; c < 3; ++c) sh[c] = (sh[c] / 255.0f - 0.5f) / sh_c0;
+    for (int c = 0; c < 3; ++c) sh[c] = static_cast<float>((sh[c] / 255.0 - 0.5) / sh_c0);
   }
   const bool good = decode_raw(model, i, position, glm::vec3(raw[3], raw[4], raw[5]),
                                glm::vec4(raw[6], raw[7], raw[8], raw[9]), raw[10], sh.data());

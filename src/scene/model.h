@@ -10,6 +10,9 @@
 
 namespace binosplat {
 
+/// The constant function of the spherical harmonics: a base colour is 0.5 + sh_c0 * coefficient.
+constexpr double sh_c0 = 0.28209479177387814;
+
 /// Number of SH coefficients per colour channel of a degree.
 constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
 
