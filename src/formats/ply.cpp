@@ -77,6 +77,7 @@ class PlyReader {
   Model read() {
     model_.name = path_.filename().string();
     model_.degree = layout_.degree;
+    model_.antialiased = layout_.antialiased;
     for (const PlyElement& element : header_.elements) {
       const bool gaussians = &element == layout_.vertices;
       if (header_.format == PlyFormat::ascii) {

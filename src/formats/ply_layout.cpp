@@ -37,9 +37,9 @@ void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header
   if (vertices->count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", name);
 }
 
-/// Anti-aliased models want another kernel than the plain one (METHOD.md section 1): say so rather than draw
-/// them wrong in silence.
-void warn_if_antialiased(const std::filesystem::path& path, const PlyHeader& header, bool filter_3d) {
+/// Whether a model was trained with anti-aliasing: by its filter, or by the last comment that says (Brush's
+/// and Postshot's).
+bool is_antialiased(const PlyHeader& header, bool filter_3d) {
   bool antialiased = filter_3d;
   for (std::string comment : header.comments) {
     std::transform(comment.begin(), comment.end(), comment.begin(),
@@ -49,10 +49,7 @@ void warn_if_antialiased(const std::filesystem::path& path, const PlyHeader& hea
     if (comment.find("antialiased ") != std::string::npos)
       antialiased = comment.find("antialiased 1") != std::string::npos;
   }
-  if (antialiased) {
-    log_warning("{} was trained with anti-aliasing, which is not drawn: distant parts will look thicker",
-                path.string());
-  }
+  return antialiased;
 }
 
 /// The number of f_rest properties of an element, after checking that they run from 0 without a gap.
@@ -119,7 +116,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   }
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
   if (layout.filter_3d) finder.add("filter_3D");
-  warn_if_antialiased(path, header, layout.filter_3d);
+  layout.antialiased = is_antialiased(header, layout.filter_3d);
   return layout;
 }
 
