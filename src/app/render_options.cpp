@@ -139,8 +139,10 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
         ->type_name("X,Y,Z");
   };
   const char* const group = "Cameras";
-  sub.add_option("--cameras", o.cameras, "cameras.json; default: the one beside the model")
-      ->type_name("FILE")
+  sub.add_option("--cameras", o.cameras,
+                 "cameras.json, transforms.json or the folder of a COLMAP reconstruction;\ndefault: what "
+                 "lies beside the model")
+      ->type_name("FILE|DIR")
       ->group(group);
   sub.add_option("--view", o.views,
                  "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
@@ -283,9 +285,11 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
       ->check(one_of<std::string>({"linear", "display"}))
       ->type_name("linear|display")
       ->group(group);
-  sub.add_option("--photos", o.photos, "Print PSNR against DIR/NAME.jpg or .png; with --mono")
-      ->type_name("DIR")
-      ->check(folder())
+  sub.add_option(
+         "--photos", o.photos,
+         "Print PSNR against DIR/NAME.jpg or .png, or the photos found beside\nthe cameras; with --mono")
+      ->type_name(fmt::format("DIR|{}", photos_beside))
+      ->check(folder() | CLI::IsMember({photos_beside}).description(""))
       ->group(group);
   sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE")->group(group);
 }

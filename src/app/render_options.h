@@ -13,6 +13,9 @@
 
 namespace binosplat::app {
 
+/// In the place of a folder: the photos that lie beside the cameras.
+constexpr const char* photos_beside = "beside";
+
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 

@@ -170,7 +170,7 @@ CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera
         list.source);
   }
   if (!list.listed && !options.views.empty()) {
-    fail("--view {}: no cameras.json beside {}; name one with --cameras", options.views[0], options.scene);
+    fail("--view {}: no cameras beside {}; name their file with --cameras", options.views[0], options.scene);
   }
   return list;
 }
@@ -182,7 +182,7 @@ CameraList made_up_cameras(const RenderOptions& options, const Model& model) {
     return {"--eye", {look_at(*options.eye, *options.at, up, fov, made_up_width, made_up_height)}};
   }
   if (options.orbit) return {"--orbit", orbit(model, *options.orbit, made_up_width, made_up_height, fov, up)};
-  log_info("no cameras.json beside {}: framing the model", options.scene);
+  log_info("no cameras beside {}: framing the model", options.scene);
   return {options.scene, {frame_model(model, made_up_width, made_up_height, fov, up)}};
 }
 
