@@ -2,11 +2,13 @@
 
 #include <fmt/ranges.h>
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "base/error.h"
+#include "scene/axes.h"
 #include "scene/demo_city.h"
 #include "shared/axes.h"
 
@@ -87,6 +89,17 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
       ->type_name("N")
       ->check(range(0, 100))
       ->group(group);
+  sub.add_option_function<std::string>(
+         "--axes",
+         [&o](const std::string& text) {
+           for (const char c : text) o.axes += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+           world_from_axes(o.axes);
+         },
+         "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
+         "or Back, "
+         "as in rdf, rub (the format's)")
+      ->type_name("XYZ")
+      ->group(group);
   sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
       ->type_name("N")
@@ -114,8 +127,10 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
         ->type_name("X,Y,Z");
   };
   const char* const group = "Cameras";
-  sub.add_option("--cameras", o.cameras, "cameras.json; default: the one beside the model")
-      ->type_name("FILE")
+  sub.add_option("--cameras", o.cameras,
+                 "cameras.json, transforms.json or the folder of a COLMAP reconstruction;\ndefault: what "
+                 "lies beside the model")
+      ->type_name("FILE|DIR")
       ->group(group);
   sub.add_option("--view", o.views,
                  "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
@@ -258,9 +273,11 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
       ->check(one_of<std::string>({"linear", "display"}))
       ->type_name("linear|display")
       ->group(group);
-  sub.add_option("--photos", o.photos, "Print PSNR against DIR/NAME.jpg or .png; with --mono")
-      ->type_name("DIR")
-      ->check(folder())
+  sub.add_option(
+         "--photos", o.photos,
+         "Print PSNR against DIR/NAME.jpg or .png, or the photos found beside\nthe cameras; with --mono")
+      ->type_name(fmt::format("DIR|{}", photos_beside))
+      ->check(folder() | CLI::IsMember({photos_beside}).description(""))
       ->group(group);
   sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE")->group(group);
 }
@@ -327,7 +344,9 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
-  if (o.scene.rfind("demo:", 0) == 0 && o.lod) fail("--lod is for model files, and {} is none", o.scene);
+  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || !o.axes.empty())) {
+    fail("{} is for model files, and {} is none", o.lod ? "--lod" : "--axes", o.scene);
+  }
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");
   if (o.eye.has_value() != o.at.has_value())

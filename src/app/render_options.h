@@ -13,10 +13,14 @@
 
 namespace binosplat::app {
 
+/// In the place of a folder: the photos that lie beside the cameras.
+constexpr const char* photos_beside = "beside";
+
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 
   std::optional<int> lod;  // of a model file that has levels of detail
+  std::string axes;        // where a model file's x, y and z point; empty: what its format says
 
   // Of scenes that the program makes, and how often a scene is repeated.
   std::optional<std::uint64_t> seed;

@@ -12,10 +12,10 @@ struct ModelOptions {
   std::optional<int> lod;  // the level of detail of a model that has several; 0 is the finest
 };
 
-/// Reads a trained model: INRIA's ply (formats/ply.h), PlayCanvas' SOG as a folder, a .sog archive, or
-/// streamed (formats/sog.h). `path` may be a folder that holds lod-meta.json or meta.json. Says on standard
-/// error how many Gaussians were left out because a value is not finite or the quaternion is zero. Throws
-/// Error for anything that is not such a model; the text says what the file looks like instead.
+/// Reads a trained model: INRIA's ply and PlayCanvas' compressed one (formats/ply.h), SOG as a folder, a .sog
+/// archive, or streamed (formats/sog.h). `path` may be a folder that holds lod-meta.json or meta.json. Says
+/// on standard error how many Gaussians were left out because a value is not finite or the quaternion is
+/// zero. Throws Error for anything that is not such a model; the text says what the file looks like instead.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
 }  // namespace binosplat
