@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <regex>
 #include <set>
 
@@ -57,8 +58,8 @@ class Block {
   }
 
   int choice(const std::string& key, const json& value, std::span<const Choice> choices) const {
-    return number_of(place_ + ", '" + key + "'", value.is_string() ? value.get<std::string>() : value.dump(),
-                     choices);
+    return find_choice(place_ + ", '" + key + "'",
+                       value.is_string() ? value.get<std::string>() : value.dump(), choices);
   }
 
   const std::string& place() const { return place_; }
@@ -74,28 +75,40 @@ int tile_of(const Block& block, const json& value) {
   return size;
 }
 
-/// All combinations of a block's lists, appended.
+/// One key of a block: how a value of it is set.
+struct Key {
+  const char* name;
+  json otherwise;
+  std::function<void(render::FrameSettings&, const json&)> set;
+};
+
+/// All combinations of a block's lists, appended; the last key's values follow one another.
 void add_settings(const Block& block, std::vector<render::FrameSettings>& settings) {
-  for (const json& th : block.values("th", "tau")) {
-    for (const json& transmittance : block.values("transmittance", "one")) {
-      for (const json& contrast : block.values("contrast", "off")) {
-        for (const json& tiles : block.values("tiles", "ellipse")) {
-          for (const json& tile : block.values("tile", TILE_SIZE_DEFAULT)) {
-            for (const json& loss : block.values("loss", 0.0)) {
-              render::FrameSettings s;
-              s.th = block.choice("th", th, th_choices);
-              s.transmittance = block.choice("transmittance", transmittance, transmittance_choices);
-              s.contrast = block.choice("contrast", contrast, contrast_choices);
-              s.tiles = block.choice("tiles", tiles, tiles_choices);
-              s.tile_size = tile_of(block, tile);
-              s.loss = block.loss(loss);
-              settings.push_back(s);
-            }
-          }
-        }
-      }
+  using S = render::FrameSettings;
+  const auto choice = [&block](const char* key, int S::*member, std::span<const Choice> choices) {
+    return Key{
+        key, choices[static_cast<std::size_t>(S{}.*member)].name,
+        [&block, key, member, choices](S& s, const json& v) { s.*member = block.choice(key, v, choices); }};
+  };
+  const Key keys[] = {
+      choice("th", &S::th, th_choices),
+      choice("transmittance", &S::transmittance, transmittance_choices),
+      choice("contrast", &S::contrast, contrast_choices),
+      choice("th_eyes", &S::th_eyes, th_eyes_choices),
+      choice("tiles", &S::tiles, tiles_choices),
+      {"tile", TILE_SIZE_DEFAULT, [&block](S& s, const json& v) { s.tile_size = tile_of(block, v); }},
+      {"loss", 0.0, [&block](S& s, const json& v) { s.loss = block.loss(v); }},
+  };
+  std::vector<S> all(1);
+  for (const Key& key : keys) {
+    std::vector<S> next;
+    for (const S& before : all) {
+      for (const json& value : block.values(key.name, key.otherwise))
+        key.set(next.emplace_back(before), value);
     }
+    all = std::move(next);
   }
+  settings.insert(settings.end(), all.begin(), all.end());
 }
 
 void remove_repeated(std::vector<render::FrameSettings>& settings) {
@@ -137,7 +150,7 @@ Axes parse_axes(const std::string& name, const std::string& text) {
   int number = 0;
   for (const json& object : root["settings"]) {
     const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
-                      {"tiles", "tile", "th", "transmittance", "contrast", "loss"});
+                      {"tiles", "tile", "th", "transmittance", "contrast", "th_eyes", "loss"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);
     for (std::size_t i = before; i < axes.settings.size(); ++i)

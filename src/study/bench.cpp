@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "base/statistics.h"
+#include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "reference/render.h"
 #include "render/frame.h"
+#include "stereo/disagreement.h"
 #include "study/settings.h"
 
 namespace binosplat::study {
@@ -98,7 +100,7 @@ struct Times {
 ordered_json mean(const ordered_json& views, const char* key) {
   double sum = 0.0;
   for (const ordered_json& view : views) {
-    if (!view[key].is_number()) return nullptr;
+    if (!view.contains(key) || !view[key].is_number()) return nullptr;
     sum += view[key].get<double>();
   }
   return sum / static_cast<double>(views.size());
@@ -119,9 +121,13 @@ ordered_json number_or_null(double value) {
 
 ordered_json summary_of_quality(const ordered_json& views) {
   const ordered_json& poorest = worst(views, "psnr_db");
-  return {{"psnr_db", mean(views, "psnr_db")}, {"worst_psnr_db", poorest["psnr_db"]},
-          {"worst_view", poorest["name"]},     {"ssim", mean(views, "ssim")},
-          {"flip", mean(views, "flip")},       {"signed", mean(views, "signed")}};
+  return {{"psnr_db", mean(views, "psnr_db")},
+          {"worst_psnr_db", poorest["psnr_db"]},
+          {"worst_view", poorest["name"]},
+          {"ssim", mean(views, "ssim")},
+          {"flip", mean(views, "flip")},
+          {"signed", mean(views, "signed")},
+          {"disagreement_db", mean(views, "disagreement_db")}};
 }
 
 }  // namespace
@@ -136,10 +142,21 @@ const std::vector<Bench::Exact>& Bench::exact() {
   for (const BenchView& view : views_) {
     frame.draw(view.eyes);
     Exact& one = exact_.emplace_back();
-    for (const Picture& picture : frame.read_pictures()) one.eyes.push_back(composite(picture, black));
+    one.pictures = frame.read_pictures();
+    for (const Picture& picture : one.pictures) one.eyes.push_back(composite(picture, black));
+    if (one.pictures.size() < 2) one.pictures.clear();
     if (view.photo) one.photo_psnr = measure::psnr(quantised(one.eyes.front()), quantised(*view.photo));
   }
   return exact_;
+}
+
+const render::DepthTable& Bench::depth_table() {
+  if (!depth_table_.upper.empty()) return depth_table_;
+  std::vector<shared::View> views;
+  for (const BenchView& view : views_) views.push_back(view.eyes.front());
+  render::Frame frame(context_, model_);
+  depth_table_ = measure::measure_depth_table(frame, views);
+  return depth_table_;
 }
 
 // What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
@@ -183,6 +200,10 @@ ordered_json Bench::compare(const BenchView& view, const Exact& exact,
   json["ssim"] = number_or_null(ssim);
   json["flip"] = number_or_null(flip);
   json["signed"] = number_or_null(darkening);
+  if (!exact.pictures.empty()) {
+    const std::array<shared::View, 2> eyes_of_view = {view.eyes[0], view.eyes[1]};
+    json["disagreement_db"] = number_or_null(stereo::disagreement(eyes_of_view, exact.pictures, drawn).db);
+  }
   if (view.photo) {
     const Image image = composite(drawn.front(), black);
     const double db = measure::psnr(quantised(image), quantised(*view.photo));
@@ -250,7 +271,8 @@ void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
   point["views"] = std::move(views);
 }
 
-ordered_json Bench::measure(const render::FrameSettings& settings) {
+ordered_json Bench::measure(render::FrameSettings settings) {
+  if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table();
   ordered_json point = {{"device", context_.renderer()}};
   const std::string problem = verify(settings);
   if (!problem.empty()) {

@@ -38,17 +38,20 @@ class Bench {
         const BenchEffort& effort);
 
   /// The point as JSON (bench_results.h says what is in it). A point that fails verification is not timed:
-  /// it has a "problem" instead. Throws Error where the GPU cannot draw the views at all.
-  nlohmann::ordered_json measure(const render::FrameSettings& settings);
+  /// it has a "problem" instead. TRANSMITTANCE_DEPTH goes by a table of the bench's own views. Throws Error
+  /// where the GPU cannot draw the views at all.
+  nlohmann::ordered_json measure(render::FrameSettings settings);
 
  private:
   /// A view's exact pictures by eye, over black; and what they are worth against the photo.
   struct Exact {
     std::vector<Image> eyes;
+    std::vector<Picture> pictures;     // of two eyes, for their disagreement
     std::optional<double> photo_psnr;  // dB, 8 bits
   };
 
   const std::vector<Exact>& exact();
+  const render::DepthTable& depth_table();
   std::string verify(const render::FrameSettings& settings);
   void time(const render::FrameSettings& settings, nlohmann::ordered_json& point);
   void judge(const render::FrameSettings& settings, nlohmann::ordered_json& point);
@@ -61,6 +64,7 @@ class Bench {
   shared::View small_;
   BenchEffort effort_;
   std::vector<Exact> exact_;
+  render::DepthTable depth_table_;  // of the views, at first use
 };
 
 /// `count` of `all` things, spread evenly, first and last among them; all where there are no more.

@@ -25,6 +25,7 @@ struct Chart {
   std::vector<const ordered_json*> others;  // problems, and what is yet to be measured
   std::set<const ordered_json*> front;
   bool photos = false;
+  bool pair = false;  // of eyes
 };
 
 std::string text(const ordered_json& value) { return value.get<std::string>(); }
@@ -44,10 +45,12 @@ std::vector<Chart> charts_of(const ordered_json& points) {
     const std::string title = fmt::format("{}, {}, size {}", text(point["scene"]),
                                           point["eyes"] == 2 ? "both eyes" : "one eye", text(point["size"]));
     const auto [found, is_new] = numbers.insert({title, charts.size()});
-    if (is_new) charts.push_back({title, fmt::format("chart-{}", charts.size() + 1), {}, {}, {}, false});
+    if (is_new)
+      charts.push_back({title, fmt::format("chart-{}", charts.size() + 1), {}, {}, {}, false, false});
     Chart& chart = charts[found->second];
     (is_measured(point) ? chart.measured : chart.others).push_back(&point);
     if (front[i]) chart.front.insert(&point);
+    chart.pair = point["eyes"] == 2;
     chart.photos = chart.photos || point.contains("photos");
   }
   for (Chart& chart : charts) {
@@ -129,6 +132,7 @@ Section numbers(const Chart& chart) {
   Table table{{"setting", "front", "frame ms", "p99 ms", "noise ms", "submit ms", "pairs", "GPU MB",
                "PSNR dB", "worst view dB", "SSIM", "FLIP", "signed"},
               {}};
+  if (chart.pair) table.columns.emplace_back("disagreement dB");
   if (chart.photos)
     table.columns.insert(table.columns.end(), {"photo PSNR dB", "drop dB", "photo SSIM", "photo FLIP"});
   for (const ordered_json* p : chart.measured) {
@@ -140,6 +144,7 @@ Section numbers(const Chart& chart) {
                         exact["psnr_db"], exact["worst_psnr_db"],
                         exact["ssim"],    exact["flip"],
                         exact["signed"]};
+    if (chart.pair) row.push_back(exact["disagreement_db"]);
     for (const char* key : {"psnr_db", "drop_db", "ssim", "flip"}) {
       if (chart.photos) row.push_back(p->contains("photos") ? (*p)["photos"][key] : ordered_json());
     }

@@ -11,7 +11,7 @@
 
 namespace binosplat::study {
 
-int number_of(const std::string& place, const std::string& name, std::span<const Choice> choices) {
+int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices) {
   const auto found =
       std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return c.name == name; });
   if (found == choices.end()) {
@@ -28,6 +28,7 @@ nlohmann::ordered_json to_json(const render::FrameSettings& s) {
   if (s.th == TH_TAU) return json;
   json["transmittance"] = transmittance_choices[s.transmittance].name;
   if (s.th == TH_SQUARED) json["contrast"] = contrast_choices[s.contrast].name;
+  if (s.th_eyes != TH_EYES_PER_EYE) json["th_eyes"] = th_eyes_choices[s.th_eyes].name;
   json["loss"] = std::stod(fmt::format("{}", s.loss));  // the decimal number that was meant
   return json;
 }
@@ -39,6 +40,7 @@ std::string describe_family(const render::FrameSettings& s) {
     words.emplace_back(th_choices[s.th].name);
     if (s.transmittance != TRANSMITTANCE_ONE) words.emplace_back(transmittance_choices[s.transmittance].name);
     if (s.contrast != CONTRAST_OFF) words.emplace_back(contrast_choices[s.contrast].name);
+    if (s.th_eyes != TH_EYES_PER_EYE) words.emplace_back(th_eyes_choices[s.th_eyes].name);
   }
   if (s.tile_size != TILE_SIZE_DEFAULT) words.push_back(fmt::format("tile {}", s.tile_size));
   return fmt::format("{}", fmt::join(words, ", "));
@@ -54,10 +56,12 @@ void check(const std::string& place, const render::FrameSettings& s, int eyes) {
   if (s.th == TH_TAU && s.loss != 0.0f) wrong("a loss has no effect with tau, which is exact");
   if (s.th == TH_TAU && s.transmittance != TRANSMITTANCE_ONE)
     wrong("transmittance has no effect with tau, which is exact");
-  if (s.contrast != CONTRAST_OFF && (s.th != TH_SQUARED || s.transmittance == TRANSMITTANCE_ONE))
+  if (s.contrast != CONTRAST_OFF && (s.th != TH_SQUARED || !render::measures(s.transmittance)))
     wrong("contrast is for squared with a measured transmittance");
   const bool other = s.transmittance == TRANSMITTANCE_OTHER_EYE || s.transmittance == TRANSMITTANCE_BOTH;
   if (other && eyes < 2) wrong("this transmittance needs eyes of 2");
+  if (s.th_eyes != TH_EYES_PER_EYE && s.th == TH_TAU) wrong("th_eyes has no effect with tau");
+  if (s.th_eyes != TH_EYES_PER_EYE && eyes < 2) wrong("this th_eyes needs eyes of 2");
 }
 
 bool is_exact(const render::FrameSettings& s) {

@@ -35,7 +35,8 @@ ordered_json point(const std::string& name, double ms, ordered_json db, int eyes
             {"worst_view", "0001"},
             {"ssim", 0.987654321},
             {"flip", 0.0123},
-            {"signed", -0.001}}}};
+            {"signed", -0.001},
+            {"disagreement_db", eyes == 2 ? ordered_json(55.5) : ordered_json()}}}};
 }
 
 /// Equal and slow; quicker and worse; both slower and worse than that; with another number of eyes; failed;
@@ -133,6 +134,9 @@ TEST(BenchResults, PageSaysWhatItShows) {
   EXPECT_EQ(front.points[2].y, equal_db) << "an equal picture is drawn at the top";
   EXPECT_NE(page.sections[1].sentence.find("75 % goes to blend"), std::string::npos);
   EXPECT_EQ(page.sections[3].problem, "obb: 0001: two frames differ; snug: not measured yet");
+  const Table& pair = *page.sections[6].table;
+  EXPECT_EQ(pair.columns.back(), "disagreement dB");
+  EXPECT_EQ(pair.rows[0].back(), 55.5);
   EXPECT_EQ(page.data, results());
   EXPECT_EQ(
       html(bench_page({{"plan", {{"axes_name", ""}, {"program", ""}}}, {"points", ordered_json::array()}}))
