@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <utility>
 
 #include "base/error.h"
@@ -81,6 +82,7 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     reference_pictures_ =
         fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, buffers_);
   }
+  const auto start = std::chrono::steady_clock::now();
   dispatcher_.begin_frame();
   for (std::uint32_t group = 0; group < shape_.groups.size(); ++group) {
     if (!twin(Stage::project)) {
@@ -112,6 +114,8 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     probe(dispatcher_, shape_, buffers_);
   }
   dispatcher_.end_frame();
+  report.submit_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   report.stages = dispatcher_.wait_and_time();
   return buffers_.counters.read<shared::Counters>(1).front();
 }
