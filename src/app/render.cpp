@@ -155,6 +155,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
       progress.update(++done);
     }
     const std::vector<Picture> pictures = frame.read_pictures();
+    drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
     drawn.files = write_outputs(options, plan, drawn.shot, pictures);
     drawn.photo_psnr = photo_psnr(options, drawn.shot, pictures[0]);
   }
@@ -171,9 +172,7 @@ ExitCode render(const RenderOptions& options) {
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
   std::vector<Shot> shots = make_shots(options, list, near_plane);
-  if (!plan.file.empty() && shots.size() > 1) {
-    fail("-o {} is one file and {} views are to be drawn: name a folder", options.output, shots.size());
-  }
+  check_shots(plan, shots);
   if (!options.photos.empty()) check_photos(options.photos, shots);
 
   const auto context = open_context(options);
@@ -196,6 +195,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render demo:room -o out/demo\n"
       "  binosplat render demo:city --count 4250000 --view all\n"
       "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
+      "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half");

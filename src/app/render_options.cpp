@@ -250,8 +250,12 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Outputs";
   sub.add_option("-o,--output", o.output,
                  "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
-                 "FILE.exr: both eyes side by side (out/SCENE)")
+                 "FILE.exr with both eyes (out/SCENE)")
       ->type_name("DIR|FILE")
+      ->group(group);
+  choose(sub, "--layout", o.layout,
+         "How both eyes are shown (a folder: separate; FILE.png: parallel;\nFILE.exr: multi-view)",
+         layout_choices)
       ->group(group);
   sub.add_option_function<std::string>(
          "--background", [&o](const std::string& text) { o.background = parse_background(text); },

@@ -60,6 +60,7 @@ struct RenderOptions {
 
   // Outputs.
   std::string output;
+  std::string layout;  // empty: by what -o names
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
   std::string exr;

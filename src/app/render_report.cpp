@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -52,6 +53,34 @@ ordered_json eye_json(const Eye& eye) {
   return json;
 }
 
+// At which the optics of headsets put their screens.
+constexpr double headset_focus_metres = 2.0;
+
+ordered_json comfort_json(const Comfort& comfort) {
+  const stereo::DisparityRange& r = comfort.range;
+  ordered_json json = {{"near_px", r.near_px},           {"far_px", r.far_px},
+                       {"near_degrees", r.near_degrees}, {"far_degrees", r.far_degrees},
+                       {"vertical_px", r.vertical_px},   {"comfortable", !comfort.better.has_value()}};
+  return json;
+}
+
+// How the disparities of a pair lie, and what would be comfortable where they are not.
+void print_comfort(const Drawn& drawn, const RenderOptions& options) {
+  const stereo::DisparityRange& r = drawn.comfort->range;
+  fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees{}\n", r.far_px,
+             r.near_px, r.far_degrees, r.near_degrees,
+             r.vertical_px > 0.5 ? fmt::format("; vertical up to {:.1f} px", r.vertical_px) : "");
+  if (!drawn.comfort->better) return;
+  const stereo::ComfortableRig& better = *drawn.comfort->better;
+  const bool own_rig = !drawn.shot.given_eyes && !options.cant && options.preset != "headset";
+  log_warning(
+      "{}: beyond {:.0f} degree either way most eyes tire.{}", drawn.shot.name, stereo::comfortable_degrees,
+      !own_rig ? ""
+      : better.ipd
+          ? fmt::format(" --convergence {:.3g} --ipd {:.3g} is within", better.convergence, *better.ipd)
+          : fmt::format(" --convergence {:.3g} is within", better.convergence));
+}
+
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   ordered_json json = {{"name", drawn.shot.name}, {"units_per_metre", options.units_per_metre}};
   if (drawn.shot.ipd) json["ipd_metres"] = *drawn.shot.ipd;
@@ -67,6 +96,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   if (options.quality) json["loss"] = drawn.report.loss;
   if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
+  if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
   json["outputs"] = drawn.files;
   return json;
 }
@@ -98,6 +128,21 @@ ordered_json scene_json(const RenderReport& report) {
 }
 
 }  // namespace
+
+std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot, const Picture& left) {
+  if (shot.eyes.size() != 2) return std::nullopt;
+  std::optional<double> focus = options.convergence;
+  if (options.preset == "headset") focus = headset_focus_metres;
+  if (focus) *focus *= options.units_per_metre;
+  const auto range = stereo::disparity_range({shot.eyes[0].camera, shot.eyes[1].camera}, left, focus);
+  if (!range) return std::nullopt;
+  Comfort comfort{*range, stereo::comfortable_rig(*range, *shot.ipd * options.units_per_metre, focus)};
+  if (comfort.better) {
+    comfort.better->convergence /= options.units_per_metre;
+    if (comfort.better->ipd) *comfort.better->ipd /= options.units_per_metre;
+  }
+  return comfort;
+}
 
 void StageTimes::add(const render::FrameReport& report) { frames_.push_back(report); }
 
@@ -131,6 +176,7 @@ void print(const RenderReport& report) {
       line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
+    if (drawn.comfort) print_comfort(drawn, report.options);
   }
   if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
   const std::size_t frames = report.times.frames();
