@@ -8,11 +8,6 @@ namespace binosplat::stereo {
 
 namespace {
 
-// The angle at which the lines of two eyes meet at a distance straight ahead.
-double vergence_degrees(double ipd, std::optional<double> distance) {
-  return distance ? glm::degrees(2.0 * std::atan(0.5 * ipd / *distance)) : 0.0;
-}
-
 // Where a world point lies in a camera's picture.
 glm::dvec2 projected(const Camera& camera, const glm::dvec3& point) {
   const glm::dvec3 v = glm::transpose(camera.rotation) * (point - camera.position);
@@ -84,17 +79,20 @@ std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes,
   return range;
 }
 
-std::optional<ComfortableRig> comfortable_rig(const DisparityRange& range, double ipd,
-                                              std::optional<double> focus) {
-  if (range.near_degrees <= comfortable_degrees && range.far_degrees >= -comfortable_degrees)
-    return std::nullopt;
-  const double middle = 0.5 * (range.near_degrees + range.far_degrees) + vergence_degrees(ipd, focus);
+bool comfortable(const DisparityRange& range) {
+  return range.near_degrees <= comfortable_degrees && range.far_degrees >= -comfortable_degrees;
+}
+
+ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes) {
+  // Of parallel eyes a disparity in px is fx ipd (1/z - 1/D), and over fx about the angle straight ahead,
+  // which to the sides is less.
+  const double ipd = glm::length(eyes[1].position - eyes[0].position);
+  const auto screen = screen_distance(eyes);
+  const double middle = 0.5 * (range.near_px + range.far_px) / (eyes[0].fx * ipd);
   ComfortableRig rig;
-  rig.convergence = 0.5 * ipd / std::tan(glm::radians(0.5 * middle));
-  const double spread = range.near_degrees - range.far_degrees;
-  // A little less than would just do: angles to the sides are not quite those straight ahead.
-  constexpr double room = 1.8 * comfortable_degrees;
-  if (spread > room) rig.ipd = ipd * room / spread;
+  rig.convergence = 1.0 / (middle + (screen ? 1.0 / *screen : 0.0));
+  const double spread = glm::degrees((range.near_px - range.far_px) / eyes[0].fx);
+  if (spread > 2.0 * comfortable_degrees) rig.ipd = ipd * 1.98 * comfortable_degrees / spread;
   return rig;
 }
 

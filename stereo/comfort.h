@@ -35,15 +35,17 @@ std::optional<double> screen_distance(const std::array<Camera, 2>& eyes);
 std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes, const Picture& left,
                                               std::optional<double> focus);
 
-/// The convergence distance and the eyes' distance with which a range would be comfortable; the eyes' is none
-/// where theirs will do. In the units of `ipd`, which the range was drawn with.
+/// Whether a range lies within comfortable_degrees either way.
+bool comfortable(const DisparityRange& range);
+
+/// A rig for parallel eyes, in world units.
 struct ComfortableRig {
   double convergence = 0;
-  std::optional<double> ipd;
+  std::optional<double> ipd;  // none: the eyes' own will do
 };
 
-/// What to change where a range, measured with this `focus`, is beyond comfort; nothing where it is within.
-std::optional<ComfortableRig> comfortable_rig(const DisparityRange& range, double ipd,
-                                              std::optional<double> focus);
+/// With which convergence, and if need be which distance between the eyes, these parallel eyes would be
+/// comfortable: what is nearest and what is farthest equally far from the screen.
+ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes);
 
 }  // namespace binosplat::stereo

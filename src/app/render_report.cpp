@@ -60,25 +60,25 @@ ordered_json comfort_json(const Comfort& comfort) {
   const stereo::DisparityRange& r = comfort.range;
   ordered_json json = {{"near_px", r.near_px},           {"far_px", r.far_px},
                        {"near_degrees", r.near_degrees}, {"far_degrees", r.far_degrees},
-                       {"vertical_px", r.vertical_px},   {"comfortable", !comfort.better.has_value()}};
+                       {"vertical_px", r.vertical_px},   {"comfortable", stereo::comfortable(r)}};
   return json;
 }
 
 // How the disparities of a pair lie, and what would be comfortable where they are not.
-void print_comfort(const Drawn& drawn, const RenderOptions& options) {
+void print_comfort(const Drawn& drawn) {
   const stereo::DisparityRange& r = drawn.comfort->range;
   fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees{}\n", r.far_px,
              r.near_px, r.far_degrees, r.near_degrees,
              r.vertical_px > 0.5 ? fmt::format("; vertical up to {:.1f} px", r.vertical_px) : "");
-  if (!drawn.comfort->better) return;
-  const stereo::ComfortableRig& better = *drawn.comfort->better;
-  const bool own_rig = !drawn.shot.given_eyes && !options.cant && options.preset != "headset";
-  log_warning(
-      "{}: beyond {:.0f} degree either way most eyes tire.{}", drawn.shot.name, stereo::comfortable_degrees,
-      !own_rig ? ""
-      : better.ipd
-          ? fmt::format(" --convergence {:.3g} --ipd {:.3g} is within", better.convergence, *better.ipd)
-          : fmt::format(" --convergence {:.3g} is within", better.convergence));
+  if (stereo::comfortable(r)) return;
+  std::string instead;
+  if (const auto& better = drawn.comfort->better) {
+    instead = fmt::format("; --convergence {:.3g}", better->convergence);
+    if (better->ipd) instead += fmt::format(" --ipd {:.3g}", *better->ipd);
+    instead += " is within";
+  }
+  log_warning("{}: disparities beyond {:.0f} degree either way tire most eyes{}", drawn.shot.name,
+              stereo::comfortable_degrees, instead);
 }
 
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
@@ -131,13 +131,18 @@ ordered_json scene_json(const RenderReport& report) {
 
 std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot, const Picture& left) {
   if (shot.eyes.size() != 2) return std::nullopt;
-  std::optional<double> focus = options.convergence;
-  if (options.preset == "headset") focus = headset_focus_metres;
-  if (focus) *focus *= options.units_per_metre;
-  const auto range = stereo::disparity_range({shot.eyes[0].camera, shot.eyes[1].camera}, left, focus);
+  const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
+  // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
+  const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
+  const auto focus = canted || options.preset == "headset"
+                         ? std::optional(headset_focus_metres * options.units_per_metre)
+                         : stereo::screen_distance(eyes);
+  const auto range = stereo::disparity_range(eyes, left, focus);
   if (!range) return std::nullopt;
-  Comfort comfort{*range, stereo::comfortable_rig(*range, *shot.ipd * options.units_per_metre, focus)};
-  if (comfort.better) {
+  Comfort comfort{*range, {}};
+  const bool own_rig = !shot.given_eyes && !canted && options.preset != "headset";
+  if (own_rig && !stereo::comfortable(*range)) {
+    comfort.better = stereo::comfortable_rig(*range, eyes);
     comfort.better->convergence /= options.units_per_metre;
     if (comfort.better->ipd) *comfort.better->ipd /= options.units_per_metre;
   }
@@ -176,7 +181,7 @@ void print(const RenderReport& report) {
       line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
-    if (drawn.comfort) print_comfort(drawn, report.options);
+    if (drawn.comfort) print_comfort(drawn);
   }
   if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
   const std::size_t frames = report.times.frames();

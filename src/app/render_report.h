@@ -38,7 +38,7 @@ class StageTimes {
 /// How a pair's disparities lie, and what to change where they are beyond comfort.
 struct Comfort {
   stereo::DisparityRange range;
-  std::optional<stereo::ComfortableRig> better;  // m
+  std::optional<stereo::ComfortableRig> better;  // m; where the range is not comfortable and the rig ours
 };
 
 /// Of a shot with both eyes and something that has a depth, from the left eye's picture.

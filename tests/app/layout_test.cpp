@@ -85,14 +85,14 @@ TEST_F(Layout, DisparityIsToldAndWarnedOf) {
   const Outcome plain = render({"-o", out, "--json", folder / "r.json", "--ipd", "0.03"});
   ASSERT_TRUE(good(plain));
   EXPECT_NE(plain.out.find("disparity"), std::string::npos) << plain.out;
-  EXPECT_EQ(plain.err.find("eyes tire"), std::string::npos) << plain.err;
+  EXPECT_EQ(plain.err.find("tire most eyes"), std::string::npos) << plain.err;
   EXPECT_GT(disparity()["near_px"].get<double>(), 60.0 * 0.03 / 3.0);
   EXPECT_LT(disparity()["near_px"].get<double>(), 60.0 * 0.03 / 2.5);
   EXPECT_TRUE(disparity()["comfortable"].get<bool>());
 
   const Outcome wide = render({"-o", out, "--json", folder / "r.json", "--ipd", "0.2"});
   ASSERT_TRUE(good(wide));
-  EXPECT_NE(wide.err.find("eyes tire"), std::string::npos) << wide.err;
+  EXPECT_NE(wide.err.find("tire most eyes"), std::string::npos) << wide.err;
   EXPECT_FALSE(disparity()["comfortable"].get<bool>());
   // What the warning proposes is within.
   const std::size_t at = wide.err.find("--convergence ");

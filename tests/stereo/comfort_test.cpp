@@ -78,29 +78,27 @@ TEST(Comfort, NothingHasNoRange) {
 }
 
 TEST(Comfort, WhatIsProposedIsComfortable) {
-  // 2 m at convergence infinite is 1.8 degrees; within 1 from 3 m on or so.
-  const auto range = disparity_range(rig({}).cameras, walls(), {});
-  const auto better = comfortable_rig(*range, ipd, {});
-  ASSERT_TRUE(better);
-  EXPECT_FALSE(better->ipd);
-  EXPECT_GT(better->convergence, 2.0);
-  EXPECT_LT(better->convergence, 8.0);
-  const auto after = disparity_range(rig(better->convergence).cameras, walls(), better->convergence);
-  EXPECT_LE(after->near_degrees, comfortable_degrees);
-  EXPECT_GE(after->far_degrees, -comfortable_degrees);
-  EXPECT_FALSE(comfortable_rig(*after, ipd, better->convergence));
+  const EyePair eyes = rig({});
+  const auto range = disparity_range(eyes.cameras, walls(), {});
+  EXPECT_FALSE(comfortable(*range)) << "2 m before eyes that look infinitely far is 1.8 degrees";
+  const ComfortableRig better = comfortable_rig(*range, eyes.cameras);
+  EXPECT_FALSE(better.ipd);
+  EXPECT_NEAR(better.convergence, 3.2, 0.01) << "midway in 1/z between 2 and 8 m";
+  EXPECT_TRUE(comfortable(*disparity_range(rig(better.convergence).cameras, walls(), better.convergence)));
 
   // A deep scene needs eyes nearer to each other.
   Picture deep = walls();
   for (std::size_t k = 0; k < deep.z_sum.size() / 2; ++k) deep.z_sum[k] = 0.5f;
-  const auto wide = disparity_range(rig({}).cameras, deep, {});
-  const auto narrow = comfortable_rig(*wide, ipd, {});
-  ASSERT_TRUE(narrow && narrow->ipd);
-  const EyePair pair = make_rig(test::front_camera(width, height, focal),
-                                {.ipd = *narrow->ipd, .convergence = narrow->convergence});
-  const auto closer = disparity_range(pair.cameras, deep, narrow->convergence);
-  EXPECT_LE(closer->near_degrees, comfortable_degrees);
-  EXPECT_GE(closer->far_degrees, -comfortable_degrees);
+  const EyePair other = rig(3.0);
+  const ComfortableRig narrow = comfortable_rig(*disparity_range(other.cameras, deep, 3.0), other.cameras);
+  ASSERT_TRUE(narrow.ipd);
+  const auto at = [&](double distance_between) {
+    const EyePair pair = make_rig(test::front_camera(width, height, focal),
+                                  {.ipd = distance_between, .convergence = narrow.convergence});
+    return *disparity_range(pair.cameras, deep, narrow.convergence);
+  };
+  EXPECT_TRUE(comfortable(at(*narrow.ipd)));
+  EXPECT_FALSE(comfortable(at(ipd))) << "any eyes would do";
 }
 
 }  // namespace
