@@ -61,6 +61,7 @@ std::optional<double> photo_psnr(const RenderOptions& options, const Shot& shot,
 
 gl::Backend backend_of(const std::string& name) {
   if (name == "device") return gl::Backend::device;
+  if (name == "osmesa") return gl::Backend::osmesa;
   return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
 }
 

@@ -230,11 +230,12 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->type_name("N")
       ->check(range(1, 100000))
       ->group(group);
-  sub.add_option("--backend", o.backend,
-                 "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, or the first "
-                 "that works (auto)")
-      ->check(one_of<std::string>({"auto", "device", "surfaceless"}))
-      ->type_name("auto|device|surfaceless")
+  sub.add_option(
+         "--backend", o.backend,
+         "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, Mesa without EGL, "
+         "or the first that works (auto)")
+      ->check(one_of<std::string>({"auto", "device", "surfaceless", "osmesa"}))
+      ->type_name("auto|device|surfaceless|osmesa")
       ->group(group);
   sub.add_option("--device", o.device, "Number of the EGL device")
       ->type_name("N")
@@ -357,8 +358,8 @@ void check(const RenderOptions& o) {
   }
   if (!o.photos.empty() && !o.mono)
     fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
-  if (o.device >= 0 && o.backend == "surfaceless")
-    fail("--device is for --backend device or auto: surfaceless has none");
+  if (o.device >= 0 && (o.backend == "surfaceless" || o.backend == "osmesa"))
+    fail("--device is for --backend device or auto: {} has none", o.backend);
 }
 
 }  // namespace binosplat::app

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "gl/backends.h"
 
 namespace binosplat::gl {
 
@@ -20,7 +21,33 @@ std::string text(const Functions& gl, GLenum name) {
   return value == nullptr ? "" : value;
 }
 
+// Tries to open; keeps the reason if there is no such OpenGL here.
+template <typename Open>
+std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
+  try {
+    return open();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::no_gl) throw;
+    reasons += fmt::format("\n  {}", error.what());
+    return nullptr;
+  }
+}
+
 }  // namespace
+
+std::unique_ptr<Context> Context::open(Backend backend, int device) {
+  const auto tries = [&](Backend one) {
+    return backend == one || (backend == Backend::automatic && (device < 0 || one == Backend::device));
+  };
+  std::string reasons;
+  std::unique_ptr<Context> context;
+  if (tries(Backend::device)) context = attempt([&] { return open_egl_device(device); }, reasons);
+  if (context == nullptr && tries(Backend::surfaceless)) context = attempt(open_egl_surfaceless, reasons);
+  if (context == nullptr && tries(Backend::osmesa)) context = attempt(open_osmesa, reasons);
+  if (context == nullptr)
+    throw Error(ExitCode::no_gl, fmt::format("no usable OpenGL 4.5 context. Tried:{}", reasons));
+  return context;
+}
 
 void Context::initialise(GetProcAddress get_proc_address, std::string backend) {
   functions_ = load_functions(get_proc_address);

@@ -14,8 +14,12 @@
 namespace binosplat::gl {
 
 /// Where a context comes from. `automatic` takes the first GPU that EGL's device platform offers, else Mesa's
-/// surfaceless platform (software: llvmpipe). None of them needs a display server.
-enum class Backend { automatic, device, surfaceless };
+/// surfaceless platform (software: llvmpipe), else Mesa as a library, OSMesa (llvmpipe, too, without EGL).
+/// None of them needs a display server.
+///
+/// Contexts of both libraries may live in one process; the last one made current, which opening does, is the
+/// one that both libraries draw with.
+enum class Backend { automatic, device, surfaceless, osmesa };
 
 /// Storage blocks that binosplat's largest shader uses.
 constexpr std::uint32_t storage_blocks_needed = 9;
@@ -53,7 +57,7 @@ class Context {
   /// Largest group count that a dispatch may use along x; a test may lower it to see dispatches split.
   void limit_groups(std::uint32_t groups) { limits_.groups = groups; }
 
-  const std::string& backend() const { return backend_; }    // "EGL device 0", "EGL surfaceless", "caller's"
+  const std::string& backend() const { return backend_; }    // "EGL device 0", "OSMesa", "caller's"
   const std::string& renderer() const { return renderer_; }  // GL_RENDERER
   const std::string& version() const { return version_; }    // GL_VERSION
   bool software() const;                                     // llvmpipe
