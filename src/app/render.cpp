@@ -143,6 +143,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   render::Frame frame(context, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH)
     settings.depth_table = depth_table(frame, options, list, report.near_plane);
+  const std::unique_ptr<Video> video = open_video(options, plan, shots);
   Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
   std::size_t done = 0;
   for (Shot& shot : shots) {
@@ -157,9 +158,12 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     }
     const std::vector<Picture> pictures = frame.read_pictures();
     drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
-    drawn.files = write_outputs(options, plan, drawn.shot, pictures);
+    if (video) video->add(frame_of(options, plan, pictures));
+    drawn.files =
+        video ? std::vector{plan.video.string()} : write_outputs(options, plan, drawn.shot, pictures);
     drawn.photo_psnr = photo_psnr(options, drawn.shot, pictures[0]);
   }
+  if (video) video->finish();
 }
 
 ExitCode render(const RenderOptions& options) {
@@ -199,7 +203,8 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
-      "  binosplat render scan.ply --orbit 24 --preset headset --exr half");
+      "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
+      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });
 }
 

@@ -249,14 +249,20 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
 
 void add_outputs(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Outputs";
-  sub.add_option("-o,--output", o.output,
-                 "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
-                 "FILE.exr with both eyes (out/SCENE)")
+  sub.add_option(
+         "-o,--output", o.output,
+         "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
+         "FILE.exr with both eyes, or a video of all views:\nFILE.mp4, .mov, .mkv or .webm, by ffmpeg "
+         "(out/SCENE)")
       ->type_name("DIR|FILE")
       ->group(group);
   choose(sub, "--layout", o.layout,
-         "How both eyes are shown (a folder: separate; FILE.png: parallel;\nFILE.exr: multi-view)",
+         "How both eyes are shown (a folder: separate; FILE.png and videos:\nparallel; FILE.exr: multi-view)",
          layout_choices)
+      ->group(group);
+  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30)")
+      ->type_name("N")
+      ->check(positive)
       ->group(group);
   sub.add_option_function<std::string>(
          "--background", [&o](const std::string& text) { o.background = parse_background(text); },

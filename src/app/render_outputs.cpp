@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "app/command.h"
 #include "formats/exr.h"
@@ -38,20 +39,21 @@ Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string
 
 bool one_picture(const RenderOptions& options) { return options.mono || !options.only.empty(); }
 
-// The layout that is asked for or that fits the output, and what it does not go with.
-int plan_layout(const RenderOptions& options, bool png_file, bool exr_file) {
+// `picture_file`: one PNG or a video. The layout that is asked for or that fits the output, and what it does
+// not go with.
+int plan_layout(const RenderOptions& options, bool picture_file, bool exr_file) {
   if (one_picture(options)) {
     if (!options.layout.empty())
       fail("--layout {} needs both eyes: leave --mono and --only out", options.layout);
     return LAYOUT_SEPARATE;
   }
   if (options.layout.empty())
-    return png_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
+    return picture_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
   int layout = 0;
   while (options.layout != layout_choices[layout].name) ++layout;
-  if (layout == LAYOUT_SEPARATE && (png_file || exr_file))
+  if (layout == LAYOUT_SEPARATE && (picture_file || exr_file))
     fail("--layout separate writes a file for each eye: -o {} must be a folder", options.output);
-  if (layout == LAYOUT_MULTI_VIEW && png_file)
+  if (layout == LAYOUT_MULTI_VIEW && picture_file)
     fail("--layout multi-view is OpenEXR's: -o {} must be a folder or an .exr", options.output);
   if (stereo::mixes_colours(layout) && (exr_file || !options.exr.empty())) {
     fail("--layout {} mixes both eyes' display colours, which have no light and no depth: write PNG only",
@@ -81,6 +83,35 @@ void write(const RenderOptions& options, const OutputPlan& plan, const fs::path&
   }
 }
 
+OutputPlan plan_video(const RenderOptions& options, const fs::path& output) {
+  check_output(output);
+  find_ffmpeg();
+  if (options.bits || !options.exr.empty() || !options.exr_encoding.empty())
+    fail("--bits, --exr and --exr-encoding are for pictures: -o {} is a video", output.string());
+  if (!options.background) fail("--background none: a video has no alpha");
+  if (!options.json.empty()) check_output(options.json);
+  OutputPlan plan;
+  plan.video = output;
+  plan.png = false;
+  plan.layout = plan_layout(options, true, false);
+  return plan;
+}
+
+// From the times of a path's cameras, where they are evenly spaced; 30 where they say nothing.
+double frames_a_second(const RenderOptions& options, const std::vector<Shot>& shots) {
+  constexpr double usual = 30.0;
+  if (options.fps) return *options.fps;
+  const auto& first = shots.front().eyes[0].camera.time;
+  const auto& last = shots.back().eyes[0].camera.time;
+  if (shots.size() < 2 || !first || !last || !(*last > *first)) return usual;
+  const double step = (*last - *first) / static_cast<double>(shots.size() - 1);
+  for (std::size_t k = 1; k < shots.size(); ++k) {
+    const auto &a = shots[k - 1].eyes[0].camera.time, &b = shots[k].eyes[0].camera.time;
+    if (!a || !b || std::abs(*b - *a - step) > 0.01 * step) return usual;
+  }
+  return 1.0 / step;
+}
+
 }  // namespace
 
 OutputPlan plan_outputs(const RenderOptions& options) {
@@ -89,6 +120,8 @@ OutputPlan plan_outputs(const RenderOptions& options) {
   const fs::path output = options.output.empty() ? default_folder(options.scene) : fs::path(options.output);
   const std::string extension = lower_extension(output);
   const bool file = extension == ".png" || extension == ".exr";
+  if (is_video(output)) return plan_video(options, output);
+  if (options.fps) fail("--fps is for videos: -o FILE.mp4, .mov, .mkv or .webm");
   for (const char* other : {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp"}) {
     if (extension == other) fail("-o {}: pictures are written as .png or .exr", output.string());
   }
@@ -119,6 +152,13 @@ void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots) {
   if (!plan.file.empty() && shots.size() > 1) {
     fail("-o {} is one file and {} views are to be drawn: name a folder", plan.file.string(), shots.size());
   }
+  for (const Shot& shot : shots) {
+    const Camera &a = shots[0].eyes[0].camera, &b = shot.eyes[0].camera;
+    if (!plan.video.empty() && (a.width != b.width || a.height != b.height)) {
+      fail("-o {}: the views differ in size, {} x {} and {} x {} px: give them one with --size",
+           plan.video.string(), a.width, a.height, b.width, b.height);
+    }
+  }
   if (plan.layout == LAYOUT_SEPARATE) return;
   for (const Shot& shot : shots) {
     const Camera &left = shot.eyes[0].camera, &right = shot.eyes[1].camera;
@@ -131,6 +171,20 @@ void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots) {
     }
     stereo::layout_size(plan.layout, {left.width, left.height});
   }
+}
+
+std::unique_ptr<Video> open_video(const RenderOptions& options, const OutputPlan& plan,
+                                  const std::vector<Shot>& shots) {
+  if (plan.video.empty()) return nullptr;
+  const Camera& eye = shots[0].eyes[0].camera;
+  const glm::ivec2 size = stereo::layout_size(plan.layout, {eye.width, eye.height});
+  return std::make_unique<Video>(plan.video, size.x, size.y, frames_a_second(options, shots), plan.layout);
+}
+
+Image frame_of(const RenderOptions& options, const OutputPlan& plan, const std::vector<Picture>& pictures) {
+  if (plan.layout == LAYOUT_SEPARATE) return composite(pictures[0], options.background);
+  return composite(stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background),
+                   options.background);
 }
 
 std::vector<std::string> write_outputs(const RenderOptions& options, const OutputPlan& plan, const Shot& shot,

@@ -64,20 +64,37 @@ ordered_json comfort_json(const Comfort& comfort) {
   return json;
 }
 
-// How the disparities of a pair lie, and what would be comfortable where they are not.
+// How the disparities of a pair lie.
 void print_comfort(const Drawn& drawn) {
   const stereo::DisparityRange& r = drawn.comfort->range;
   fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees{}\n", r.far_px,
              r.near_px, r.far_degrees, r.near_degrees,
              r.vertical_px > 0.5 ? fmt::format("; vertical up to {:.1f} px", r.vertical_px) : "");
-  if (stereo::comfortable(r)) return;
+}
+
+double discomfort(const Drawn& drawn) {
+  const stereo::DisparityRange& r = drawn.comfort->range;
+  return std::max(r.near_degrees, -r.far_degrees);
+}
+
+// Warns of the pair that asks most of the eyes, and how many others do.
+void warn_of_discomfort(const std::vector<Drawn>& all) {
+  const Drawn* worst = nullptr;
+  int others = -1;
+  for (const Drawn& drawn : all) {
+    if (!drawn.comfort || stereo::comfortable(drawn.comfort->range)) continue;
+    ++others;
+    if (worst == nullptr || discomfort(drawn) > discomfort(*worst)) worst = &drawn;
+  }
+  if (worst == nullptr) return;
   std::string instead;
-  if (const auto& better = drawn.comfort->better) {
+  if (const auto& better = worst->comfort->better) {
     instead = fmt::format("; --convergence {:.3g}", better->convergence);
     if (better->ipd) instead += fmt::format(" --ipd {:.3g}", *better->ipd);
     instead += " is within";
   }
-  log_warning("{}: disparities beyond {:.0f} degree either way tire most eyes{}", drawn.shot.name,
+  log_warning("{}{}: disparities beyond {:.0f} degree either way tire most eyes{}", worst->shot.name,
+              others > 0 ? fmt::format(" and {} other view{}", others, others == 1 ? "" : "s") : "",
               stereo::comfortable_degrees, instead);
 }
 
@@ -183,6 +200,7 @@ void print(const RenderReport& report) {
     fmt::print("{})\n", line);
     if (drawn.comfort) print_comfort(drawn);
   }
+  warn_of_discomfort(report.drawn);
   if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
   const std::size_t frames = report.times.frames();
   fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
