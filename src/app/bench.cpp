@@ -77,7 +77,7 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
   const RenderOptions render = case_options(scene, which);
   const CameraList list = scene.list.listed ? scene.list : made_up_cameras(render, model);
   const double near_plane = render.near_plane.value_or(list.listed ? near_default : near_for(model));
-  const std::vector<Shot> shots = choose_shots(plan, which, render, make_shots(render, list, near_plane));
+  const std::vector<Shot> shots = choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
   std::vector<study::BenchView> views;
   for (const Shot& shot : shots) {
     study::BenchView& view = views.emplace_back(study::BenchView{shot.name, {}, {}});

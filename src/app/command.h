@@ -36,6 +36,15 @@ class Uninterrupted {
   std::lock_guard<std::mutex> lock_;
 };
 
+/// A file that is removed where a signal ends the program while this lives. One at a time.
+class Unfinished {
+ public:
+  explicit Unfinished(const std::filesystem::path& path);
+  ~Unfinished();
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+};
+
 /// Throws Error if `path` cannot become an output: a file stands where a folder is needed, no permission, or
 /// it is a folder itself. Leaves no trace; call it before long work.
 void check_output(const std::filesystem::path& path);

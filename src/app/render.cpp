@@ -64,6 +64,7 @@ std::optional<double> photo_psnr(const RenderOptions& options, const Shot& shot,
 
 gl::Backend backend_of(const std::string& name) {
   if (name == "device") return gl::Backend::device;
+  if (name == "osmesa") return gl::Backend::osmesa;
   return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
 }
 
@@ -145,6 +146,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   render::Frame frame(context, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH)
     settings.depth_table = depth_table(frame, options, list, report.near_plane);
+  const std::unique_ptr<Video> video = open_video(options, plan, shots);
   Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
   std::size_t done = 0;
   for (Shot& shot : shots) {
@@ -158,9 +160,13 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
       progress.update(++done);
     }
     const std::vector<Picture> pictures = frame.read_pictures();
-    drawn.files = write_outputs(options, plan, drawn.shot, pictures);
+    drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
+    if (video) video->add(frame_of(options, plan, pictures));
+    drawn.files =
+        video ? std::vector{plan.video.string()} : write_outputs(options, plan, drawn.shot, pictures);
     drawn.photo_psnr = photo_psnr(options, drawn.shot, pictures[0]);
   }
+  if (video) video->finish();
 }
 
 // The folder of photos that --photos names, or the one found beside the cameras.
@@ -184,9 +190,7 @@ ExitCode render(RenderOptions options) {
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
   std::vector<Shot> shots = make_shots(options, list, near_plane, model.axes);
-  if (!plan.file.empty() && shots.size() > 1) {
-    fail("-o {} is one file and {} views are to be drawn: name a folder", options.output, shots.size());
-  }
+  check_shots(plan, shots);
   if (!options.photos.empty()) check_photos(options.photos, shots);
 
   const auto context = open_context(options);
@@ -209,9 +213,11 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render demo:room -o out/demo\n"
       "  binosplat render demo:city --count 4250000 --view all\n"
       "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
+      "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
-      "  binosplat render scan.ply --orbit 24 --preset headset --exr half");
+      "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
+      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });
 }
 

@@ -233,11 +233,12 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->type_name("N")
       ->check(range(1, 100000))
       ->group(group);
-  sub.add_option("--backend", o.backend,
-                 "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, or the first "
-                 "that works (auto)")
-      ->check(one_of<std::string>({"auto", "device", "surfaceless"}))
-      ->type_name("auto|device|surfaceless")
+  sub.add_option(
+         "--backend", o.backend,
+         "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, Mesa without EGL, "
+         "or the first that works (auto)")
+      ->check(one_of<std::string>({"auto", "device", "surfaceless", "osmesa"}))
+      ->type_name("auto|device|surfaceless|osmesa")
       ->group(group);
   sub.add_option("--device", o.device, "Number of the EGL device")
       ->type_name("N")
@@ -251,10 +252,20 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
 
 void add_outputs(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Outputs";
-  sub.add_option("-o,--output", o.output,
-                 "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
-                 "FILE.exr: both eyes side by side (out/SCENE)")
+  sub.add_option(
+         "-o,--output", o.output,
+         "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
+         "FILE.exr with both eyes, or a video of all views:\nFILE.mp4, .mov, .mkv or .webm, by ffmpeg "
+         "(out/SCENE)")
       ->type_name("DIR|FILE")
+      ->group(group);
+  choose(sub, "--layout", o.layout,
+         "How both eyes are shown (a folder: separate; FILE.png and videos:\nparallel; FILE.exr: multi-view)",
+         layout_choices)
+      ->group(group);
+  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30)")
+      ->type_name("N")
+      ->check(positive)
       ->group(group);
   sub.add_option_function<std::string>(
          "--background", [&o](const std::string& text) { o.background = parse_background(text); },
@@ -371,8 +382,8 @@ void check(const RenderOptions& o) {
   }
   if (!o.photos.empty() && !o.mono)
     fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
-  if (o.device >= 0 && o.backend == "surfaceless")
-    fail("--device is for --backend device or auto: surfaceless has none");
+  if (o.device >= 0 && (o.backend == "surfaceless" || o.backend == "osmesa"))
+    fail("--device is for --backend device or auto: {} has none", o.backend);
 }
 
 }  // namespace binosplat::app
