@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   binosplat::app::add_devices(program, command);
   binosplat::app::add_study(program, command);
   binosplat::app::add_bench(program, command);
+  binosplat::app::add_calibrate(program, command);
   try {
     program.parse(argc, argv);
     return static_cast<int>(command());

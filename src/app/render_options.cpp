@@ -155,10 +155,7 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
       ->check(range(1, 10000))
       ->group(group);
   sub.add_option_function<std::string>(
-         "--size",
-         [&o](const std::string& text) {
-           o.size = parse_two("--size", text, "pixels as WIDTHxHEIGHT, for one 1280x720");
-         },
+         "--size", [&o](const std::string& text) { o.size = parse_size("--size", text); },
          "Pixels of each eye; keeps the vertical field of view")
       ->type_name("WxH")
       ->group(group);
@@ -345,6 +342,10 @@ void check_threshold(const RenderOptions& o) {
 }
 
 }  // namespace
+
+glm::ivec2 parse_size(const std::string& option, const std::string& text) {
+  return parse_two(option, text, "pixels as WIDTHxHEIGHT, for one 1280x720");
+}
 
 std::string threshold_name(const RenderOptions& o) {
   if (!o.th.empty()) return o.th;

@@ -81,6 +81,9 @@ glm::ivec2 parse_two(const std::string& option, const std::string& text, const c
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
+/// "1280x720" as width and height in px. Throws Error, naming the option, for anything else.
+glm::ivec2 parse_size(const std::string& option, const std::string& text);
+
 /// What --th is: squared where only a loss or a quality is given, which costs less at equal error than the
 /// paper's rule (METHOD 8).
 std::string threshold_name(const RenderOptions& options);

@@ -51,6 +51,13 @@ class Frame {
   /// The pictures of the last frame drawn, one a view.
   std::vector<Picture> read_pictures();
 
+  /// The last frame's pixels where they lie, for those who go on with them there: vec4 by pixel, C and T, one
+  /// view after another.
+  const gl::Buffer& colours() const { return buffers_.colours; }
+
+  /// The next frame goes by nothing that earlier ones measured, as a first one does.
+  void forget() { last_shape_ = {}; }
+
   /// What the last frame measured in its view `v`, in index order; none unless its transmittance is one that
   /// is measured.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
