@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gl/state.h"
+#include "scene/axes.h"
 
 namespace binosplat::stereo {
 
@@ -31,6 +32,11 @@ Camera camera_of(const char* name, const XrEye& eye, const Stage& stage, const g
 }
 
 }  // namespace
+
+Stage stage_of(const Model& model, const glm::dvec3& origin, double units_per_metre) {
+  const glm::dmat3 into_model = glm::transpose(world_from_axes(model.axes));
+  return {into_model * origin, into_model * Stage{}.axes, units_per_metre};
+}
 
 EyePair eyes_from_xr(const std::array<XrEye, 2>& eyes, const Stage& stage,
                      const std::array<glm::ivec2, 2>& sizes, double near_plane) {

@@ -30,11 +30,15 @@ struct XrEye {
 /// Where the space that eyes are given in lies in the model's world.
 struct Stage {
   glm::dvec3 origin{0.0};  // world units
-  /// The space's axes in the world as columns: right, up, backward. By default the world of a trained model,
-  /// whose y axis points down and z forward.
+  /// The space's axes in the world as columns: right, up, backward. By default the world of most trained
+  /// models, whose y axis points down and z forward; stage_of() knows the others.
   glm::dmat3 axes{1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0};
   double units_per_metre = 1.0;
 };
+
+/// Where a space that stands upright in the world of a model's cameras lies in the model's own frame
+/// (scene/axes.h), its origin at a point of that world.
+Stage stage_of(const Model& model, const glm::dvec3& origin = glm::dvec3(0.0), double units_per_metre = 1.0);
 
 /// The cameras and views of two eyes, each of its own size in px. Frusta may be asymmetric and eyes canted.
 /// Eyes of one orientation share their depth order: the right one is moved by what rounding put it before or

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   program.footer(epilogue);
   binosplat::app::Command command;
   binosplat::app::add_render(program, command);
+  binosplat::app::add_view(program, command);
   binosplat::app::add_compare(program, command);
   binosplat::app::add_devices(program, command);
   binosplat::app::add_study(program, command);

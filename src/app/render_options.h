@@ -84,6 +84,9 @@ void add_options(CLI::App& sub, RenderOptions& options);
 /// "1280x720" as width and height in px. Throws Error, naming the option, for anything else.
 glm::ivec2 parse_size(const std::string& option, const std::string& text);
 
+/// Adds those that the preview takes, some of which check_view() of app/viewer refuses.
+void add_view_options(CLI::App& sub, RenderOptions& options);
+
 /// What --th is: squared where only a loss or a quality is given, which costs less at equal error than the
 /// paper's rule (METHOD 8).
 std::string threshold_name(const RenderOptions& options);

@@ -21,11 +21,6 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-fs::path default_folder(const std::string& scene) {
-  const auto colon = scene.rfind("demo:", 0) == 0 ? scene.find(':') + 1 : 0;
-  return fs::path("out") / fs::path(scene.substr(colon)).stem();
-}
-
 // What a picture's file says of how it was drawn: a stereo picture is right only at its scale.
 Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string& side) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
@@ -113,6 +108,11 @@ double frames_a_second(const RenderOptions& options, const std::vector<Shot>& sh
 }
 
 }  // namespace
+
+fs::path default_folder(const std::string& scene) {
+  const auto colon = scene.rfind("demo:", 0) == 0 ? scene.find(':') + 1 : 0;
+  return fs::path("out") / fs::path(scene.substr(colon)).stem();
+}
 
 OutputPlan plan_outputs(const RenderOptions& options) {
   OutputPlan plan;

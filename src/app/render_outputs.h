@@ -24,6 +24,9 @@ struct OutputPlan {
   bool exr = false;
 };
 
+/// Where a scene's files go without -o: out/ and its name.
+std::filesystem::path default_folder(const std::string& scene);
+
 /// From -o, --layout, --exr and --bits. Throws Error, before any long work, for what cannot be written.
 OutputPlan plan_outputs(const RenderOptions& options);
 

@@ -15,6 +15,8 @@ namespace binosplat::gl {
   X(BindFramebuffer, BINDFRAMEBUFFER)                           \
   X(BindVertexArray, BINDVERTEXARRAY)                           \
   X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS)   \
+  X(Clear, CLEAR)                                               \
+  X(ClearColor, CLEARCOLOR)                                     \
   X(ClientWaitSync, CLIENTWAITSYNC)                             \
   X(ClipControl, CLIPCONTROL)                                   \
   X(ColorMaski, COLORMASKI)                                     \
@@ -25,6 +27,7 @@ namespace binosplat::gl {
   X(CreateProgram, CREATEPROGRAM)                               \
   X(CreateQueries, CREATEQUERIES)                               \
   X(CreateShader, CREATESHADER)                                 \
+  X(CreateTextures, CREATETEXTURES)                             \
   X(CreateVertexArrays, CREATEVERTEXARRAYS)                     \
   X(DebugMessageCallback, DEBUGMESSAGECALLBACK)                 \
   X(DeleteBuffers, DELETEBUFFERS)                               \
@@ -82,6 +85,7 @@ namespace binosplat::gl {
   X(PushDebugGroup, PUSHDEBUGGROUP)                             \
   X(QueryCounter, QUERYCOUNTER)                                 \
   X(ShaderSource, SHADERSOURCE)                                 \
+  X(TextureStorage2D, TEXTURESTORAGE2D)                         \
   X(UnmapNamedBuffer, UNMAPNAMEDBUFFER)                         \
   X(UseProgram, USEPROGRAM)                                     \
   X(ViewportIndexedf, VIEWPORTINDEXEDF)                         \

@@ -93,7 +93,8 @@ TEST(Install, HeadersNameNobodyElsesRooms) {
     }
   }
   EXPECT_GT(headers, 50);
-  EXPECT_FALSE(fs::exists(folder / "include/binosplat/app")) << "the program's own";
+  EXPECT_FALSE(fs::exists(folder / "include/binosplat/app")) << "the programs' own";
+  EXPECT_FALSE(fs::exists(folder / "include/binosplat/preview")) << "the programs' own";
   EXPECT_TRUE(fs::exists(folder / "include/binosplat/shared/axes.h"));
 }
 

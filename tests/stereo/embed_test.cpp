@@ -118,6 +118,24 @@ TEST_F(Embed, EachEyeIsTheSameAlone) {
   }
 }
 
+TEST_F(Embed, ModelsKnowWhichWayIsUp) {
+  // One ball to the upper right, in the frame of trained models and in that of OpenGL.
+  Model down = ball({0.3, 0.2, 1.5}), up = down;
+  up.axes = "RUB";
+  up.position[0] = {0.3f, 0.2f, -1.5f};
+  std::vector<std::vector<float>> seen;
+  for (const Model* model : {&down, &up}) {
+    EmbeddedRenderer renderer(caller.get_proc_address(), *model);
+    renderer.draw(eyes_from_xr(quest_eyes(), stage_of(*model, {0, 1.6, 0}), sizes).views, targets,
+                  LAYOUT_SEPARATE, glm::vec3(0.0f));
+    seen.push_back(read(0));
+  }
+  EXPECT_LT(glm::length(centre(seen[0]) - centre(seen[1])), 1e-3);
+  EmbeddedRenderer renderer(caller.get_proc_address(), up);
+  renderer.draw(eyes_from_xr(quest_eyes(), stage, sizes).views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  EXPECT_NE(read(0), seen[0]) << "the model's axes go unnoticed";
+}
+
 TEST_F(Embed, RoundedPosesAreStillParallel) {
   auto eyes = quest_eyes();
   eyes[1].position.z += 1e-7;  // as floats have it

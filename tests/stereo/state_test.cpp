@@ -179,7 +179,7 @@ struct State : testing::Test {
         "depth mask", [this] { caller.DepthMask(GL_FALSE); }, [this] { return integers(GL_DEPTH_WRITEMASK); },
         false);
     add(
-        "clear colour", [this] { caller.ClearColor(0.1f, 0.2f, 0.3f, 0.4f); },
+        "clear colour", [this] { gl.ClearColor(0.1f, 0.2f, 0.3f, 0.4f); },
         [this] {
           std::array<float, 4> v{};
           caller.GetFloatv(GL_COLOR_CLEAR_VALUE, v.data());

@@ -19,9 +19,7 @@ namespace binosplat::test {
   X(BindSampler, BINDSAMPLER)               \
   X(BindTexture, BINDTEXTURE)               \
   X(BlendFunc, BLENDFUNC)                   \
-  X(ClearColor, CLEARCOLOR)                 \
   X(CreateSamplers, CREATESAMPLERS)         \
-  X(CreateTextures, CREATETEXTURES)         \
   X(DeleteTextures, DELETETEXTURES)         \
   X(DepthFunc, DEPTHFUNC)                   \
   X(DepthMask, DEPTHMASK)                   \
@@ -29,7 +27,6 @@ namespace binosplat::test {
   X(GetTextureSubImage, GETTEXTURESUBIMAGE) \
   X(PixelStorei, PIXELSTOREI)               \
   X(ScissorIndexed, SCISSORINDEXED)         \
-  X(TextureStorage2D, TEXTURESTORAGE2D)     \
   X(TextureStorage3D, TEXTURESTORAGE3D)
 
 /// The caller's context, current from its making on, and its functions.
@@ -52,11 +49,11 @@ struct Caller {
 
   std::uint32_t texture(GLenum format, int width, int height, int layers = 0) const {
     std::uint32_t id = 0;
-    CreateTextures(layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, 1, &id);
+    gl.CreateTextures(layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, 1, &id);
     if (layers > 0) {
       TextureStorage3D(id, 1, format, width, height, layers);
     } else {
-      TextureStorage2D(id, 1, format, width, height);
+      gl.TextureStorage2D(id, 1, format, width, height);
     }
     return id;
   }
