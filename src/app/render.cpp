@@ -19,6 +19,7 @@
 #include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
+#include "scene/axes.h"
 #include "scene/framing.h"
 
 namespace binosplat::app {
@@ -114,12 +115,13 @@ render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& mode
 
 // What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
 render::DepthTable depth_table(render::Frame& frame, const RenderOptions& options, const CameraList& list,
-                               double near_plane) {
+                               double near_plane, const std::string& axes) {
   constexpr std::size_t views_max = 16;
   const std::size_t count = std::min(views_max, list.cameras.size());
   std::vector<shared::View> views;
   for (std::size_t k = 0; k < count; ++k)
-    views.push_back(make_view(sized(options, list.cameras[k * list.cameras.size() / count]), near_plane));
+    views.push_back(make_view(into_axes(sized(options, list.cameras[k * list.cameras.size() / count]), axes),
+                              near_plane));
   log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
   return measure::measure_depth_table(frame, views);
 }
@@ -145,7 +147,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   render::FrameSettings settings = settings_of(options);
   render::Frame frame(context, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH)
-    settings.depth_table = depth_table(frame, options, list, report.near_plane);
+    settings.depth_table = depth_table(frame, options, list, report.near_plane, report.model.axes);
   const std::unique_ptr<Video> video = open_video(options, plan, shots);
   Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
   std::size_t done = 0;

@@ -108,6 +108,22 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
          "as in rdf, rub (the format's)")
       ->type_name("XYZ")
       ->group(group);
+  auto* antialias =
+      sub.add_flag_callback(
+             "--antialias", [&o] { o.antialias = true; },
+             "Draw as a model that was trained with anti-aliasing (gsplat's,\nMip-Splatting's); by default "
+             "what its file says")
+          ->group(group);
+  sub.add_flag_callback(
+         "--no-antialias", [&o] { o.antialias = false; }, "Draw as one that was not")
+      ->excludes(antialias)
+      ->group(group);
+  sub.add_option(
+         "--kernel-px2", o.kernel_px2,
+         "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)")
+      ->type_name("S")
+      ->check(positive)
+      ->group(group);
   sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
       ->type_name("N")

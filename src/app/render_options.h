@@ -28,6 +28,9 @@ struct RenderOptions {
   std::optional<glm::ivec2> repeat;  // along x and z
   std::optional<double> spacing;     // world units
 
+  std::optional<bool> antialias;     // as the model was trained; by default what its file says
+  std::optional<double> kernel_px2;  // px^2, likewise
+
   // Cameras.
   std::string cameras;             // a file; empty: found beside the model
   std::string path;                // a file whose cameras are the frames of a path, instead

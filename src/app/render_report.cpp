@@ -120,8 +120,12 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
 
 ordered_json settings_json(const RenderReport& report) {
   const RenderOptions& o = report.options;
-  ordered_json json = {
-      {"tiles", o.tiles}, {"tile", o.tile}, {"near", report.near_plane}, {"th", threshold_name(o)}};
+  ordered_json json = {{"tiles", o.tiles},
+                       {"tile", o.tile},
+                       {"near", report.near_plane},
+                       {"antialiased", report.model.antialiased},
+                       {"kernel_px2", report.model.kernel_px2},
+                       {"th", threshold_name(o)}};
   if (o.loss) json["loss"] = *o.loss;
   json["transmittance"] = o.transmittance;
   json["contrast"] = o.contrast;

@@ -87,13 +87,15 @@ Splat project(const Model& model, std::size_t i, const shared::View& view) {
       glm::transpose(glm::dmat3(glm::dvec3(row_x), glm::dvec3(row_y), glm::dvec3(row_z)));
   const glm::dmat3x2 projection = perspective_jacobian(v, view) * to_eye;
   const glm::dmat2 c2 = projection * covariance_in_world(model, i) * glm::transpose(projection);
-  const glm::dvec3 covariance(c2[0][0] + KERNEL_PX2, c2[0][1], c2[1][1] + KERNEL_PX2);
+  const double kernel = model.kernel_px2;
+  const glm::dvec3 covariance(c2[0][0] + kernel, c2[0][1], c2[1][1] + kernel);
   const double det = covariance.x * covariance.z - covariance.y * covariance.y;
   if (!(det > 0.0)) return splat;
 
   splat.mean = glm::dvec2(lens[0] * v.x / v.z + lens[2] - 0.5, lens[1] * v.y / v.z + lens[3] - 0.5);
   splat.depth = v.z;
   splat.opacity = model.opacity[i];
+  if (model.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / det);
   splat.covariance = covariance;
   splat.conic = glm::dvec3(covariance.z, -covariance.y, covariance.x) / det;
   splat.det = det;

@@ -105,6 +105,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   FrameShape shape;
   shape.settings = settings;
   shape.degree = model.degree;
+  shape.kernel_px2 = model.kernel_px2;
+  shape.antialiased = model.antialiased;
   shape.gaussian_count = static_cast<std::uint32_t>(model.count());
   // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The
   // reference's results need all the room they take at once.

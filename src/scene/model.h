@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "shared/limits.h"
+
 namespace binosplat {
 
 /// The constant function of the spherical harmonics: a base colour is 0.5 + sh_c0 * coefficient.
@@ -27,8 +29,9 @@ struct Model {
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
-  bool antialiased = false;         // trained with Mip-Splatting's compensation of opacities (Yu 2024)
-  std::string axes = "RDF";         // where the model's x, y and z point in the cameras' world (scene/axes.h)
+  double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
+  bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
+  std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)
 
   std::size_t count() const { return position.size(); }
   void reserve(std::size_t n);

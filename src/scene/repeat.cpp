@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/error.h"
+#include "scene/axes.h"
 
 namespace binosplat {
 
@@ -42,10 +43,11 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   copy_times(model.opacity, copies);
   copy_times(model.sh, copies);
   glm::vec3* p = model.position.data();
+  const glm::dmat3 into_frame = glm::transpose(world_from_axes(model.axes));
   for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
     for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
       for (std::size_t k = 0; k < once; ++k, ++p)
-        *p = glm::vec3(glm::dvec3(*p) + glm::dvec3(i * spacing, 0.0, j * spacing));
+        *p = glm::vec3(glm::dvec3(*p) + into_frame * glm::dvec3(i * spacing, 0.0, j * spacing));
     }
   }
   return model;
