@@ -51,10 +51,6 @@ class Frame {
   /// The pictures of the last frame drawn, one a view.
   std::vector<Picture> read_pictures();
 
-  /// The last frame's pixels where they lie, for those who go on with them there: vec4 by pixel, C and T, one
-  /// view after another.
-  const gl::Buffer& colours() const { return buffers_.colours; }
-
   /// The next frame goes by nothing that earlier ones measured, as a first one does.
   void forget() { last_shape_ = {}; }
 
@@ -62,10 +58,10 @@ class Frame {
   /// is measured.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
-  /// The same on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with --reference-until
+  /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with --reference-until
   /// blend, whose pictures never get there.
   const gl::Buffer& colours() const { return buffers_.colours; }
-  /// The views of the last frame drawn, with tiles, offsets and groups.
+  /// The views of the last frame drawn, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return shape_.views; }
 
  private:
