@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "scene/axes.h"
-#include "scene/demo_city.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {

@@ -87,10 +87,7 @@ class Window {
       reload_shaders();
       if (session_) {
         go();
-        glm::ivec2 size;
-        glfwGetFramebufferSize(window_, &size.x, &size.y);
-        session_->resize(size);
-        if (session_->draw()) ui_frames_ = std::max(ui_frames_, 1);
+        if (draw()) ui_frames_ = std::max(ui_frames_, 1);
       }
       if (ui_frames_ > 0) show();
     }
@@ -173,6 +170,14 @@ class Window {
     context_->set_shader_folder(settings_.shader_folder);
     session_->change();
     panel_.message = "shaders were read again";
+  }
+
+  // What there is to see at the window's size; false if nothing changed.
+  bool draw() {
+    glm::ivec2 size;
+    glfwGetFramebufferSize(window_, &size.x, &size.y);
+    session_->resize(size);
+    return session_->draw();
   }
 
   void show() {
@@ -285,14 +290,11 @@ class Window {
   }
 
   void save(int key) {
+    if (key != GLFW_KEY_F12 && key != GLFW_KEY_F11 && key != GLFW_KEY_K) return;
     try {
-      std::string file;
-      if (key == GLFW_KEY_F12 || key == GLFW_KEY_F11) {
-        session_->draw();
-        file = session_->save_picture(key == GLFW_KEY_F11);
-      }
-      if (key == GLFW_KEY_K) file = session_->save_camera(glfwGetTime());
-      if (file.empty()) return;
+      draw();  // what has changed since the last frame, the size among it
+      const std::string file = key == GLFW_KEY_K ? session_->save_camera(glfwGetTime())
+                                                 : session_->save_picture(key == GLFW_KEY_F11);
       panel_.message = file;
       log_info("saved {}", file);
     } catch (const Error& error) {

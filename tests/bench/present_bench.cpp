@@ -82,6 +82,7 @@ struct Bench {
       ImGui::Render();
       ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     });
+    if (ImGui::GetDrawData()->TotalVtxCount == 0) fail("the widgets were not drawn");
     fmt::print("| widgets in {} x {} px | {:.3f} |\n", size.x, size.y, ms);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui::DestroyContext();
