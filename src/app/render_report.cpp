@@ -110,7 +110,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   json["gpu_ms"] = drawn.report.total_ms;
   json["depth_orders"] = drawn.report.order_groups;
   json["drawn_again"] = drawn.report.redrawn;
-  if (options.quality) json["loss"] = drawn.report.loss;
+  if (options.quality || !options.calibration.empty()) json["loss"] = drawn.report.loss;
   if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
@@ -131,6 +131,7 @@ ordered_json settings_json(const RenderReport& report) {
   json["contrast"] = o.contrast;
   json["th_eyes"] = o.th_eyes;
   if (o.quality) json["quality_db"] = *o.quality;
+  if (!o.calibration.empty()) json["calibration"] = o.calibration;
   json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
   if (!o.reference_until.empty()) json["reference_until"] = o.reference_until;
   return json;
