@@ -29,16 +29,6 @@ std::optional<double> mean_photo_psnr(const RenderReport& report) {
   return sum / count;
 }
 
-// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
-std::string megabytes(std::int64_t bytes) {
-  const double whole = std::round(static_cast<double>(bytes) / 1e6);
-  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
-  std::string digits = fmt::format("{:.0f}", whole);
-  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
-    digits.insert(static_cast<std::size_t>(place), ",");
-  return digits + " MB";
-}
-
 ordered_json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 ordered_json eye_json(const Eye& eye) {
@@ -169,6 +159,15 @@ std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot
     if (comfort.better->ipd) *comfort.better->ipd /= options.units_per_metre;
   }
   return comfort;
+}
+
+std::string megabytes(std::int64_t bytes) {
+  const double whole = std::round(static_cast<double>(bytes) / 1e6);
+  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+  std::string digits = fmt::format("{:.0f}", whole);
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), ",");
+  return digits + " MB";
 }
 
 void StageTimes::add(const render::FrameReport& report) { frames_.push_back(report); }
