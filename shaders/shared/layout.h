@@ -14,6 +14,7 @@ namespace binosplat::shared {
 using uint = std::uint32_t;
 using vec3 = glm::vec3;
 using glm::clamp;
+using std::pow;
 #else
 #define SHARED_FUNCTION
 #endif
