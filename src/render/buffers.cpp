@@ -55,6 +55,7 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
                       const Model& model) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
+  if (model.scaffold) fail("{}: Scaffold-GS models can be read, but not be drawn yet", model.name);
   if (settings.tile_size != 8 && settings.tile_size != 16 && settings.tile_size != 32) {
     fail("--tile {}: expected 8, 16 or 32", settings.tile_size);
   }

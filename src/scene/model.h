@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace binosplat {
 
 /// Number of SH coefficients per colour channel of a degree.
 constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
+
+struct Scaffold;
 
 /// Arrays of equal length, one element a Gaussian, in file order. Every value is finite and every rotation of
 /// unit length: readers leave out what is not, and count it.
@@ -24,6 +27,9 @@ struct Model {
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
+  /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
+  /// stand-ins (scene/scaffold.h).
+  std::shared_ptr<Scaffold> scaffold;
 
   std::size_t count() const { return position.size(); }
   void reserve(std::size_t n);

@@ -1,0 +1,119 @@
+#pragma once
+// Small Scaffold-GS models with random weights, in memory and as files.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "scene/scaffold.h"
+#include "support/models.h"
+#include "support/ply.h"
+#include "support/zip.h"
+
+namespace binosplat::test {
+
+struct ScaffoldKind {
+  std::size_t anchors = 40;
+  std::size_t offsets = 10;   // K
+  std::size_t features = 32;  // F
+  std::size_t hidden = 32;
+  bool distances = false;       // every network takes the distance
+  std::size_t appearances = 0;  // rows of 5
+  bool bank = false;
+};
+
+inline std::vector<float> random_values(Uniform& uniform, std::size_t count, double most) {
+  std::vector<float> values(count);
+  for (float& value : values) value = static_cast<float>(uniform(-most, most));
+  return values;
+}
+
+inline Network random_network(Uniform& uniform, std::size_t inputs, std::size_t hidden, std::size_t outputs) {
+  Network network{inputs, hidden, outputs};
+  network.first = random_values(uniform, hidden * inputs, 0.5);
+  network.first_bias = random_values(uniform, hidden, 0.5);
+  network.second = random_values(uniform, outputs * hidden, 0.5);
+  network.second_bias = random_values(uniform, outputs, 0.2);
+  return network;
+}
+
+/// Anchors in front of front_camera(width, height, width), like random_model(): some beyond the picture's
+/// edges, a few nearer than the near plane.
+inline Scaffold random_scaffold(std::uint32_t seed, const ScaffoldKind& kind = {}) {
+  Uniform uniform(seed);
+  Scaffold s;
+  s.name = "random";
+  s.offset_count = kind.offsets;
+  s.feature_count = kind.features;
+  const auto three = [&](double low, double high) {
+    return glm::vec3(uniform(low, high), uniform(low, high), uniform(low, high));
+  };
+  for (std::size_t n = 0; n < kind.anchors; ++n) {
+    const double z = uniform(0.1, 6.0);
+    s.position.emplace_back(uniform(-0.8, 0.8) * z, uniform(-0.8, 0.8) * z, z);
+    s.offset_scale.push_back(glm::exp(three(-5.0, -2.0)));
+    s.scale.push_back(glm::exp(three(-5.0, -1.5)));
+    s.rotation.emplace_back(
+        glm::normalize(glm::dvec4(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))));
+  }
+  for (std::size_t i = 0; i < s.count(); ++i) s.offset.push_back(three(-1, 1));
+  s.feature = random_values(uniform, kind.anchors * kind.features, 1.0);
+  const std::size_t inputs = kind.features + 3 + (kind.distances ? 1 : 0);
+  s.appearance_size = kind.appearances == 0 ? 0 : 5;
+  s.appearances = random_values(uniform, kind.appearances * 5, 1.0);
+  s.opacity = random_network(uniform, inputs, kind.hidden, kind.offsets);
+  s.covariance = random_network(uniform, inputs, kind.hidden, 7 * kind.offsets);
+  s.colour = random_network(uniform, inputs + s.appearance_size, kind.hidden, 3 * kind.offsets);
+  s.opacity.distance = s.covariance.distance = s.colour.distance = kind.distances;
+  if (kind.bank) {
+    s.bank = random_network(uniform, 4, kind.features, 3);
+    s.bank->distance = true;
+  }
+  return s;
+}
+
+/// The anchors as the trainer writes them.
+inline PlyFile anchor_file(const Scaffold& s) {
+  PlyFile file;
+  file.columns = {"x", "y", "z", "nx", "ny", "nz"};
+  const auto numbered = [&](const std::string& name, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) file.columns.push_back(name + std::to_string(i));
+  };
+  numbered("f_offset_", 3 * s.offset_count);
+  numbered("f_anchor_feat_", s.feature_count);
+  file.columns.emplace_back("opacity");
+  numbered("scale_", 6);
+  numbered("rot_", 4);
+  for (std::size_t n = 0; n < s.anchor_count(); ++n) {
+    std::vector<double>& row = file.rows.emplace_back();
+    const auto add = [&](double value) { row.push_back(value); };
+    for (int c = 0; c < 3; ++c) add(s.position[n][c]);
+    for (int c = 0; c < 3; ++c) add(0);
+    for (int c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < s.offset_count; ++k) add(s.offset[n * s.offset_count + k][c]);
+    }
+    for (std::size_t i = 0; i < s.feature_count; ++i) add(s.feature[n * s.feature_count + i]);
+    add(0);
+    for (int c = 0; c < 3; ++c) add(std::log(s.offset_scale[n][c]));
+    for (int c = 0; c < 3; ++c) add(std::log(s.scale[n][c]));
+    for (int c = 0; c < 4; ++c) add(s.rotation[n][c]);
+  }
+  return file;
+}
+
+inline ZipEntries entries_of(const Network& n) {
+  return torch_entries({n.first, n.first_bias, n.second, n.second_bias});
+}
+
+/// The whole model into a folder.
+inline void write_scaffold(const std::filesystem::path& folder, const Scaffold& s) {
+  std::ofstream(folder / "point_cloud.ply", std::ios::binary) << to_bytes(anchor_file(s));
+  write_zip(folder / "opacity_mlp.pt", entries_of(s.opacity));
+  write_zip(folder / "cov_mlp.pt", entries_of(s.covariance));
+  write_zip(folder / "color_mlp.pt", entries_of(s.colour));
+  if (s.appearance_size > 0) write_zip(folder / "embedding_appearance.pt", torch_entries({s.appearances}));
+  if (s.bank) write_zip(folder / "feature_bank_mlp.pt", entries_of(*s.bank));
+}
+
+}  // namespace binosplat::test
