@@ -26,6 +26,10 @@
 #define CONTRAST_FINAL 1
 #define CONTRAST_BEHIND 2
 
+// --decode: for which eye the networks of Scaffold-GS make Gaussians.
+#define DECODE_EYES 0
+#define DECODE_CYCLOPEAN 1
+
 #ifdef __cplusplus
 namespace binosplat {
 
@@ -60,6 +64,11 @@ inline constexpr Choice contrast_choices[] = {
     {"off", "1"},
     {"final", "the Gaussian's colour against the pixel's, as the last frame left it"},
     {"behind", "the Gaussian's colour against what lies behind it"},
+};
+
+inline constexpr Choice decode_choices[] = {
+    {"eyes", "each eye its own: exact"},
+    {"cyclopean", "both eyes of a pair share those of an eye between them"},
 };
 
 }  // namespace binosplat

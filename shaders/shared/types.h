@@ -41,6 +41,14 @@ struct Gaussian {
   vec4 scale;     // standard deviations along its axes, world units; w: unused
 };
 
+// An anchor of a Scaffold-GS model as the GPU keeps it. Its Gaussians' offsets lie in a buffer of their own.
+struct Anchor {
+  vec4 position;      // world
+  vec4 rotation;      // unit quaternion (w, x, y, z)
+  vec4 offset_scale;  // world units of an offset; with `rotation` what the anchor cull goes by
+  vec4 scale;         // the largest standard deviations of its Gaussians, world units
+};
+
 // A Gaussian as one view sees it.
 struct Splat {
   vec2 mean;      // px; the centre of pixel (i, j) lies at (i, j)
@@ -86,6 +94,7 @@ struct Amount {
 #ifdef __cplusplus
 static_assert(sizeof(View) == 128 && offsetof(View, lens) == 80 && offsetof(View, th_group) == 124);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
+static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
 static_assert(sizeof(Counters) == 32);
 static_assert(sizeof(Amount) == 48 && offsetof(Amount, threads_x) == 8 && offsetof(Amount, sort_x) == 32);

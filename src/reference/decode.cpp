@@ -11,8 +11,6 @@ namespace binosplat::reference {
 
 namespace {
 
-constexpr int anchor_tile = 16;  // px; the trainer's, whatever --tile says
-
 double sigmoid(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
 std::vector<double> layer(const std::vector<float>& weights, const std::vector<float>& bias,
@@ -113,7 +111,7 @@ std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, cons
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view) {
   const Splat splat =
       project({scaffold.position[n], scaffold.offset_scale[n], scaffold.rotation[n], 1.0}, view);
-  return splat.drawn && touches_any(splat, TILES_AABB, anchor_tile, view);
+  return splat.drawn && touches_any(splat, TILES_AABB, ANCHOR_TILE, view);
 }
 
 std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::View> views, bool anchor_cull) {

@@ -8,6 +8,7 @@
 
 #include "gl/buffer.h"
 #include "primitives/radix_sort.h"
+#include "render/anchors.h"
 #include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
@@ -31,28 +32,47 @@ struct FrameShape {
   std::vector<OrderGroup> groups;
   std::uint32_t tile_count = 0;  // over all views
   std::int64_t pixel_count = 0;  // over all views
+  // Of Scaffold-GS; K is 0 for other models.
+  std::uint32_t offset_count = 0;        // K
+  std::uint32_t views_per_decoding = 1;  // views that share what the networks made
+  std::int64_t anchor_bytes = 0;
 
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// Bits that tell the lists apart by which pairs are sorted: tiles, or views with --tiles all.
   std::uint32_t list_bits() const;
+  /// How often each anchor is decoded.
+  std::uint32_t decoding_count() const {
+    return (view_count() + views_per_decoding - 1) / views_per_decoding;
+  }
 };
 
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, or a bad tile size.
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model);
 
-/// The model on the GPU, in pages of Gaussians whose buffers a shader can reach.
+/// The model on the GPU, in pages of Gaussians whose buffers a shader can reach. Of Scaffold-GS a page holds
+/// whole anchors, and its Gaussians and their colours (as harmonics of degree 0) are made anew each frame,
+/// once for each decoding: (decoding, id).
 struct ModelBuffers {
   struct Page {
     std::uint32_t first = 0;  // Gaussian of the model
     std::uint32_t count = 0;
     std::unique_ptr<gl::Buffer> gaussians;  // Gaussian
     std::unique_ptr<gl::Buffer> harmonics;  // packed vec4s, see sh.glsl
+    std::unique_ptr<AnchorBuffers> anchors;
   };
 
   /// Uploads; `page_gaussians` limits a page for tests, 0: what the driver reaches.
   ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
 
+  /// Room for what a frame of this shape decodes.
+  void reserve(const FrameShape& shape);
+
   std::vector<Page> pages;
+  NetworkBuffers networks;
+
+ private:
+  void upload(gl::Context& context, const Model& model, std::size_t step);
+  void upload(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 };
 
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
