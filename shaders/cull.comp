@@ -9,13 +9,11 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
-layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // of the page
+#include "gaussians.glsl"  // bindings 1 and 9
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
 #if TRANSMITTANCE != TRANSMITTANCE_ONE
 layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 #endif
-uniform uint page_first;
-uniform uint page_count;
 uniform uint view_begin;
 uniform uint view_end;
 
@@ -40,8 +38,12 @@ void main() {
   mat3 axes = scaled_axes(g);
   uint key = DEPTH_KEY_NONE;
   for (uint v = view_begin; v < view_end; ++v) {
+#if OFFSETS > 0
+    g = gaussians[place_of(i, v)];
+    axes = scaled_axes(g);
+#endif
     Splat splat;
-    bool projected = project(views[v], g, axes, upper_of(page_first + i, v), splat);
+    bool projected = is_kept(i, v) && project(views[v], g, axes, upper_of(page_first + i, v), splat);
     bool drawn = projected && touches_a_tile(splat, views[v]);
     if (drawn) key = floatBitsToUint(splat.depth);  // the same in all views of an order group
     remember(page_first + i, v, projected, drawn, splat);

@@ -43,6 +43,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   for (;;) {
     shape_.slots = static_cast<std::uint32_t>(slots_);
     buffers_.reserve(shape_, pair_capacity_);
+    model_buffers_.reserve(shape_);
     counters = draw_once(report);
     if (counters.overflow == 0) break;
     if (++report.redrawn == attempts_max) throw std::logic_error("a frame overflowed again and again");
@@ -71,9 +72,13 @@ shared::Counters Frame::draw_once(FrameReport& report) {
   reference_pictures_.clear();
   if (shape_.settings.reference_until) {
     reference_pictures_ =
-        fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, buffers_);
+        fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, model_buffers_, buffers_);
   }
   dispatcher_.begin_frame();
+  if (shape_.offset_count > 0 && !twin(Stage::decode)) {
+    dispatcher_.begin_stage("decode");
+    decode(dispatcher_, shape_, model_buffers_, buffers_);
+  }
   for (std::uint32_t group = 0; group < shape_.groups.size(); ++group) {
     if (!twin(Stage::project)) {
       dispatcher_.begin_stage("project");

@@ -7,6 +7,11 @@ namespace binosplat::render {
 
 namespace {
 
+// Of models that are not decoded no shader looks at it.
+const gl::Buffer& kept_of(const ModelBuffers::Page& page) {
+  return page.anchors ? page.anchors->kept : *page.gaussians;
+}
+
 // Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
@@ -16,11 +21,13 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
                    {{"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
+                    {"Kept", kept_of(page)},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
+                    {"views_per_decoding", shape.views_per_decoding},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
@@ -55,9 +62,13 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuf
 
 gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  return {{"TILES_NAME", tiles_choices[s.tiles].name}, {"TH", std::to_string(s.th)},
-          {"TH_NAME", th_choices[s.th].name},          {"TRANSMITTANCE", std::to_string(s.transmittance)},
-          {"TILES", std::to_string(s.tiles)},          {"TILE_SIZE", std::to_string(s.tile_size)}};
+  return {{"TILES_NAME", tiles_choices[s.tiles].name},
+          {"TH", std::to_string(s.th)},
+          {"TH_NAME", th_choices[s.th].name},
+          {"TRANSMITTANCE", std::to_string(s.transmittance)},
+          {"TILES", std::to_string(s.tiles)},
+          {"TILE_SIZE", std::to_string(s.tile_size)},
+          {"OFFSETS", std::to_string(shape.offset_count)}};
 }
 
 void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
@@ -73,6 +84,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
     dispatcher.run(program, gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
                    {{"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
+                    {"Kept", kept_of(page)},
                     {"Harmonics", *page.harmonics},
                     {"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},
@@ -82,6 +94,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
+                    {"views_per_decoding", shape.views_per_decoding},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"slots", shape.slots},

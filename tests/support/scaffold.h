@@ -73,6 +73,11 @@ inline Scaffold random_scaffold(std::uint32_t seed, const ScaffoldKind& kind = {
   return s;
 }
 
+/// The same as a model.
+inline Model scaffold_model(std::uint32_t seed, const ScaffoldKind& kind = {}) {
+  return stand_in(std::make_shared<Scaffold>(random_scaffold(seed, kind)));
+}
+
 /// The anchors as the trainer writes them.
 inline PlyFile anchor_file(const Scaffold& s) {
   PlyFile file;

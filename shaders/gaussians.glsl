@@ -1,0 +1,28 @@
+// The Gaussians of a page of the model. Those of Scaffold-GS depend on the eye: a view has those of its decoding, as far as
+// the networks keep them.
+//   OFFSETS   K of Scaffold-GS, 0 for other models
+
+layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // (decoding, Gaussian)
+uniform uint page_first;
+uniform uint page_count;
+
+#if OFFSETS > 0
+
+layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding, anchor), a bit each
+uniform uint views_per_decoding;
+
+// Where view v finds Gaussian i of the page, and whether it has it.
+uint place_of(uint i, uint v) { return v / views_per_decoding * page_count + i; }
+
+bool is_kept(uint i, uint v) {
+  uint place = place_of(i, v);
+  return (kept[place / uint(OFFSETS)] >> (place % uint(OFFSETS)) & 1u) != 0u;
+}
+
+#else
+
+uint place_of(uint i, uint v) { return i; }
+
+bool is_kept(uint i, uint v) { return true; }
+
+#endif
