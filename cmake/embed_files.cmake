@@ -1,9 +1,10 @@
-# cmake -DROOT=dir -DOUT=file.cpp -P embed_files.cmake: writes a table {path relative to ROOT, text} as C++.
+# cmake -DROOT=dir -DOUT=file.cpp -DHEADER=h -DNAMESPACE=n -DFUNCTION=f -P embed_files.cmake: writes f(), which HEADER
+# declares in binosplat::n, as C++: a table {path relative to ROOT, text}.
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/*)
-set(text "#include \"gl/shader_source.h\"\n\nnamespace binosplat::gl {\n\nconst std::map<std::string, std::string>& embedded_shaders() {\n  static const std::map<std::string, std::string> files = {\n")
+set(text "#include \"${HEADER}\"\n\nnamespace binosplat::${NAMESPACE} {\n\nconst std::map<std::string, std::string>& ${FUNCTION}() {\n  static const std::map<std::string, std::string> files = {\n")
 foreach(name IN LISTS files)
   file(READ ${ROOT}/${name} body)
-  string(APPEND text "      {\"${name}\", R\"SHADER(${body})SHADER\"},\n")
+  string(APPEND text "      {\"${name}\", R\"EMBEDDED(${body})EMBEDDED\"},\n")
 endforeach()
-string(APPEND text "  };\n  return files;\n}\n\n}  // namespace binosplat::gl\n")
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace binosplat::${NAMESPACE}\n")
 file(WRITE ${OUT} "${text}")

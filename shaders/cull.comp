@@ -9,9 +9,10 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
-#include "gaussians.glsl"  // bindings 1 and 9
+#include "gaussians.glsl"            // bindings 1 and 9
+#include "threshold/threshold.glsl"  // binding 7
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
-#if TRANSMITTANCE != TRANSMITTANCE_ONE
+#if TRANSMITTANCE >= TRANSMITTANCE_LAST
 layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 #endif
 uniform uint view_begin;
@@ -20,12 +21,15 @@ uniform uint view_end;
 // What the next frame is to know of a Gaussian that this view does not draw: all the light again for one out of sight,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
 void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
-#if TRANSMITTANCE != TRANSMITTANCE_ONE
+#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+  if (v >= exact_from) return;  // a probe
   bool left_out = false;
+#if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);
     left_out = touches_a_tile(splat, views[v]);
   }
+#endif
   float aged = remembers == 0u ? 1.0 : min(1.0, float(UPPER_AGEING) * upper[v * gaussian_count + gaussian]);
   upper_next[v * gaussian_count + gaussian] = left_out ? aged : 1.0;
 #endif
@@ -43,7 +47,8 @@ void main() {
     axes = scaled_axes(g);
 #endif
     Splat splat;
-    bool projected = is_kept(i, v) && project(views[v], g, axes, upper_of(page_first + i, v), splat);
+    bool projected = is_kept(i, v) && project(views[v], g, axes, splat);
+    if (projected) splat.colour.w = tile_level(v, page_first + i, g, axes, splat);
     bool drawn = projected && touches_a_tile(splat, views[v]);
     if (drawn) key = floatBitsToUint(splat.depth);  // the same in all views of an order group
     remember(page_first + i, v, projected, drawn, splat);

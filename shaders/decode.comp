@@ -16,7 +16,7 @@ layout(std430, binding = 2) readonly buffer Offsets { float offsets[]; };       
 layout(std430, binding = 5) writeonly buffer Gaussians { Gaussian gaussians[]; };      // (decoding, anchor, k)
 layout(std430, binding = 6) writeonly buffer Harmonics { vec4 harmonics[]; };          // of degree 0, likewise
 layout(std430, binding = 7) writeonly buffer Kept { uint kept[]; };                    // (decoding, anchor), bit k
-uniform uint view_count;
+uniform uint view_count;  // without the probe
 uniform uint views_per_decoding;
 uniform uint anchor_cull;
 uniform uint offset_count;  // OFFSETS
@@ -27,7 +27,7 @@ bool sees(View view, Anchor anchor) {
   view.tiles_x = (view.width + uint(TILE_SIZE - 1)) / uint(TILE_SIZE);
   view.tiles_y = (view.height + uint(TILE_SIZE - 1)) / uint(TILE_SIZE);
   Splat splat;
-  return project(view, g, scaled_axes(g), 1.0, splat) && touches_a_tile(splat, view);
+  return project(view, g, scaled_axes(g), splat) && touches_a_tile(splat, view);
 }
 
 vec3 sigmoid(vec3 x) { return 1.0 / (1.0 + exp(-x)); }

@@ -10,9 +10,13 @@ uniform uint page_count;
 
 layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding, anchor), a bit each
 uniform uint views_per_decoding;
+uniform uint asked;              // views before the probe
+uniform uint decoding_of_probe;  // that of the view it belongs to
 
 // Where view v finds Gaussian i of the page, and whether it has it.
-uint place_of(uint i, uint v) { return v / views_per_decoding * page_count + i; }
+uint place_of(uint i, uint v) {
+  return (v < asked ? v / views_per_decoding : decoding_of_probe) * page_count + i;
+}
 
 bool is_kept(uint i, uint v) {
   uint place = place_of(i, v);

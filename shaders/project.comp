@@ -9,13 +9,14 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
-#include "gaussians.glsl"  // bindings 1 and 9
+#include "gaussians.glsl"            // bindings 1 and 9
+#include "threshold/threshold.glsl"  // binding 7
 #include "sh.glsl"  // binding 2, of the page
 layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
 layout(std430, binding = 5) writeonly buffer Splats { Splat splats[]; };          // (view, slot)
 layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
-#if TRANSMITTANCE != TRANSMITTANCE_ONE
+#if TRANSMITTANCE >= TRANSMITTANCE_LAST
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), bits of floats
 #endif
 uniform uint view_begin;
@@ -36,9 +37,13 @@ void main() {
     axes = scaled_axes(g);
 #endif
     Splat splat;
-    uint tiles = is_kept(i, v) && project(view, g, axes, upper_of(indices[slot], v), splat) ? tile_count(splat, view) : 0u;
+    uint tiles = 0u;
+    if (is_kept(i, v) && project(view, g, axes, splat)) {
+      splat.colour.w = tile_level(v, indices[slot], g, axes, splat);
+      tiles = tile_count(splat, view);
+    }
     tile_counts[v * slots + slot] = tiles;
-#if TRANSMITTANCE != TRANSMITTANCE_ONE
+#if TRANSMITTANCE >= TRANSMITTANCE_LAST
     measured[v * slots + slot] = 0u;
 #endif
     if (tiles > 0u) {

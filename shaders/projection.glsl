@@ -1,7 +1,6 @@
 // A Gaussian as a view sees it (METHOD 2), all but its colour. `precise` because several programs compute it and must get the
 // same bits.
 #include "shared/exact.glsl"
-#include "threshold/threshold.glsl"
 
 // Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of METHOD 2.
 mat3 scaled_axes(Gaussian g) {
@@ -32,11 +31,7 @@ vec3 to_eye(View view, vec3 d) {
 // linearisation blows up far outside the picture.
 void axes_on_picture(View view, vec3 v, mat3 axes, out vec3 across, out vec3 down) {
   vec2 focal = view.lens.xy;
-  vec2 centre = view.lens.zw;
-  vec2 size = vec2(view.width, view.height);
-  precise vec2 lowest = -(centre + float(CLAMP_MARGIN) * size) / focal;
-  precise vec2 highest = (size - centre + float(CLAMP_MARGIN) * size) / focal;
-  precise vec2 slope = clamp(v.xy / v.z, lowest, highest);
+  precise vec2 slope = clamp(v.xy / v.z, view.slopes.xy, view.slopes.zw);
   precise vec2 gain = focal / v.z;
   precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
   precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
@@ -59,8 +54,8 @@ vec4 conic_of(float xx, float xy, float yy) {
   return vec4(q, sqrt(det) * size);
 }
 
-// Everything but the colour. False where this view does not draw it.
-bool project(View view, Gaussian g, mat3 axes, float upper, out Splat splat) {
+// Everything but the colour and the level of Th. False where this view does not draw it.
+bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
   vec3 v = to_eye(view, d);
   if (!(v.z > view.anchor.w)) return false;
@@ -76,6 +71,6 @@ bool project(View view, Gaussian g, mat3 axes, float upper, out Splat splat) {
   splat.mean = mean;
   splat.depth = v.z;
   splat.opacity = g.position.w;
-  splat.colour = vec4(0.0, 0.0, 0.0, tile_level(splat.opacity, splat.conic.w, upper));
+  splat.colour = vec4(0.0);
   return true;
 }

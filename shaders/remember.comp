@@ -1,5 +1,6 @@
 // After the blend: what it measured of each Gaussian drawn, for the next frame's Th. One invocation a slot of an order
 // group. What was not drawn was written by cull.comp.
+#include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -7,21 +8,28 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 5) readonly buffer OrderKeys { uint order_keys[]; };  // bits of depths, sorted
+layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
+#if TRANSMITTANCE >= TRANSMITTANCE_LAST
 layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };         // Gaussian of each slot
 layout(std430, binding = 2) readonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
 layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // (view, slot)
 layout(std430, binding = 4) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 uniform uint gaussian_count;
 uniform uint view_begin;
-uniform uint view_end;
+uniform uint view_end;  // without the probe
 uniform uint slots;
+#endif
 
 void main() {
   uint slot = thread_index();
   if (slot >= amounts[0].count) return;
+  if (slot == 0u) counters.median_depth = order_keys[amounts[0].count / 2u];
+#if TRANSMITTANCE >= TRANSMITTANCE_LAST
   for (uint v = view_begin; v < view_end; ++v) {
     if (tile_counts[v * slots + slot] == 0u) continue;
     float most = uintBitsToFloat(measured[v * slots + slot]);
     upper_next[v * gaussian_count + indices[slot]] = clamp(most, float(UPPER_FLOOR), 1.0);
   }
+#endif
 }

@@ -52,7 +52,7 @@ shared::View shifted_view(const Camera& eye, const Camera& head, double offset, 
   const double head_x = glm::dot(head.rotation[0], glm::dvec3(anchor) - head.position);
   view.row_x.w = static_cast<float>(head_x - offset);
   view.eye = glm::vec4(glm::vec3(head.position - glm::dvec3(anchor) + offset * head.rotation[0]), 0.0f);
-  view.lens.z = static_cast<float>(eye.cx);
+  set_lens(view, eye);
   return view;
 }
 

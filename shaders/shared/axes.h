@@ -17,20 +17,29 @@
 
 // --transmittance: where T_upper comes from, the most light that reaches a Gaussian.
 #define TRANSMITTANCE_ONE 0
-#define TRANSMITTANCE_LAST 1
-#define TRANSMITTANCE_OTHER_EYE 2
-#define TRANSMITTANCE_BOTH 3
+#define TRANSMITTANCE_DEPTH 1
+#define TRANSMITTANCE_LAST 2  // from here on measured by frames
+#define TRANSMITTANCE_OTHER_EYE 3
+#define TRANSMITTANCE_BOTH 4
 
 // --contrast: what that light is multiplied with, for --th squared.
 #define CONTRAST_OFF 0
 #define CONTRAST_FINAL 1
 #define CONTRAST_BEHIND 2
 
+// --th-eyes: what the two eyes of a pair make of each other's Th.
+#define TH_EYES_PER_EYE 0
+#define TH_EYES_SHARED_MIN 1
+#define TH_EYES_CYCLOPEAN 2
 // --decode: for which eye the networks of Scaffold-GS make Gaussians.
 #define DECODE_EYES 0
 #define DECODE_CYCLOPEAN 1
 
 #ifdef __cplusplus
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
 namespace binosplat {
 
 /// A choice as options and charts name it, in the order of the numbers above.
@@ -55,6 +64,7 @@ inline constexpr Choice th_choices[] = {
 
 inline constexpr Choice transmittance_choices[] = {
     {"one", "all of it"},
+    {"depth", "AdaGScale's table: the most that reaches each depth of the scene"},
     {"last", "as the last frame measured it in the same eye"},
     {"other-eye", "as the last frame measured it in the other eye"},
     {"both", "the larger of the two"},
@@ -66,10 +76,23 @@ inline constexpr Choice contrast_choices[] = {
     {"behind", "the Gaussian's colour against what lies behind it"},
 };
 
+inline constexpr Choice th_eyes_choices[] = {
+    {"per-eye", "each eye its own"},
+    {"shared-min", "the smaller of the two for both"},
+    {"cyclopean", "that of an eye between them"},
+};
+
 inline constexpr Choice decode_choices[] = {
     {"eyes", "each eye its own: exact"},
     {"cyclopean", "both eyes of a pair share those of an eye between them"},
 };
+
+/// The number of the choice of that name; the number of choices if there is none.
+template <std::size_t n>
+int number_of(std::string_view name, const Choice (&choices)[n]) {
+  const auto* found = std::find_if(choices, choices + n, [&](const Choice& c) { return name == c.name; });
+  return static_cast<int>(found - choices);
+}
 
 }  // namespace binosplat
 #endif

@@ -24,6 +24,7 @@ struct View {
   vec4 anchor;  // world point; w: near, the smallest depth drawn (world units)
   vec4 eye;     // the eye minus the anchor, world axes; w: unused
   vec4 lens;    // fx, fy, cx, cy in px
+  vec4 slopes;  // v.x / v.z and v.y / v.z at which J is taken: lowest x, y, highest x, y (METHOD 2)
   uint width;   // px
   uint height;  // px
   uint tiles_x;
@@ -31,7 +32,7 @@ struct View {
   uint tile_offset;   // this view's first tile in the frame's list of tiles
   uint pixel_offset;  // this view's first pixel in the frame's pixel buffers
   uint order_group;   // views of equal number share one depth order
-  uint th_group;      // views of equal number share Th
+  uint th_view;       // with --th-eyes cyclopean: the view between the eyes, which Th is taken from
 };
 
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
@@ -67,12 +68,13 @@ struct Counters {
   uint pairs;         // Gaussian-tile pairs wanted, all views
   uint overflow;      // OVERFLOW_ bits
   uint loop_cut;      // tiles whose list the driver cut short: the picture is wrong and must not be used
-  uint unused_0;
-  uint unused_1;
-  uint unused_2;
+  uint median_depth;  // bits of a float: of what the last order group drew, world units
+  uint probe_low;   // squared error of the probe, summed over pixels and channels, times PROBE_SCALE: low and
+  uint probe_high;  // high half
 };
 
 #define COUNT_MAX 0xFFFFFFFFu
+#define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
 #define DEPTH_KEY_NONE 0xFFFFFFFFu  // of a Gaussian that no view of the order group draws
 #define AMOUNT_ORDER 0u             // what a total counts: the Gaussians of one order group
 #define AMOUNT_PAIRS 1u             // the pairs of one order group, after those of the groups before it
@@ -92,7 +94,7 @@ struct Amount {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(View) == 128 && offsetof(View, lens) == 80 && offsetof(View, th_group) == 124);
+static_assert(sizeof(View) == 144 && offsetof(View, slopes) == 96 && offsetof(View, th_view) == 140);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);

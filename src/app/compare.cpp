@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "formats/image_file.h"
+#include "measure/flip.h"
 #include "measure/metrics.h"
 
 namespace binosplat::app {
@@ -17,6 +18,7 @@ struct CompareOptions {
   std::string a;
   std::string b;
   std::optional<double> min_psnr;
+  double pixels_per_degree = measure::flip_pixels_per_degree;
   std::string difference;
   std::string json;
 };
@@ -24,6 +26,7 @@ struct CompareOptions {
 struct Comparison {
   double psnr = 0.0;
   double ssim = 0.0;
+  double flip = 0.0;
   measure::Difference largest;
 };
 
@@ -53,7 +56,7 @@ const char* channel_name(const Image& image, int channel) {
   return image.channels == 1 ? "grey" : names[channel];
 }
 
-void print(const Comparison& found, const Image& image) {
+void print(const CompareOptions& options, const Comparison& found, const Image& image) {
   if (std::isinf(found.psnr) && found.psnr > 0) {
     fmt::print("PSNR           infinite: the pictures are equal\n");
   } else {
@@ -64,6 +67,11 @@ void print(const Comparison& found, const Image& image) {
         "SSIM           undefined: the pictures are smaller than its window of 11 x 11 px, or hold a NaN\n");
   } else {
     fmt::print("SSIM           {:.6f}\n", found.ssim);
+  }
+  if (std::isnan(found.flip)) {
+    fmt::print("FLIP           undefined: the pictures hold a NaN\n");
+  } else {
+    fmt::print("FLIP           {:.6f} at {} pixels per degree\n", found.flip, options.pixels_per_degree);
   }
   if (found.largest.max > 0.0) {
     fmt::print("largest error  {:.6f} ({:.2f} of 255) at x {}, y {}, {}\n", found.largest.max,
@@ -81,6 +89,8 @@ nlohmann::ordered_json to_json(const CompareOptions& options, const Comparison& 
                                  {"equal", found.largest.max == 0.0},
                                  {"psnr_db", found.psnr},  // null where equal: infinite
                                  {"ssim", found.ssim},
+                                 {"flip", found.flip},
+                                 {"pixels_per_degree", options.pixels_per_degree},
                                  {"largest_error",
                                   {{"value", found.largest.max},
                                    {"x", found.largest.x},
@@ -99,8 +109,10 @@ ExitCode compare(const CompareOptions& options) {
   // What a screen shows: an EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
   a = measure::clamped(a);
   b = measure::clamped(b);
-  const Comparison found = {measure::psnr(a, b), measure::ssim(a, b), measure::largest_difference(a, b)};
-  print(found, a);
+  const Comparison found = {measure::psnr(a, b), measure::ssim(a, b),
+                            measure::flip(a, b, options.pixels_per_degree),
+                            measure::largest_difference(a, b)};
+  print(options, found, a);
   if (!options.difference.empty()) {
     const double gain = measure::difference_gain(found.largest.max);
     const Uninterrupted hold;
@@ -123,6 +135,9 @@ void add_compare(CLI::App& program, Command& command) {
   sub->add_option("A", options->a, "Picture: PNG, JPEG or OpenEXR")->required();
   sub->add_option("B", options->b, "Picture of the same size")->required();
   sub->add_option("--min-psnr", options->min_psnr, "Exit code 1 if PSNR is below this")->type_name("DB");
+  sub->add_option("--ppd", options->pixels_per_degree, "For FLIP: pixels per degree that the viewer has (67)")
+      ->check(CLI::Range(1.0, 1000.0).description(""))
+      ->type_name("N");
   sub->add_option("--difference", options->difference, "Write the absolute error, amplified, as PNG")
       ->type_name("FILE");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");

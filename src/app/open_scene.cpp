@@ -26,7 +26,7 @@ Scene open_once(const RenderOptions& options) {
     fail("{}: the scenes that are built in are called {} and {}", options.scene, demo_room_name,
          demo_city_name);
   }
-  return {{}, [&options] { return load_model(options.scene); }};
+  return {{}, [&options] { return load_model(options.scene, {.lod = options.lod}); }};
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // binosplat render: from options to pictures, in the order in which mistakes are cheapest to find.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -14,6 +15,7 @@
 #include "base/progress.h"
 #include "formats/image_file.h"
 #include "gl/context.h"
+#include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
 #include "scene/framing.h"
@@ -62,13 +64,6 @@ gl::Backend backend_of(const std::string& name) {
   return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
 }
 
-// The number of a choice of shared/axes.h.
-template <std::size_t n>
-int number_of(const std::string& name, const Choice (&choices)[n]) {
-  const auto* found = std::find_if(choices, choices + n, [&](const Choice& c) { return c.name == name; });
-  return static_cast<int>(found - choices);
-}
-
 render::FrameSettings settings_of(const RenderOptions& options) {
   render::FrameSettings settings;
   settings.tiles = number_of(options.tiles, tiles_choices);
@@ -76,6 +71,8 @@ render::FrameSettings settings_of(const RenderOptions& options) {
   settings.loss = options.loss.value_or(0.0f);
   settings.transmittance = number_of(options.transmittance, transmittance_choices);
   settings.contrast = number_of(options.contrast, contrast_choices);
+  settings.th_eyes = number_of(options.th_eyes, th_eyes_choices);
+  settings.quality = options.quality.value_or(0.0f);
   settings.tile_size = options.tile;
   settings.background = options.background.value_or(settings.background);
   for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
@@ -101,7 +98,8 @@ std::vector<shared::View> views_of(const Shot& shot) {
 // What the model takes on the GPU, and the shot that takes most.
 render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& model,
                                  const std::vector<Shot>& shots) {
-  const render::FrameSettings settings = settings_of(options);
+  render::FrameSettings settings = settings_of(options);
+  settings.depth_table = {1.0f, {1.0f}};  // not measured yet
   render::MemoryNeeds most;
   for (const Shot& shot : shots) {
     const auto needs = render::memory_needs(render::make_shape(views_of(shot), settings, model));
@@ -110,17 +108,47 @@ render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& mode
   return most;
 }
 
+// What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
+render::DepthTable depth_table(render::Frame& frame, const RenderOptions& options, const CameraList& list,
+                               double near_plane) {
+  constexpr std::size_t views_max = 16;
+  const std::size_t count = std::min(views_max, list.cameras.size());
+  std::vector<shared::View> views;
+  for (std::size_t k = 0; k < count; ++k)
+    views.push_back(make_view(sized(options, list.cameras[k * list.cameras.size() / count]), near_plane));
+  log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
+  return measure::measure_depth_table(frame, views);
+}
+
+// Where there is no path the frames of a view have no time to find their loss: some go ahead that see all of
+// it, until the loss stays where it is.
+void settle(render::Frame& frame, const std::vector<shared::View>& views, render::FrameSettings settings) {
+  constexpr int frames_min = 6, frames_max = 24;
+  constexpr float still = 0.02f;
+  settings.probe_strips = 1;
+  float last = 0.0f;
+  for (int n = 0; n < frames_max; ++n) {
+    const float loss = frame.draw(views, settings).loss;
+    if (n >= frames_min && std::abs(loss - last) < still * last) break;
+    last = loss;
+  }
+}
+
 // Draws every shot options.frames times and writes its last frame.
-void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> shots, RenderReport& report) {
+void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> shots, const CameraList& list,
+              RenderReport& report) {
   const RenderOptions& options = report.options;
-  const render::FrameSettings settings = settings_of(options);
+  render::FrameSettings settings = settings_of(options);
   render::Frame frame(context, report.model);
+  if (settings.transmittance == TRANSMITTANCE_DEPTH)
+    settings.depth_table = depth_table(frame, options, list, report.near_plane);
   Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
   std::size_t done = 0;
   for (Shot& shot : shots) {
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
+    if (options.quality && options.path.empty()) settle(frame, views, settings);
     for (int n = 0; n < options.frames; ++n) {
       drawn.report = frame.draw(views, settings);
       report.times.add(drawn.report);
@@ -151,7 +179,7 @@ ExitCode render(const RenderOptions& options) {
   const auto context = open_context(options);
   RenderReport report{options, model, *context, near_plane, memory_needs(options, model, shots), {}, {}};
   print_needs(report.needs);
-  draw_all(*context, plan, std::move(shots), report);
+  draw_all(*context, plan, std::move(shots), list, report);
   print(report);
   if (!options.json.empty()) save_json(options.json, to_json(report));
   return ExitCode::done;

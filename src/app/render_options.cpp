@@ -94,6 +94,11 @@ CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).descript
 
 void add_scene(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Scene";
+  sub.add_option("--lod", o.lod,
+                 "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)")
+      ->type_name("N")
+      ->check(range(0, 100))
+      ->group(group);
   sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
       ->type_name("N")
@@ -196,11 +201,20 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""))
       ->group(group);
+  sub.add_option(
+         "--quality", o.quality,
+         "Choose the loss so that pictures come to about DB against the exact\nones, probing a strip of "
+         "each frame")
+      ->type_name("DB")
+      ->check(positive)
+      ->group(group);
   choose(sub, "--transmittance", o.transmittance, "The light that reaches a Gaussian, for --th (one)",
          transmittance_choices)
       ->group(group);
   choose(sub, "--contrast", o.contrast, "What that light is weighed with, for --th squared (off)",
          contrast_choices)
+      ->group(group);
+  choose(sub, "--th-eyes", o.th_eyes, "Whose threshold an eye goes by (per-eye)", th_eyes_choices)
       ->group(group);
   sub.add_option("--tile", o.tile, "Side of a tile in px (16)")
       ->check(one_of({8, 16, 32}))
@@ -267,7 +281,8 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
 
 void add_options(CLI::App& sub, RenderOptions& options) {
   sub.add_option("SCENE", options.scene,
-                 "A model (.ply), or one that is built in: demo:room, a room, or\ndemo:city, streets of any "
+                 "A model (ply; SOG as folder, .sog or streamed), or one that is\nbuilt in: demo:room, a "
+                 "room, or\ndemo:city, streets of any "
                  "size")
       ->required();
   add_scene(sub, options);
@@ -281,16 +296,24 @@ namespace {
 
 void check_threshold(const RenderOptions& o) {
   const std::string th = threshold_name(o);
-  if (th != "tau" && !o.loss) fail("--th {} needs --loss: how much it may cost", th);
-  if (th == "tau" && o.loss) fail("--loss has no effect with --th tau, which is exact");
+  if (o.loss && o.quality) fail("--loss with --quality, which chooses the loss: leave one of them out");
+  if (th != "tau" && !o.loss && !o.quality) fail("--th {} needs --loss or --quality: what it may cost", th);
+  if (th == "tau" && (o.loss || o.quality))
+    fail("{} has no effect with --th tau, which is exact", o.loss ? "--loss" : "--quality");
   if (o.contrast != "off" && (th != "squared" || o.transmittance == "one")) {
     fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
   }
   if ((o.transmittance == "other-eye" || o.transmittance == "both") && (o.mono || !o.only.empty())) {
     fail("--transmittance {} needs both eyes: leave --mono and --only out", o.transmittance);
   }
-  if (!o.reference_until.empty() && o.transmittance != "one") {
-    fail("--reference-until: the reference goes by no earlier frame: leave --transmittance out");
+  if (o.th_eyes != "per-eye" && (th == "tau" || o.mono || !o.only.empty())) {
+    fail("--th-eyes {} is for thresholds of both eyes: leave --mono and --only out, and give --loss",
+         o.th_eyes);
+  }
+  if (!o.reference_until.empty() && (o.transmittance != "one" || o.quality || o.th_eyes != "per-eye")) {
+    fail(
+        "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
+        "--quality and --th-eyes out");
   }
 }
 
@@ -298,13 +321,14 @@ void check_threshold(const RenderOptions& o) {
 
 std::string threshold_name(const RenderOptions& o) {
   if (!o.th.empty()) return o.th;
-  return o.loss ? "squared" : "tau";
+  return o.loss || o.quality ? "squared" : "tau";
 }
 
 void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
+  if (o.scene.rfind("demo:", 0) == 0 && o.lod) fail("--lod is for model files, and {} is none", o.scene);
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");
   if (o.eye.has_value() != o.at.has_value())

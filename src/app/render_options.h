@@ -16,6 +16,8 @@ namespace binosplat::app {
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 
+  std::optional<int> lod;  // of a model file that has levels of detail
+
   // Of scenes that the program makes, and how often a scene is repeated.
   std::optional<std::uint64_t> seed;
   std::optional<std::size_t> count;  // Gaussians
@@ -47,6 +49,8 @@ struct RenderOptions {
   std::optional<float> loss;  // K or kappa
   std::string transmittance = "one";
   std::string contrast = "off";
+  std::string th_eyes = "per-eye";
+  std::optional<float> quality;  // dB
   int tile = TILE_SIZE_DEFAULT;
   std::string reference_until;
   std::string backend = "auto";
@@ -68,8 +72,8 @@ struct RenderOptions {
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
-/// What --th is: squared where only a loss is given, which costs less at equal error than the paper's rule
-/// (METHOD 8).
+/// What --th is: squared where only a loss or a quality is given, which costs less at equal error than the
+/// paper's rule (METHOD 8).
 std::string threshold_name(const RenderOptions& options);
 
 /// Throws Error for options that contradict each other.

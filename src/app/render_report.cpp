@@ -64,6 +64,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   json["gpu_ms"] = drawn.report.total_ms;
   json["depth_orders"] = drawn.report.order_groups;
   json["drawn_again"] = drawn.report.redrawn;
+  if (options.quality) json["loss"] = drawn.report.loss;
+  if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
   json["outputs"] = drawn.files;
   return json;
@@ -76,6 +78,8 @@ ordered_json settings_json(const RenderReport& report) {
   if (o.loss) json["loss"] = *o.loss;
   json["transmittance"] = o.transmittance;
   json["contrast"] = o.contrast;
+  json["th_eyes"] = o.th_eyes;
+  if (o.quality) json["quality_db"] = *o.quality;
   json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
   if (!o.reference_until.empty()) json["reference_until"] = o.reference_until;
   return json;
@@ -123,6 +127,8 @@ void print(const RenderReport& report) {
   for (const Drawn& drawn : report.drawn) {
     std::string line = fmt::format("{}: {}", drawn.shot.name, fmt::join(drawn.files, ", "));
     line += fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
+    if (report.options.quality)
+      line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
   }

@@ -82,11 +82,6 @@ std::vector<Choice> chosen(const RenderOptions& options, const CameraList& list)
   return choices;
 }
 
-Camera sized(const RenderOptions& options, const Camera& camera) {
-  Camera out = options.preset.empty() ? camera : stereo::apply_preset(camera, options.preset);
-  return options.size ? resized(out, options.size->x, options.size->y) : out;
-}
-
 stereo::RigSettings rig_settings(const RenderOptions& options, double near_plane) {
   stereo::RigSettings settings;
   settings.ipd = options.ipd.value_or(settings.ipd);
@@ -148,6 +143,11 @@ std::string stem_of(std::string name, std::set<std::string>& taken) {
 }
 
 }  // namespace
+
+Camera sized(const RenderOptions& options, const Camera& camera) {
+  Camera out = options.preset.empty() ? camera : stereo::apply_preset(camera, options.preset);
+  return options.size ? resized(out, options.size->x, options.size->y) : out;
+}
 
 CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera>& built_in) {
   if (options.eye || options.orbit) return {};

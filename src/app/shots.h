@@ -40,6 +40,9 @@ CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera
 /// Cameras made up from --eye, --orbit or the model.
 CameraList made_up_cameras(const RenderOptions& options, const Model& model);
 
+/// A camera with the size and lens that --preset and --size ask for.
+Camera sized(const RenderOptions& options, const Camera& camera);
+
 /// The shots that --view, --mono and the rig's options ask for. `near_plane` in world units. Throws Error for
 /// a view that is not there; it names some that are.
 std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane);

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "formats/content.h"
+#include "formats/json_file.h"
 
 namespace binosplat {
 
@@ -103,26 +104,11 @@ class CameraReader {
   const json& object_;
 };
 
-json parse(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  const std::string_view text = as_text(file.bytes());
-  try {
-    return json::parse(text.begin(), text.end());
-  } catch (const json::parse_error& error) {
-    const std::size_t byte = std::min<std::size_t>(error.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
-    const Content content = content_of(file.bytes());
-    fail("{} is not valid JSON at line {}, byte {}{}", path.string(), line, byte,
-         content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
-  } catch (const json::exception& error) {
-    fail("{} is not valid JSON: {}", path.string(), error.what());
-  }
-}
-
 }  // namespace
 
 std::vector<Camera> load_cameras(const std::filesystem::path& path) {
-  const json root = parse(path);
+  const MappedFile file(path);
+  const json root = parse_json(path.string(), as_text(file.bytes()));
   if (!root.is_array()) {
     fail("{}: expected a list of cameras as INRIA's cameras.json, but its root is of type {}", path.string(),
          root.type_name());

@@ -4,41 +4,81 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "formats/content.h"
+#include "formats/json_file.h"
 #include "formats/ply.h"
 #include "formats/scaffold_file.h"
+#include "formats/sog.h"
 
 namespace binosplat {
 
 namespace {
 
-void warn_of_left_out(const std::filesystem::path& path, std::size_t left_out, std::size_t all,
-                      const char* what) {
-  if (left_out == 0) return;
-  log_warning("{}: {} of {} {} left out (values not finite, or a zero quaternion)", path.string(), left_out,
-              all, what);
+namespace fs = std::filesystem;
+
+constexpr const char* known = "a ply, or a SOG (meta.json, lod-meta.json or .sog)";
+
+/// The file to read where a folder is named.
+fs::path file_of(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return path;
+  for (const char* name : {"lod-meta.json", "meta.json"}) {
+    if (fs::is_regular_file(path / name, ignored)) return path / name;
+  }
+  if (const auto ply = find_point_cloud(path)) return *ply;
+  fail(
+      "{} is a folder without a model: no lod-meta.json or meta.json of a SOG, and no point_cloud.ply, also "
+      "not "
+      "in point_cloud/ or point_cloud/iteration_N/; name a file in it",
+      path.string());
 }
 
-Model load_scaffold_model(const std::filesystem::path& ply) {
-  const std::shared_ptr<Scaffold> scaffold = load_scaffold(ply);
-  warn_of_left_out(ply, scaffold->left_out, scaffold->left_out + scaffold->anchor_count(), "anchors");
-  return stand_in(scaffold);
+void refuse_level(const fs::path& path, const ModelOptions& options) {
+  if (options.lod) {
+    fail("--lod {}: {} has no levels of detail; a streamed SOG's lod-meta.json has", *options.lod,
+         path.string());
+  }
+}
+
+Model load_json_model(const fs::path& path, std::string_view text, const ModelOptions& options) {
+  const nlohmann::json root = parse_json(path.string(), text);
+  if (is_sog_levels(root)) return load_streamed_sog(path, root, options.lod);
+  refuse_level(path, options);
+  if (is_sog_meta(root)) return load_sog(path, root);
+  fail("{} is a JSON file, but not the meta.json or lod-meta.json of a SOG model{}", path.string(),
+       root.is_array() ? "; it may hold cameras, which --cameras takes" : "");
+}
+
+Model load_content(const fs::path& path, const ModelOptions& options) {
+  const MappedFile file(path);
+  const Content content = content_of(file.bytes());
+  if (content != Content::json) refuse_level(path, options);
+  switch (content) {
+    case Content::ply:
+      if (is_scaffold(read_ply_header(path, file.bytes()))) return stand_in(load_scaffold(path));
+      return load_ply(path);
+    case Content::zip:
+      return load_sog(path);
+    case Content::json:
+      return load_json_model(path, as_text(file.bytes()), options);
+    default:
+      fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(), known,
+           describe(content));
+  }
 }
 
 }  // namespace
 
-Model load_model(const std::filesystem::path& given) {
-  std::error_code ignored;
-  const std::filesystem::path path =
-      std::filesystem::is_directory(given, ignored) ? find_point_cloud(given) : given;
-  const MappedFile file(path);
-  const Content content = content_of(file.bytes());
-  if (content != Content::ply) {
-    fail("{} is not a model that can be read: expected INRIA's ply, but it looks like {}", path.string(),
-         describe(content));
+Model load_model(const fs::path& named, const ModelOptions& options) {
+  const fs::path path = file_of(named);
+  Model model = load_content(path, options);
+  if (model.count() == 0) {
+    fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),
+         model.left_out);
   }
-  if (is_scaffold(read_ply_header(path, file.bytes()))) return load_scaffold_model(path);
-  Model model = load_ply(path);
-  warn_of_left_out(path, model.left_out, model.left_out + model.count(), "Gaussians");
+  if (model.left_out > 0) {
+    log_warning("{}: {} of {} Gaussians left out (values not finite, or a zero quaternion)", path.string(),
+                model.left_out, model.left_out + model.count());
+  }
   return model;
 }
 

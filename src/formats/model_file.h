@@ -2,16 +2,22 @@
 // The entrance for model files: what a file is, is decided by its content, never by its name.
 
 #include <filesystem>
+#include <optional>
 
 #include "scene/model.h"
 
 namespace binosplat {
 
-/// Reads a trained model: INRIA's ply (formats/ply.h), or Scaffold-GS's with the networks beside it
-/// (formats/scaffold_file.h). A folder stands for the point_cloud.ply in it or in its point_cloud/, the
-/// latest iteration's. Says on standard error how many Gaussians were left out because a value is not finite
-/// or the quaternion is zero. Throws Error for anything that is not such a model; the text says what the file
-/// looks like instead.
-Model load_model(const std::filesystem::path& path);
+struct ModelOptions {
+  std::optional<int> lod;  // the level of detail of a model that has several; 0 is the finest
+};
+
+/// Reads a trained model: INRIA's ply (formats/ply.h), Scaffold-GS's with the networks beside it
+/// (formats/scaffold_file.h), PlayCanvas' SOG as a folder, a .sog archive, or streamed (formats/sog.h).
+/// `path` may be a folder that holds lod-meta.json, meta.json, or point_cloud.ply, also in point_cloud/ or
+/// the latest point_cloud/iteration_N/. Says on standard error how many Gaussians were left out because a
+/// value is not finite or the quaternion is zero. Throws Error for anything that is not such a model; the
+/// text says what the file looks like instead.
+Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 
 }  // namespace binosplat

@@ -288,12 +288,7 @@ class PlyReader {
 
 Model load_ply(const std::filesystem::path& path) {
   const MappedFile file(path);
-  Model model = PlyReader(path, file.bytes()).read();
-  if (model.count() == 0) {
-    fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),
-         model.left_out);
-  }
-  return model;
+  return PlyReader(path, file.bytes()).read();
 }
 
 }  // namespace binosplat

@@ -20,7 +20,7 @@ namespace binosplat {
 /// Reads a model; degree and count are the file's, Model::left_out counts what was not usable. The file is
 /// mapped into memory and decoded on all cores; progress is shown where it takes long. Throws Error naming
 /// the file and the place: a broken header, missing properties, a file shorter than its header promises, a
-/// point cloud without opacities, a compressed ply, no Gaussians.
+/// point cloud without opacities, a compressed ply, a header that promises no Gaussians.
 Model load_ply(const std::filesystem::path& path);
 
 }  // namespace binosplat

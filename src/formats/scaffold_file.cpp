@@ -118,7 +118,7 @@ bool is_scaffold(const PlyHeader& header) {
   return vertices != nullptr && vertices->find("f_anchor_feat_0") != nullptr;
 }
 
-fs::path find_point_cloud(const fs::path& folder) {
+std::optional<fs::path> find_point_cloud(const fs::path& folder) {
   const char* const name = "point_cloud.ply";
   std::error_code ignored;
   for (const fs::path& candidate : {folder / name, folder / "point_cloud" / name}) {
@@ -132,12 +132,7 @@ fs::path find_point_cloud(const fs::path& folder) {
     latest = *n;
     found = entry.path() / name;
   }
-  if (found.empty()) {
-    fail(
-        "{} is a folder without a model: expected point_cloud.ply in it, in its point_cloud/ or in "
-        "point_cloud/iteration_N/",
-        folder.string());
-  }
+  if (found.empty()) return std::nullopt;
   return found;
 }
 

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "formats/content.h"
-#include "formats/zip_archive.h"
+#include "formats/zip_file.h"
 
 namespace binosplat {
 
@@ -20,13 +20,21 @@ static_assert(std::endian::native == std::endian::little, "tensors are read as t
 constexpr std::size_t tensor_bytes_max = std::size_t{64} << 20;
 
 // ROOT of the archive, by its only entry ROOT/data.pkl.
-std::string root_of(const std::filesystem::path& path, const ZipArchive& archive) {
+std::string root_of(const std::filesystem::path& path, const ZipFile& archive) {
+  std::string root;
   for (const std::string& name : archive.names()) {
+    if (!stays_below(name)) {
+      fail("{}: its file {} leads out of the archive; no trainer writes such a one", path.string(),
+           binosplat::quoted(name));
+    }
     const std::size_t slash = name.find('/');
-    if (slash != std::string::npos && name.substr(slash) == "/data.pkl") return name.substr(0, slash);
+    if (slash != std::string::npos && name.substr(slash) == "/data.pkl") root = name.substr(0, slash);
   }
-  fail("{} is a zip archive without data.pkl: expected weights saved by torch.jit (a .pt of Scaffold-GS)",
-       path.string());
+  if (!root.empty()) return root;
+  fail(
+      "{} is a zip archive without data.pkl: expected weights saved by torch.jit (a .pt of Scaffold-GS); it "
+      "holds {}",
+      path.string(), archive.list());
 }
 
 std::vector<float> floats_of(const std::filesystem::path& path, const std::string& name,
@@ -49,7 +57,11 @@ std::vector<float> floats_of(const std::filesystem::path& path, const std::strin
 
 std::vector<std::vector<float>> load_torch_tensors(const std::filesystem::path& path, std::size_t count) {
   const MappedFile file(path);
-  const ZipArchive archive(path, file.bytes());
+  const Content content = content_of(file.bytes());
+  if (content != Content::zip) {
+    fail("{}: expected a zip archive, but it looks like {}", path.string(), describe(content));
+  }
+  const ZipFile archive(path.string(), file.bytes());
   const std::string root = root_of(path, archive);
   const std::string order = root + "/byteorder";
   if (archive.has(order)) {

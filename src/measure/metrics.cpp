@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-#include "base/error.h"
+#include "measure/comparable.h"
 
 namespace binosplat::measure {
 
@@ -18,18 +18,6 @@ namespace {
 constexpr int window_size = 11;  // px
 constexpr int window_middle = window_size / 2;
 constexpr double window_sigma = 1.5;
-
-void require_comparable(const Image& a, const Image& b) {
-  if (a.width != b.width || a.height != b.height) {
-    fail("pictures of {} x {} and {} x {} px cannot be compared: expected equal sizes", a.width, a.height,
-         b.width, b.height);
-  }
-  if (a.channels != b.channels) {
-    fail("pictures of {} and {} channels cannot be compared: expected equal channels (4 are RGB and alpha)",
-         a.channels, b.channels);
-  }
-  if (a.data.empty()) fail("a picture without pixels cannot be compared");
-}
 
 /// A value as a screen shows it; a value that is not a number stays so.
 double shown(float value) { return std::clamp(double(value), 0.0, 1.0); }

@@ -31,10 +31,10 @@ glm::dmat3 covariance_in_world(const Gaussian& gaussian) {
 /// (3D-GS does the same).
 glm::dmat3x2 perspective_jacobian(const glm::dvec3& v, const shared::View& view) {
   const glm::dvec4 lens = view.lens;
-  const double fx = lens[0], fy = lens[1], cx = lens[2], cy = lens[3];
-  const double margin_x = CLAMP_MARGIN * view.width, margin_y = CLAMP_MARGIN * view.height;
-  const double x = std::clamp(v.x / v.z, -(cx + margin_x) / fx, (view.width - cx + margin_x) / fx);
-  const double y = std::clamp(v.y / v.z, -(cy + margin_y) / fy, (view.height - cy + margin_y) / fy);
+  const double fx = lens[0], fy = lens[1];
+  const glm::dvec4 slopes = view.slopes;
+  const double x = std::clamp(v.x / v.z, slopes[0], slopes[2]);
+  const double y = std::clamp(v.y / v.z, slopes[1], slopes[3]);
   return glm::dmat3x2(fx / v.z, 0.0, 0.0, fy / v.z, -fx * x / v.z, -fy * y / v.z);  // by columns
 }
 

@@ -12,14 +12,6 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr std::uint32_t slots_start = 1u << 20;
-
-// Equal to the bit in all that decides a Gaussian's depth.
-bool same_depths(const shared::View& a, const shared::View& b) {
-  return std::memcmp(&a.row_z, &b.row_z, sizeof(a.row_z)) == 0 &&
-         std::memcmp(&a.anchor, &b.anchor, sizeof(a.anchor)) == 0;
-}
-
 // Of one Gaussian, with the padding that vec4s need.
 std::int64_t harmonic_bytes(int degree) { return (3 * sh_count(degree) + 3) / 4 * 16; }
 
@@ -45,63 +37,6 @@ std::vector<float> pad_harmonics(const Model& model, std::size_t first, std::siz
 }
 
 }  // namespace
-
-std::uint32_t FrameShape::list_bits() const {
-  const std::uint32_t lists = settings.tiles == TILES_ALL ? view_count() : tile_count;
-  return static_cast<std::uint32_t>(std::bit_width(lists - 1));
-}
-
-FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings,
-                      const Model& model) {
-  if (views.empty() || views.size() > MAX_VIEWS)
-    fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
-  if (settings.tile_size != 8 && settings.tile_size != 16 && settings.tile_size != 32) {
-    fail("--tile {}: expected 8, 16 or 32", settings.tile_size);
-  }
-  if (!(settings.loss >= 0.0f) || !std::isfinite(settings.loss))
-    fail("--loss {}: expected zero or more", settings.loss);
-  if (settings.transmittance > TRANSMITTANCE_LAST && views.size() % 2 != 0) {
-    fail("--transmittance {}: only for both eyes together",
-         transmittance_choices[settings.transmittance].name);
-  }
-  if (settings.contrast != CONTRAST_OFF && settings.transmittance == TRANSMITTANCE_ONE) {
-    fail("--contrast {}: only with a measured --transmittance", contrast_choices[settings.contrast].name);
-  }
-  FrameShape shape;
-  shape.settings = settings;
-  shape.degree = model.degree;
-  shape.gaussian_count = static_cast<std::uint32_t>(model.count());
-  if (model.scaffold) {
-    shape.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);
-    shape.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
-    shape.anchor_bytes = anchor_bytes(*model.scaffold);
-  }
-  // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The
-  // reference's results need all the room they take at once.
-  const std::uint32_t half = shape.gaussian_count / 2;
-  const std::uint32_t start = std::max(half, std::min(shape.gaussian_count, slots_start));
-  shape.slots = settings.reference_until ? shape.gaussian_count : start;
-  shape.views.assign(views.begin(), views.end());
-  const auto tile = static_cast<std::uint32_t>(settings.tile_size);
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    shared::View& view = shape.views[v];
-    if (view.width == 0 || view.height == 0)
-      fail("a view of {} x {} px has no picture", view.width, view.height);
-    view.tiles_x = (view.width + tile - 1) / tile;
-    view.tiles_y = (view.height + tile - 1) / tile;
-    view.tile_offset = shape.tile_count;
-    view.pixel_offset = static_cast<std::uint32_t>(shape.pixel_count);
-    shape.pixel_count += std::int64_t{view.width} * view.height;
-    if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
-    shape.tile_count += view.tiles_x * view.tiles_y;
-    if (v == 0 || !same_depths(view, shape.views[v - 1])) {
-      shape.groups.push_back({static_cast<std::uint32_t>(v), static_cast<std::uint32_t>(v)});
-    }
-    shape.groups.back().end = static_cast<std::uint32_t>(v + 1);
-    view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
-  }
-  return shape;
-}
 
 ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
     : networks(context) {
@@ -170,9 +105,9 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   needs.model =
       shape.anchor_bytes + std::int64_t{decodings} * shape.gaussian_count *
                                (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
-  const bool measures = shape.settings.transmittance != TRANSMITTANCE_ONE;
-  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measures ? 2 : 1);
-  const std::int64_t gaussian_bytes = 4 + (measures ? shape.view_count() * 8 : 0);
+  const bool measured = measures(shape.settings.transmittance);
+  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measured ? 2 : 1);
+  const std::int64_t gaussian_bytes = 4 + (measured ? shape.asked * 8 : 0);
   const std::int64_t pair_bytes = 4 * 4;                                     // tile and splat, twice
   const std::int64_t slot_bytes = shape.view_count() * splat_bytes + 6 * 4;  // indices, order twice, offsets
   needs.frame = shape.gaussian_count * gaussian_bytes + shape.slots * slot_bytes + shape.pixel_count * 20 +
@@ -191,6 +126,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       upper(std::make_unique<gl::Buffer>(context, "remembered transmittance")),
       upper_next(std::make_unique<gl::Buffer>(context, "transmittance to remember")),
       measured(context, "measured transmittance"),
+      depth_table(context, "transmittance by depth"),
       splats(context, "splats"),
       tile_counts(context, "tile counts"),
       pair_amounts(context, "amounts of pairs"),
@@ -201,6 +137,17 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       scan(context),
       sort(context),
       context_(context) {}
+
+void FrameBuffers::upload(const FrameShape& shape) {
+  std::vector<shared::View> all = shape.views;
+  all.insert(all.end(), shape.between.begin(), shape.between.end());
+  views.upload(all);
+  if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
+  std::vector<float> table = shape.settings.depth_table.upper;
+  for (float& upper_of_bin : table)
+    upper_of_bin = upper_of_bin > 0.0f ? std::max(upper_of_bin, static_cast<float>(UPPER_FLOOR)) : 1.0f;
+  depth_table.upload(table);
+}
 
 void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) {
   const std::int64_t gaussians = shape.gaussian_count;
@@ -214,9 +161,9 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) 
     group->amounts.reserve(sizeof(primitives::SortAmounts));
     group->indices.reserve(slots * 4);
   }
-  if (shape.settings.transmittance != TRANSMITTANCE_ONE) {
-    upper->reserve(gaussians * shape.view_count() * 4);
-    upper_next->reserve(gaussians * shape.view_count() * 4);
+  if (measures(shape.settings.transmittance)) {
+    upper->reserve(gaussians * shape.asked * 4);
+    upper_next->reserve(gaussians * shape.asked * 4);
     measured.reserve(slots * shape.view_count() * 4);
   }
   order.reserve(slots);

@@ -1,53 +1,18 @@
 #pragma once
-// Everything that the stages of a frame read and write on the GPU, and the shape of the frame at hand.
+// Everything that the stages of a frame read and write on the GPU.
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "gl/buffer.h"
 #include "primitives/radix_sort.h"
 #include "render/anchors.h"
-#include "render/settings.h"
+#include "render/shape.h"
 #include "scene/model.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
-
-/// Views that share one depth order: [begin, end) of the frame's views.
-struct OrderGroup {
-  std::uint32_t begin = 0;
-  std::uint32_t end = 0;
-};
-
-/// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
-struct FrameShape {
-  FrameSettings settings;
-  int degree = 0;  // of the model's SH
-  std::uint32_t gaussian_count = 0;
-  bool remembers = false;   // the last frame was of the same views, a moment ago
-  std::uint32_t slots = 0;  // room for the Gaussians that one order group draws
-  std::vector<shared::View> views;
-  std::vector<OrderGroup> groups;
-  std::uint32_t tile_count = 0;  // over all views
-  std::int64_t pixel_count = 0;  // over all views
-  // Of Scaffold-GS; K is 0 for other models.
-  std::uint32_t offset_count = 0;        // K
-  std::uint32_t views_per_decoding = 1;  // views that share what the networks made
-  std::int64_t anchor_bytes = 0;
-
-  std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
-  /// Bits that tell the lists apart by which pairs are sorted: tiles, or views with --tiles all.
-  std::uint32_t list_bits() const;
-  /// How often each anchor is decoded.
-  std::uint32_t decoding_count() const {
-    return (view_count() + views_per_decoding - 1) / views_per_decoding;
-  }
-};
-
-/// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, or a bad tile size.
-FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model);
 
 /// The model on the GPU, in pages of Gaussians whose buffers a shader can reach. Of Scaffold-GS a page holds
 /// whole anchors, and its Gaussians and their colours (as harmonics of degree 0) are made anew each frame,
@@ -97,10 +62,13 @@ struct DrawnBuffers {
 struct FrameBuffers {
   explicit FrameBuffers(gl::Context& context);
 
+  /// What the CPU knows of a frame: its views and its table of depths.
+  void upload(const FrameShape& shape);
+
   /// Room for a frame of this shape and its slots, and so many pairs.
   void reserve(const FrameShape& shape, std::int64_t pair_capacity);
 
-  gl::Buffer views;     // View
+  gl::Buffer views;     // View, those between eyes last
   gl::Buffer counters;  // Counters
 
   // Of the order group at hand.
@@ -113,10 +81,11 @@ struct FrameBuffers {
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 
   // What is remembered for the next frame's Th, float (view, Gaussian): T_upper, or W with contrast; written
-  // while the last frame's is read. Empty with TRANSMITTANCE_ONE.
+  // while the last frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> upper;
   std::unique_ptr<gl::Buffer> upper_next;
-  gl::Buffer measured;  // uint (view, slot), bits of the largest float
+  gl::Buffer measured;     // uint (view, slot), bits of the largest float
+  gl::Buffer depth_table;  // float by bin
 
   // Of all views.
   gl::Buffer splats;              // Splat (view, slot)

@@ -28,13 +28,8 @@ double moved(const shared::View& a, const shared::View& b) {
 }  // namespace
 
 bool continues(const FrameShape& before, const FrameShape& now, double median_depth) {
-  if (before.views.size() != now.views.size() || before.gaussian_count != now.gaussian_count) return false;
-  if (now.settings.transmittance == TRANSMITTANCE_ONE || before.settings.transmittance == TRANSMITTANCE_ONE ||
-      before.settings.contrast != now.settings.contrast ||
-      before.settings.background != now.settings.background) {
-    return false;
-  }
-  for (std::size_t v = 0; v < now.views.size(); ++v) {
+  if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
+  for (std::size_t v = 0; v < now.asked; ++v) {
     const shared::View& a = before.views[v];
     const shared::View& b = now.views[v];
     if (a.width != b.width || a.height != b.height || a.lens != b.lens) return false;
@@ -42,6 +37,12 @@ bool continues(const FrameShape& before, const FrameShape& now, double median_de
       return false;
   }
   return true;
+}
+
+bool remembers(const FrameShape& before, const FrameShape& now, double median_depth) {
+  return measures(before.settings.transmittance) && measures(now.settings.transmittance) &&
+         before.settings.contrast == now.settings.contrast &&
+         before.settings.background == now.settings.background && continues(before, now, median_depth);
 }
 
 }  // namespace binosplat::render

@@ -1,14 +1,16 @@
 #pragma once
 // Whether what one frame measured still holds for the next.
 
-#include "render/buffers.h"
+#include "render/shape.h"
 
 namespace binosplat::render {
 
-/// True if the views are the same ones a moment later: as many, of the same pictures, lenses and kind of
-/// measurement, each turned by less than 15 degrees and moved by less than a tenth of `median_depth` (of the
-/// Gaussians drawn before, world units). After anything else (a cut, a jump) the frame starts as a first one
-/// does.
+/// True if the views are the same ones a moment later: as many, of the same pictures and lenses, each turned
+/// by less than 15 degrees and moved by less than a tenth of `median_depth` (of the Gaussians drawn before,
+/// world units). Anything else is a cut.
 bool continues(const FrameShape& before, const FrameShape& now, double median_depth);
+
+/// True if `before` measured what `now` goes by. After anything else the frame starts as a first one does.
+bool remembers(const FrameShape& before, const FrameShape& now, double median_depth);
 
 }  // namespace binosplat::render

@@ -28,7 +28,7 @@ void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuff
                     {"Harmonics", *page.harmonics},
                     {"Kept", anchors.kept}},
                    {{"anchor_count", anchors.count},
-                    {"view_count", shape.view_count()},
+                    {"view_count", shape.asked},
                     {"views_per_decoding", shape.views_per_decoding},
                     {"offset_count", shape.offset_count},
                     {"anchor_cull", shape.settings.anchor_cull ? 1u : 0u}});

@@ -27,13 +27,20 @@ Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussi
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
   shape_ = make_shape(views, settings, model_);
-  shape_.remembers = continues(last_shape_, shape_, last_median_depth_);
+  shape_.remembers = remembers(last_shape_, shape_, last_median_depth_);
+  if (settings.quality > 0.0f) {
+    const bool cut = !continues(last_shape_, shape_, last_median_depth_);
+    const bool remembered = shape_.remembers;
+    shape_ = make_shape(views, settings, model_, loss_control_.next_probe(views, settings));
+    shape_.remembers = remembered;
+    shape_.settings.loss = loss_control_.next_loss(settings, cut);
+  }
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
   if (settings.order_capacity > 0) slots_ = settings.order_capacity;
   pair_capacity_ =
       settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, starting_pairs(shape_));
 
-  buffers_.views.upload(shape_.views);
+  buffers_.upload(shape_);
   const std::uint32_t groups_max = dispatcher_.context().limits().groups;
   const std::uint32_t blocks = (shape_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   buffers_.block_amount.upload(std::vector{primitives::make_amount(blocks, groups_max)});
@@ -50,6 +57,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
     grow(counters);
   }
   if (counters.loop_cut != 0) {
+    last_shape_ = {};  // what this frame left behind is not to be gone by
     throw Error(
         ExitCode::out_of_memory,
         fmt::format(
@@ -57,7 +65,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
             "--tile or a smaller model.",
             dispatcher_.context().renderer()));
   }
-  keep_measurements(counters);
+  keep_measurements(counters, report);
   report.visible = counters.visible;
   report.pairs = counters.pairs;
   report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
@@ -105,23 +113,23 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     dispatcher_.begin_stage("blend");
     blend(dispatcher_, shape_, buffers_);
     remember(dispatcher_, shape_, buffers_);
+    if (shape_.probe) dispatcher_.begin_stage("probe");
+    probe(dispatcher_, shape_, buffers_);
   }
   dispatcher_.end_frame();
   report.stages = dispatcher_.wait_and_time();
   return buffers_.counters.read<shared::Counters>(1).front();
 }
 
-void Frame::keep_measurements(const shared::Counters& counters) {
+void Frame::keep_measurements(const shared::Counters& counters, FrameReport& report) {
   last_shape_ = shape_;
-  if (shape_.settings.transmittance == TRANSMITTANCE_ONE) return;
-  std::swap(buffers_.upper, buffers_.upper_next);
-  // The last order group's, which is as good as any: the depth in the middle of the depth order.
-  const std::size_t middle =
-      buffers_.drawn[shape_.groups.size() - 1]->amounts.read<shared::Amount>(1).front().count / 2;
-  last_median_depth_ =
-      counters.visible == 0
-          ? 0.0
-          : std::bit_cast<float>(buffers_.order.keys().read<std::uint32_t>(1, middle).front());
+  last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
+  if (measures(shape_.settings.transmittance)) std::swap(buffers_.upper, buffers_.upper_next);
+  report.loss = shape_.settings.loss;
+  if (!shape_.probe) return;
+  if (shape_.remembers || !measures(shape_.settings.transmittance))
+    loss_control_.measured(probed_error(shape_, counters));
+  report.quality = loss_control_.quality();
 }
 
 void Frame::grow(const shared::Counters& counters) {
@@ -146,12 +154,30 @@ std::vector<Picture> Frame::read_pictures() {
   const auto colours = buffers_.colours.read<glm::vec4>(pixels);
   const auto z_sums = buffers_.z_sums.read<float>(pixels);
   std::vector<Picture> pictures;
-  for (const shared::View& view : shape_.views) {
+  for (const shared::View& view : std::span(shape_.views).first(shape_.asked)) {
     Picture& picture = pictures.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height));
     std::copy_n(colours.begin() + view.pixel_offset, picture.colour.size(), picture.colour.begin());
     std::copy_n(z_sums.begin() + view.pixel_offset, picture.z_sum.size(), picture.z_sum.begin());
   }
   return pictures;
+}
+
+std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
+  if (!measures(shape_.settings.transmittance)) return {};
+  const shared::View& view = shape_.views.at(v);
+  const DrawnBuffers& drawn = *buffers_.drawn[view.order_group];
+  const auto count = drawn.amounts.read<shared::Amount>(1).front().count;
+  const auto indices = drawn.indices.read<std::uint32_t>(count);
+  const std::size_t first = std::size_t{v} * shape_.slots;
+  const auto tiles = buffers_.tile_counts.read<std::uint32_t>(count, first);
+  const auto most = buffers_.measured.read<float>(count, first);
+  std::vector<MeasuredGaussian> measured;
+  for (std::size_t slot = 0; slot < count; ++slot) {
+    if (tiles[slot] == 0) continue;
+    const glm::vec3 p = model_.position[indices[slot]] - glm::vec3(view.anchor);
+    measured.push_back({indices[slot], glm::dot(glm::vec3(view.row_z), p) + view.row_z.w, most[slot]});
+  }
+  return measured;
 }
 
 }  // namespace binosplat::render

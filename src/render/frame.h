@@ -8,6 +8,7 @@
 #include "base/image.h"
 #include "gl/dispatch.h"
 #include "render/buffers.h"
+#include "render/loss_control.h"
 #include "render/settings.h"
 
 namespace binosplat::render {
@@ -16,12 +17,21 @@ namespace binosplat::render {
 struct FrameReport {
   std::uint64_t visible =
       0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes, else 2)
-  std::uint64_t pairs = 0;  // Gaussian-tile pairs over all views
+  std::uint64_t pairs = 0;  // Gaussian-tile pairs over all views, a probe's included
   std::uint32_t order_groups = 0;
   int redrawn = 0;                    // times that buffers had to grow
   std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
   double total_ms = 0;                // their sum
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
+  float loss = 0.0f;                  // K or kappa that the frame went by
+  double quality = 0.0;               // with settings.quality: the PSNR in dB that its probes so far tell of
+};
+
+/// A Gaussian that a frame drew in a view, and the most light that reached it.
+struct MeasuredGaussian {
+  std::uint32_t index = 0;     // in the model
+  float depth = 0.0f;          // view z, world units
+  float transmittance = 0.0f;  // max(T), or W with contrast, not floored; 0 where no pixel blends it
 };
 
 class Frame {
@@ -39,10 +49,14 @@ class Frame {
   /// The pictures of the last frame drawn, one a view.
   std::vector<Picture> read_pictures();
 
+  /// What the last frame measured in its view `v`, in index order; none unless its transmittance is one that
+  /// is measured.
+  std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
+
  private:
   shared::Counters draw_once(FrameReport& report);
   void grow(const shared::Counters& counters);
-  void keep_measurements(const shared::Counters& counters);
+  void keep_measurements(const shared::Counters& counters, FrameReport& report);
 
   gl::Dispatcher dispatcher_;
   const Model& model_;
@@ -50,6 +64,7 @@ class Frame {
   FrameBuffers buffers_;
   FrameShape shape_;
   FrameShape last_shape_;  // of the last frame drawn
+  LossControl loss_control_;
   double last_median_depth_ = 0;
   std::int64_t slots_ = 0;
   std::int64_t pair_capacity_ = 0;

@@ -24,13 +24,19 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"Kept", kept_of(page)},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
+                    {"DepthTable", buffers.depth_table},
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
                     {"views_per_decoding", shape.views_per_decoding},
+                    {"decoding_of_probe", shape.decoding_of_probe()},
+                    {"asked", shape.asked},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
+                    {"exact_from", shape.asked},
+                    {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
+                    {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
@@ -62,13 +68,10 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuf
 
 gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  return {{"TILES_NAME", tiles_choices[s.tiles].name},
-          {"TH", std::to_string(s.th)},
-          {"TH_NAME", th_choices[s.th].name},
-          {"TRANSMITTANCE", std::to_string(s.transmittance)},
-          {"TILES", std::to_string(s.tiles)},
-          {"TILE_SIZE", std::to_string(s.tile_size)},
-          {"OFFSETS", std::to_string(shape.offset_count)}};
+  return {{"TILES_NAME", tiles_choices[s.tiles].name}, {"TH", std::to_string(s.th)},
+          {"TH_NAME", th_choices[s.th].name},          {"TRANSMITTANCE", std::to_string(s.transmittance)},
+          {"TH_EYES", std::to_string(s.th_eyes)},      {"TILES", std::to_string(s.tiles)},
+          {"TILE_SIZE", std::to_string(s.tile_size)},  {"OFFSETS", std::to_string(shape.offset_count)}};
 }
 
 void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,
@@ -91,14 +94,20 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Splats", buffers.splats},
                     {"TileCounts", buffers.tile_counts},
                     {"Upper", *buffers.upper},
+                    {"DepthTable", buffers.depth_table},
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
                     {"views_per_decoding", shape.views_per_decoding},
+                    {"decoding_of_probe", shape.decoding_of_probe()},
+                    {"asked", shape.asked},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"slots", shape.slots},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
+                    {"exact_from", shape.asked},
+                    {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
+                    {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }

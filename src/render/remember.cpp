@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstddef>
 
 #include "render/stages.h"
@@ -5,19 +6,22 @@
 namespace binosplat::render {
 
 void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (shape.settings.transmittance == TRANSMITTANCE_ONE) return;
+  if (!measures(shape.settings.transmittance) && !shape.probe) return;
+  const gl::Defines defines = {{"TRANSMITTANCE", std::to_string(shape.settings.transmittance)}};
   for (std::size_t group = 0; group < shape.groups.size(); ++group) {
     const DrawnBuffers& drawn = *buffers.drawn[group];
-    dispatcher.run(dispatcher.context().program("remember.comp"),
+    dispatcher.run(dispatcher.context().program("remember.comp", defines),
                    gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
                    {{"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},
                     {"TileCounts", buffers.tile_counts},
                     {"Measured", buffers.measured},
-                    {"UpperNext", *buffers.upper_next}},
+                    {"UpperNext", *buffers.upper_next},
+                    {"OrderKeys", buffers.order.keys()},
+                    {"FrameCounters", buffers.counters}},
                    {{"gaussian_count", shape.gaussian_count},
                     {"view_begin", shape.groups[group].begin},
-                    {"view_end", shape.groups[group].end},
+                    {"view_end", std::min(shape.groups[group].end, shape.asked)},
                     {"slots", shape.slots}});
   }
 }

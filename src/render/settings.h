@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -15,13 +16,31 @@ namespace binosplat::render {
 enum class Stage { decode, project, order, pairs, tile_sort, ranges, blend };
 constexpr const char* stage_names[] = {"decode", "project", "order", "pairs", "tile_sort", "ranges", "blend"};
 
+/// What TRANSMITTANCE_DEPTH goes by: the largest T in front of any Gaussian whose view depth lies in a bin
+/// (AdaGScale, section 4.1), in equal bins over [0, far) world units. 1 beyond, and in a bin of 0, which no
+/// Gaussian was seen in.
+struct DepthTable {
+  float far = 0.0f;
+  std::vector<float> upper;
+};
+
+/// Whether frames measure what their successors go by.
+constexpr bool measures(int transmittance) { return transmittance >= TRANSMITTANCE_LAST; }
+
 struct FrameSettings {
   int tiles = TILES_ELLIPSE;              // TILES_ of shared/axes.h
   int th = TH_TAU;                        // TH_ of shared/axes.h
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: where Th takes T_upper from
   int contrast = CONTRAST_OFF;            // CONTRAST_; with TH_SQUARED and a measured transmittance only
-  float loss = 0.0f;         // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
-  int decode = DECODE_EYES;  // DECODE_; of Scaffold-GS only
+  int th_eyes = TH_EYES_PER_EYE;          // TH_EYES_; others need views in pairs, the eyes at 2k and 2k + 1
+  DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
+  float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
+  /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
+  /// dB. Each frame draws one strip of a view exactly, too, and the next loss follows from what that shows
+  /// (loss_control.h). A view has so many strips; with 1 a whole view is drawn twice.
+  float quality = 0.0f;
+  int probe_strips = 16;
+  int decode = DECODE_EYES;  // DECODE_; of Scaffold-GS only, cyclopean for views in pairs as above
   bool anchor_cull = true;   // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
   int tile_size = TILE_SIZE_DEFAULT;  // px: 8, 16 or 32; the picture does not depend on it
   glm::vec3 background{0.0f};         // behind the scene, for contrast only: the pictures are without

@@ -30,8 +30,15 @@ void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& b
 /// The pictures; and, for a transmittance that is measured, the most that each splat counted for.
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
-/// Keeps what was measured for the next frame. Nothing to do for TRANSMITTANCE_ONE.
+/// Keeps what was measured for the next frame, and tells the median depth. Nothing to do where nothing is
+/// measured.
 void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+
+/// Sums up the squared error of the probe's strip. Nothing to do without one.
+void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+
+/// The mean over pixels and channels of what probe() summed up.
+double probed_error(const FrameShape& shape, const shared::Counters& counters);
 
 /// Shader defines that pick the variant of a stage which decides pairs.
 gl::Defines pair_defines(const FrameShape& shape);

@@ -28,7 +28,7 @@ shared::Splat to_shared(const reference::Splat& s) {
 // What decodes the model for view v.
 reference::Decoding decoding_for(const FrameShape& shape, std::uint32_t v) {
   const std::uint32_t begin = v - v % shape.views_per_decoding;
-  const std::uint32_t end = std::min(begin + shape.views_per_decoding, shape.view_count());
+  const std::uint32_t end = std::min(begin + shape.views_per_decoding, shape.asked);
   return {{shape.views.begin() + begin, shape.views.begin() + end}, shape.settings.anchor_cull};
 }
 
@@ -226,8 +226,11 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
                                          std::uint32_t groups_max, ModelBuffers& model_buffers,
                                          FrameBuffers& buffers) {
   const Stage until = *shape.settings.reference_until;
-  if (shape.settings.transmittance != TRANSMITTANCE_ONE) {
-    fail("--reference-until: the reference goes by no earlier frame: leave --transmittance out");
+  if (shape.settings.transmittance != TRANSMITTANCE_ONE || shape.settings.quality > 0.0f ||
+      shape.settings.th_eyes != TH_EYES_PER_EYE) {
+    fail(
+        "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
+        "--quality and --th-eyes out");
   }
   std::vector<Picture> pictures;
   if (until == Stage::decode) {

@@ -4,8 +4,19 @@
 #include <glm/gtc/constants.hpp>
 
 #include "base/error.h"
+#include "shared/limits.h"
 
 namespace binosplat {
+
+void set_lens(shared::View& view, const Camera& camera) {
+  view.lens = glm::vec4(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy));
+  const double right = camera.width - camera.cx, down = camera.height - camera.cy;
+  const double margin_x = CLAMP_MARGIN * camera.width, margin_y = CLAMP_MARGIN * camera.height;
+  view.slopes = glm::vec4(glm::dvec4(-(camera.cx + margin_x) / camera.fx, -(camera.cy + margin_y) / camera.fy,
+                                     (right + margin_x) / camera.fx, (down + margin_y) / camera.fy));
+  view.width = static_cast<shared::uint>(camera.width);
+  view.height = static_cast<shared::uint>(camera.height);
+}
 
 shared::View make_view(const Camera& camera, const glm::vec3& anchor, double near_plane) {
   const glm::dvec3 translation = glm::transpose(camera.rotation) * (glm::dvec3(anchor) - camera.position);
@@ -15,9 +26,7 @@ shared::View make_view(const Camera& camera, const glm::vec3& anchor, double nea
   view.row_z = glm::vec4(glm::dvec4(camera.rotation[2], translation.z));
   view.anchor = glm::vec4(anchor, static_cast<float>(near_plane));
   view.eye = glm::vec4(glm::vec3(camera.position - glm::dvec3(anchor)), 0.0f);
-  view.lens = glm::vec4(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy));
-  view.width = static_cast<shared::uint>(camera.width);
-  view.height = static_cast<shared::uint>(camera.height);
+  set_lens(view, camera);
   return view;
 }
 

@@ -27,6 +27,9 @@ struct Camera {
 /// Depth below which nothing is drawn (3D-GS), for worlds measured in metres or so.
 constexpr double near_default = 0.2;
 
+/// Fills in what a View says of the camera's lens and picture: lens, slopes, width and height.
+void set_lens(shared::View& view, const Camera& camera);
+
 /// The camera as shaders see it. `anchor` is the point near all views of a frame that positions are taken
 /// relative to (see shared/types.h); pass the same one for the eyes of a rig. The frame fills in tiles,
 /// offsets and groups.

@@ -29,9 +29,13 @@ void Model::resize(std::size_t n) {
 
 bool decode_raw(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& log_scale,
                 const glm::vec4& rotation, float opacity_logit, const float* sh) {
-  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   const glm::vec3 scale(std::exp(log_scale.x), std::exp(log_scale.y), std::exp(log_scale.z));
-  const float opacity = 1.0f / (1.0f + std::exp(-opacity_logit));
+  return place(model, i, position, scale, rotation, 1.0f / (1.0f + std::exp(-opacity_logit)), sh);
+}
+
+bool place(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& scale,
+           const glm::vec4& rotation, float opacity, const float* sh) {
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   // The squares of an fp32 quaternion can overflow fp32.
   const glm::dvec4 q(rotation);
   const double norm = std::sqrt(glm::dot(q, q));
@@ -40,7 +44,8 @@ bool decode_raw(Model& model, std::size_t i, const glm::vec3& position, const gl
   model.rotation[i] = glm::vec4(q / norm);
   model.opacity[i] = opacity;
   std::copy(sh, sh + values, &model.sh[i * values]);
-  return finite(position) && finite(scale) && std::isfinite(opacity) && std::isfinite(norm) && norm > 0.0 &&
+  return finite(position) && finite(scale) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
+         opacity >= 0.0f && opacity <= 1.0f && std::isfinite(norm) && norm > 0.0 &&
          std::all_of(sh, sh + values, [](float v) { return std::isfinite(v); });
 }
 

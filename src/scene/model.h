@@ -27,6 +27,7 @@ struct Model {
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
+  std::string axes = "RDF";         // where the model's x, y and z point in the cameras' world (scene/axes.h)
   /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
   /// stand-ins (scene/scaffold.h).
   std::shared_ptr<Scaffold> scaffold;
@@ -45,9 +46,12 @@ bool append_raw(Model& model, const glm::vec3& position, const glm::vec3& log_sc
 
 /// The same for readers that know the count and decode on several cores: resize(count), decode_raw for every
 /// slot `i` (it returns whether the Gaussian may be kept), then keep_only, which closes the gaps and counts
-/// them as left out.
+/// them as left out. `place` is for formats that store scales and opacities as they are drawn; a scale below
+/// 0 or an opacity outside 0 to 1 is left out, too.
 bool decode_raw(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& log_scale,
                 const glm::vec4& rotation, float opacity_logit, const float* sh);
+bool place(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& scale,
+           const glm::vec4& rotation, float opacity, const float* sh);
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
 
 /// Box around the middle of the model, robust against far outliers: the 2nd to 98th percentile of positions

@@ -46,6 +46,7 @@ TEST_F(Compare, EqualPicturesAreInfinitelyAlike) {
   EXPECT_TRUE(json["equal"].get<bool>());
   EXPECT_TRUE(json["psnr_db"].is_null());
   EXPECT_EQ(json["ssim"].get<double>(), 1.0);
+  EXPECT_EQ(json["flip"].get<double>(), 0.0);
 }
 
 TEST_F(Compare, OneWrongPixelIsMeasuredAndFound) {
@@ -77,6 +78,25 @@ TEST_F(Compare, OneWrongPixelIsMeasuredAndFound) {
   const Outcome below = run_program({"compare", a, b, "--min-psnr", std::to_string(psnr + 0.01)});
   EXPECT_EQ(below.code, 1);
   EXPECT_NE(below.err.find("fall short of --min-psnr"), std::string::npos) << below.err;
+}
+
+// Black and white by hand (flip_test.cpp), and the viewer's distance, which matters where there is detail.
+TEST_F(Compare, FlipAndItsViewer) {
+  const std::string black = png("black.png", Image(24, 24, 3));
+  Image image(24, 24, 3);
+  for (float& v : image.data) v = 1.0f;
+  const std::string white = png("white.png", image);
+  const Outcome outcome = run_program({"compare", black, white, "--json", folder / "c.json"});
+  EXPECT_NE(outcome.out.find("FLIP           0.967379 at 67 pixels"), std::string::npos) << outcome.out;
+  EXPECT_NEAR(read_json("c.json")["flip"].get<double>(), 0.967379, 2e-6);
+
+  const std::string detail = png("detail.png", gradient(24, 24, 3));
+  const auto flip_at = [&](const char* ppd) {
+    EXPECT_EQ(run_program({"compare", detail, black, "--ppd", ppd, "--json", folder / "p.json"}).code, 0);
+    EXPECT_EQ(read_json("p.json")["pixels_per_degree"], std::stod(ppd));
+    return read_json("p.json")["flip"].get<double>();
+  };
+  EXPECT_NE(flip_at("67"), flip_at("30"));
 }
 
 // One picture as PNG of 8 bits and as OpenEXR in both encodings: apart by rounding only.
@@ -131,6 +151,7 @@ TEST_F(Compare, WhatCannotBeComparedIsCodeTwo) {
       {{"compare", a, a, "--json", folder.path()}, "it is a folder"},
       {{"compare", a}, "see: binosplat compare --help"},
       {{"compare", a, a, "--min-psnr", "loud"}, "see: binosplat compare --help"},
+      {{"compare", a, a, "--ppd", "0"}, "see: binosplat compare --help"},
   };
   const auto before = folder.files();
   for (const auto& c : cases) {

@@ -40,7 +40,13 @@ TEST(Threshold, ALossMakesFewerPairs) {
 
 TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--th", "squared"}, "needs --loss"},
+      {{"--th", "squared"}, "needs --loss or --quality"},
+      {{"--th", "tau", "--quality", "40"}, "--quality has no effect"},
+      {{"--loss", "1", "--quality", "40"}, "--loss with --quality"},
+      {{"--quality", "-3"}, "--quality"},
+      {{"--th-eyes", "cyclopean"}, "--th-eyes cyclopean"},
+      {{"--loss", "1", "--th-eyes", "shared-min", "--mono"}, "--th-eyes shared-min"},
+      {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
       {{"--th", "tau", "--loss", "1"}, "--loss has no effect"},
       {{"--loss", "-1"}, "--loss"},
       {{"--loss", "1", "--contrast", "final"}, "--contrast final"},
@@ -55,6 +61,40 @@ TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
     EXPECT_EQ(outcome.code, 2) << message;
     EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
   }
+}
+
+TEST(Threshold, AQualityIsComeToWithoutALoss) {
+  const test::TempFolder folder;
+  const auto draw = [&](const std::string& name, std::vector<std::string> more) {
+    // Not smaller: where dozens of Gaussians share a pixel the error is a step of the loss.
+    std::vector<std::string> all = {"render", "demo:room",   "--mono", "--size",           "192x108",
+                                    "-o",     folder / name, "--json", folder / "run.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const test::Outcome outcome = test::run_program(all);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return nlohmann::json::parse(test::read_text(folder / "run.json"));
+  };
+  draw("exact.png", {});
+  const auto run = draw("near.png", {"--quality", "36"});
+  EXPECT_EQ(run.at("settings").at("th"), "squared");
+  EXPECT_GT(run.at("views")[0].at("loss").get<double>(), 0.0);
+  const test::Outcome compared = test::run_program(
+      {"compare", folder / "near.png", folder / "exact.png", "--json", folder / "compared.json"});
+  ASSERT_EQ(compared.code, 0) << compared.err;
+  const auto psnr = nlohmann::json::parse(test::read_text(folder / "compared.json")).at("psnr_db");
+  EXPECT_NEAR(psnr.get<double>(), 36.0, 1.0);
+}
+
+TEST(Threshold, EyesShareTheirsAndDepthsHaveATable) {
+  const test::TempFolder folder;
+  const auto pairs = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--loss", "0.1"});
+    return pairs_of(folder, more).at("views")[0].at("pairs").get<double>();
+  };
+  const double own = pairs({});
+  EXPECT_GT(pairs({"--th-eyes", "shared-min"}), own);
+  EXPECT_NEAR(pairs({"--th-eyes", "cyclopean"}), own, 0.1 * own);
+  EXPECT_LE(pairs({"--transmittance", "depth"}), own);
 }
 
 TEST(Path, DrawsEveryFrameByWhatTheLastOneMeasured) {

@@ -113,7 +113,7 @@ TEST(ScaffoldFile, AFolderStandsForItsLatestIteration) {
   EXPECT_EQ(model.position[23], model.scaffold->mean(23));
   fs::create_directory(folder / "empty");
   EXPECT_TRUE(test::fails_saying([&] { load_model(folder / "empty"); },
-                                 {"empty", "a folder without a model", "point_cloud/iteration_N"}));
+                                 {"empty is a folder without a model", "point_cloud/iteration_N"}));
 }
 
 TEST(ScaffoldFile, AppearancesAreChosenByRow) {
@@ -218,12 +218,13 @@ TEST_F(BrokenScaffold, ArchivesThatAreNone) {
   const std::string whole = test::read_text(folder / "color_mlp.pt");
   for (const std::size_t bytes : {whole.size() - 1, whole.size() / 2, std::size_t{30}, std::size_t{4}}) {
     test::write_text(folder / "color_mlp.pt", whole.substr(0, bytes));
-    EXPECT_TRUE(refused({"color_mlp.pt is no whole zip archive", "fetch or export it again"})) << bytes;
+    EXPECT_TRUE(refused({"color_mlp.pt", "zip archive is damaged or cut short", "fetch or export it again"}))
+        << bytes;
   }
   std::string flipped = whole;
   flipped[flipped.find("net/data/0") + 100] ^= 1;
   test::write_text(folder / "color_mlp.pt", flipped);
-  EXPECT_TRUE(refused({"color_mlp.pt is no whole zip archive", "'net/data/0'", "CRC"}));
+  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0' is damaged", "CRC"}));
   for (const char* name : {"../data/0", "/etc/passwd", "a/../../b", "a\\b"}) {
     test::ZipEntries entries = test::entries_of(good.colour);
     entries.emplace_back(name, "x");
@@ -247,7 +248,7 @@ TEST_F(BrokenScaffold, Bombs) {
   for (std::size_t at = bytes.find(sought); at != std::string::npos; at = bytes.find(sought))
     bytes.replace(at, 4, reinterpret_cast<const char*>(&promise), 4);
   test::write_text(folder / "color_mlp.pt", bytes);
-  EXPECT_TRUE(refused({"color_mlp.pt is no whole zip archive", "'net/data/0'"}));
+  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0'", "damaged"}));
 }
 
 TEST_F(BrokenScaffold, Anchors) {

@@ -53,11 +53,11 @@ using Offsets = std::map<std::string, int>;
   { "", static_cast<int>(sizeof(shared::type)) }
 
 TEST(Layout, ViewIsWhereTheDriverPutsIt) {
-  const Offsets expected = {AT(View, row_x),       AT(View, row_y),       AT(View, row_z),
-                            AT(View, anchor),      AT(View, eye),         AT(View, lens),
-                            AT(View, width),       AT(View, height),      AT(View, tiles_x),
-                            AT(View, tiles_y),     AT(View, tile_offset), AT(View, pixel_offset),
-                            AT(View, order_group), AT(View, th_group),    STRIDE(View)};
+  const Offsets expected = {
+      AT(View, row_x),        AT(View, row_y),       AT(View, row_z),   AT(View, anchor),
+      AT(View, eye),          AT(View, lens),        AT(View, slopes),  AT(View, width),
+      AT(View, height),       AT(View, tiles_x),     AT(View, tiles_y), AT(View, tile_offset),
+      AT(View, pixel_offset), AT(View, order_group), AT(View, th_view), STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
 }
 
@@ -77,9 +77,9 @@ TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
 }
 
 TEST(Layout, CountersAndAmountAreWhereTheDriverPutsThem) {
-  const Offsets counters = {AT(Counters, visible),  AT(Counters, order_wanted), AT(Counters, pairs),
-                            AT(Counters, overflow), AT(Counters, loop_cut),     AT(Counters, unused_0),
-                            AT(Counters, unused_1), AT(Counters, unused_2),     STRIDE(Counters)};
+  const Offsets counters = {AT(Counters, visible),   AT(Counters, order_wanted), AT(Counters, pairs),
+                            AT(Counters, overflow),  AT(Counters, loop_cut),     AT(Counters, median_depth),
+                            AT(Counters, probe_low), AT(Counters, probe_high),   STRIDE(Counters)};
   EXPECT_EQ(driver_offsets("Counters"), counters);
   const Offsets amount = {AT(Amount, count),     AT(Amount, first),     AT(Amount, threads_x),
                           AT(Amount, threads_y), AT(Amount, threads_z), AT(Amount, scan_x),

@@ -134,7 +134,7 @@ TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
 TEST(Remember, BothEyesServeEachOther) {
   const Model model = test::random_model(82, 4000, 1);
   const auto rig = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.06});
-  std::uint64_t pairs[4] = {};
+  std::uint64_t pairs[TRANSMITTANCE_BOTH + 1] = {};
   for (const int source :
        {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST, TRANSMITTANCE_OTHER_EYE, TRANSMITTANCE_BOTH}) {
     render::Frame frame(test::gl_context(), model);

@@ -58,7 +58,7 @@ struct StageRun {
       : shape(render::make_shape(views, settings, model)),
         frame(gl_context()),
         model_buffers(gl_context(), model) {
-    frame.views.upload(shape.views);
+    frame.upload(shape);
     frame.counters.upload(std::vector{shared::Counters{}});
     frame.reserve(shape, 1 << 20);
     model_buffers.reserve(shape);

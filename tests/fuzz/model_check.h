@@ -1,16 +1,17 @@
-// Models: load_model, and with it load_ply.
+#pragma once
+// What every reader of models owes.
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
-#include "formats/model_file.h"
 #include "fuzz/input.h"
+#include "scene/model.h"
 
 namespace binosplat::fuzz {
 
-namespace {
-
-bool finite(std::span<const float> values) {
+inline bool finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
 }
 
@@ -20,7 +21,7 @@ std::span<const float> floats(const std::vector<Vector>& values) {
 }
 
 /// What scene/model.h promises.
-void check(const Model& model) {
+inline void check(const Model& model) {
   const std::size_t n = model.count();
   demand(n > 0, "a model without Gaussians");
   demand(model.degree >= 0 && model.degree <= 3, "a degree beyond 3");
@@ -34,12 +35,6 @@ void check(const Model& model) {
     demand(model.opacity[i] >= 0.0f && model.opacity[i] <= 1.0f, "an opacity beyond 0 to 1");
     demand(glm::all(glm::greaterThanEqual(model.scale[i], glm::vec3(0.0f))), "a negative scale");
   }
-}
-
-}  // namespace
-
-void target(std::span<const std::byte> bytes) {
-  feed(bytes, [](const std::filesystem::path& path) { check(load_model(path)); });
 }
 
 }  // namespace binosplat::fuzz

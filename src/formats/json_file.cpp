@@ -1,0 +1,81 @@
+#include "formats/json_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "formats/content.h"
+
+namespace binosplat {
+
+using nlohmann::json;
+
+json parse_json(const std::string& source, std::string_view text) {
+  try {
+    return json::parse(text.begin(), text.end());
+  } catch (const json::parse_error& error) {
+    const std::size_t byte = std::min<std::size_t>(error.byte, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
+    const Content content = content_of(std::as_bytes(std::span(text)));
+    fail("{} is not valid JSON at line {}, byte {}{}", source, line, byte,
+         content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
+  } catch (const json::exception& error) {
+    fail("{} is not valid JSON: {}", source, error.what());
+  }
+}
+
+JsonValue JsonValue::inner(const json& value, std::string where) const {
+  JsonValue result(source_, value);
+  result.where_ = std::move(where);
+  return result;
+}
+
+bool JsonValue::has(const std::string& key) const {
+  if (!value_->is_object()) return false;
+  const auto found = value_->find(key);
+  return found != value_->end() && !found->is_null();
+}
+
+JsonValue JsonValue::at(const std::string& key) const {
+  if (!value_->is_object()) fail_here("expected an object with the key '{}'", key);
+  const auto found = value_->find(key);
+  // Keys of the file go into errors' texts as they are; the ones asked for here are the program's own.
+  const std::string where = where_.empty() ? key : where_ + "." + key;
+  if (found == value_->end()) fail("{}: the key '{}' is missing", source_, where);
+  return inner(*found, where);
+}
+
+JsonValue JsonValue::at(std::size_t index) const {
+  if (index >= size()) fail_here("expected a list of more than {} values", index);
+  return inner((*value_)[index], fmt::format("{}[{}]", where_, index));
+}
+
+std::size_t JsonValue::size() const {
+  if (!value_->is_array()) fail_here("expected a list");
+  return value_->size();
+}
+
+JsonValue JsonValue::list_of(std::size_t n) const {
+  if (size() != n) fail_here("expected {} values, found {}", n, size());
+  return *this;
+}
+
+double JsonValue::number() const {
+  if (!value_->is_number() || !std::isfinite(value_->get<double>())) fail_here("expected a finite number");
+  return value_->get<double>();
+}
+
+std::uint64_t JsonValue::whole(std::uint64_t most) const {
+  const double value = number();
+  if (!(value >= 0.0 && value <= static_cast<double>(most)) || value != std::floor(value)) {
+    fail_here("expected a whole number from 0 to {}, found {}", most, value);
+  }
+  return value_->is_number_integer() ? value_->get<std::uint64_t>() : static_cast<std::uint64_t>(value);
+}
+
+std::string JsonValue::text() const {
+  if (!value_->is_string()) fail_here("expected text in quotes");
+  return value_->get<std::string>();
+}
+
+}  // namespace binosplat

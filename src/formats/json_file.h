@@ -1,0 +1,51 @@
+#pragma once
+// JSON from files: values that know where they stand, so that every error can say so.
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace binosplat {
+
+/// Parses a whole text. Throws Error naming `source` (a file, or a file in an archive), the line and the
+/// byte.
+nlohmann::json parse_json(const std::string& source, std::string_view text);
+
+/// A value in a file. What it is asked for and is not, ends in an Error that names the file and the keys that
+/// lead there, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
+class JsonValue {
+ public:
+  JsonValue(std::string source, const nlohmann::json& root) : source_(std::move(source)), value_(&root) {}
+
+  const nlohmann::json& value() const { return *value_; }
+  const std::string& source() const { return source_; }
+
+  /// Whether an object has this key, with a value other than null.
+  bool has(const std::string& key) const;
+  JsonValue at(const std::string& key) const;     // throws if it is missing
+  JsonValue at(std::size_t index) const;          // throws beyond size()
+  std::size_t size() const;                       // of a list; throws for anything else
+  JsonValue list_of(std::size_t n) const;         // itself, if it is a list of n
+  double number() const;                          // finite
+  std::uint64_t whole(std::uint64_t most) const;  // from 0 to `most`, at most 2^53; 5.0 is whole, too
+  std::string text() const;
+
+  template <typename... Args>
+  [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {
+    const std::string text = fmt::format(format, std::forward<Args>(args)...);
+    if (where_.empty()) fail("{}: {}", source_, text);
+    fail("{}, key '{}': {}", source_, where_, text);
+  }
+
+ private:
+  JsonValue inner(const nlohmann::json& value, std::string where) const;
+
+  std::string source_;
+  const nlohmann::json* value_;
+  std::string where_;  // "" for the root, else as in "frames[3].w"
+};
+
+}  // namespace binosplat

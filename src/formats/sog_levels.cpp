@@ -1,0 +1,202 @@
+// Streamed SOG: levels of detail from several SOG folders.
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+
+#include <tbb/parallel_for.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/mapped_file.h"
+#include "base/progress.h"
+#include "formats/content.h"
+#include "formats/json_file.h"
+#include "formats/sog.h"
+#include "formats/sog_source.h"
+#include "formats/zip_file.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Ranges = std::vector<SogSource::Range>;
+
+constexpr std::uint64_t most_levels = 100;
+constexpr int deepest = 200;  // of the tree; octrees of a planet are not deeper than 30
+constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
+
+/// What lod-meta.json says.
+class Levels {
+ public:
+  Levels(const fs::path& path, const nlohmann::json& json)
+      : folder_(path.parent_path()), root_(path.string(), json) {
+    count_ = static_cast<int>(root_.at("lodLevels").whole(most_levels));
+    if (count_ == 0) root_.at("lodLevels").fail_here("expected one level at least");
+    const JsonValue names = root_.at("filenames");
+    for (std::size_t i = 0; i < names.size(); ++i) files_.push_back(file(names.at(i)));
+    if (root_.has("environment")) environment_ = file(root_.at("environment"));
+  }
+
+  int count() const { return count_; }
+  const std::vector<fs::path>& files() const { return files_; }
+  const std::optional<fs::path>& environment() const { return environment_; }
+
+  /// For each file what a level takes of it, in order; slots are not set.
+  std::vector<Ranges> ranges(int level) const {
+    std::vector<Ranges> result(files_.size());
+    const std::string key = std::to_string(level);
+    std::vector<std::pair<JsonValue, int>> nodes{{root_.at("tree"), 0}};
+    while (!nodes.empty()) {
+      const auto [node, depth] = nodes.back();
+      nodes.pop_back();
+      if (node.has("lods") && node.at("lods").has(key)) add(node.at("lods").at(key), result);
+      if (!node.has("children")) continue;
+      if (depth == deepest) fail("{}: the tree is nested more than {} deep", root_.source(), deepest);
+      const JsonValue children = node.at("children");
+      for (std::size_t i = children.size(); i-- > 0;) nodes.emplace_back(children.at(i), depth + 1);
+    }
+    for (std::size_t i = 0; i < result.size(); ++i) sort(result[i], i);
+    return result;
+  }
+
+  /// The first file that a level needs and that is not there.
+  std::optional<fs::path> missing(int level) const {
+    const std::vector<Ranges> wanted = ranges(level);
+    std::error_code ignored;
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (!wanted[i].empty() && !fs::is_regular_file(files_[i], ignored)) return files_[i];
+    }
+    return std::nullopt;
+  }
+
+ private:
+  fs::path file(const JsonValue& value) const {
+    const std::string name = value.text();
+    if (!stays_below(name))
+      value.fail_here("a file must lie below lod-meta.json's folder; it is named '{}'", name);
+    return folder_ / name;
+  }
+
+  void add(const JsonValue& lod, std::vector<Ranges>& result) const {
+    const std::uint64_t index = lod.at("file").whole(most_gaussians);
+    if (index >= files_.size()) {
+      lod.at("file").fail_here("there is no file {}: 'filenames' has {}, counted from 0", index,
+                               files_.size());
+    }
+    const SogSource::Range range{lod.at("offset").whole(most_gaussians),
+                                 lod.at("count").whole(most_gaussians), 0};
+    if (range.count > 0) result[index].push_back(range);
+  }
+
+  void sort(Ranges& ranges, std::size_t index) const {
+    std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 1; i < ranges.size(); ++i) {
+      if (ranges[i].first < ranges[i - 1].first + ranges[i - 1].count) {
+        fail("{}: two leaves of the tree share Gaussian {} of {}; the file is damaged", root_.source(),
+             ranges[i].first, files_[index].string());
+      }
+    }
+  }
+
+  fs::path folder_;
+  JsonValue root_;
+  int count_ = 0;
+  std::vector<fs::path> files_;
+  std::optional<fs::path> environment_;
+};
+
+/// A SOG and what is taken of it.
+struct Part {
+  SogSource source;
+  Ranges ranges;
+};
+
+SogSource open_part(const fs::path& path) {
+  const MappedFile file(path);
+  return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
+}
+
+std::vector<Part> open_parts(const fs::path& lod_meta, const Levels& levels, int level) {
+  std::vector<Part> parts;
+  const std::vector<Ranges> wanted = levels.ranges(level);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i].empty()) continue;
+    parts.push_back({open_part(levels.files()[i]), wanted[i]});
+    const SogSource::Range& last = wanted[i].back();
+    if (last.first + last.count > parts.back().source.count()) {
+      fail("{}: Gaussians {} to {} of {} are wanted, which has {}", lod_meta.string(), last.first,
+           last.first + last.count - 1, levels.files()[i].string(), parts.back().source.count());
+    }
+  }
+  if (levels.environment()) {
+    SogSource source = open_part(*levels.environment());
+    const std::size_t count = source.count();
+    parts.push_back({std::move(source), {{0, count, 0}}});
+  }
+  return parts;
+}
+
+/// The finest level that is there, or the one that was asked for.
+int choose(const fs::path& path, const Levels& levels, std::optional<int> lod) {
+  const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
+  if (lod && (*lod < 0 || *lod >= levels.count())) {
+    fail("--lod {}: {} has the levels {}, 0 being the finest", *lod, path.string(), range());
+  }
+  std::set<int> there;
+  std::optional<fs::path> missing;
+  for (int level = 0; level < levels.count(); ++level) {
+    const auto absent = levels.missing(level);
+    if (!absent) there.insert(level);
+    if (absent && (!missing || level == lod)) missing = absent;
+  }
+  if (there.empty()) {
+    fail("{}: no level of detail is complete; {} is missing: fetch it", path.string(), missing->string());
+  }
+  if (lod && there.count(*lod) == 0) {
+    fail("--lod {}: {} is missing; the finest level that is there is {}", *lod, missing->string(),
+         *there.begin());
+  }
+  const int level = lod.value_or(*there.begin());
+  if (!lod && level > 0) {
+    log_warning("{}: level 0 is not complete ({} is missing); level {} is drawn", path.string(),
+                missing->string(), level);
+  }
+  return level;
+}
+
+}  // namespace
+
+Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod) {
+  const Levels levels(lod_meta, root);
+  const int level = choose(lod_meta, levels, lod);
+  std::vector<Part> parts = open_parts(lod_meta, levels, level);
+  Model model;
+  model.name = lod_meta.filename().string();
+  std::size_t total = 0;
+  for (Part& part : parts) {
+    model.degree = std::max(model.degree, part.source.degree());
+    for (SogSource::Range& range : part.ranges) {
+      range.slot = total;
+      total += range.count;
+    }
+  }
+  if (total == 0) fail("{} holds no Gaussians at level {}", lod_meta.string(), level);
+  log_info("{}: level of detail {} of {}", lod_meta.string(), level, levels.count());
+  model.resize(total);
+  std::vector<std::uint8_t> kept(total);
+  Progress progress("reading " + lod_meta.string(), total);
+  std::mutex counting;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+    parts[i].source.decode(model, parts[i].ranges, kept);
+    const std::lock_guard<std::mutex> lock(counting);
+    for (const SogSource::Range& range : parts[i].ranges) done += range.count;
+    progress.update(done);
+  });
+  keep_only(model, kept);
+  return model;
+}
+
+}  // namespace binosplat

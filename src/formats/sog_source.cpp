@@ -1,0 +1,225 @@
+#include "formats/sog_source.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/webp.h"
+#include "formats/zip_file.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint64_t widest = 16383;  // of a WebP picture
+constexpr std::size_t palette_columns = 64;
+constexpr std::size_t palette_most = 65536;  // labels have 16 bits
+
+enum Texture { means_l, means_u, quats, scales, sh0, labels, texture_count };
+
+/// A byte's value between two ends.
+std::array<float, 256> linear_table(double low, double high) {
+  std::array<float, 256> table;
+  for (std::size_t b = 0; b < 256; ++b)
+    table[b] = static_cast<float>(low + (high - low) * static_cast<double>(b) / 255.0);
+  return table;
+}
+
+/// 256 values; the first may be null, a fault of old writers, and is then a step before the second.
+std::array<float, 256> codebook(const JsonValue& values) {
+  values.list_of(256);
+  std::array<float, 256> table;
+  for (std::size_t b = 0; b < 256; ++b) {
+    if (b == 0 && values.value()[0].is_null()) continue;
+    table[b] = static_cast<float>(values.at(b).number());
+  }
+  if (values.value()[0].is_null()) table[0] = table[1] + (table[1] - table[255]) / 255.0f;
+  return table;
+}
+
+std::array<float, 256> exponential(std::array<float, 256> table) {
+  for (float& v : table) v = std::exp(v);
+  return table;
+}
+
+std::string file_name(const JsonValue& value) {
+  const std::string name = value.text();
+  if (!stays_below(name))
+    value.fail_here("a file must lie beside meta.json or below; it is named '{}'", name);
+  return name;
+}
+
+}  // namespace
+
+/// All pictures of a SOG, four bytes a texel.
+struct SogSource::Textures {
+  std::array<std::vector<std::uint8_t>, texture_count> data;
+};
+
+SogSource::SogSource(std::string source, const nlohmann::json& root, ReadFile read)
+    : source_(std::move(source)), read_(std::move(read)) {
+  const JsonValue meta(source_, root);
+  const std::uint64_t version = meta.has("version") ? meta.at("version").whole(1000) : 1;
+  if (version > 2) meta.at("version").fail_here("SOG of version {} is not known; 1 and 2 are", version);
+  if (version == 2) {
+    count_ = meta.at("count").whole(widest * widest);
+  } else {
+    count_ = meta.at("means").at("shape").at(0).whole(widest * widest);
+  }
+  if (count_ == 0) fail("{} holds no Gaussians: its count is 0", source_);
+  if (meta.has("model")) {
+    const std::string kind = meta.at("model").text();
+    if (kind == "2dgs")
+      fail("{} holds flat Gaussians (2D Gaussian Splatting); only 3D ones can be drawn", source_);
+    antialiased_ = kind == "antialiased";
+  }
+  const char* items[] = {"quats", "scales", "sh0"};
+  for (std::size_t i = 0; i < 2; ++i) files_[i] = file_name(meta.at("means").at("files").list_of(2).at(i));
+  for (std::size_t i = 0; i < 3; ++i) files_[quats + i] = file_name(meta.at(items[i]).at("files").at(0));
+  read_means(meta);
+  if (version == 2) {
+    read_tables(meta);
+  } else {
+    read_tables_v1(meta);
+  }
+  if (meta.has("shN")) read_harmonics(meta.at("shN"));
+  // The low bytes of positions are noise: what takes less than a byte for 256 of them is forged.
+  const std::vector<std::byte> low = read_(files_[means_l]);
+  const WebpSize size = webp_size(named(files_[means_l]), low);
+  if (size.texels() < count_ || count_ / 256 > low.size()) {
+    fail("{}: {} Gaussians are promised, but {} has {} x {} texels in {} bytes", source_, count_,
+         files_[means_l], size.width, size.height, low.size());
+  }
+}
+
+void SogSource::read_means(const JsonValue& meta) {
+  const JsonValue low = meta.at("means").at("mins").list_of(3), high = meta.at("means").at("maxs").list_of(3);
+  for (int c = 0; c < 3; ++c) {
+    mean_low_[c] = low.at(static_cast<std::size_t>(c)).number();
+    mean_span_[c] = high.at(static_cast<std::size_t>(c)).number() - mean_low_[c];
+  }
+}
+
+void SogSource::read_tables(const JsonValue& meta) {
+  scale_.fill(exponential(codebook(meta.at("scales").at("codebook"))));
+  dc_.fill(codebook(meta.at("sh0").at("codebook")));
+  opacity_ = linear_table(0.0, 1.0);
+}
+
+void SogSource::read_tables_v1(const JsonValue& meta) {
+  const auto between = [&](const char* item, std::size_t n, std::size_t i) {
+    const JsonValue value = meta.at(item);
+    return linear_table(value.at("mins").list_of(n).at(i).number(),
+                        value.at("maxs").list_of(n).at(i).number());
+  };
+  for (std::size_t c = 0; c < 3; ++c) {
+    scale_[c] = exponential(between("scales", 3, c));
+    dc_[c] = between("sh0", 4, c);
+  }
+  opacity_ = between("sh0", 4, 3);  // a logit
+  for (float& v : opacity_) v = 1.0f / (1.0f + std::exp(-v));
+}
+
+void SogSource::read_harmonics(const JsonValue& sh) {
+  const std::string centroids = file_name(sh.at("files").list_of(2).at(0));
+  labels_file_ = file_name(sh.at("files").at(1));
+  sh_ = sh.has("codebook") ? codebook(sh.at("codebook"))
+                           : linear_table(sh.at("mins").number(), sh.at("maxs").number());
+  const std::vector<std::byte> bytes = read_(centroids);
+  const WebpSize size = webp_size(named(centroids), bytes);
+  if (sh.has("bands")) {
+    degree_ = static_cast<int>(sh.at("bands").whole(3));
+    if (degree_ == 0) sh.at("bands").fail_here("expected 1, 2 or 3");
+  } else {
+    while (degree_ < 3 && palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1) <
+                              static_cast<std::size_t>(size.width))
+      ++degree_;
+  }
+  const std::size_t width = palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1);
+  const std::size_t room = palette_columns * static_cast<std::size_t>(size.height);
+  palette_ = sh.has("count") ? sh.at("count").whole(palette_most) : std::min(room, palette_most);
+  if (static_cast<std::size_t>(size.width) != width || palette_ > room || room > 2 * palette_most) {
+    fail(
+        "{}: its {} x {} texels are no palette of {} entries for harmonics of degree {}, which is {} texels "
+        "wide "
+        "and {} or a few more high",
+        named(centroids), size.width, size.height, palette_, degree_, width,
+        (palette_ + palette_columns - 1) / palette_columns);
+  }
+  palette_texels_ = webp_texels(named(centroids), bytes);
+}
+
+std::string SogSource::named(const std::string& file) const { return source_ + ": " + file; }
+
+std::vector<std::uint8_t> SogSource::texels(const std::string& file) const {
+  const std::vector<std::byte> bytes = read_(file);
+  const WebpSize size = webp_size(named(file), bytes);
+  if (size.texels() < count_ || size.texels() > 4 * count_ + 65536) {
+    fail("{}: {} x {} texels do not fit {} Gaussians", named(file), size.width, size.height, count_);
+  }
+  return webp_texels(named(file), bytes);
+}
+
+SogSource::Textures SogSource::read_textures() const {
+  std::array<std::string, texture_count> names;
+  std::copy(files_.begin(), files_.end(), names.begin());
+  names[labels] = labels_file_;
+  Textures textures;
+  tbb::parallel_for(std::size_t{0}, std::size_t{texture_count}, [&](std::size_t i) {
+    if (!names[i].empty()) textures.data[i] = texels(names[i]);
+  });
+  return textures;
+}
+
+bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model, std::size_t slot) const {
+  const auto texel = [&](Texture texture) { return &textures.data[texture][4 * i]; };
+  const std::uint8_t* low = texel(means_l);
+  const std::uint8_t* high = texel(means_u);
+  const std::uint8_t* three = texel(quats);
+  glm::vec3 position, scale;
+  std::array<float, 3 * sh_count(3)> sh{};
+  for (int c = 0; c < 3; ++c) {
+    const double n = mean_low_[c] + mean_span_[c] * (low[c] + 256 * high[c]) / 65535.0;
+    position[c] = static_cast<float>(std::copysign(std::expm1(std::abs(n)), n));
+    const auto channel = static_cast<std::size_t>(c);
+    scale[c] = scale_[channel][texel(scales)[c]];
+    sh[channel] = dc_[channel][texel(sh0)[c]];
+  }
+  // The largest of w, x, y, z is left out; the fourth byte says which.
+  glm::vec4 rotation(1, 0, 0, 0);
+  if (three[3] >= 252) {
+    double rest = 1.0;
+    for (int c = 0, from = 0; c < 4; ++c) {
+      if (c == three[3] - 252) continue;
+      const double v = (three[from++] / 255.0 - 0.5) * std::sqrt(2.0);
+      rotation[c] = static_cast<float>(v);
+      rest -= v * v;
+    }
+    rotation[three[3] - 252] = static_cast<float>(std::sqrt(std::max(rest, 0.0)));
+  }
+  if (degree_ > 0) {
+    const std::uint8_t* label = texel(labels);
+    const std::size_t entry = label[0] + 256u * label[1];
+    const std::size_t values = static_cast<std::size_t>(sh_count(degree_) - 1);
+    const std::size_t row = entry / palette_columns * palette_columns * values;
+    for (std::size_t k = 0; entry < palette_ && k < values; ++k) {
+      const std::uint8_t* rgb = &palette_texels_[4 * (row + entry % palette_columns * values + k)];
+      for (std::size_t c = 0; c < 3; ++c) sh[3 + 3 * k + c] = sh_[rgb[c]];
+    }
+  }
+  return place(model, slot, position, scale, rotation, opacity_[texel(sh0)[3]], sh.data());
+}
+
+void SogSource::decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const {
+  const Textures textures = read_textures();
+  for (const Range& range : ranges) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, range.count, 2048), [&](const auto& block) {
+      for (std::size_t i = block.begin(); i != block.end(); ++i)
+        kept[range.slot + i] = decode_one(textures, range.first + i, model, range.slot + i) ? 1 : 0;
+    });
+  }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,76 @@
+#pragma once
+// One SOG from wherever its files are: a folder, an archive, a test's memory.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/json_file.h"
+#include "scene/model.h"
+
+namespace binosplat {
+
+class SogSource {
+ public:
+  /// The bytes of a file by the name that meta.json gives it; throws Error naming it.
+  using ReadFile = std::function<std::vector<std::byte>(const std::string& name)>;
+
+  /// Gaussians `first` to `first + count` - 1, which go to a model's slots from `slot` on.
+  struct Range {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    std::size_t slot = 0;
+  };
+
+  /// Checks meta.json, and by the headers of the pictures that what it promises can be there. `source` names
+  /// meta.json or the archive in errors.
+  SogSource(std::string source, const nlohmann::json& meta, ReadFile read);
+
+  std::size_t count() const { return count_; }
+  int degree() const { return degree_; }
+  bool antialiased() const { return antialiased_; }
+
+  /// Decodes ranges, which must lie below count(), into a model of this degree or a higher one; kept[i] says
+  /// whether slot i may stay. May be called for disjoint slots by several threads.
+  void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const;
+
+ private:
+  using Table = std::array<float, 256>;  // what a byte stands for
+  struct Textures;
+
+  void read_tables(const JsonValue& meta);
+  void read_tables_v1(const JsonValue& meta);
+  void read_means(const JsonValue& meta);
+  void read_harmonics(const JsonValue& meta);
+  std::string named(const std::string& file) const;
+  std::vector<std::uint8_t> texels(const std::string& file) const;
+  Textures read_textures() const;
+  bool decode_one(const Textures& textures, std::size_t i, Model& model, std::size_t slot) const;
+
+  std::string source_;
+  ReadFile read_;
+  std::size_t count_ = 0;
+  int degree_ = 0;
+  bool antialiased_ = false;
+  std::array<std::string, 5> files_;  // means_l, means_u, quats, scales, sh0
+  std::string labels_file_;           // empty without higher harmonics
+  glm::dvec3 mean_low_{0.0};          // of sign(p) ln(1 + |p|)
+  glm::dvec3 mean_span_{0.0};
+  std::array<Table, 3> scale_;  // per axis, world units
+  std::array<Table, 3> dc_;     // per channel, coefficients of degree 0
+  Table opacity_;
+  Table sh_;                 // coefficients of the higher degrees
+  std::size_t palette_ = 0;  // entries; a label beyond has no harmonics
+  std::vector<std::uint8_t> palette_texels_;
+};
+
+/// The SOG of a meta.json, whose pictures lie in its folder.
+SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root);
+
+}  // namespace binosplat

@@ -1,0 +1,115 @@
+#include "formats/zip_file.h"
+
+#include <zip.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "formats/content.h"
+
+namespace binosplat {
+
+namespace {
+
+/// Deflate's best: a byte becomes 1032 at most.
+constexpr std::uint64_t most_growth = 1032;
+
+struct CloseEntry {
+  void operator()(zip_file_t* entry) const { zip_fclose(entry); }
+};
+
+}  // namespace
+
+bool stays_below(const std::string& name) {
+  const std::filesystem::path path(name);
+  return !name.empty() && name.find('\0') == std::string::npos && name.find('\\') == std::string::npos &&
+         path.is_relative() &&
+         std::none_of(path.begin(), path.end(), [](const auto& part) { return part == ".."; });
+}
+
+void ZipFile::Close::operator()(zip* archive) const { zip_discard(archive); }
+
+ZipFile::ZipFile(std::string source, std::span<const std::byte> bytes) : source_(std::move(source)) {
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_t* data = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+  if (data != nullptr) archive_.reset(zip_open_from_source(data, ZIP_RDONLY, &error));
+  if (!archive_) {
+    if (data != nullptr) zip_source_free(data);
+    const std::string reason = zip_error_strerror(&error);
+    zip_error_fini(&error);
+    fail("{}: the zip archive is damaged or cut short: {}; fetch or export it again", source_, reason);
+  }
+  zip_error_fini(&error);
+}
+
+bool ZipFile::has(const std::string& name) const {
+  return zip_name_locate(archive_.get(), name.c_str(), ZIP_FL_ENC_GUESS) >= 0;
+}
+
+std::vector<std::string> ZipFile::names() const {
+  std::vector<std::string> names;
+  const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
+  for (zip_int64_t i = 0; i < count; ++i) {
+    const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
+    names.emplace_back(name != nullptr ? name : "");
+  }
+  return names;
+}
+
+std::string ZipFile::list() const {
+  constexpr std::size_t shown = 8;
+  const std::vector<std::string> all = names();
+  std::string text;
+  for (std::size_t i = 0; i < std::min(all.size(), shown); ++i)
+    text += (text.empty() ? "" : ", ") + binosplat::quoted(all[i]);
+  if (all.size() > shown) text += fmt::format(" and {} more", all.size() - shown);
+  return text.empty() ? "nothing" : text;
+}
+
+void ZipFile::fail_entry(const std::string& name, const std::string& reason) const {
+  fail("{}: its file {} {}", source_, binosplat::quoted(name), reason);
+}
+
+std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_max) const {
+  const zip_int64_t index = zip_name_locate(archive_.get(), name.c_str(), ZIP_FL_ENC_GUESS);
+  if (index < 0)
+    fail("{}: there is no file {} in the archive; it holds {}", source_, binosplat::quoted(name), list());
+  const auto at = static_cast<zip_uint64_t>(index);
+  zip_stat_t status;
+  zip_stat_init(&status);
+  constexpr zip_uint64_t needed = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD;
+  if (zip_stat_index(archive_.get(), at, 0, &status) != 0 || (status.valid & needed) != needed) {
+    fail_entry(name, "has no size; the archive is damaged");
+  }
+  if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE) {
+    fail_entry(name, fmt::format("is compressed by method {}; only stored and deflated ones can be read",
+                                 status.comp_method));
+  }
+  if (status.size > bytes_max) {
+    fail_entry(name, fmt::format("promises {} bytes; expected at most {}", status.size, bytes_max));
+  }
+  if (status.size / most_growth > status.comp_size) {
+    fail_entry(name, fmt::format("promises {} bytes, which {} compressed ones cannot hold; it is damaged",
+                                 status.size, status.comp_size));
+  }
+  const std::unique_ptr<zip_file_t, CloseEntry> entry(zip_fopen_index(archive_.get(), at, 0));
+  if (!entry) fail_entry(name, fmt::format("cannot be read: {}", zip_strerror(archive_.get())));
+  // One byte more than promised, so that reading meets the end, where the library tests the checksum.
+  std::vector<std::byte> bytes(status.size + 1);
+  std::size_t filled = 0;
+  for (zip_int64_t n = 1; n > 0 && filled < bytes.size();) {
+    n = zip_fread(entry.get(), bytes.data() + filled, bytes.size() - filled);
+    if (n < 0) fail_entry(name, fmt::format("is damaged: {}", zip_file_strerror(entry.get())));
+    filled += static_cast<std::size_t>(n);
+  }
+  if (filled != status.size) {
+    fail_entry(name, fmt::format("is damaged: it promises {} bytes and has {}", status.size,
+                                 filled > status.size ? "more" : fmt::format("{}", filled)));
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,22 @@
+#pragma once
+// What two pictures must have in common to be compared.
+
+#include "base/error.h"
+#include "base/image.h"
+
+namespace binosplat::measure {
+
+/// Throws Error unless both have one size and equal channels, and pixels at all.
+inline void require_comparable(const Image& a, const Image& b) {
+  if (a.width != b.width || a.height != b.height) {
+    fail("pictures of {} x {} and {} x {} px cannot be compared: expected equal sizes", a.width, a.height,
+         b.width, b.height);
+  }
+  if (a.channels != b.channels) {
+    fail("pictures of {} and {} channels cannot be compared: expected equal channels (4 are RGB and alpha)",
+         a.channels, b.channels);
+  }
+  if (a.data.empty()) fail("a picture without pixels cannot be compared");
+}
+
+}  // namespace binosplat::measure

@@ -1,0 +1,264 @@
+#include "measure/flip.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "base/error.h"
+#include "measure/comparable.h"
+
+namespace binosplat::measure {
+
+namespace {
+
+// The paper's constants, named as there.
+constexpr double q_c = 0.7, p_c = 0.4, p_t = 0.95;  // colour: exponent, and where which share is spent
+constexpr double w_degrees = 0.082;                 // features: width of the detector
+constexpr double q_f = 0.5;                         // and exponent
+
+using Kernel = std::vector<double>;  // odd: its middle is at zero
+
+/// One value a pixel, rows from the top.
+struct Plane {
+  int width = 0;
+  int height = 0;
+  std::vector<double> data;
+
+  Plane(int w, int h) : width(w), height(h), data(static_cast<std::size_t>(w) * h) {}
+  double& at(int x, int y) { return data[static_cast<std::size_t>(y) * width + x]; }
+  double at(int x, int y) const { return data[static_cast<std::size_t>(y) * width + x]; }
+};
+using Planes = std::array<Plane, 3>;
+
+/// Fills a plane's pixels by `value(x, y)`.
+template <typename Value>
+void fill(Plane& plane, const Value& value) {
+  tbb::parallel_for(0, plane.height, [&](int y) {
+    for (int x = 0; x < plane.width; ++x) plane.at(x, y) = value(x, y);
+  });
+}
+
+/// The plane under a separable kernel; beyond its edges a picture goes on as its edge is.
+Plane filtered(const Plane& in, const Kernel& along_x, const Kernel& along_y) {
+  Plane rows(in.width, in.height), out(in.width, in.height);
+  const int rx = static_cast<int>(along_x.size() / 2), ry = static_cast<int>(along_y.size() / 2);
+  fill(rows, [&](int x, int y) {
+    double sum = 0.0;
+    for (int i = -rx; i <= rx; ++i)
+      sum += along_x[static_cast<std::size_t>(i + rx)] * in.at(std::clamp(x + i, 0, in.width - 1), y);
+    return sum;
+  });
+  fill(out, [&](int x, int y) {
+    double sum = 0.0;
+    for (int i = -ry; i <= ry; ++i)
+      sum += along_y[static_cast<std::size_t>(i + ry)] * rows.at(x, std::clamp(y + i, 0, in.height - 1));
+    return sum;
+  });
+  return out;
+}
+
+// Colour spaces: linear sRGB, XYZ relative to its white, linearised CIELAB (YCxCz), CIELAB.
+// sRGB's primaries under D65, x 0.3127, y 0.3290.
+const glm::dmat3 xyz_of_rgb = glm::transpose(glm::dmat3(0.41239080, 0.35758434, 0.18048079,  //
+                                                        0.21263901, 0.71516868, 0.07219232,  //
+                                                        0.01933082, 0.11919478, 0.95053215));
+
+/// XYZ over the white's, so that white is (1, 1, 1).
+glm::dvec3 relative_xyz(const glm::dvec3& rgb) { return (xyz_of_rgb * rgb) / (xyz_of_rgb * glm::dvec3(1.0)); }
+
+double linear(double display) {
+  return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
+}
+
+glm::dvec3 ycxcz(const glm::dvec3& rgb) {
+  const glm::dvec3 r = relative_xyz(rgb);
+  return {116.0 * r.y - 16.0, 500.0 * (r.x - r.y), 200.0 * (r.y - r.z)};
+}
+
+glm::dvec3 rgb_of_ycxcz(const glm::dvec3& v) {
+  const double y = (v.x + 16.0) / 116.0;
+  const glm::dvec3 r(y + v.y / 500.0, y, y - v.z / 200.0);
+  static const glm::dmat3 rgb_of_xyz = glm::inverse(xyz_of_rgb);
+  return rgb_of_xyz * (r * (xyz_of_rgb * glm::dvec3(1.0)));
+}
+
+/// CIELAB with the Hunt effect: chroma counts less where it is dark.
+glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
+  constexpr double delta = 6.0 / 29.0;
+  const auto f = [](double t) {
+    return t > delta * delta * delta ? std::cbrt(t) : t / (3.0 * delta * delta) + 4.0 / 29.0;
+  };
+  const glm::dvec3 r = relative_xyz(rgb);
+  const double l = 116.0 * f(r.y) - 16.0;
+  return {l, 0.01 * l * 500.0 * (f(r.x) - f(r.y)), 0.01 * l * 200.0 * (f(r.y) - f(r.z))};
+}
+
+/// HyAB, the distance for large differences: city block in lightness, Euclidean in chroma.
+double hyab(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
+}
+
+/// Kernel of `value(i)` for i from -radius to radius.
+template <typename Value>
+Kernel kernel(int radius, const Value& value) {
+  Kernel k;
+  for (int i = -radius; i <= radius; ++i) k.push_back(value(i));
+  return k;
+}
+
+double sum_of(const Kernel& k) { return std::accumulate(k.begin(), k.end(), 0.0); }
+
+/// Contrast sensitivity of one opponent channel: sum of a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees.
+struct Sensitivity {
+  struct Term {
+    double a, b;
+  };
+  std::vector<Term> terms;
+};
+const std::array<Sensitivity, 3> sensitivities = {
+    {{{{1.0, 0.0047}}}, {{{1.0, 0.0053}}}, {{{34.1, 0.04}, {13.5, 0.025}}}}};
+constexpr double widest_b = 0.04;
+
+/// The channel as the eye resolves it: under the sensitivity's kernel, whose weights have sum 1.
+Plane seen(const Plane& in, const Sensitivity& sensitivity, double ppd) {
+  constexpr double pi = std::numbers::pi;
+  const int radius = static_cast<int>(std::ceil(3.0 * std::sqrt(widest_b / (2.0 * pi * pi)) * ppd));
+  Plane out(in.width, in.height);
+  double total = 0.0;
+  for (const Sensitivity::Term& term : sensitivity.terms) {
+    const Kernel k = kernel(radius, [&](int i) { return std::exp(-pi * pi * i * i / (ppd * ppd * term.b)); });
+    const double weight = term.a * std::sqrt(pi / term.b);
+    total += weight * sum_of(k) * sum_of(k);
+    const Plane part = filtered(in, k, k);
+    for (std::size_t p = 0; p < out.data.size(); ++p) out.data[p] += weight * part.data[p];
+  }
+  for (double& v : out.data) v /= total;
+  return out;
+}
+
+/// Both signs' weights made sums of 1 and -1.
+void balance(Kernel& k) {
+  double above = 0.0, below = 0.0;
+  for (const double v : k) (v > 0.0 ? above : below) += std::abs(v);
+  for (double& v : k) v /= v > 0.0 ? above : below;
+}
+
+/// Strength of edges (first derivatives of a Gaussian) and of points and lines (second derivatives).
+struct Features {
+  Plane edge;
+  Plane point;
+};
+
+Features features(const Plane& luminance, double ppd) {
+  const double sigma = 0.5 * w_degrees * ppd;
+  const int radius = static_cast<int>(std::ceil(3.0 * sigma));
+  const auto gauss = [sigma](int i) { return std::exp(-i * i / (2.0 * sigma * sigma)); };
+  Kernel smooth = kernel(radius, gauss);
+  const double sum = sum_of(smooth);
+  for (double& v : smooth) v /= sum;
+  Kernel first = kernel(radius, [&](int i) { return -i * gauss(i); });
+  Kernel second = kernel(radius, [&](int i) { return (i * i / (sigma * sigma) - 1.0) * gauss(i); });
+  balance(first);
+  balance(second);
+  const auto strength = [&](const Kernel& across) {
+    Plane x = filtered(luminance, across, smooth);
+    const Plane y = filtered(luminance, smooth, across);
+    for (std::size_t p = 0; p < x.data.size(); ++p) x.data[p] = std::hypot(x.data[p], y.data[p]);
+    return x;
+  };
+  return {strength(first), strength(second)};
+}
+
+/// What FLIP compares of one picture.
+struct Seen {
+  Planes lab;  // after the eye's resolution, with the Hunt effect
+  Features features;
+};
+
+Seen see(const Image& image, double ppd) {
+  const Plane empty(image.width, image.height);
+  Planes planes = {empty, empty, empty};
+  Plane luminance = empty;
+  tbb::parallel_for(0, image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      glm::dvec3 rgb;
+      for (int c = 0; c < 3; ++c)
+        rgb[c] = linear(std::clamp(double(image.at(x, y, std::min(c, image.channels - 1))), 0.0, 1.0));
+      const glm::dvec3 v = ycxcz(rgb);
+      for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)].at(x, y) = v[c];
+      luminance.at(x, y) = (v.x + 16.0) / 116.0;
+    }
+  });
+  for (std::size_t c = 0; c < 3; ++c) planes[c] = seen(planes[c], sensitivities[c], ppd);
+  tbb::parallel_for(0, image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      const glm::dvec3 v(planes[0].at(x, y), planes[1].at(x, y), planes[2].at(x, y));
+      const glm::dvec3 lab = hunt_lab(glm::clamp(rgb_of_ycxcz(v), 0.0, 1.0));
+      for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)].at(x, y) = lab[c];
+    }
+  });
+  return {std::move(planes), features(luminance, ppd)};
+}
+
+/// The colour difference from 0 to 1: most of the range for what is usual, the rest for the largest.
+double colour_difference(const glm::dvec3& a, const glm::dvec3& b) {
+  static const double largest =
+      std::pow(hyab(hunt_lab({0.0, 1.0, 0.0}), hunt_lab({0.0, 0.0, 1.0})), q_c);  // green and blue
+  const double difference = std::pow(hyab(a, b), q_c), usual = p_c * largest;
+  if (difference < usual) return p_t / usual * difference;
+  return p_t + (difference - usual) / (largest - usual) * (1.0 - p_t);
+}
+
+Image map_of_colours(const Image& a, const Image& b, double ppd) {
+  const Seen sa = see(a, ppd), sb = see(b, ppd);
+  Image map(a.width, a.height, 1);
+  tbb::parallel_for(0, a.height, [&](int y) {
+    for (int x = 0; x < a.width; ++x) {
+      const auto lab = [&](const Planes& p) {
+        return glm::dvec3(p[0].at(x, y), p[1].at(x, y), p[2].at(x, y));
+      };
+      const double edge = std::abs(sa.features.edge.at(x, y) - sb.features.edge.at(x, y));
+      const double point = std::abs(sa.features.point.at(x, y) - sb.features.point.at(x, y));
+      const double feature = std::pow(std::max(edge, point) / std::numbers::sqrt2, q_f);
+      const double colour = colour_difference(lab(sa.lab), lab(sb.lab));
+      map.at(x, y, 0) = static_cast<float>(std::pow(colour, 1.0 - feature));
+    }
+  });
+  return map;
+}
+
+Image over(const Image& image, float background) {
+  Image colour(image.width, image.height, 3);
+  for (std::size_t k = 0; k < colour.data.size(); ++k) {
+    const float alpha = std::clamp(image.data[k / 3 * 4 + 3], 0.0f, 1.0f);
+    colour.data[k] = alpha * image.data[k / 3 * 4 + k % 3] + (1.0f - alpha) * background;
+  }
+  return colour;
+}
+
+}  // namespace
+
+Image flip_map(const Image& a, const Image& b, double pixels_per_degree) {
+  require_comparable(a, b);
+  if (!(pixels_per_degree >= 1.0 && pixels_per_degree <= 1000.0))
+    fail("{} pixels per degree: expected a number from 1 to 1000", pixels_per_degree);
+  if (a.channels != 4) return map_of_colours(a, b, pixels_per_degree);
+  Image map = map_of_colours(over(a, 0.0f), over(b, 0.0f), pixels_per_degree);
+  const Image white = map_of_colours(over(a, 1.0f), over(b, 1.0f), pixels_per_degree);
+  for (std::size_t k = 0; k < map.data.size(); ++k)
+    map.data[k] = white.data[k] <= map.data[k] ? map.data[k] : white.data[k];
+  return map;
+}
+
+double flip(const Image& a, const Image& b, double pixels_per_degree) {
+  const Image map = flip_map(a, b, pixels_per_degree);
+  return std::accumulate(map.data.begin(), map.data.end(), 0.0) / static_cast<double>(map.data.size());
+}
+
+}  // namespace binosplat::measure

@@ -1,0 +1,132 @@
+#include "render/shape.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "render/anchors.h"
+
+namespace binosplat::render {
+
+namespace {
+
+constexpr std::uint32_t slots_start = 1u << 20;
+
+// Equal to the bit in all that decides a Gaussian's depth.
+bool same_depths(const shared::View& a, const shared::View& b) {
+  return std::memcmp(&a.row_z, &b.row_z, sizeof(a.row_z)) == 0 &&
+         std::memcmp(&a.anchor, &b.anchor, sizeof(a.anchor)) == 0;
+}
+
+// Written so that values that are not finite fail, too.
+void check_threshold(const FrameSettings& s, std::size_t views) {
+  if (!(s.loss >= 0.0f) || !std::isfinite(s.loss)) fail("--loss {}: expected zero or more", s.loss);
+  if (!(s.quality >= 0.0f) || !std::isfinite(s.quality))
+    fail("--quality {}: expected dB, above zero", s.quality);
+  if (s.quality > 0.0f && s.th == TH_TAU) fail("--quality {} with --th tau, which is exact", s.quality);
+  if (s.probe_strips < 1) fail("{} strips of a view to probe: expected at least one", s.probe_strips);
+  if (s.transmittance > TRANSMITTANCE_LAST && views % 2 != 0) {
+    fail("--transmittance {}: only for both eyes together", transmittance_choices[s.transmittance].name);
+  }
+  if (s.th_eyes != TH_EYES_PER_EYE && views % 2 != 0) {
+    fail("--th-eyes {}: only for both eyes together", th_eyes_choices[s.th_eyes].name);
+  }
+  if (s.contrast != CONTRAST_OFF && !measures(s.transmittance)) {
+    fail("--contrast {}: only with a measured --transmittance", contrast_choices[s.contrast].name);
+  }
+  const DepthTable& table = s.depth_table;
+  const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
+  if (s.transmittance == TRANSMITTANCE_DEPTH &&
+      (!(table.far > 0.0f) || !std::isfinite(table.far) || table.upper.empty() ||
+       !std::all_of(table.upper.begin(), table.upper.end(), is_share))) {
+    fail("--transmittance depth: its table needs a far end above 0 and values from 0 to 1");
+  }
+}
+
+// Between the eyes of a pair, looking their mean way. Its picture is not drawn, so it has no tiles.
+shared::View view_between(const shared::View& left, const shared::View& right) {
+  shared::View view = left;
+  const glm::dvec3 eye = 0.5 * (glm::dvec3(left.eye) + glm::dvec3(right.eye));
+  const glm::dvec3 z = glm::normalize(glm::dvec3(left.row_z) + glm::dvec3(right.row_z));
+  const glm::dvec3 across = glm::dvec3(left.row_x) + glm::dvec3(right.row_x);
+  const glm::dvec3 x = glm::normalize(across - glm::dot(across, z) * z);
+  const glm::dvec3 y = glm::cross(z, x);
+  view.eye = glm::vec4(glm::vec3(eye), 0.0f);
+  view.row_x = glm::vec4(glm::dvec4(x, -glm::dot(x, eye)));
+  view.row_y = glm::vec4(glm::dvec4(y, -glm::dot(y, eye)));
+  view.row_z = glm::vec4(glm::dvec4(z, -glm::dot(z, eye)));
+  view.lens = 0.5f * (left.lens + right.lens);
+  view.slopes = 0.5f * (left.slopes + right.slopes);
+  return view;
+}
+
+shared::View probe_view(const shared::View& of, const Probe& probe) {
+  shared::View view = of;
+  view.lens.w -= static_cast<float>(probe.first_row);
+  view.height = probe.rows;
+  return view;
+}
+
+// Appends a view, in the last order group if it sees the same depths.
+void add_view(FrameShape& shape, shared::View view) {
+  const auto tile = static_cast<std::uint32_t>(shape.settings.tile_size);
+  const std::uint32_t v = shape.view_count();
+  if (view.width == 0 || view.height == 0)
+    fail("a view of {} x {} px has no picture", view.width, view.height);
+  view.tiles_x = (view.width + tile - 1) / tile;
+  view.tiles_y = (view.height + tile - 1) / tile;
+  view.tile_offset = shape.tile_count;
+  view.pixel_offset = static_cast<std::uint32_t>(shape.pixel_count);
+  shape.pixel_count += std::int64_t{view.width} * view.height;
+  if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
+  shape.tile_count += view.tiles_x * view.tiles_y;
+  if (v == 0 || !same_depths(view, shape.views.back())) shape.groups.push_back({v, v});
+  shape.groups.back().end = v + 1;
+  view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
+  shape.views.push_back(view);
+}
+
+}  // namespace
+
+std::uint32_t FrameShape::list_bits() const {
+  const std::uint32_t lists = settings.tiles == TILES_ALL ? view_count() : tile_count;
+  return static_cast<std::uint32_t>(std::bit_width(lists - 1));
+}
+
+FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
+                      const std::optional<Probe>& probe) {
+  if (views.empty() || views.size() > MAX_VIEWS)
+    fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
+  if (settings.tile_size != 8 && settings.tile_size != 16 && settings.tile_size != 32) {
+    fail("--tile {}: expected 8, 16 or 32", settings.tile_size);
+  }
+  check_threshold(settings, views.size());
+  FrameShape shape;
+  shape.settings = settings;
+  shape.degree = model.degree;
+  shape.gaussian_count = static_cast<std::uint32_t>(model.count());
+  if (model.scaffold) {
+    shape.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);
+    shape.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
+    shape.anchor_bytes = anchor_bytes(*model.scaffold);
+  }
+  // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The
+  // reference's results need all the room they take at once.
+  const std::uint32_t half = shape.gaussian_count / 2;
+  const std::uint32_t start = std::max(half, std::min(shape.gaussian_count, slots_start));
+  shape.slots = settings.reference_until ? shape.gaussian_count : start;
+  shape.asked = static_cast<std::uint32_t>(views.size());
+  for (const shared::View& view : views) add_view(shape, view);
+  shape.probe = probe;
+  if (probe) add_view(shape, probe_view(views[probe->view], *probe));
+  if (settings.th_eyes == TH_EYES_CYCLOPEAN) {
+    for (std::uint32_t v = 0; v < shape.asked; ++v) shape.views[v].th_view = shape.view_count() + v / 2;
+    for (std::uint32_t v = 0; v < shape.asked; v += 2)
+      shape.between.push_back(view_between(shape.views[v], shape.views[v + 1]));
+  }
+  return shape;
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,61 @@
+#pragma once
+// What a frame is made of before anything is drawn: its views with tiles and offsets, and who shares what.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/settings.h"
+#include "scene/model.h"
+#include "shared/types.h"
+
+namespace binosplat::render {
+
+/// Views that share one depth order: [begin, end) of the frame's views.
+struct OrderGroup {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
+/// Rows [first_row, first_row + rows) px of one of a frame's views, drawn exactly beside it to see what its
+/// loss costs.
+struct Probe {
+  std::uint32_t view = 0;
+  std::uint32_t first_row = 0;
+  std::uint32_t rows = 0;
+};
+
+/// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
+struct FrameShape {
+  FrameSettings settings;
+  int degree = 0;  // of the model's SH
+  std::uint32_t gaussian_count = 0;
+  bool remembers = false;           // the last frame measured for this one
+  std::uint32_t slots = 0;          // room for the Gaussians that one order group draws
+  std::vector<shared::View> views;  // those asked for, then the probe's
+  std::uint32_t asked = 0;
+  std::optional<Probe> probe;
+  std::vector<shared::View> between;  // the eyes of each pair, with TH_EYES_CYCLOPEAN; not drawn
+  std::vector<OrderGroup> groups;
+  std::uint32_t tile_count = 0;  // over all views
+  std::int64_t pixel_count = 0;  // over all views
+  // Of Scaffold-GS; K is 0 for other models.
+  std::uint32_t offset_count = 0;        // K
+  std::uint32_t views_per_decoding = 1;  // views that share what the networks made
+  std::int64_t anchor_bytes = 0;
+
+  std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
+  /// Bits that tell the lists apart by which pairs are sorted: tiles, or views with --tiles all.
+  std::uint32_t list_bits() const;
+  /// How often each anchor is decoded. A probe shares the Gaussians of its view.
+  std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }
+  std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
+};
+
+/// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
+/// contradict each other or the views.
+FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
+                      const std::optional<Probe>& probe = {});
+
+}  // namespace binosplat::render

@@ -1,0 +1,23 @@
+#pragma once
+// Which way a model's axes point.
+//
+// Cameras live in a world as COLMAP leaves it: x right, y down, z forward ("RDF" in the letters below). Most
+// models are trained in it; some formats store another frame. A model keeps the numbers of its file, so that
+// no spherical harmonics have to be turned, and cameras are brought into its frame instead.
+
+#include <glm/glm.hpp>
+#include <string_view>
+
+#include "scene/camera.h"
+
+namespace binosplat {
+
+/// The directions of a frame's x, y and z by three letters: R or L (right, left), U or D (up, down), F or B
+/// (forward, back), each pair once, as in "RUB" (OpenGL, spz) and "LUF" (glTF). Returns the signed
+/// permutation whose columns are x, y and z in the world; frames that mirror are allowed. Throws Error.
+glm::dmat3 world_from_axes(std::string_view letters);
+
+/// A camera of the world as seen in the frame `letters`: it sees the model as the camera sees the world.
+Camera into_axes(Camera camera, std::string_view letters);
+
+}  // namespace binosplat

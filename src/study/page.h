@@ -1,0 +1,78 @@
+#pragma once
+// The page that bench and study leave: one HTML file that needs nothing but a browser. It carries the results
+// as JSON and draws its plots from them (src/study/page, with the libraries of third_party), so that a number
+// on the page is the number in the JSON.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace binosplat::study {
+
+struct Axis {
+  std::string label;
+  std::string unit;         // "" for none
+  bool log = false;         // only values above 0 can be drawn
+  bool categories = false;  // names, not numbers: x of bars
+};
+
+/// A value that is not finite cannot be drawn; the page says so, by the point's label.
+struct Point {
+  std::variant<double, std::string> x;
+  double y = 0.0;
+  std::string label;    // what it is, for whoever points at it
+  bool marked = false;  // filled, where others are hollow
+};
+
+struct Series {
+  std::string name;
+  std::vector<Point> points;
+  bool line = false;  // joined in their order
+  bool step = false;  // joined by steps: a value holds until the next
+  bool dots = true;
+};
+
+/// Points and lines over numbers, or horizontal bars stacked by series over names.
+struct Plot {
+  Axis x;
+  Axis y;
+  std::vector<Series> series;
+  bool bars = false;
+};
+
+/// Rows of numbers, texts and null, as many each as there are columns.
+struct Table {
+  std::vector<std::string> columns;
+  std::vector<nlohmann::ordered_json> rows;
+};
+
+/// One heading of the page: what it shows on this scene, in a sentence, then the plot and the table.
+struct Section {
+  std::string id;  // of the link to it and of the plot's SVG
+  std::string title;
+  std::string sentence;
+  std::optional<Plot> plot;
+  std::optional<Table> table;
+  std::string problem;  // why there is neither
+};
+
+struct Page {
+  std::string title;
+  std::string sentence;
+  std::vector<std::pair<std::string, nlohmann::ordered_json>> facts;  // scene, device, date
+  std::vector<Section> sections;
+  nlohmann::ordered_json data;  // everything measured: what the page offers to save
+};
+
+/// The whole file. Light and dark, readable at 400 px and printed; colours are told apart by everyone, and
+/// never alone. Throws std::logic_error for a table whose rows do not fit its columns.
+std::string html(const Page& page);
+
+/// Writes it whole or not at all. Throws Error where that fails.
+void save_page(const std::filesystem::path& path, const Page& page);
+
+}  // namespace binosplat::study

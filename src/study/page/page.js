@@ -1,0 +1,207 @@
+"use strict";
+// Draws the page from the data embedded in it. Series are told apart by colour, symbol and dash together.
+
+const symbols = ["circle", "diamond", "square", "triangle", "plus", "star", "times", "wye"];
+const dashes = ["none", "7 3", "2 3", "9 3 2 3", "4 2", "12 3", "1 4", "6 2 1 2 1 2"];
+const seriesStyle = (i) => ({
+  colour: `var(--series-${(i % 8) + 1})`, symbol: symbols[i % 8], dash: dashes[i % 8]
+});
+
+function element(name, attributes = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
+    else made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
+
+// Five significant digits are enough to read; the exact value is in data-value and in the JSON.
+function shown(value) {
+  if (value === null || value === undefined) return "–";
+  if (!isNumber(value)) return String(value);
+  if (Number.isInteger(value)) return value.toLocaleString("en");
+  const size = Math.abs(value);
+  if (size >= 1e5) return Math.round(value).toLocaleString("en");
+  return size >= 1e-3 ? String(Number(value.toPrecision(5))) : value.toExponential(2);
+}
+
+function cell(value) {
+  const text = element("td", { class: isNumber(value) ? "" : "text" }, shown(value));
+  if (isNumber(value)) text.dataset.value = String(value);
+  return text;
+}
+
+function table(columns, rows) {
+  const head = element("tr", {}, ...columns.map((name, i) =>
+    element("th", { class: rows.length && !isNumber(rows[0][i]) ? "text" : "", scope: "col" }, name)));
+  const body = rows.map((row) => element("tr", {}, ...row.map(cell)));
+  return element("div", { class: "wide" },
+    element("table", {}, element("thead", {}, head), element("tbody", {}, ...body)));
+}
+
+const problem = (text) => element("p", { class: "problem", role: "alert" }, text);
+
+// What of a series can be drawn on these axes, and what cannot.
+function sorted(plot, series) {
+  const fits = (axis, value) => axis.categories ? typeof value === "string"
+    : isNumber(value) && (!axis.log || value > 0);
+  const good = series.points.filter((p) => fits(plot.x, p.x) && fits(plot.y, p.y));
+  return { good, bad: series.points.filter((p) => !good.includes(p)) };
+}
+
+const axisLabel = (axis) => axis.unit ? `${axis.label} (${axis.unit})` : axis.label;
+
+const pointText = (plot, series, p) =>
+  [p.label, series.name, `${plot.x.label}: ${shown(p.x)}`, `${plot.y.label}: ${shown(p.y)}`]
+    .filter((line) => line).join("\n");
+
+function scale(axis, more) {
+  return { label: axisLabel(axis), labelArrow: "none", grid: !axis.categories,
+    ...(axis.log ? { type: "log", tickFormat: "~g" } : {}), ...more };
+}
+
+// Stacked horizontal bars: names stay readable on a narrow screen.
+function bars(plot, chosen, width) {
+  const categories = [...new Set(chosen.flatMap((s) => s.good.map((p) => p.x)))];
+  const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, of: s })));
+  const longest = Math.max(0, ...categories.map((name) => name.length));
+  const place = { x: "y", y: "x", z: (p) => p.of.name, order: null };
+  return {
+    height: 60 + 30 * categories.length, marginLeft: Math.min(14 + 7 * longest, width * 0.4),
+    x: scale(plot.y), y: { label: null, domain: categories },
+    marks: [
+      Plot.barX(points, Plot.stackX({ ...place, fill: (p) => p.of.style.colour,
+        title: (p) => pointText(plot, p.of, p), tip: true, inset: 0.5 })),
+      Plot.ruleX([0])
+    ]
+  };
+}
+
+function curves(plot, chosen, width) {
+  const marks = [];
+  for (const s of chosen) {
+    const at = { x: "x", y: "y" };
+    if (s.line) marks.push(Plot.line(s.good, { ...at, stroke: s.style.colour, strokeWidth: 1.75,
+      strokeDasharray: s.style.dash, ...(s.step ? { curve: "step-after" } : {}) }));
+    if (s.dots) marks.push(Plot.dot(s.good, { ...at, symbol: s.style.symbol, stroke: s.style.colour,
+      strokeWidth: 1.75, r: 4, fill: (p) => p.marked ? s.style.colour : "var(--paper)" }));
+  }
+  const points = chosen.flatMap((s) => s.good.map((p) => ({ ...p, text: pointText(plot, s, p) })));
+  marks.push(Plot.tip(points, Plot.pointer({ x: "x", y: "y", title: "text" })));
+  return { height: Math.max(260, Math.min(440, width * 0.55)), marginLeft: 56, marginBottom: 42,
+    x: scale(plot.x), y: scale(plot.y), marks };
+}
+
+function draw(plot, chosen, width) {
+  const options = plot.kind === "bars" ? bars(plot, chosen, width) : curves(plot, chosen, width);
+  return Plot.plot({ width, color: { type: "identity" }, symbol: { type: "identity" }, ...options,
+    style: { background: "none", color: "var(--ink)", fontSize: "12px", fontFamily: "inherit" } });
+}
+
+// A copy that stands by itself, in the light colours.
+function saveSvg(svg, name) {
+  const copy = svg.cloneNode(true);
+  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  copy.querySelectorAll('[aria-label="tip"]').forEach((tip) => tip.remove());
+  const colours = document.getElementById("style").textContent.match(/:root \{[^}]*\}/)[0];
+  const style = document.createElementNS("http://www.w3.org/2000/svg", "style");
+  style.textContent = `${colours} svg { background: #ffffff; font-family: sans-serif; }`;
+  copy.prepend(style);
+  save(new XMLSerializer().serializeToString(copy), `${name}.svg`, "image/svg+xml");
+}
+
+function save(text, name, type) {
+  const link = element("a", { href: URL.createObjectURL(new Blob([text], { type })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+function legendSymbol(plot, style) {
+  const mark = plot.kind === "bars" ? Plot.barX([1], { x: () => 1, fill: style.colour })
+    : Plot.dot([0], { x: () => 0.5, y: () => 0.5, symbol: style.symbol, stroke: style.colour, strokeWidth: 1.75, r: 4 });
+  const svg = Plot.plot({ width: 14, height: 14, margin: 1, axis: null, x: { domain: [0, 1] },
+    ...(plot.kind === "bars" ? {} : { y: { domain: [0, 1] } }), symbol: { type: "identity" }, marks: [mark] });
+  svg.setAttribute("aria-hidden", "true");
+  return svg;
+}
+
+function figure(section) {
+  const plot = section.plot;
+  const series = plot.series.map((s, i) => ({ ...s, ...sorted(plot, s), style: seriesStyle(i), on: true }));
+  const parts = [];
+  const bad = series.flatMap((s) => s.bad.map((p) => p.label || `${s.name}: ${shown(p.x)}, ${shown(p.y)}`));
+  if (!series.some((s) => s.good.length)) return [problem("There is nothing to draw: no result has a value here.")];
+  if (bad.length) {
+    const some = bad.slice(0, 8).join("; ") + (bad.length > 8 ? `; and ${bad.length - 8} more` : "");
+    parts.push(problem(`Not drawn, because a value is missing or not finite (an equal picture has no PSNR): ${some}.`));
+  }
+  const holder = element("figure", { role: "img", "aria-label": section.sentence });
+  let drawnWidth = 0;
+  const redraw = (width) => {
+    drawnWidth = width;
+    holder.replaceChildren(draw(plot, series.filter((s) => s.on && s.good.length), width));
+  };
+  if (series.length > 1) {
+    parts.push(element("div", { class: "legend" }, ...series.map((s) => {
+      const button = element("button", { type: "button", "aria-pressed": "true", onclick: () => {
+        s.on = !s.on;
+        button.setAttribute("aria-pressed", String(s.on));
+        redraw(drawnWidth);
+      } }, legendSymbol(plot, s.style), s.name);
+      return button;
+    })));
+  }
+  parts.push(holder);
+  parts.push(element("div", { class: "tools" }, element("button", { type: "button",
+    onclick: () => saveSvg(holder.querySelector("svg"), section.id) }, "Save as SVG")));
+  const rows = plot.series.flatMap((s) => s.points.map((p) =>
+    [s.name, p.label || "", p.x ?? null, p.y ?? null]));
+  parts.push(element("details", {}, element("summary", {}, "The numbers"),
+    table(["series", "point", axisLabel(plot.x), axisLabel(plot.y)], rows)));
+  new ResizeObserver(([entry]) => {
+    const width = Math.floor(entry.contentRect.width);
+    if (width > 0 && width !== drawnWidth) redraw(width);
+  }).observe(holder);
+  return parts;
+}
+
+function sectionParts(section) {
+  if (section.problem) return [problem(section.problem)];
+  const parts = section.plot ? figure(section) : [];
+  if (section.table) {
+    parts.push(section.table.rows.length ? table(section.table.columns, section.table.rows)
+      : problem("This table is empty: nothing was measured."));
+  }
+  return parts;
+}
+
+function show(page) {
+  const main = document.querySelector("main");
+  main.append(element("h1", {}, page.title), element("p", {}, page.sentence));
+  main.append(element("dl", {}, ...page.facts.flatMap(([name, value]) =>
+    [element("dt", {}, name), element("dd", {}, shown(value))])));
+  main.append(element("div", { class: "tools" }, element("button", { type: "button",
+    onclick: () => save(JSON.stringify(page.data, null, 2), "results.json", "application/json") },
+    "Save the data as JSON")));
+  if (!page.sections.length) main.append(problem("There are no results."));
+  for (const section of page.sections) {
+    const holder = element("section", { id: section.id }, element("h2", {}, section.title),
+      element("p", {}, section.sentence));
+    main.append(holder);
+    try {
+      holder.append(...sectionParts(section));
+    } catch (error) {
+      holder.append(problem(`This part could not be drawn: ${error.message}`));
+    }
+  }
+}
+
+try {
+  show(JSON.parse(document.getElementById("page").textContent));
+} catch (error) {
+  document.querySelector("main").append(problem(`The results in this page are broken: ${error.message}`));
+}

@@ -1,0 +1,272 @@
+// SOG in folders, archives and levels of detail. That values are decoded right is real_files_test's matter.
+
+#include <gtest/gtest.h>
+
+#include "formats/model_file.h"
+#include "support/broken.h"
+#include "support/fixtures.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::Copy;
+
+/// Whether the Gaussians of `a` from `first` on are those of `b`, to the bit.
+bool equal(const Model& a, std::size_t first, const Model& b) {
+  const std::size_t values = b.sh.size() / b.count();
+  for (std::size_t i = 0; i < b.count(); ++i) {
+    const std::size_t k = first + i;
+    if (a.position[k] != b.position[i] || a.scale[k] != b.scale[i] || a.rotation[k] != b.rotation[i])
+      return false;
+    if (a.opacity[k] != b.opacity[i]) return false;
+    if (!std::equal(&b.sh[i * values], &b.sh[(i + 1) * values - 1], &a.sh[k * values])) return false;
+  }
+  return true;
+}
+
+TEST(Sog, FoldersAndArchivesAreTheSame) {
+  REQUIRE_FIXTURES(folder);
+  const Model whole = load_model(folder / "sog/playbot-lod6");
+  for (const char* name :
+       {"sog/playbot-lod6/meta.json", "sog/playbot-lod6-stored.sog", "sog/playbot-lod6-deflated.sog"}) {
+    const Model other = load_model(folder / name);
+    ASSERT_EQ(other.count(), whole.count()) << name;
+    EXPECT_TRUE(equal(other, 0, whole)) << name;
+  }
+  // Planted fault.
+  Model faulty = whole;
+  faulty.sh[500] += 1e-6f;
+  EXPECT_FALSE(equal(faulty, 0, whole));
+}
+
+TEST(Sog, LevelsOfDetail) {
+  REQUIRE_FIXTURES(folder);
+  const fs::path lod = folder / "sog/st-lod";
+  const Model fine = load_model(lod / "0_0"), coarse = load_model(lod / "1_0");
+  const Model chosen = load_model(lod);
+  ASSERT_EQ(chosen.count(), 1000u);
+  EXPECT_TRUE(equal(chosen, 0, fine));
+  EXPECT_TRUE(equal(load_model(lod / "lod-meta.json", {.lod = 0}), 0, fine));
+  const Model level = load_model(lod, {.lod = 1});
+  ASSERT_EQ(level.count(), 250u);
+  EXPECT_TRUE(equal(level, 0, coarse));
+  EXPECT_TRUE(
+      test::fails_saying([&] { load_model(lod, {.lod = 2}); }, {"--lod 2", "lod-meta.json", "0 to 1"}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { load_model(lod / "0_0", {.lod = 0}); }, {"--lod 0", "no levels of detail"}));
+}
+
+TEST(Sog, PartsOfLevelsAndTheEnvironment) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](json& meta) {
+    meta["environment"] = "1_0/meta.json";
+    meta["tree"]["children"][0]["lods"].erase("0");  // this leaf has nothing to draw at level 0
+  });
+  const Model model = load_model(copy.path());
+  const Model fine = load_model(copy.path() / "0_0"), coarse = load_model(copy.path() / "1_0");
+  ASSERT_EQ(model.count(), 495u + 250u);
+  EXPECT_EQ(model.position[0], fine.position[505]);
+  EXPECT_EQ(model.opacity[494], fine.opacity[999]);
+  EXPECT_TRUE(equal(model, 495, coarse));
+}
+
+TEST(Sog, LevelsThatAreNotThere) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/playbot-streamed-cut");
+  copy.write(test::read_text(folder / "sog/playbot-lod-meta-original.json"), "lod-meta.json");
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(load_model(copy.path()).count(), 3000u);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("0_0/meta.json is missing); level 5 is drawn"), std::string::npos) << said;
+  EXPECT_EQ(load_model(copy.path(), {.lod = 6}).count(), 1873u);
+  EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path(), {.lod = 3}); },
+                                 {"--lod 3", "3_0/meta.json is missing", "finest level that is there is 5"}));
+  fs::remove_all(copy.path() / "5_0");
+  fs::remove_all(copy.path() / "6_0");
+  EXPECT_TRUE(test::fails_saying([&] { load_model(copy.path()); },
+                                 {"lod-meta.json", "no level of detail is complete"}));
+}
+
+/// Damages a copy of a file or folder and tells whether loading it ends in an error that says `parts`.
+template <typename Damage>
+testing::AssertionResult refuses(const fs::path& original, const Damage& damage,
+                                 std::initializer_list<std::string> parts) {
+  const Copy copy(original);
+  damage(copy);
+  return test::fails_saying([&] { load_model(copy.path()); }, parts);
+}
+
+TEST(SogErrors, Meta) {
+  REQUIRE_FIXTURES(folder);
+  const auto edited = [&](auto edit, std::initializer_list<std::string> parts) {
+    return refuses(
+        folder / "sog/playbot-lod6", [&](const Copy& copy) { copy.edit("meta.json", edit); }, parts);
+  };
+  EXPECT_TRUE(edited([](json& m) { m["count"] = 5000; },
+                     {"meta.json: 5000 Gaussians are promised, but means_l.webp has 44 x 44 texels"}));
+  EXPECT_TRUE(edited([](json& m) { m["count"] = 1e300; }, {"key 'count'", "expected a whole number"}));
+  EXPECT_TRUE(edited([](json& m) { m["count"] = 0; }, {"its count is 0"}));
+  EXPECT_TRUE(edited([](json& m) { m.erase("quats"); }, {"the key 'quats' is missing"}));
+  EXPECT_TRUE(edited([](json& m) { m["scales"]["codebook"].erase(3); },
+                     {"key 'scales.codebook'", "expected 256 values, found 255"}));
+  EXPECT_TRUE(
+      edited([](json& m) { m["sh0"]["codebook"][7] = "x"; }, {"key 'sh0.codebook[7]'", "finite number"}));
+  EXPECT_TRUE(edited([](json& m) { m["quats"]["files"][0] = "../quats.webp"; },
+                     {"key 'quats.files[0]'", "beside meta.json"}));
+  EXPECT_TRUE(edited([](json& m) { m["quats"]["files"][0] = "/etc/passwd"; },
+                     {"key 'quats.files[0]'", "beside meta.json"}));
+  EXPECT_TRUE(edited([](json& m) { m["version"] = 3; }, {"key 'version'", "version 3 is not known"}));
+  EXPECT_TRUE(edited([](json& m) { m["means"]["mins"].erase(0); },
+                     {"key 'means.mins'", "expected 3 values, found 2"}));
+  EXPECT_TRUE(edited([](json& m) { m["shN"]["bands"] = 3; },
+                     {"shN_centroids.webp", "no palette of 1024 entries", "degree 3"}));
+  EXPECT_TRUE(edited([](json& m) { m["shN"]["bands"] = 4; }, {"key 'shN.bands'"}));
+  EXPECT_TRUE(edited([](json& m) { m["shN"]["count"] = 65536; }, {"no palette of 65536 entries"}));
+  EXPECT_TRUE(edited([](json& m) { m["model"] = "2dgs"; }, {"2D Gaussian Splatting"}));
+  EXPECT_TRUE(refuses(folder / "sog/playbot-lod6",
+                      [](const Copy& c) { c.write(c.read("meta.json").substr(0, 7000), "meta.json"); },
+                      {"meta.json is not valid JSON at line 1, byte 7000"}));
+}
+
+TEST(SogErrors, WhatIsOddButLoads) {
+  REQUIRE_FIXTURES(folder);
+  const Model good = load_model(folder / "sog/playbot-lod6");
+  const Copy copy(folder / "sog/playbot-lod6");
+  copy.edit("meta.json", [](json& m) {
+    json& book = m["scales"]["codebook"];
+    book[0] = nullptr;  // as old tools wrote it
+  });
+  EXPECT_EQ(load_model(copy.path()).count(), good.count());
+
+  // A label beyond the palette: no harmonics.
+  copy.write(test::webp(44, 44, std::vector<std::uint8_t>(std::size_t{4} * 44 * 44, 255)), "shN_labels.webp");
+  const Model plain = load_model(copy.path());
+  const std::size_t values = plain.sh.size() / plain.count();
+  for (std::size_t i = 0; i < plain.count(); ++i) {
+    EXPECT_EQ(plain.sh[i * values], good.sh[i * values]);
+    for (std::size_t k = 3; k < values; ++k) ASSERT_EQ(plain.sh[i * values + k], 0.0f);
+  }
+  // A quaternion whose fourth byte names no component: none.
+  copy.write(test::webp(44, 44, std::vector<std::uint8_t>(std::size_t{4} * 44 * 44, 0)), "quats.webp");
+  EXPECT_EQ(load_model(copy.path()).rotation[17], glm::vec4(1, 0, 0, 0));
+}
+
+TEST(SogErrors, Pictures) {
+  REQUIRE_FIXTURES(folder);
+  const auto replaced = [&](const std::string& name, const std::string& bytes,
+                            std::initializer_list<std::string> parts) {
+    return refuses(
+        folder / "sog/playbot-lod6", [&](const Copy& copy) { copy.write(bytes, name); }, parts);
+  };
+  const std::vector<std::uint8_t> grey(std::size_t{4} * 128 * 128, 77);
+  EXPECT_TRUE(replaced("quats.webp", test::webp(4, 4, grey),
+                       {"meta.json: quats.webp", "4 x 4 texels do not fit 1873 Gaussians"}));
+  EXPECT_TRUE(replaced("means_l.webp", test::webp(4, 4, grey), {"means_l.webp has 4 x 4 texels"}));
+  EXPECT_TRUE(replaced("shN_centroids.webp", test::webp(4, 4, grey), {"shN_centroids.webp", "no palette"}));
+  EXPECT_TRUE(
+      replaced("quats.webp", test::webp(44, 44, grey, false), {"quats.webp", "compressed with losses"}));
+  EXPECT_TRUE(replaced("sh0.webp", "RIFF12345W", {"sh0.webp", "damaged or cut short"}));
+  EXPECT_TRUE(replaced("sh0.webp", "\x89PNG\r\n\x1a\n",
+                       {"sh0.webp", "expected a WebP picture, but it looks like a PNG picture"}));
+  const Copy whole(folder / "sog/playbot-lod6");
+  for (const char* name : {"means_l.webp", "means_u.webp", "quats.webp", "scales.webp", "sh0.webp",
+                           "shN_centroids.webp", "shN_labels.webp"}) {
+    const std::string bytes = whole.read(name);
+    EXPECT_TRUE(
+        replaced(name, bytes.substr(0, bytes.size() / 2), {"meta.json", name, "damaged or cut short"}));
+    EXPECT_TRUE(refuses(folder / "sog/playbot-lod6",
+                        [&](const Copy& copy) { fs::remove(copy.path() / name); },
+                        {"meta.json", name, "is missing"}));
+  }
+}
+
+TEST(SogErrors, PromisesThatBytesCannotHold) {
+  // A picture of one colour takes a few bytes, however large it is.
+  const test::TempFolder folder;
+  const std::vector<std::uint8_t> grey(std::size_t{4} * 4096 * 4096, 77);
+  const std::string bomb = test::webp(4096, 4096, grey);
+  json meta = {{"version", 2}, {"count", 4096 * 4096}};
+  meta["means"] = {{"mins", {0, 0, 0}}, {"maxs", {1, 1, 1}}, {"files", {"a.webp", "a.webp"}}};
+  meta["scales"] = {{"codebook", std::vector<float>(256, 0.0f)}, {"files", {"a.webp"}}};
+  meta["sh0"] = meta["scales"];
+  meta["quats"] = {{"files", {"a.webp"}}};
+  test::write_text(folder / "m.sog", test::zipped({{"meta.json", meta.dump()}, {"a.webp", bomb}}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { load_model(folder / "m.sog"); }, {"m.sog: 16777216 Gaussians are promised"}));
+}
+
+TEST(SogErrors, Archives) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/playbot-lod6-stored.sog");
+  const std::string good = copy.read();
+  const auto with = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
+    copy.write(bytes);
+    return test::fails_saying([&] { load_model(copy.path()); }, parts);
+  };
+  EXPECT_TRUE(
+      with(good.substr(0, good.size() - 10), {"stored.sog: the zip archive is damaged or cut short"}));
+  const std::size_t central = good.find("PK\x01\x02");
+  EXPECT_TRUE(
+      with(test::patched(good, central + 42, test::little(std::uint32_t{0x7fffffff})), {"stored.sog"}));
+  const std::string deflated = test::read_text(folder / "sog/playbot-lod6-deflated.sog");
+  std::string bomb = deflated;
+  for (std::size_t at = bomb.find("PK\x01\x02"); at != std::string::npos;
+       at = bomb.find("PK\x01\x02", at + 4))
+    bomb = test::patched(bomb, at + 24, test::little(std::uint32_t{0xfffffffe}));
+  EXPECT_TRUE(with(bomb, {"stored.sog", "promises 4294967294 bytes, which"}));
+  EXPECT_TRUE(with(test::zipped({{"model/meta.json", "{}"}}),
+                   {"without a meta.json at its root", "'model/meta.json'"}));
+  EXPECT_TRUE(with(test::zipped({{"meta.json", "{"}}), {"stored.sog: meta.json is not valid JSON"}));
+  EXPECT_TRUE(
+      with(test::zipped({{"meta.json", R"({"version": 2, "count": 5, "means": {"files": ["a", "b"]}})"}}),
+           {"stored.sog", "'quats' is missing"}));
+  // Truncation at every boundary, and within each file.
+  for (std::size_t at = good.find("PK"); at != std::string::npos; at = good.find("PK", at + 2)) {
+    EXPECT_TRUE(with(good.substr(0, at), {"stored.sog"}));
+    EXPECT_TRUE(with(good.substr(0, at + 20), {"stored.sog"}));
+  }
+  for (const std::size_t at : {5000u, 20000u, 40000u, 60000u}) {
+    EXPECT_TRUE(with(test::patched(good, at, "?!?!"), {"stored.sog", "is damaged"}));
+  }
+  // A name that climbs out is never asked for.
+  std::vector<std::pair<std::string, std::string>> files = {{"../../etc/x", "x"}};
+  for (const auto& entry : fs::directory_iterator(folder / "sog/playbot-lod6"))
+    files.emplace_back(entry.path().filename(), test::read_text(entry.path()));
+  copy.write(test::zipped(files, true));
+  EXPECT_EQ(load_model(copy.path()).count(), 1873u);
+}
+
+TEST(SogErrors, Levels) {
+  REQUIRE_FIXTURES(folder);
+  const auto edited = [&](auto edit, std::initializer_list<std::string> parts) {
+    return refuses(
+        folder / "sog/st-lod", [&](const Copy& copy) { copy.edit("lod-meta.json", edit); }, parts);
+  };
+  const auto leaf = [](json& m) -> json& { return m["tree"]["children"][0]["lods"]["0"]; };
+  EXPECT_TRUE(edited([&](json& m) { leaf(m)["file"] = 9; },
+                     {"key 'tree.children[0].lods.0.file'", "there is no file 9"}));
+  EXPECT_TRUE(edited([&](json& m) { leaf(m)["count"] = -1; }, {"lods.0.count'", "whole number"}));
+  EXPECT_TRUE(edited([&](json& m) { leaf(m)["offset"] = 1e10; }, {"lods.0.offset'", "whole number"}));
+  EXPECT_TRUE(edited([&](json& m) { leaf(m)["count"] = 506; },
+                     {"two leaves of the tree share Gaussian 505 of", "0_0/meta.json"}));
+  EXPECT_TRUE(edited([](json& m) { m["tree"]["children"][1]["children"][1]["lods"]["0"]["count"] = 249; },
+                     {"Gaussians 752 to 1000 of", "0_0/meta.json", "which has 1000"}));
+  EXPECT_TRUE(edited([](json& m) { m["filenames"][0] = "../0_0/meta.json"; },
+                     {"key 'filenames[0]'", "must lie below"}));
+  EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 1000000; }, {"key 'lodLevels'", "from 0 to 100"}));
+  EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 0; }, {"key 'lodLevels'", "one level at least"}));
+  EXPECT_TRUE(edited([](json& m) { m.erase("tree"); }, {"the key 'tree' is missing"}));
+  EXPECT_TRUE(edited([](json& m) { m["tree"].erase("children"); }, {"holds no Gaussians at level 0"}));
+  std::string deep = R"({"lodLevels": 1, "filenames": [], "tree": )";
+  for (int i = 0; i < 100000; ++i) deep += R"({"children":[)";
+  for (int i = 0; i < 100000; ++i) deep += "]}";
+  EXPECT_TRUE(refuses(folder / "sog/st-lod",
+                      [&](const Copy& copy) { copy.write(deep + "}", "lod-meta.json"); },
+                      {"lod-meta.json", "nested more than 200 deep"}));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,100 @@
+#pragma once
+// Damaging copies of good files: the recipes of the tests that say what a reader makes of broken ones.
+
+#include <webp/encode.h>
+#include <zip.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "support/errors.h"
+#include "support/program.h"
+
+namespace binosplat::test {
+
+/// A good file or folder of files in a temporary place, to be damaged there. `read` and `write` take names
+/// below it; the copy of a single file is called by its own name.
+class Copy {
+ public:
+  explicit Copy(const std::filesystem::path& original) : name_(original.filename().string()) {
+    namespace fs = std::filesystem;
+    fs::copy(original, path(), fs::copy_options::recursive);
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
+      fs::permissions(entry.path(), fs::perms::owner_all);
+  }
+
+  std::filesystem::path path() const { return folder_ / name_; }
+  std::string read(const std::string& below = "") const {
+    return read_text(below.empty() ? path() : path() / below);
+  }
+  void write(const std::string& text, const std::string& below = "") const {
+    write_text(below.empty() ? path() : path() / below, text);
+  }
+
+  /// Changes a JSON file in it by `edit`.
+  template <typename Edit>
+  void edit(const std::string& below, const Edit& edit) const {
+    nlohmann::json json = nlohmann::json::parse(read(below));
+    edit(json);
+    write(json.dump(), below);
+  }
+
+ private:
+  TempFolder folder_;
+  std::string name_;
+};
+
+/// `text` with `bytes` in place of what stands at `at`.
+inline std::string patched(std::string text, std::size_t at, const std::string& bytes) {
+  if (at + bytes.size() > text.size()) throw std::out_of_range("patch beyond the end");
+  return text.replace(at, bytes.size(), bytes);
+}
+
+/// A number as a file has it, least byte first.
+template <typename T>
+std::string little(T value) {
+  return {reinterpret_cast<const char*>(&value), sizeof(T)};
+}
+
+/// Four bytes a texel as a WebP picture; `lossless` keeps them exactly.
+inline std::string webp(int width, int height, const std::vector<std::uint8_t>& texels,
+                        bool lossless = true) {
+  WebPConfig config;
+  WebPPicture picture;
+  WebPMemoryWriter writer;
+  WebPConfigInit(&config);
+  WebPPictureInit(&picture);
+  WebPMemoryWriterInit(&writer);
+  config.lossless = lossless ? 1 : 0;
+  config.exact = 1;
+  picture.use_argb = 1;
+  picture.width = width;
+  picture.height = height;
+  picture.writer = WebPMemoryWrite;
+  picture.custom_ptr = &writer;
+  const bool good =
+      WebPPictureImportRGBA(&picture, texels.data(), 4 * width) != 0 && WebPEncode(&config, &picture) != 0;
+  std::string bytes(reinterpret_cast<const char*>(writer.mem), writer.size);
+  WebPMemoryWriterClear(&writer);
+  WebPPictureFree(&picture);
+  if (!good) throw std::runtime_error("no WebP");
+  return bytes;
+}
+
+/// A zip archive of named files.
+inline std::string zipped(const std::vector<std::pair<std::string, std::string>>& files,
+                          bool deflated = false) {
+  const TempFolder folder;
+  int error = 0;
+  zip_t* archive = zip_open((folder / "a.zip").c_str(), ZIP_CREATE, &error);
+  for (const auto& [name, bytes] : files) {
+    const zip_int64_t at =
+        zip_file_add(archive, name.c_str(), zip_source_buffer(archive, bytes.data(), bytes.size(), 0), 0);
+    zip_set_file_compression(archive, static_cast<zip_uint64_t>(at), deflated ? ZIP_CM_DEFLATE : ZIP_CM_STORE,
+                             0);
+  }
+  if (zip_close(archive) != 0) throw std::runtime_error("no zip");
+  return read_text(folder / "a.zip");
+}
+
+}  // namespace binosplat::test
