@@ -26,7 +26,9 @@ Scene open_once(const RenderOptions& options) {
     fail("{}: the scenes that are built in are called {} and {}", options.scene, demo_room_name,
          demo_city_name);
   }
-  return {{}, [&options] { return load_model(options.scene, {.lod = options.lod}); }};
+  return {{}, [&options] {
+            return load_model(options.scene, {.lod = options.lod, .appearance = options.appearance});
+          }};
 }
 
 }  // namespace

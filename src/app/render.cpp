@@ -19,6 +19,7 @@
 #include "measure/metrics.h"
 #include "render/frame.h"
 #include "scene/framing.h"
+#include "scene/scaffold.h"
 
 namespace binosplat::app {
 
@@ -73,6 +74,7 @@ render::FrameSettings settings_of(const RenderOptions& options) {
   settings.contrast = number_of(options.contrast, contrast_choices);
   settings.th_eyes = number_of(options.th_eyes, th_eyes_choices);
   settings.quality = options.quality.value_or(0.0f);
+  settings.decode = options.decode.empty() ? DECODE_EYES : number_of(options.decode, decode_choices);
   settings.tile_size = options.tile;
   settings.background = options.background.value_or(settings.background);
   for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
@@ -160,13 +162,24 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   }
 }
 
+void log_model(const RenderOptions& options, const Model& model) {
+  if (model.scaffold) {
+    log_info("{}: {}", options.scene, describe(*model.scaffold));
+  } else if (!options.decode.empty()) {
+    fail("--decode {}: {} is no Scaffold-GS model, whose Gaussians are made for each eye", options.decode,
+         options.scene);
+  } else {
+    log_info("{}: {} Gaussians, harmonics of degree {}", options.scene, model.count(), model.degree);
+  }
+}
+
 ExitCode render(const RenderOptions& options) {
   check(options);
   const OutputPlan plan = plan_outputs(options);
   const Scene scene = open_scene(options);
   CameraList list = listed_cameras(options, scene.cameras);
   const Model model = scene.model();
-  log_info("{}: {} Gaussians, harmonics of degree {}", options.scene, model.count(), model.degree);
+  log_model(options, model);
   if (!list.listed) list = made_up_cameras(options, model);
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
@@ -198,6 +211,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
+      "  binosplat render scaffold-model --decode cyclopean\n"
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });
 }

@@ -99,6 +99,11 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
       ->type_name("N")
       ->check(range(0, 100))
       ->group(group);
+  sub.add_option("--appearance", o.appearance,
+                 "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
+      ->type_name("ID")
+      ->check(whole)
+      ->group(group);
   sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
       ->type_name("N")
@@ -216,14 +221,18 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->group(group);
   choose(sub, "--th-eyes", o.th_eyes, "Whose threshold an eye goes by (per-eye)", th_eyes_choices)
       ->group(group);
+  choose(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
+         decode_choices)
+      ->group(group);
   sub.add_option("--tile", o.tile, "Side of a tile in px (16)")
       ->check(one_of({8, 16, 32}))
       ->type_name("8|16|32")
       ->group(group);
-  sub.add_option("--reference-until", o.reference_until,
-                 "Take the stages up to this one from the float64 reference:\nproject, order, pairs, "
-                 "tile_sort, ranges or blend")
-      ->check(one_of<std::string>({"project", "order", "pairs", "tile_sort", "ranges", "blend"}))
+  sub.add_option(
+         "--reference-until", o.reference_until,
+         "Take the stages up to this one from the float64 reference: decode\n(Scaffold-GS), project, order, "
+         "pairs, tile_sort, ranges or blend")
+      ->check(one_of<std::string>({"decode", "project", "order", "pairs", "tile_sort", "ranges", "blend"}))
       ->type_name("STAGE")
       ->group(group);
   sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")
@@ -310,6 +319,8 @@ void check_threshold(const RenderOptions& o) {
     fail("--th-eyes {} is for thresholds of both eyes: leave --mono and --only out, and give --loss",
          o.th_eyes);
   }
+  if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
+    fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
   if (!o.reference_until.empty() && (o.transmittance != "one" || o.quality || o.th_eyes != "per-eye")) {
     fail(
         "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
@@ -328,7 +339,10 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
-  if (o.scene.rfind("demo:", 0) == 0 && o.lod) fail("--lod is for model files, and {} is none", o.scene);
+  const bool built_in = o.scene.rfind("demo:", 0) == 0;
+  if (built_in && (o.lod || o.appearance)) {
+    fail("{} is for model files, and {} is none", o.lod ? "--lod" : "--appearance", o.scene);
+  }
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");
   if (o.eye.has_value() != o.at.has_value())

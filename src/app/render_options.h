@@ -16,7 +16,8 @@ namespace binosplat::app {
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 
-  std::optional<int> lod;  // of a model file that has levels of detail
+  std::optional<int> lod;                 // of a model file that has levels of detail
+  std::optional<std::size_t> appearance;  // of a Scaffold-GS model
 
   // Of scenes that the program makes, and how often a scene is repeated.
   std::optional<std::uint64_t> seed;
@@ -51,6 +52,7 @@ struct RenderOptions {
   std::string contrast = "off";
   std::string th_eyes = "per-eye";
   std::optional<float> quality;  // dB
+  std::string decode;            // of a Scaffold-GS model; empty: eyes
   int tile = TILE_SIZE_DEFAULT;
   std::string reference_until;
   std::string backend = "auto";

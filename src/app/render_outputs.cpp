@@ -21,7 +21,8 @@ std::string lower_extension(const fs::path& path) {
 
 fs::path default_folder(const std::string& scene) {
   const auto colon = scene.rfind("demo:", 0) == 0 ? scene.find(':') + 1 : 0;
-  return fs::path("out") / fs::path(scene.substr(colon)).stem();
+  const fs::path path = scene.substr(colon);
+  return fs::path("out") / (path.has_filename() ? path : path.parent_path()).stem();
 }
 
 // What a picture's file says of how it was drawn: a stereo picture is right only at its scale.

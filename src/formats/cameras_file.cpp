@@ -127,13 +127,15 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
 
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::absolute(model).parent_path();
+  std::error_code ignored;
+  const bool is_folder = fs::is_directory(model, ignored);
+  const fs::path folder = fs::absolute(is_folder ? model / "" : model).parent_path();
   std::vector<fs::path> candidates{folder / "cameras.json"};
   if (folder.filename().string().starts_with("iteration_")) {
     candidates.push_back(folder.parent_path().parent_path() / "cameras.json");
   }
+  if (folder.filename() == "point_cloud") candidates.push_back(folder.parent_path() / "cameras.json");
   for (const fs::path& candidate : candidates) {
-    std::error_code ignored;
     if (fs::is_regular_file(candidate, ignored)) return candidate;
   }
   return std::nullopt;

@@ -18,8 +18,8 @@ namespace binosplat {
 /// file, the camera's number in the list and its key; for broken JSON the line and byte.
 std::vector<Camera> load_cameras(const std::filesystem::path& path);
 
-/// The cameras.json that belongs to a model: in its folder or, for INRIA's
-/// MODEL/point_cloud/iteration_N/NAME.ply, in MODEL.
+/// The cameras.json that belongs to a model, a file or its folder: in that folder or, for INRIA's
+/// MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply, in MODEL.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 
 }  // namespace binosplat

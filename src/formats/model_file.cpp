@@ -39,6 +39,12 @@ void refuse_level(const fs::path& path, const ModelOptions& options) {
   }
 }
 
+Model load_scaffold_model(const fs::path& path, const ModelOptions& options) {
+  const std::shared_ptr<Scaffold> scaffold = load_scaffold(path);
+  if (options.appearance) choose_appearance(*scaffold, *options.appearance);
+  return stand_in(scaffold);
+}
+
 Model load_json_model(const fs::path& path, std::string_view text, const ModelOptions& options) {
   const nlohmann::json root = parse_json(path.string(), text);
   if (is_sog_levels(root)) return load_streamed_sog(path, root, options.lod);
@@ -54,7 +60,7 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
   if (content != Content::json) refuse_level(path, options);
   switch (content) {
     case Content::ply:
-      if (is_scaffold(read_ply_header(path, file.bytes()))) return stand_in(load_scaffold(path));
+      if (is_scaffold(read_ply_header(path, file.bytes()))) return load_scaffold_model(path, options);
       return load_ply(path);
     case Content::zip:
       return load_sog(path);
@@ -71,6 +77,9 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
 Model load_model(const fs::path& named, const ModelOptions& options) {
   const fs::path path = file_of(named);
   Model model = load_content(path, options);
+  if (options.appearance && !model.scaffold) {
+    fail("--appearance: {} is no Scaffold-GS model, whose colours have appearances", path.string());
+  }
   if (model.count() == 0) {
     fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),
          model.left_out);

@@ -10,6 +10,7 @@ namespace binosplat {
 
 struct ModelOptions {
   std::optional<int> lod;  // the level of detail of a model that has several; 0 is the finest
+  std::optional<std::size_t> appearance;  // of a Scaffold-GS model that has several; the first if none is named
 };
 
 /// Reads a trained model: INRIA's ply (formats/ply.h), Scaffold-GS's with the networks beside it

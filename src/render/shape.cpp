@@ -36,6 +36,9 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   if (s.contrast != CONTRAST_OFF && !measures(s.transmittance)) {
     fail("--contrast {}: only with a measured --transmittance", contrast_choices[s.contrast].name);
   }
+  if (s.decode != DECODE_EYES && views % 2 != 0) {
+    fail("--decode {}: only for both eyes together", decode_choices[s.decode].name);
+  }
   const DepthTable& table = s.depth_table;
   const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
   if (s.transmittance == TRANSMITTANCE_DEPTH &&

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "base/error.h"
+#include "scene/scaffold.h"
 
 namespace binosplat {
 
@@ -22,6 +24,31 @@ void copy_times(std::vector<T>& values, std::size_t times) {
   values.swap(all);
 }
 
+/// Puts the copies of `once` positions side by side.
+void move_copies(std::vector<glm::vec3>& positions, std::size_t once, int nx, int nz, double spacing) {
+  glm::vec3* p = positions.data();
+  for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
+    for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
+      for (std::size_t k = 0; k < once; ++k, ++p)
+        *p = glm::vec3(glm::dvec3(*p) + glm::dvec3(i * spacing, 0.0, j * spacing));
+    }
+  }
+}
+
+/// Copies of the anchors: each copy is seen, and decoded, from where it stands.
+std::shared_ptr<Scaffold> repeat(Scaffold s, int nx, int nz, double spacing) {
+  const auto copies = static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz);
+  const std::size_t once = s.anchor_count();
+  copy_times(s.position, copies);
+  copy_times(s.offset_scale, copies);
+  copy_times(s.scale, copies);
+  copy_times(s.rotation, copies);
+  copy_times(s.offset, copies);
+  copy_times(s.feature, copies);
+  move_copies(s.position, once, nx, nz, spacing);
+  return std::make_shared<Scaffold>(std::move(s));
+}
+
 }  // namespace
 
 Model repeat(Model model, int nx, int nz, double spacing) {
@@ -35,19 +62,18 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   if (!std::isfinite(static_cast<float>(farthest))) {
     fail("--spacing {}: expected a distance between copies in world units", spacing);
   }
+  if (model.scaffold) {
+    Model repeated = stand_in(repeat(*model.scaffold, nx, nz, spacing));
+    repeated.axes = model.axes;
+    return repeated;
+  }
   const std::size_t once = model.count();
   copy_times(model.position, copies);
   copy_times(model.scale, copies);
   copy_times(model.rotation, copies);
   copy_times(model.opacity, copies);
   copy_times(model.sh, copies);
-  glm::vec3* p = model.position.data();
-  for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
-    for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
-      for (std::size_t k = 0; k < once; ++k, ++p)
-        *p = glm::vec3(glm::dvec3(*p) + glm::dvec3(i * spacing, 0.0, j * spacing));
-    }
-  }
+  move_copies(model.position, once, nx, nz, spacing);
   return model;
 }
 

@@ -64,6 +64,9 @@ struct Scaffold {
 /// scales, rotations and opacities are stand-ins of usual size, since the true ones depend on the eye.
 Model stand_in(std::shared_ptr<Scaffold> scaffold);
 
+/// What it is, for people: "Scaffold-GS, 18290 anchors of 10 Gaussians, features of 32".
+std::string describe(const Scaffold& scaffold);
+
 /// Takes row `id` of the appearances for colours. Throws Error, naming --appearance, for a model without
 /// appearances or with fewer.
 void choose_appearance(Scaffold& scaffold, std::size_t id);

@@ -8,7 +8,7 @@
 #include "formats/torch_file.h"
 #include "support/errors.h"
 #include "support/program.h"
-#include "support/scaffold.h"
+#include "support/scaffold_files.h"
 #include "support/scenes.h"
 
 namespace binosplat {

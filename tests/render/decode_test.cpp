@@ -147,7 +147,7 @@ TEST(DecodeStage, PlantedFaultsAreSeen) {
 
 TEST(DecodeStage, SharedByTheEyesOfAPair) {
   const Model model = model_of(test::random_scaffold(12, {.anchors = 200}));
-  const std::vector<shared::View> views{front_view(-0.2), front_view(0.2), front_view(0.9)};
+  const std::vector<shared::View> views{front_view(-0.2), front_view(0.2), front_view(0.9), front_view(1.1)};
   const render::FrameSettings cyclopean{.decode = DECODE_CYCLOPEAN};
   const Difference difference = difference_of(model, views, cyclopean);
   EXPECT_LT(difference.value, 1e-5);

@@ -76,9 +76,11 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
       const std::vector<Picture> both = draw(model, views, way);
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(both[v], draw(model, views[v], way))) << v;
     }
-    // Pictures that share Gaussians are others than those of each eye alone.
+    // Gaussians that are shared make other pictures, and none for one eye.
     const FrameSettings shared{.decode = DECODE_CYCLOPEAN};
-    EXPECT_FALSE(same_bits(draw(model, views, shared)[0], draw(model, views[0], shared)));
+    EXPECT_FALSE(same_bits(draw(model, views, shared)[0], draw(model, views[0])));
+    EXPECT_TRUE(
+        test::fails_saying([&] { draw(model, views[0], shared); }, {"--decode cyclopean", "both eyes"}));
   }
 }
 
@@ -160,6 +162,36 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
     for (int n = 0; n < 5; ++n) pairs = frame.draw(views, settings).pairs;
     EXPECT_LT(static_cast<double>(pairs), 0.9 * static_cast<double>(first));
     EXPECT_GT(test::psnr(frame.read_pictures()[0], exact[0]), 40.0);
+  }
+}
+
+TEST(ScaffoldFrame, EveryKindOfThresholdTakesEachEyesOwn) {
+  const Model model = test::scaffold_model(29, four_hundred);
+  const std::vector<shared::View> views = eyes();
+  const std::vector<Picture> exact = draw(model, views);
+  for (const int th_eyes : {TH_EYES_PER_EYE, TH_EYES_SHARED_MIN, TH_EYES_CYCLOPEAN}) {
+    const auto settings = [&](float loss) {
+      return FrameSettings{.th = TH_SQUARED, .th_eyes = th_eyes, .loss = loss};
+    };
+    const std::vector<Picture> drawn = draw(model, views, settings(0.0f));
+    for (std::size_t v = 0; v < 2; ++v)
+      EXPECT_TRUE(same_bits(drawn[v], exact[v])) << th_eyes_choices[th_eyes].name;
+    EXPECT_FALSE(same_bits(draw(model, views, settings(0.05f))[0], exact[0]))
+        << th_eyes_choices[th_eyes].name;
+  }
+}
+
+TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
+  // Without loss a strip beside the picture differs from it by nothing, though the strip alone would see
+  // other anchors.
+  const Model model = test::scaffold_model(30, four_hundred);
+  const std::vector<shared::View> views = eyes();
+  for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
+    render::Frame frame(test::gl_context(), model);
+    const FrameSettings settings{.th = TH_SQUARED, .quality = 200.0f, .decode = decode};
+    render::FrameReport report;
+    for (int n = 0; n < 40; ++n) report = frame.draw(views, settings);
+    EXPECT_GT(report.quality, 100.0f) << decode_choices[decode].name;
   }
 }
 
