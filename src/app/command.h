@@ -20,6 +20,8 @@ using Command = std::function<ExitCode()>;
 void add_render(CLI::App& program, Command& command);
 void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
+void add_study(CLI::App& program, Command& command);
+void add_bench(CLI::App& program, Command& command);
 
 /// From now on SIGINT and SIGTERM end the program at once, or after the file that is being written
 /// (Uninterrupted), so that no half file is left. Call it before any thread is made.

@@ -36,6 +36,8 @@ int run(int argc, char** argv) {
   binosplat::app::add_render(program, command);
   binosplat::app::add_compare(program, command);
   binosplat::app::add_devices(program, command);
+  binosplat::app::add_study(program, command);
+  binosplat::app::add_bench(program, command);
   try {
     program.parse(argc, argv);
     return static_cast<int>(command());

@@ -27,7 +27,9 @@ Scene open_once(const RenderOptions& options) {
          demo_city_name);
   }
   return {{}, [&options] {
-            return load_model(options.scene, {.lod = options.lod, .appearance = options.appearance});
+            Model model = load_model(options.scene, {.lod = options.lod, .appearance = options.appearance});
+            if (!options.axes.empty()) model.axes = options.axes;
+            return model;
           }};
 }
 

@@ -13,6 +13,7 @@
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "gl/context.h"
 #include "measure/depth_table.h"
@@ -30,8 +31,10 @@ namespace {
 // The file of a view's photo, or nothing.
 std::optional<fs::path> find_photo(const fs::path& folder, const Shot& shot) {
   if (fs::is_regular_file(folder / shot.name)) return folder / shot.name;
-  for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
-    if (fs::is_regular_file(folder / (shot.stem + ending))) return folder / (shot.stem + ending);
+  for (const std::string& name : {shot.name, shot.stem}) {
+    for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
+      if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
+    }
   }
   return std::nullopt;
 }
@@ -173,17 +176,27 @@ void log_model(const RenderOptions& options, const Model& model) {
   }
 }
 
-ExitCode render(const RenderOptions& options) {
+// The folder of photos that --photos names, or the one found beside the cameras.
+std::string photos_folder(const RenderOptions& options, const CameraList& list) {
+  if (options.photos != photos_beside) return options.photos;
+  const auto found = list.listed ? find_photos(list.source) : std::nullopt;
+  if (!found)
+    fail("--photos {}: there is no folder of photos beside the cameras of {}", photos_beside, list.source);
+  return found->string();
+}
+
+ExitCode render(RenderOptions options) {
   check(options);
   const OutputPlan plan = plan_outputs(options);
   const Scene scene = open_scene(options);
   CameraList list = listed_cameras(options, scene.cameras);
+  options.photos = photos_folder(options, list);
   const Model model = scene.model();
   log_model(options, model);
   if (!list.listed) list = made_up_cameras(options, model);
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
-  std::vector<Shot> shots = make_shots(options, list, near_plane);
+  std::vector<Shot> shots = make_shots(options, list, near_plane, model.axes);
   if (!plan.file.empty() && shots.size() > 1) {
     fail("-o {} is one file and {} views are to be drawn: name a folder", options.output, shots.size());
   }

@@ -2,11 +2,13 @@
 
 #include <fmt/ranges.h>
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "base/error.h"
+#include "scene/axes.h"
 #include "scene/demo_city.h"
 #include "shared/axes.h"
 
@@ -24,18 +26,6 @@ glm::dvec3 parse_three(const std::string& option, const std::string& text) {
     fail("{} {}: expected three numbers with commas, as in 1,-2.5,3", option, text);
   }
   return v;
-}
-
-// "1280x720" as two numbers above zero; `expected` says what they mean.
-glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
-  glm::ivec2 two{0};
-  char cross = 0;
-  std::istringstream in(text);
-  in >> two.x >> cross >> two.y;
-  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || two.x < 1 || two.y < 1) {
-    fail("{} {}: expected {}", option, text, expected);
-  }
-  return two;
 }
 
 Background parse_background(const std::string& text) {
@@ -99,6 +89,17 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
       ->type_name("N")
       ->check(range(0, 100))
       ->group(group);
+  sub.add_option_function<std::string>(
+         "--axes",
+         [&o](const std::string& text) {
+           for (const char c : text) o.axes += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+           world_from_axes(o.axes);
+         },
+         "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
+         "or Back, "
+         "as in rdf, rub (the format's)")
+      ->type_name("XYZ")
+      ->group(group);
   sub.add_option("--appearance", o.appearance,
                  "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
       ->type_name("ID")
@@ -131,8 +132,10 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
         ->type_name("X,Y,Z");
   };
   const char* const group = "Cameras";
-  sub.add_option("--cameras", o.cameras, "cameras.json; default: the one beside the model")
-      ->type_name("FILE")
+  sub.add_option("--cameras", o.cameras,
+                 "cameras.json, transforms.json or the folder of a COLMAP reconstruction;\ndefault: what "
+                 "lies beside the model")
+      ->type_name("FILE|DIR")
       ->group(group);
   sub.add_option("--view", o.views,
                  "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
@@ -279,14 +282,27 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
       ->check(one_of<std::string>({"linear", "display"}))
       ->type_name("linear|display")
       ->group(group);
-  sub.add_option("--photos", o.photos, "Print PSNR against DIR/NAME.jpg or .png; with --mono")
-      ->type_name("DIR")
-      ->check(folder())
+  sub.add_option(
+         "--photos", o.photos,
+         "Print PSNR against DIR/NAME.jpg or .png, or the photos found beside\nthe cameras; with --mono")
+      ->type_name(fmt::format("DIR|{}", photos_beside))
+      ->check(folder() | CLI::IsMember({photos_beside}).description(""))
       ->group(group);
   sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE")->group(group);
 }
 
 }  // namespace
+
+glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
+  glm::ivec2 two{0};
+  char cross = 0;
+  std::istringstream in(text);
+  in >> two.x >> cross >> two.y;
+  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || two.x < 1 || two.y < 1) {
+    fail("{} {}: expected {}", option, text, expected);
+  }
+  return two;
+}
 
 void add_options(CLI::App& sub, RenderOptions& options) {
   sub.add_option("SCENE", options.scene,
@@ -339,9 +355,12 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
-  const bool built_in = o.scene.rfind("demo:", 0) == 0;
-  if (built_in && (o.lod || o.appearance)) {
-    fail("{} is for model files, and {} is none", o.lod ? "--lod" : "--appearance", o.scene);
+  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || !o.axes.empty() || o.appearance)) {
+    fail("{} is for model files, and {} is none",
+         o.lod          ? "--lod"
+         : o.appearance ? "--appearance"
+                        : "--axes",
+         o.scene);
   }
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");

@@ -13,10 +13,14 @@
 
 namespace binosplat::app {
 
+/// In the place of a folder: the photos that lie beside the cameras.
+constexpr const char* photos_beside = "beside";
+
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 
-  std::optional<int> lod;                 // of a model file that has levels of detail
+  std::optional<int> lod;  // of a model file that has levels of detail
+  std::string axes;        // where a model file's x, y and z point; empty: what its format says
   std::optional<std::size_t> appearance;  // of a Scaffold-GS model
 
   // Of scenes that the program makes, and how often a scene is repeated.
@@ -69,6 +73,9 @@ struct RenderOptions {
   std::string photos;
   std::string json;
 };
+
+/// "1280x720" as two numbers above zero. Throws Error for anything else: `expected` says what they mean.
+glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected);
 
 /// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
 /// end it with CLI::ParseError or Error.

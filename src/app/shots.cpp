@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "formats/cameras_file.h"
+#include "scene/axes.h"
 #include "scene/framing.h"
 #include "stereo/rig.h"
 
@@ -110,17 +111,21 @@ stereo::EyePair rig_of(const RenderOptions& options, const Choice& choice, doubl
                                near_plane);
 }
 
-void add_eyes(const RenderOptions& options, const Choice& choice, double near_plane, Shot& shot) {
+void add_eyes(const RenderOptions& options, const Choice& choice, double near_plane, const std::string& axes,
+              Shot& shot) {
   if (options.mono) {
     const Camera camera = sized(options, choice.cameras[0]);
-    shot.eyes = {{"", camera, make_view(camera, near_plane)}};
+    shot.eyes = {{"", camera, make_view(into_axes(camera, axes), near_plane)}};
     return;
   }
   const stereo::EyePair pair = rig_of(options, choice, near_plane);
+  Choice entered = choice;
+  for (Camera& camera : entered.cameras) camera = into_axes(camera, axes);
+  const stereo::EyePair drawn = rig_of(options, entered, near_plane);
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string side = k == 0 ? "left" : "right";
     if (options.only.empty() || options.only == side)
-      shot.eyes.push_back({side, pair.cameras[k], pair.views[k]});
+      shot.eyes.push_back({side, pair.cameras[k], drawn.views[k]});
   }
   const double apart = glm::length(pair.cameras[1].position - pair.cameras[0].position);
   shot.ipd =
@@ -165,7 +170,7 @@ CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera
         list.source);
   }
   if (!list.listed && !options.views.empty()) {
-    fail("--view {}: no cameras.json beside {}; name one with --cameras", options.views[0], options.scene);
+    fail("--view {}: no cameras beside {}; name their file with --cameras", options.views[0], options.scene);
   }
   return list;
 }
@@ -177,16 +182,17 @@ CameraList made_up_cameras(const RenderOptions& options, const Model& model) {
     return {"--eye", {look_at(*options.eye, *options.at, up, fov, made_up_width, made_up_height)}};
   }
   if (options.orbit) return {"--orbit", orbit(model, *options.orbit, made_up_width, made_up_height, fov, up)};
-  log_info("no cameras.json beside {}: framing the model", options.scene);
+  log_info("no cameras beside {}: framing the model", options.scene);
   return {options.scene, {frame_model(model, made_up_width, made_up_height, fov, up)}};
 }
 
-std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane) {
+std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane,
+                             const std::string& axes) {
   std::vector<Shot> shots;
   std::set<std::string> taken;
   for (const Choice& choice : chosen(options, list)) {
     Shot& shot = shots.emplace_back(Shot{choice.name, stem_of(choice.name, taken), {}, {}});
-    add_eyes(options, choice, near_plane, shot);
+    add_eyes(options, choice, near_plane, axes, shot);
   }
   return shots;
 }

@@ -11,7 +11,7 @@
 
 namespace binosplat::app {
 
-/// One eye's camera and what the shaders see of it.
+/// One eye's camera in the world, and what the shaders see of it in the model's frame (scene/axes.h).
 struct Eye {
   std::string side;  // "left", "right", or "" for the camera itself
   Camera camera;
@@ -43,8 +43,9 @@ CameraList made_up_cameras(const RenderOptions& options, const Model& model);
 /// A camera with the size and lens that --preset and --size ask for.
 Camera sized(const RenderOptions& options, const Camera& camera);
 
-/// The shots that --view, --mono and the rig's options ask for. `near_plane` in world units. Throws Error for
-/// a view that is not there; it names some that are.
-std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane);
+/// The shots that --view, --mono and the rig's options ask for. `near_plane` in world units, `axes` those of
+/// the model. Throws Error for a view that is not there; it names some that are.
+std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane,
+                             const std::string& axes);
 
 }  // namespace binosplat::app

@@ -9,8 +9,11 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "formats/colmap.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
+#include "formats/lens.h"
+#include "formats/transforms.h"
 
 namespace binosplat {
 
@@ -85,17 +88,7 @@ class CameraReader {
     glm::dmat3 transposed;
     for (int i = 0; i < 3; ++i) transposed[i] = vector(rows[static_cast<std::size_t>(i)], key);
     const glm::dmat3 matrix = glm::transpose(transposed);
-    const glm::dmat3 square = transposed * matrix;
-    double largest = 0;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) largest = std::max(largest, std::abs(square[i][j] - (i == j ? 1.0 : 0.0)));
-    }
-    if (!(largest <= 1e-3)) {
-      fail_key(key, fmt::format("the columns must be orthogonal and of length 1; they are off by {:.3g}",
-                                largest));
-    }
-    if (glm::determinant(matrix) < 0)
-      fail_key(key, "it mirrors (determinant -1); expected x right, y down, z forward");
+    if (const std::string fault = rotation_fault(matrix); !fault.empty()) fail_key(key, fault);
     return matrix;
   }
 
@@ -104,23 +97,62 @@ class CameraReader {
   const json& object_;
 };
 
+/// INRIA's cameras.json.
+std::vector<Camera> load_list(const std::filesystem::path& path, const json& root) {
+  if (root.empty()) fail("{} holds no cameras", path.string());
+  std::vector<Camera> cameras;
+  for (const json& object : root) cameras.push_back(CameraReader(path, cameras.size(), object).read());
+  return cameras;
+}
+
+/// Where cameras may lie in a folder; the first that is there is taken.
+std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const char* name : {"cameras.json", "transforms.json", "transforms_train.json"}) {
+    if (std::filesystem::is_regular_file(folder / name, ignored)) return folder / name;
+  }
+  for (const char* name : {"", "sparse/0", "sparse", "colmap/sparse/0"}) {
+    if (is_colmap(folder / name)) return *name == '\0' ? folder : folder / name;
+  }
+  return std::nullopt;
+}
+
+std::vector<Camera> load_any(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    const auto found = cameras_in(path);
+    if (!found) {
+      fail(
+          "{} is a folder without cameras.json, transforms.json or a COLMAP reconstruction (cameras.bin and "
+          "images.bin, or .txt)",
+          path.string());
+    }
+    return std::filesystem::is_directory(*found, ignored) ? load_colmap(*found) : load_any(*found);
+  }
+  const std::string stem = path.stem().string();
+  if ((stem == "images" || stem == "cameras") && path.extension() != ".json" &&
+      is_colmap(path.parent_path())) {
+    return load_colmap(path.parent_path());
+  }
+  const MappedFile file(path);
+  const json root = parse_json(path.string(), as_text(file.bytes()));
+  if (is_transforms(root)) return load_transforms(path, root);
+  if (root.is_array()) return load_list(path, root);
+  fail(
+      "{}: expected a list of cameras as INRIA's cameras.json, or an object with 'frames' as "
+      "transforms.json, but "
+      "its root is of type {}",
+      path.string(), root.type_name());
+}
+
 }  // namespace
 
 std::vector<Camera> load_cameras(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  const json root = parse_json(path.string(), as_text(file.bytes()));
-  if (!root.is_array()) {
-    fail("{}: expected a list of cameras as INRIA's cameras.json, but its root is of type {}", path.string(),
-         root.type_name());
-  }
-  if (root.empty()) fail("{} holds no cameras", path.string());
-  std::vector<Camera> cameras;
+  std::vector<Camera> cameras = load_any(path);
   std::set<std::string> names;
-  for (const json& object : root) {
-    cameras.push_back(CameraReader(path, cameras.size(), object).read());
-    if (!names.insert(cameras.back().name).second) {
-      log_warning("{}: the name '{}' occurs twice", path.string(), cameras.back().name);
-    }
+  for (const Camera& camera : cameras) {
+    if (!names.insert(camera.name).second)
+      log_warning("{}: the name '{}' occurs twice", path.string(), camera.name);
   }
   return cameras;
 }
@@ -128,15 +160,27 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  const bool is_folder = fs::is_directory(model, ignored);
-  const fs::path folder = fs::absolute(is_folder ? model / "" : model).parent_path();
-  std::vector<fs::path> candidates{folder / "cameras.json"};
-  if (folder.filename().string().starts_with("iteration_")) {
-    candidates.push_back(folder.parent_path().parent_path() / "cameras.json");
-  }
-  if (folder.filename() == "point_cloud") candidates.push_back(folder.parent_path() / "cameras.json");
-  for (const fs::path& candidate : candidates) {
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
+  const fs::path path = fs::absolute(model);
+  const fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
+  if (const auto found = cameras_in(folder)) return found;
+  if (folder.filename() == "point_cloud") return cameras_in(folder.parent_path());
+  if (!folder.filename().string().starts_with("iteration_")) return std::nullopt;
+  return cameras_in(folder.parent_path().parent_path());
+}
+
+std::optional<std::filesystem::path> find_photos(const std::filesystem::path& cameras) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path path = fs::absolute(cameras).lexically_normal();
+  fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
+  // The names in such files are relative to their own folder.
+  if (path.filename().string().starts_with("transforms")) return folder;
+  // A reconstruction's folder lies in the scene's, up to three levels deep.
+  const int levels = is_colmap(folder) ? 4 : 1;
+  for (int up = 0; up < levels; ++up, folder = folder.parent_path()) {
+    for (const char* name : {"images", "photos"}) {
+      if (fs::is_directory(folder / name, ignored)) return folder / name;
+    }
   }
   return std::nullopt;
 }

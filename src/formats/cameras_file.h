@@ -1,9 +1,11 @@
 #pragma once
-// Cameras as INRIA's trainer leaves them beside a model: cameras.json.
+// Cameras from files: INRIA's cameras.json, COLMAP's reconstructions (formats/colmap.h) and transforms.json
+// (formats/transforms.h).
 //
-// A list of objects: img_name, width, height (px), position (x, y, z), rotation (three rows of three; its
-// COLUMNS are the camera's axes x right, y down, z forward in the world, so it is camera-to-world), fx, fy
-// (px). Optional: cx, cy (px; the middle of the picture where missing) and time (s). Other keys are ignored.
+// cameras.json is a list of objects: img_name, width, height (px), position (x, y, z), rotation (three rows
+// of three; its COLUMNS are the camera's axes x right, y down, z forward in the world, so it is
+// camera-to-world), fx, fy (px). Optional: cx, cy (px; the middle of the picture where missing) and time (s).
+// Other keys are ignored.
 
 #include <filesystem>
 #include <optional>
@@ -13,13 +15,19 @@
 
 namespace binosplat {
 
-/// Reads all cameras in file order; at least one. Rotations must be orthonormal within 1e-3 with determinant
-/// +1 and are kept to the digit. Names that occur twice are kept with a warning. Throws Error naming the
-/// file, the camera's number in the list and its key; for broken JSON the line and byte.
+/// Reads all cameras, at least one, of a file or of a folder that holds such files, also in sparse/0 below
+/// it. In file order, COLMAP's by name. Rotations must be orthonormal within 1e-3 with determinant +1 and are
+/// kept to the digit. Names that occur twice are kept with a warning. Throws Error naming the file, the
+/// camera's number in the list and its key; for broken JSON the line and byte.
 std::vector<Camera> load_cameras(const std::filesystem::path& path);
 
-/// The cameras.json that belongs to a model, a file or its folder: in that folder or, for INRIA's
-/// MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply, in MODEL.
+/// The cameras that belong to a model, a file or its folder: cameras.json, transforms.json or a COLMAP
+/// reconstruction in that folder or, for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and
+/// MODEL/point_cloud/NAME.ply, in MODEL.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
+
+/// The folder of the photos that cameras were found from: `images` or `photos` beside their file, or beside
+/// the folders that a reconstruction lies in; for transforms.json its own folder, which its names start from.
+std::optional<std::filesystem::path> find_photos(const std::filesystem::path& cameras);
 
 }  // namespace binosplat

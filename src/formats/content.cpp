@@ -14,6 +14,7 @@ struct Signature {
 };
 
 constexpr Signature signatures[] = {
+    {"NGSP"sv, Content::spz},
     {"\x89PNG\r\n\x1a\n"sv, Content::png},
     {"\xff\xd8\xff"sv, Content::jpeg},
     {"\x76\x2f\x31\x01"sv, Content::exr},
@@ -53,6 +54,8 @@ std::string_view describe(Content content) {
       return "an empty file";
     case Content::ply:
       return "a ply file";
+    case Content::spz:
+      return "an spz model";
     case Content::png:
       return "a PNG picture";
     case Content::jpeg:

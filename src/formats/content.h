@@ -11,6 +11,7 @@ namespace binosplat {
 enum class Content {
   empty,
   ply,
+  spz,
   png,
   jpeg,
   exr,

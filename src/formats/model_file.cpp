@@ -5,9 +5,12 @@
 #include "base/mapped_file.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
+#include "formats/ksplat.h"
 #include "formats/ply.h"
 #include "formats/scaffold_file.h"
 #include "formats/sog.h"
+#include "formats/splat.h"
+#include "formats/spz.h"
 
 namespace binosplat {
 
@@ -15,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* known = "a ply, or a SOG (meta.json, lod-meta.json or .sog)";
+constexpr const char* known = "a ply, spz, .splat, .ksplat, or a SOG (meta.json, lod-meta.json or .sog)";
 
 /// The file to read where a folder is named.
 fs::path file_of(const fs::path& path) {
@@ -54,6 +57,14 @@ Model load_json_model(const fs::path& path, std::string_view text, const ModelOp
        root.is_array() ? "; it may hold cameras, which --cameras takes" : "");
 }
 
+/// Formats without a mark of their own. A name helps to say what is wrong, not to tell what a file is.
+Model load_unmarked(const fs::path& path, std::span<const std::byte> bytes) {
+  if (is_ksplat(bytes) || path.extension() == ".ksplat") return load_ksplat(path.string(), bytes);
+  if (is_splat(bytes) || path.extension() == ".splat") return load_splat(path.string(), bytes);
+  fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(), known,
+       describe(Content::unknown));
+}
+
 Model load_content(const fs::path& path, const ModelOptions& options) {
   const MappedFile file(path);
   const Content content = content_of(file.bytes());
@@ -66,6 +77,11 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
       return load_sog(path);
     case Content::json:
       return load_json_model(path, as_text(file.bytes()), options);
+    case Content::gzip:
+    case Content::spz:
+      return load_spz(path.string(), file.bytes());
+    case Content::unknown:
+      return load_unmarked(path, file.bytes());
     default:
       fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(), known,
            describe(content));
@@ -80,9 +96,14 @@ Model load_model(const fs::path& named, const ModelOptions& options) {
   if (options.appearance && !model.scaffold) {
     fail("--appearance: {} is no Scaffold-GS model, whose colours have appearances", path.string());
   }
+  model.name = path.filename().string();
   if (model.count() == 0) {
     fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),
          model.left_out);
+  }
+  if (model.antialiased) {
+    log_warning("{} was trained with anti-aliasing, which is not drawn: distant parts will look thicker",
+                path.string());
   }
   if (model.left_out > 0) {
     log_warning("{}: {} of {} Gaussians left out (values not finite, or a zero quaternion)", path.string(),

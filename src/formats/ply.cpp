@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/progress.h"
+#include "formats/compressed_ply.h"
 #include "formats/content.h"
 #include "formats/ply_layout.h"
 
@@ -63,10 +64,10 @@ double load(PlyType type, const std::byte* at, bool swapped) {
 /// Walks the elements of a ply file in order and decodes the Gaussians among them.
 class PlyReader {
  public:
-  PlyReader(const std::filesystem::path& path, std::span<const std::byte> bytes)
+  PlyReader(const std::filesystem::path& path, std::span<const std::byte> bytes, const PlyHeader& header)
       : path_(path),
         bytes_(bytes),
-        header_(read_ply_header(path, bytes)),
+        header_(header),
         layout_(find_layout(path, header_)),
         swapped_((header_.format == PlyFormat::big_endian) != (std::endian::native == std::endian::big)),
         at_(header_.data),
@@ -76,6 +77,7 @@ class PlyReader {
   Model read() {
     model_.name = path_.filename().string();
     model_.degree = layout_.degree;
+    model_.antialiased = layout_.antialiased;
     for (const PlyElement& element : header_.elements) {
       const bool gaussians = &element == layout_.vertices;
       if (header_.format == PlyFormat::ascii) {
@@ -274,7 +276,7 @@ class PlyReader {
 
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
-  PlyHeader header_;
+  const PlyHeader& header_;
   PlyLayout layout_;
   bool swapped_;
   std::size_t at_;    // byte where the next element begins
@@ -288,7 +290,9 @@ class PlyReader {
 
 Model load_ply(const std::filesystem::path& path) {
   const MappedFile file(path);
-  return PlyReader(path, file.bytes()).read();
+  const PlyHeader header = read_ply_header(path, file.bytes());
+  if (is_compressed_ply(header)) return load_compressed_ply(path, file.bytes(), header);
+  return PlyReader(path, file.bytes(), header).read();
 }
 
 }  // namespace binosplat

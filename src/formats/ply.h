@@ -9,7 +9,8 @@
 // of properties, CRLF in the header, other elements and properties: all are read or skipped as ply defines.
 //
 // Two relatives are read as well: `red green blue` (uchar) in f_dc's place are base colours (Nerfstudio), and
-// `filter_3D` is folded into scales and opacities (Mip-Splatting, Yu 2024).
+// `filter_3D` is folded into scales and opacities (Mip-Splatting, Yu 2024). PlayCanvas' compressed ply
+// (formats/compressed_ply.h) is read as well.
 
 #include <filesystem>
 
@@ -20,7 +21,7 @@ namespace binosplat {
 /// Reads a model; degree and count are the file's, Model::left_out counts what was not usable. The file is
 /// mapped into memory and decoded on all cores; progress is shown where it takes long. Throws Error naming
 /// the file and the place: a broken header, missing properties, a file shorter than its header promises, a
-/// point cloud without opacities, a compressed ply, a header that promises no Gaussians.
+/// point cloud without opacities, a header that promises no Gaussians.
 Model load_ply(const std::filesystem::path& path);
 
 }  // namespace binosplat

@@ -12,17 +12,9 @@ namespace binosplat {
 
 namespace {
 
-constexpr float sh_c0 = 0.28209479177387814f;
-
 /// Refuses files that are well-formed but hold something else.
 void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header) {
   const std::string name = path.string();
-  if (!header.elements.empty() && header.elements[0].name == "chunk") {
-    fail(
-        "{} is a PlayCanvas compressed ply; convert it to a plain one (splat-transform IN.compressed.ply "
-        "OUT.ply)",
-        name);
-  }
   const PlyElement* vertices = header.find("vertex");
   if (vertices == nullptr)
     fail("{}: the ply header has no element 'vertex'; it is no model of Gaussians", name);
@@ -45,9 +37,9 @@ void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header
   if (vertices->count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", name);
 }
 
-/// Anti-aliased models want another kernel than the plain one (METHOD.md section 1): say so rather than draw
-/// them wrong in silence.
-void warn_if_antialiased(const std::filesystem::path& path, const PlyHeader& header, bool filter_3d) {
+/// Whether a model was trained with anti-aliasing: by its filter, or by the last comment that says (Brush's
+/// and Postshot's).
+bool is_antialiased(const PlyHeader& header, bool filter_3d) {
   bool antialiased = filter_3d;
   for (std::string comment : header.comments) {
     std::transform(comment.begin(), comment.end(), comment.begin(),
@@ -57,10 +49,7 @@ void warn_if_antialiased(const std::filesystem::path& path, const PlyHeader& hea
     if (comment.find("antialiased ") != std::string::npos)
       antialiased = comment.find("antialiased 1") != std::string::npos;
   }
-  if (antialiased) {
-    log_warning("{} was trained with anti-aliasing, which is not drawn: distant parts will look thicker",
-                path.string());
-  }
+  return antialiased;
 }
 
 /// The number of f_rest properties of an element, after checking that they run from 0 without a gap.
@@ -127,7 +116,7 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   }
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
   if (layout.filter_3d) finder.add("filter_3D");
-  warn_if_antialiased(path, header, layout.filter_3d);
+  layout.antialiased = is_antialiased(header, layout.filter_3d);
   return layout;
 }
 
@@ -137,7 +126,7 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(layout.degree));
   std::copy_n(&raw[11], values, sh.begin());
   if (layout.rgb) {
-    for (int c = 0; c < 3; ++c) sh[c] = (sh[c] / 255.0f - 0.5f) / sh_c0;
+    for (int c = 0; c < 3; ++c) sh[c] = static_cast<float>((sh[c] / 255.0 - 0.5) / sh_c0);
   }
   const bool good = decode_raw(model, i, position, glm::vec3(raw[3], raw[4], raw[5]),
                                glm::vec4(raw[6], raw[7], raw[8], raw[9]), raw[10], sh.data());

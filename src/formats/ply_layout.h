@@ -21,6 +21,7 @@ struct PlyLayout {
       sources;             // for each number of a RawGaussian, the vertex property that it comes from
   bool rgb = false;        // the first three coefficients are base colours of 0 to 255 (Nerfstudio)
   bool filter_3d = false;  // the last number is Mip-Splatting's filter (world units)
+  bool antialiased = false;
 };
 
 /// Finds the Gaussians in a file by the names of properties. Throws Error naming `path` if there are none or

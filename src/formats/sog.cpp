@@ -17,6 +17,7 @@ Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   Model model;
   model.name = path.filename().string();
   model.degree = source.degree();
+  model.antialiased = source.antialiased();
   model.resize(source.count());
   std::vector<std::uint8_t> kept(source.count());
   const SogSource::Range all{0, source.count(), 0};

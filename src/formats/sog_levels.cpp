@@ -177,6 +177,7 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
   std::size_t total = 0;
   for (Part& part : parts) {
     model.degree = std::max(model.degree, part.source.degree());
+    model.antialiased = model.antialiased || part.source.antialiased();
     for (SogSource::Range& range : part.ranges) {
       range.slot = total;
       total += range.count;

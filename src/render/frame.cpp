@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <utility>
 
 #include "base/error.h"
@@ -82,6 +83,7 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     reference_pictures_ =
         fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, model_buffers_, buffers_);
   }
+  const auto start = std::chrono::steady_clock::now();
   dispatcher_.begin_frame();
   if (shape_.offset_count > 0 && !twin(Stage::decode)) {
     dispatcher_.begin_stage("decode");
@@ -117,6 +119,8 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     probe(dispatcher_, shape_, buffers_);
   }
   dispatcher_.end_frame();
+  report.submit_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   report.stages = dispatcher_.wait_and_time();
   return buffers_.counters.read<shared::Counters>(1).front();
 }
@@ -126,6 +130,7 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
   if (measures(shape_.settings.transmittance)) std::swap(buffers_.upper, buffers_.upper_next);
   report.loss = shape_.settings.loss;
+  report.remembered = shape_.remembers;
   if (!shape_.probe) return;
   if (shape_.remembers || !measures(shape_.settings.transmittance))
     loss_control_.measured(probed_error(shape_, counters));

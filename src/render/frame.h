@@ -22,8 +22,10 @@ struct FrameReport {
   int redrawn = 0;                    // times that buffers had to grow
   std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
   double total_ms = 0;                // their sum
+  double submit_ms = 0;               // CPU time of handing the last drawing to the driver
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   float loss = 0.0f;                  // K or kappa that the frame went by
+  bool remembered = false;            // it went by what the last frame measured
   double quality = 0.0;               // with settings.quality: the PSNR in dB that its probes so far tell of
 };
 

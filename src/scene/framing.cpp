@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "base/error.h"
+#include "scene/axes.h"
 
 namespace binosplat {
 
@@ -112,12 +113,13 @@ double clearest_turn(const Model& model, const Ring& ring) {
 
 std::vector<Camera> orbit(const Model& model, int count, int width, int height, double fov_degrees,
                           const glm::dvec3& up) {
-  const Ring ring(model, width, height, fov_degrees, up);
+  const glm::dmat3 world = world_from_axes(model.axes);
+  const Ring ring(model, width, height, fov_degrees, glm::transpose(world) * up);
   const double start = clearest_turn(model, ring);
   std::vector<Camera> cameras;
   for (int k = 0; k < count; ++k) {
-    const glm::dvec3 eye = ring.eye(start + glm::two_pi<double>() * k / count);
-    cameras.push_back(look_at(eye, ring.core.middle, up, fov_degrees, width, height));
+    const glm::dvec3 eye = world * ring.eye(start + glm::two_pi<double>() * k / count);
+    cameras.push_back(look_at(eye, world * ring.core.middle, up, fov_degrees, width, height));
     cameras.back().name = fmt::format("orbit_{:03}", k);
   }
   return cameras;

@@ -1,5 +1,6 @@
 #pragma once
-// Cameras for a model that brings none: one that frames it, and a ring of them around it.
+// Cameras for a model that brings none: one that frames it, and a ring of them around it. They are cameras of
+// the world (scene/axes.h), whatever the model's frame is.
 
 #include <glm/glm.hpp>
 #include <vector>

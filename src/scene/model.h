@@ -11,6 +11,9 @@
 
 namespace binosplat {
 
+/// The constant function of the spherical harmonics: a base colour is 0.5 + sh_c0 * coefficient.
+constexpr double sh_c0 = 0.28209479177387814;
+
 /// Number of SH coefficients per colour channel of a degree.
 constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
 
@@ -27,6 +30,7 @@ struct Model {
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
+  bool antialiased = false;         // trained with Mip-Splatting's compensation of opacities (Yu 2024)
   std::string axes = "RDF";         // where the model's x, y and z point in the cameras' world (scene/axes.h)
   /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
   /// stand-ins (scene/scaffold.h).

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "base/output_file.h"
-#include "study/page_files.h"
+#include "study/embedded.h"
 
 namespace binosplat::study {
 

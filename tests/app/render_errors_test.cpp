@@ -84,7 +84,7 @@ TEST_F(RenderErrors, Cameras) {
   expect({"-o", out}, "is not valid JSON at line 1");
   expect({"-o", out, "--cameras", folder / "no.json"}, "no.json");
   std::filesystem::remove(folder / "cameras.json");
-  expect({"-o", out, "--view", "front"}, "no cameras.json beside");
+  expect({"-o", out, "--view", "front"}, "no cameras beside");
 }
 
 TEST_F(RenderErrors, Views) {

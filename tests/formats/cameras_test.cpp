@@ -123,6 +123,7 @@ TEST(Cameras, ErrorsOfTheWholeFile) {
   EXPECT_TRUE(refuses("[]", {"holds no cameras"}));
   EXPECT_TRUE(refuses("[1]", {"camera 0", "expected an object"}));
   EXPECT_TRUE(refuses(one_camera().dump(), {"expected a list", "object"}));
+  EXPECT_TRUE(refuses("7", {"expected a list", "number"}));
   EXPECT_TRUE(refuses("[\n{\"a\": 1},\n]", {"not valid JSON at line 3, byte 13"}));
   EXPECT_TRUE(refuses("[{", {"line 1"}));
   EXPECT_TRUE(refuses("", {"an empty file"}));

@@ -44,6 +44,11 @@ class Copy {
   std::string name_;
 };
 
+/// `text` with the first `from` replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
 /// `text` with `bytes` in place of what stands at `at`.
 inline std::string patched(std::string text, std::size_t at, const std::string& bytes) {
   if (at + bytes.size() > text.size()) throw std::out_of_range("patch beyond the end");

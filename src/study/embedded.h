@@ -1,6 +1,5 @@
 #pragma once
-// The files that the page is put together from, as they were at build time (cmake/embed.cmake), by their
-// path.
+// Files that are part of the program, as they were at build time (cmake/embed.cmake), by their path.
 
 #include <map>
 #include <string>
@@ -9,5 +8,6 @@ namespace binosplat::study {
 
 const std::map<std::string, std::string>& page_files();         // below src/study/page
 const std::map<std::string, std::string>& third_party_files();  // below third_party
+const std::map<std::string, std::string>& preset_files();       // below src/study/presets
 
 }  // namespace binosplat::study

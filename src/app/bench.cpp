@@ -1,0 +1,282 @@
+// binosplat bench: the chart of speed against accuracy.
+
+#include <cstdio>
+#include <memory>
+#include <regex>
+
+#include "app/bench_plan.h"
+#include "app/command.h"
+#include "base/log.h"
+#include "base/output_file.h"
+#include "base/progress.h"
+#include "formats/image_file.h"
+#include "scene/framing.h"
+#include "study/bench.h"
+#include "study/bench_results.h"
+
+namespace binosplat::app {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+namespace {
+
+/// Which points this run measures: those whose number leaves `index` when divided by `count`.
+struct Shard {
+  std::size_t index = 0;
+  std::size_t count = 1;
+};
+
+Shard parse_shard(const std::string& text) {
+  if (text.empty()) return {};
+  static const std::regex form("([0-9]{1,6})/([0-9]{1,6})");
+  std::smatch match;
+  if (std::regex_match(text, match, form)) {
+    const auto i = std::stoul(match[1]), n = std::stoul(match[2]);
+    if (i >= 1 && i <= n) return {i - 1, n};
+  }
+  fail("--shard {}: expected I/N with I from 1 to N, as in 2/8", text);
+}
+
+/// The file of a view's photo, or nothing.
+std::optional<fs::path> find_photo(const RenderOptions& options, const Shot& shot) {
+  for (const std::string& name : {shot.name, shot.stem + ".jpg", shot.stem + ".png", shot.stem + ".JPG",
+                                  shot.stem + ".jpeg", shot.stem + ".PNG", shot.stem + ".JPEG"}) {
+    if (fs::is_regular_file(fs::path(options.photos) / name)) return fs::path(options.photos) / name;
+  }
+  return std::nullopt;
+}
+
+Image load_photo(const fs::path& file, const Camera& camera) {
+  Image photo = load_image(file);
+  if (photo.channels != 3 || photo.width != camera.width || photo.height != camera.height)
+    fail("photo {} has {} x {} px and {} channels; its view has {} x {} px and 3", file.string(), photo.width,
+         photo.height, photo.channels, camera.width, camera.height);
+  return photo;
+}
+
+/// The shots of a case: as many as the axes want, evenly spread, or all that --view names. Where photos can
+/// be compared, only shots that have one count.
+std::vector<Shot> choose_shots(const BenchPlan& plan, const BenchCase& which, const RenderOptions& options,
+                               std::vector<Shot> shots) {
+  if (!options.photos.empty() && which.eyes == 1 && which.size == "own") {
+    std::erase_if(shots, [&](const Shot& shot) { return !find_photo(options, shot); });
+    if (shots.empty()) fail("--photos {}: there is no photo of any view", options.photos);
+  }
+  if (!plan.scenes[which.scene].options.views.empty()) return shots;
+  std::vector<Shot> chosen;
+  for (const std::size_t i : study::spread_evenly(shots.size(), static_cast<std::size_t>(plan.axes.views)))
+    chosen.push_back(shots[i]);
+  return chosen;
+}
+
+/// The views of a case, and a small one to compare with the reference.
+study::Bench open_case(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
+                       const BenchCase& which, const Model& model) {
+  const BenchScene& scene = plan.scenes[which.scene];
+  const RenderOptions render = case_options(scene, which);
+  const CameraList list = scene.list.listed ? scene.list : made_up_cameras(render, model);
+  const double near_plane = render.near_plane.value_or(list.listed ? near_default : near_for(model));
+  const std::vector<Shot> shots =
+      choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
+  std::vector<study::BenchView> views;
+  for (const Shot& shot : shots) {
+    study::BenchView& view = views.emplace_back(study::BenchView{shot.name, {}, {}});
+    for (const Eye& eye : shot.eyes) view.eyes.push_back(eye.view);
+    const bool photos = !render.photos.empty() && which.eyes == 1 && which.size == "own";
+    if (photos) view.photo = load_photo(*find_photo(render, shot), shot.eyes.front().camera);
+  }
+  const Camera& camera = shots.front().eyes.front().camera;
+  constexpr int small_width = 160;
+  const int width = std::min(small_width, camera.width);
+  const int height = std::max(1, static_cast<int>(std::int64_t{camera.height} * width / camera.width));
+  return {context,
+          model,
+          std::move(views),
+          make_view(resized(camera, width, height), near_plane),
+          {plan.axes.frames, plan.axes.repeats, options.ppd}};
+}
+
+void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
+  const Shard shard = parse_shard(options.shard);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = shard.index; i < plan.json["points"].size(); i += shard.count) {
+    if (!folder.has(i)) missing.push_back(i);
+  }
+  const std::size_t of_shard = (plan.json["points"].size() + shard.count - 1 - shard.index) / shard.count;
+  log_info("{} points to measure{}", missing.size(),
+           missing.size() == of_shard
+               ? ""
+               : fmt::format("; {} are in {}", of_shard - missing.size(), options.output));
+  if (missing.empty()) return;
+  const auto context = gl::Context::open(
+      options.render.backend == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic,
+      options.render.device);
+  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
+
+  Progress progress("measuring", missing.size());
+  std::optional<Model> model;
+  std::optional<std::size_t> loaded;
+  std::size_t done = 0;
+  for (const BenchCase& which : plan.cases) {
+    std::optional<study::Bench> bench;
+    for (std::size_t s = 0; s < plan.axes.settings.size(); ++s) {
+      if (done == missing.size() || missing[done] != which.first + s) continue;
+      if (loaded != which.scene) {
+        bench.reset();
+        model.reset();
+        model = plan.scenes[which.scene].scene.model();
+        loaded = which.scene;
+      }
+      if (!bench) bench.emplace(open_case(*context, options, plan, which, *model));
+      folder.save(missing[done], bench->measure(plan.axes.settings[s]));
+      progress.update(++done);
+    }
+  }
+}
+
+void print(const ordered_json& results) {
+  const std::vector<bool> front = study::pareto_front(results["points"]);
+  std::string chart;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const ordered_json& p = results["points"][i];
+    const std::string name =
+        fmt::format("{}, {}, size {}", p["scene"].get<std::string>(),
+                    p["eyes"] == 2 ? "both eyes" : "one eye", p["size"].get<std::string>());
+    if (name != chart)
+      fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}\n", name, "  (* on the Pareto front)", "frame ms",
+                 "PSNR dB", "SSIM", "FLIP", "pairs");
+    chart = name;
+    const std::string setting = fmt::format("{} {}", front[i] ? "*" : " ", p["name"].get<std::string>());
+    if (!study::is_measured(p)) {
+      fmt::print("{:<36}  {}\n", setting,
+                 p.contains("problem") ? p["problem"].get<std::string>() : "not measured yet");
+      continue;
+    }
+    const ordered_json& exact = p["exact"];
+    const auto number = [](const ordered_json& value, int digits, const char* none) {
+      return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), digits) : std::string(none);
+    };
+    fmt::print("{:<36}{:>11.3f}{:>9}{:>9}{:>9}{:>12.0f}\n", setting, p["frame_ms"].get<double>(),
+               number(exact["psnr_db"], 2, "equal"), number(exact["ssim"], 4, "-"),
+               number(exact["flip"], 4, "-"), p["pairs"].get<double>());
+  }
+}
+
+ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
+  const ordered_json results = folder.results();
+  save_json(folder.path() / "results.json", results);
+  {
+    const Uninterrupted hold;
+    OutputFile csv(folder.path() / "results.csv");
+    csv.write(study::csv(results));
+    csv.commit();
+    study::save_page(folder.path() / "report.html", study::bench_page(results));
+  }
+  print(results);
+  fmt::print("\n{}: report.html, results.csv, results.json\n", folder.path().string());
+  if (!options.compare.empty()) {
+    fmt::print("\nSince {}:\n", options.compare);
+    try {
+      for (const std::string& line : study::compare_results(load_json(options.compare), results))
+        fmt::print("{}\n", line);
+    } catch (const ordered_json::exception& error) {
+      fail("--compare {}: not the results.json of a bench run: {}", options.compare, error.what());
+    }
+  }
+  std::size_t problems = 0;
+  for (const ordered_json& point : results["points"]) problems += point.contains("problem");
+  if (problems > 0)
+    throw Error(ExitCode::fell_short, fmt::format("{} of {} points failed verification and were not timed",
+                                                  problems, results["points"].size()));
+  return ExitCode::done;
+}
+
+BenchFolder merge(const BenchOptions& options) {
+  const BenchFolder first(options.merge.front());
+  BenchFolder into(options.output, first.plan());
+  for (const std::string& name : options.merge) {
+    const BenchFolder from(name);
+    if (from.plan() != first.plan())
+      fail("--merge: {} and {} are shards of different runs (see their plan.json)", options.merge.front(),
+           name);
+    for (std::size_t i = 0; i < from.plan()["points"].size(); ++i) {
+      if (from.has(i) && !into.has(i)) into.save(i, from.load(i));
+    }
+  }
+  return into;
+}
+
+void check(const BenchOptions& options) {
+  if (options.merge.empty() == options.scenes.empty())
+    fail("bench needs scenes to measure, or --merge and the folders of shards");
+  if (!options.merge.empty() && !options.shard.empty())
+    fail("--shard measures and --merge does not: choose one");
+  if (options.scenes.size() > 1 && (!options.render.cameras.empty() || !options.render.photos.empty()))
+    fail("--cameras and --photos are of one scene: bench the scenes one by one");
+  if (options.render.device >= 0 && options.render.backend == "surfaceless")
+    fail("--device is for --backend auto: surfaceless has none");
+}
+
+ExitCode bench(const BenchOptions& options) {
+  check(options);
+  check_output(fs::path(options.output) / "results.json");
+  if (!options.compare.empty()) load_json(options.compare);
+  if (!options.merge.empty()) return finish(options, merge(options));
+  parse_shard(options.shard);
+  const BenchPlan plan = make_plan(options);
+  const BenchFolder folder(options.output, plan.json);
+  measure_all(options, plan, folder);
+  return finish(options, folder);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("bench", "Chart speed against accuracy on this GPU");
+  const auto o = std::make_shared<BenchOptions>();
+  std::string presets;
+  for (const std::string& name : study::axes_presets()) presets += (presets.empty() ? "" : ", ") + name;
+  sub->add_option("SCENE", o->scenes, "Models (.ply), demo:room or demo:city");
+  sub->add_option("-o,--output", o->output, "Folder for report.html, results.csv and .json (out/bench)")
+      ->type_name("DIR");
+  sub->add_option("--axes", o->axes,
+                  "What is measured: " + presets + ", or a file like those in\nsrc/study/presets (quick)")
+      ->type_name("NAME|FILE");
+  sub->add_option("--cameras", o->render.cameras, "Cameras, where they are not beside the model")
+      ->type_name("FILE");
+  sub->add_option("--view", o->render.views, "Views by name, instead of the axes' number of them")
+      ->type_name("NAME...");
+  sub->add_option("--photos", o->render.photos, "Compare with DIR/NAME.jpg or .png as well")
+      ->type_name("DIR")
+      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+  sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
+      ->check(CLI::Range(1.0, 1000.0).description(""))
+      ->type_name("N");
+  sub->add_option("--near", o->render.near_plane, "Nothing nearer is drawn, in world units (0.2)")
+      ->check(CLI::PositiveNumber.description(""))
+      ->type_name("DEPTH");
+  sub->add_option("--count", o->render.count, "Gaussians of demo:city (1000000)")->type_name("N");
+  sub->add_option("--seed", o->render.seed, "Which demo:city (1)")->type_name("N");
+  sub->add_option("--shard", o->shard, "Measure every Nth point from the Ith on: one job of N")
+      ->type_name("I/N");
+  sub->add_option("--merge", o->merge, "Join the folders of shards in -o")->type_name("DIR...");
+  sub->add_option("--compare", o->compare, "Print what changed beyond noise since an older results.json")
+      ->type_name("FILE");
+  sub->add_option("--backend", o->render.backend, "A GPU, else Mesa; or Mesa without a GPU (auto)")
+      ->check(CLI::IsMember(std::vector<std::string>{"auto", "surfaceless"}).description(""))
+      ->type_name("auto|surfaceless");
+  sub->add_option("--device", o->render.device, "Number of the EGL device")
+      ->check(CLI::Range(0, 1000).description(""))
+      ->type_name("N");
+  sub->footer(
+      "A run that was ended goes on where it was when it is started again with the same options.\n"
+      "Examples:\n"
+      "  binosplat bench fox.ply garden.ply -o out/chart\n"
+      "  binosplat bench garden.ply --axes headset --compare last/results.json -o out/headset\n"
+      "  binosplat bench fox.ply --axes paper --shard $I/8 -o out/shard$I     # on 8 machines\n"
+      "  binosplat bench --merge out/shard1 out/shard2 -o out/chart");
+  sub->callback([o, &command] { command = [o] { return bench(*o); }; });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,83 @@
+#pragma once
+// What `binosplat bench` is to measure, point by point, and which of it lies in a folder already.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/open_scene.h"
+#include "app/render_options.h"
+#include "app/shots.h"
+#include "study/axes.h"
+
+namespace binosplat::app {
+
+struct BenchOptions {
+  std::vector<std::string> scenes;
+  std::string axes = "quick";
+  std::string output = "out/bench";
+  std::string shard;               // I/N; empty: all
+  std::vector<std::string> merge;  // folders, instead of scenes
+  std::string compare;             // results.json of an older run
+  double ppd = 67.0;
+  RenderOptions render;  // cameras, photos, views, the built-in scenes' options and the device
+};
+
+/// One scene of the run, and its cameras; the model is read when a point needs it.
+struct BenchScene {
+  std::string name;  // the file's, without folders and ending
+  RenderOptions options;
+  Scene scene;
+  CameraList list;
+};
+
+/// Points that share a model, views and their size: a chart.
+struct BenchCase {
+  std::size_t scene = 0;
+  int eyes = 1;
+  std::string size;
+  std::size_t first = 0;  // point of the plan; there are as many as settings
+};
+
+struct BenchPlan {
+  study::Axes axes;
+  std::vector<BenchScene> scenes;
+  std::vector<BenchCase> cases;
+  nlohmann::ordered_json json;  // what two runs must have in common to be one
+};
+
+/// Throws Error for scenes, cameras or axes that cannot be used. Reads no model.
+BenchPlan make_plan(const BenchOptions& options);
+
+/// The options that draw a case of a scene.
+RenderOptions case_options(const BenchScene& scene, const BenchCase& which);
+
+/// The points of a folder: what was measured, by number of the plan.
+class BenchFolder {
+ public:
+  /// Starts the folder, or goes on with it. Throws Error if it holds another plan.
+  BenchFolder(std::filesystem::path folder, const nlohmann::ordered_json& plan);
+  /// A folder that is there, with whatever plan it has. Throws Error if it has none.
+  explicit BenchFolder(std::filesystem::path folder);
+
+  const nlohmann::ordered_json& plan() const { return plan_; }
+  bool has(std::size_t point) const { return std::filesystem::exists(file(point)); }
+  nlohmann::ordered_json load(std::size_t point) const;
+  void save(std::size_t point, const nlohmann::ordered_json& measured) const;
+  /// All points, measured or not, with the plan.
+  nlohmann::ordered_json results() const;
+  const std::filesystem::path& path() const { return folder_; }
+
+ private:
+  std::filesystem::path file(std::size_t point) const;
+
+  std::filesystem::path folder_;
+  nlohmann::ordered_json plan_;
+};
+
+/// Reads a JSON file. Throws Error naming it and what is wrong.
+nlohmann::ordered_json load_json(const std::filesystem::path& path);
+
+}  // namespace binosplat::app

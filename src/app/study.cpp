@@ -1,0 +1,284 @@
+// binosplat study: where thresholds fail, and what a memory of the last frame is worth along a path.
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "app/command.h"
+#include "app/open_scene.h"
+#include "app/shots.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "formats/cameras_file.h"
+#include "scene/framing.h"
+#include "study/carried.h"
+
+namespace binosplat::app {
+
+namespace {
+
+using nlohmann::ordered_json;
+using study::Variant;
+
+struct StudyOptions {
+  RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
+  bool stability = false;
+  std::vector<std::string> cases;
+  double target = 40.0;  // dB
+  std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
+  std::string json;
+};
+
+struct Studied {
+  std::shared_ptr<const Model> model;
+  CameraList cameras;
+  double near_plane = near_default;
+};
+
+Studied open(const StudyOptions& options) {
+  const Scene scene = open_scene(options.scene);
+  Studied studied;
+  studied.cameras = listed_cameras(options.scene, scene.cameras);
+  studied.model = std::make_shared<const Model>(scene.model());
+  if (!studied.cameras.listed) studied.cameras = made_up_cameras(options.scene, *studied.model);
+  if (!studied.cameras.listed) studied.near_plane = near_for(*studied.model);
+  return studied;
+}
+
+stereo::RigSettings rig(const StudyOptions& options, double near_plane) {
+  stereo::RigSettings settings;
+  settings.ipd = options.scene.ipd.value_or(settings.ipd);
+  settings.units_per_metre = options.scene.units_per_metre;
+  settings.near_plane = near_plane;
+  return settings;
+}
+
+Camera head_of(const StudyOptions& options, const Studied& studied) {
+  const std::vector<std::string>& names = options.scene.views;
+  if (names.empty()) return sized(options.scene, studied.cameras.cameras.front());
+  for (const Camera& camera : studied.cameras.cameras) {
+    if (camera.name == names.front()) return sized(options.scene, camera);
+  }
+  fail("--view {}: {} has no camera of this name", names.front(), studied.cameras.source);
+}
+
+// JSON has no infinity: null.
+ordered_json to_json(const study::StabilityResult& r) {
+  return {{"verdict", r.verdict},
+          {"worst_db", r.worst_db},
+          {"worst_frame", r.worst_frame},
+          {"settled_db", r.settled_db},
+          {"drift_db", r.drift_db},
+          {"settling_frames", r.settling},
+          {"largest_error", r.largest},
+          {"p99_error", r.p99},
+          {"mean_signed_error", r.signed_mean},
+          {"edge_over_inside", r.edges},
+          {"disagreement_db", r.disagreement_db},
+          {"pairs_removed", r.removed}};
+}
+
+ordered_json to_json(const study::StabilityBounds& b) {
+  return {{"dips: a frame below dB", b.worst_db},
+          {"wrong: settled below dB", b.settled_db},
+          {"drifts: the last third below the second by dB", b.drift_db},
+          {"slow: more frames until within 1 dB", b.settling},
+          {"darkens or brightens: mean signed error beyond", b.darkening},
+          {"rivalry: disagreement below dB", b.disagreement_db}};
+}
+
+void find_losses(gl::Context& context, const StudyOptions& options, const Studied& studied,
+                 const stereo::EyePair& eyes, std::vector<Variant>& variants) {
+  Progress progress("losses", variants.size());
+  for (std::size_t k = 0; k < variants.size(); ++k) {
+    // The eyes' rules are compared at one loss.
+    variants[k].loss = variants[k].th_eyes == TH_EYES_PER_EYE
+                           ? study::loss_at(context, *studied.model, eyes, variants[k], options.target)
+                           : variants[k - 1].loss;
+    progress.update(k + 1);
+  }
+}
+
+void print_case(const study::StabilityCase& one, const std::vector<Variant>& variants,
+                const std::vector<study::StabilityResult>& results) {
+  fmt::print("\n## {}: {}\n\n", one.name, one.fear);
+  fmt::print(
+      "| rule | worst dB (frame) | settled dB | frames to settle | largest, p99 error | signed | edges | "
+      "disagreement dB | removed | verdict |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t k = 0; k < variants.size(); ++k) {
+    const study::StabilityResult& r = results[k];
+    fmt::print(
+        "| {} | {:.1f} ({}) | {:.1f} | {} | {:.3f}, {:.3f} | {:+.4f} | {:.2f} | {:.1f} | {:.1f} % | {} |\n",
+        variants[k].name(), r.worst_db, r.worst_frame, r.settled_db, r.settling, r.largest, r.p99,
+        r.signed_mean, r.edges, r.disagreement_db, 100.0 * r.removed, r.verdict);
+  }
+  std::fflush(stdout);
+}
+
+void check_cases(const std::vector<std::string>& wanted, const std::vector<study::StabilityCase>& cases) {
+  for (const std::string& name : wanted) {
+    std::string names;
+    bool known = false;
+    for (const study::StabilityCase& one : cases) {
+      known = known || one.name == name;
+      names += "\n  " + one.name;
+    }
+    if (!known) fail("--case {}: there is no such case. There are:{}", name, names);
+  }
+}
+
+ordered_json stability(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+  const Camera head = head_of(options, studied);
+  const stereo::RigSettings settings = rig(options, studied.near_plane);
+  auto cases = study::built_in_cases();
+  for (auto& one : study::cases_in(studied.model, head, settings)) cases.push_back(std::move(one));
+  check_cases(options.cases, cases);
+  std::vector<Variant> variants = study::all_variants();
+  find_losses(context, options, studied, stereo::make_rig(head, settings), variants);
+
+  const study::StabilityBounds bounds;
+  ordered_json json = {{"target_db", options.target}, {"bounds", to_json(bounds)}};
+  fmt::print("Losses for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.scene,
+             head.name, head.width, head.height);
+  for (const Variant& variant : variants) {
+    if (variant.th_eyes == TH_EYES_PER_EYE) fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
+    json["losses"][variant.name()] = variant.loss;
+  }
+  for (const study::StabilityCase& one : cases) {
+    if (!options.cases.empty() &&
+        std::find(options.cases.begin(), options.cases.end(), one.name) == options.cases.end()) {
+      continue;
+    }
+    Progress progress(one.name, variants.size());
+    std::size_t done = 0;
+    const auto results = study::run_case(context, one, variants, bounds, [&] { progress.update(++done); });
+    print_case(one, variants, results);
+    for (std::size_t k = 0; k < variants.size(); ++k)
+      json["cases"][one.name][variants[k].name()] = to_json(results[k]);
+  }
+  return json;
+}
+
+std::vector<std::vector<shared::View>> path_views(const StudyOptions& options, double near_plane) {
+  const stereo::RigSettings settings = rig(options, near_plane);
+  std::vector<std::vector<shared::View>> frames;
+  for (const Camera& camera : load_cameras(options.scene.path)) {
+    const Camera head = sized(options.scene, camera);
+    if (options.scene.mono) {
+      frames.push_back({make_view(head, near_plane)});
+    } else {
+      const stereo::EyePair eyes = stereo::make_rig(head, settings);
+      frames.push_back({eyes.views[0], eyes.views[1]});
+    }
+  }
+  if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
+  return frames;
+}
+
+ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+  Variant variant{number_of(options.th, th_choices), number_of(options.transmittance, transmittance_choices),
+                  number_of(options.contrast, contrast_choices), number_of(options.th_eyes, th_eyes_choices)};
+  const auto frames = path_views(options, studied.near_plane);
+  const float quality = options.scene.quality.value_or(0.0f);
+  if (quality == 0.0f)
+    variant.loss = options.scene.loss.value_or(
+        study::carried_loss(context, *studied.model, frames, variant, options.target));
+  Progress progress("frames", frames.size());
+  std::size_t done = 0;
+  const auto results =
+      study::run_carried(context, *studied.model, frames, variant, quality, [&] { progress.update(++done); });
+  fmt::print(
+      "{} along {}, {}\n\n", variant.name(), options.scene.path,
+      quality > 0 ? fmt::format("steered to {} dB", quality) : fmt::format("loss {:.4g}", variant.loss));
+  fmt::print(
+      "| frame | dB | removed | signed | `one` with as many pairs, dB | gain |\n|---|---|---|---|---|---|\n");
+  ordered_json json = {{"variant", variant.name()}, {"loss", variant.loss}, {"quality", quality}};
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    const study::CarriedFrame& r = results[n];
+    const std::string note = !r.fell_back   ? ""
+                             : quality > 0  ? " (fell back)"
+                             : r.equals_one ? " (fell back: equals `one`)"
+                                            : " (fell back, and differs from `one`)";
+    fmt::print("| {}{} | {:.2f} | {:.1f} % | {:+.4f} | {} | {} |\n", n, note, r.db, 100.0 * r.removed,
+               r.signed_mean, quality > 0 ? "" : fmt::format("{:.2f}", r.one_db),
+               quality > 0 ? "" : fmt::format("{:+.2f}", r.db - r.one_db));
+    json["frames"].push_back({{"db", r.db},
+                              {"pairs", r.pairs},
+                              {"removed", r.removed},
+                              {"mean_signed_error", r.signed_mean},
+                              {"fell_back", r.fell_back},
+                              {"equals_one", r.equals_one},
+                              {"one_db", r.one_db},
+                              {"one_pairs", r.one_pairs}});
+  }
+  return json;
+}
+
+ExitCode study_scene(const StudyOptions& options) {
+  if (options.stability != options.scene.path.empty()) fail("study: choose --stability, or --path FILE");
+  if (!options.json.empty()) check_output(options.json);
+  const Studied studied = open(options);
+  const auto context = gl::Context::open();
+  log_info("drawing with {}", context->renderer());
+  const ordered_json json =
+      options.stability ? stability(*context, options, studied) : carried(*context, options, studied);
+  if (!options.json.empty()) save_json(options.json, json);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_study(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("study", "Where thresholds fail on a scene, and what they gain");
+  const auto options = std::make_shared<StudyOptions>();
+  StudyOptions& o = *options;
+  sub->add_option("SCENE", o.scene.scene, "A model, or demo:room or demo:city")->required();
+  sub->add_flag("--stability", o.stability,
+                "Every rule, source, contrast and eye rule on every failure case");
+  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME");
+  sub->add_option("--path", o.scene.path, "Carry one rule along the cameras of this file instead")
+      ->type_name("FILE");
+  sub->add_option("--target", o.target, "dB that losses are chosen for (40)")
+      ->type_name("DB")
+      ->check(CLI::PositiveNumber.description(""));
+  sub->add_option("--loss", o.scene.loss, "Of the rule carried, instead")
+      ->type_name("X")
+      ->check(CLI::NonNegativeNumber.description(""));
+  sub->add_option("--quality", o.scene.quality, "Steer the rule carried to so many dB")
+      ->type_name("DB")
+      ->check(CLI::PositiveNumber.description(""));
+  const auto choose = [&](const char* name, std::string& into, const auto& choices) {
+    std::vector<std::string> names;
+    for (const Choice& choice : choices) names.emplace_back(choice.name);
+    sub->add_option(name, into, fmt::format("Of the rule carried ({})", into))
+        ->check(CLI::IsMember(names).description(""))
+        ->type_name(fmt::format("{}", fmt::join(names, "|")));
+  };
+  choose("--th", o.th, th_choices);
+  choose("--transmittance", o.transmittance, transmittance_choices);
+  choose("--contrast", o.contrast, contrast_choices);
+  choose("--th-eyes", o.th_eyes, th_eyes_choices);
+  sub->add_option("--cameras", o.scene.cameras, "cameras.json; default: the one beside the model")
+      ->type_name("FILE");
+  sub->add_option("--view", o.scene.views, "The camera to study from; default: the first")
+      ->type_name("NAME")
+      ->expected(1);
+  sub->add_option_function<std::string>(
+         "--size",
+         [&o](const std::string& text) {
+           o.scene.size = parse_two("--size", text, "pixels as WxH, for one 320x240");
+         },
+         "Of an eye's picture")
+      ->type_name("WxH");
+  sub->add_flag("--mono", o.scene.mono, "Along a path: the cameras themselves, no rig");
+  sub->add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
+  sub->add_option("--units-per-metre", o.scene.units_per_metre, "World units that make a metre (1)")
+      ->type_name("U");
+  sub->add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
+  sub->callback([options, &command] { command = [options] { return study_scene(*options); }; });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,38 @@
+#pragma once
+// Numbers in the bytes of a file whose least byte comes first, as all binary formats here have them.
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace binosplat {
+
+static_assert(std::endian::native == std::endian::little, "readers take numbers from files as they are");
+
+/// The number at `at`, aligned or not. The caller has checked that its bytes are there.
+template <typename T>
+T load_number(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof(T));
+  return value;
+}
+
+/// `bits` bits of a word from bit `low` on.
+constexpr std::uint32_t bit_field(std::uint32_t word, int low, int bits) {
+  return (word >> low) & ((1u << bits) - 1u);
+}
+
+/// A half float (IEEE 754 binary16); every one fits a float exactly.
+inline float load_half(const std::byte* at) {
+  const auto h = load_number<std::uint16_t>(at);
+  const std::uint32_t sign = (h & 0x8000u) << 16, exponent = (h >> 10) & 31u, fraction = h & 1023u;
+  if (exponent == 0) {
+    const float small = static_cast<float>(fraction) * 0x1p-24f;
+    return sign != 0 ? -small : small;
+  }
+  const std::uint32_t wide = exponent == 31 ? 255u : exponent + 112u;
+  return std::bit_cast<float>(sign | (wide << 23) | (fraction << 13));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,21 @@
+#pragma once
+// Cameras as COLMAP's reconstructions have them, binary or text: cameras.* (lenses) and images.* (poses), and
+// points3D.*, which is not read.
+
+#include <filesystem>
+#include <vector>
+
+#include "scene/camera.h"
+
+namespace binosplat {
+
+/// Whether a folder holds such a reconstruction.
+bool is_colmap(const std::filesystem::path& folder);
+
+/// Reads all cameras of a folder, sorted by the names of their pictures; binary files where both are there.
+/// Lenses must be pinholes (SIMPLE_PINHOLE, PINHOLE): others end in an Error that names them and what
+/// undistorts them. Throws Error naming the file, and the image or line in it, for what is damaged, cut short
+/// or missing.
+std::vector<Camera> load_colmap(const std::filesystem::path& folder);
+
+}  // namespace binosplat

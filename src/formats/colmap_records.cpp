@@ -1,0 +1,264 @@
+#include "formats/colmap_records.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "formats/bytes.h"
+#include "formats/content.h"
+
+namespace binosplat {
+
+namespace {
+
+struct LensModel {
+  std::string_view name;
+  std::size_t parameters;
+};
+constexpr LensModel models[] = {{"SIMPLE_PINHOLE", 3},
+                                {"PINHOLE", 4},
+                                {"SIMPLE_RADIAL", 4},
+                                {"RADIAL", 5},
+                                {"OPENCV", 8},
+                                {"OPENCV_FISHEYE", 8},
+                                {"FULL_OPENCV", 12},
+                                {"FOV", 5},
+                                {"SIMPLE_RADIAL_FISHEYE", 4},
+                                {"RADIAL_FISHEYE", 5},
+                                {"THIN_PRISM_FISHEYE", 12},
+                                {"RAD_TAN_THIN_PRISM_FISHEYE", 16},
+                                {"SIMPLE_DIVISION", 4},
+                                {"DIVISION", 5},
+                                {"SIMPLE_FISHEYE", 3},
+                                {"FISHEYE", 4},
+                                {"EUCM", 6},
+                                {"EQUIRECTANGULAR", 2}};
+
+std::size_t parameters_of(int model) {
+  return model >= 0 && model < std::ssize(models) ? models[model].parameters : 0;
+}
+
+/// A quaternion of length 1; a pose without one is refused.
+glm::dvec4 unit(const std::string& where, const glm::dvec4& q) {
+  const double length = glm::length(q);
+  if (!(length > 0.0 && std::isfinite(length)))
+    fail("{}: the rotation is no quaternion (all zero, or not finite)", where);
+  return q / length;
+}
+
+void check_pose(const std::string& where, const ColmapImage& image) {
+  for (int c = 0; c < 3; ++c) {
+    if (!std::isfinite(image.translation[c])) fail("{}: the translation is not finite", where);
+  }
+}
+
+/// Takes one number after the other from a file's bytes.
+class Cursor {
+ public:
+  Cursor(const std::filesystem::path& file, std::span<const std::byte> bytes) : file_(file), bytes_(bytes) {}
+
+  /// Says in errors which record is being read.
+  void at_record(const char* kind, std::uint64_t index, std::uint64_t count) {
+    record_ = fmt::format("{} {} of {}, counted from 0,", kind, index, count);
+  }
+  std::string where() const { return fmt::format("{}: {} before byte {}", file_.string(), record_, at_); }
+
+  template <typename T>
+  T take() {
+    need(sizeof(T));
+    at_ += sizeof(T);
+    return load_number<T>(&bytes_[at_ - sizeof(T)]);
+  }
+
+  std::string take_name() {
+    const std::string_view rest = as_text(bytes_.subspan(at_));
+    const std::size_t end = rest.find('\0');
+    if (end == std::string_view::npos)
+      fail("{}: {} has a name that runs to the end of the file", file_.string(), record_);
+    at_ += end + 1;
+    return std::string(rest.substr(0, end));
+  }
+
+  void skip(std::uint64_t count, std::size_t size) {
+    if (count > (bytes_.size() - at_) / size) need(std::numeric_limits<std::size_t>::max());
+    at_ += count * size;
+  }
+
+ private:
+  void need(std::size_t size) const {
+    if (size > bytes_.size() - at_) {
+      fail("{} is cut short or damaged: {} goes on beyond the file's {} bytes", file_.string(), record_,
+           bytes_.size());
+    }
+  }
+
+  const std::filesystem::path& file_;
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  std::string record_ = "the number of records";
+};
+
+/// The lines of a text, numbered from 1.
+class Lines {
+ public:
+  Lines(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {}
+
+  /// The next line, whatever is in it; false at the end.
+  bool next(std::string_view& line) {
+    if (at_ >= text_.size()) return false;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    line = text_.substr(at_, end - at_);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    at_ = end + 1;
+    ++number_;
+    return true;
+  }
+
+  /// The next line that is neither blank nor a comment.
+  bool next_record(std::string_view& line) {
+    while (next(line)) {
+      const std::size_t first = line.find_first_not_of(" \t");
+      if (first != std::string_view::npos && line[first] != '#') return true;
+    }
+    return false;
+  }
+
+  std::string where() const { return fmt::format("{}, line {}", file_.string(), number_); }
+
+ private:
+  const std::filesystem::path& file_;
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t number_ = 0;
+};
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(" \t"); at < line.size();) {
+    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(" \t", end);
+  }
+  return words;
+}
+
+template <typename T>
+T number(const Lines& lines, std::string_view word, const char* what) {
+  T value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size())
+    fail("{}: {} is no {}", lines.where(), quoted(word), what);
+  return value;
+}
+
+void add(std::map<std::uint32_t, ColmapLens>& lenses, const std::string& where, ColmapLens lens) {
+  const std::uint32_t id = lens.id;
+  if (!lenses.emplace(id, std::move(lens)).second) fail("{}: there is a camera {} already", where, id);
+}
+
+}  // namespace
+
+std::string_view colmap_model_name(int model) {
+  return model >= 0 && model < std::ssize(models) ? models[model].name : std::string_view{};
+}
+
+std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  Cursor cursor(path, file.bytes());
+  std::map<std::uint32_t, ColmapLens> lenses;
+  const auto count = cursor.take<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    cursor.at_record("camera", i, count);
+    ColmapLens lens;
+    lens.id = cursor.take<std::uint32_t>();
+    lens.model = cursor.take<std::int32_t>();
+    lens.width = cursor.take<std::uint64_t>();
+    lens.height = cursor.take<std::uint64_t>();
+    // Where its parameters end is not known either.
+    if (colmap_model_name(lens.model).empty())
+      fail("{}: camera {} has the model {}, which is not known (0 to 17 are)", path.string(), lens.id,
+           lens.model);
+    for (std::size_t k = 0; k < parameters_of(lens.model); ++k)
+      lens.parameters.push_back(cursor.take<double>());
+    add(lenses, cursor.where(), std::move(lens));
+  }
+  return lenses;
+}
+
+std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  Lines lines(path, as_text(file.bytes()));
+  std::map<std::uint32_t, ColmapLens> lenses;
+  for (std::string_view line; lines.next_record(line);) {
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.size() < 4) fail("{}: expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS...", lines.where());
+    ColmapLens lens;
+    lens.id = number<std::uint32_t>(lines, words[0], "camera's number");
+    lens.model = -1;
+    for (int model = 0; model < std::ssize(models); ++model) {
+      if (models[model].name == words[1]) lens.model = model;
+    }
+    if (lens.model < 0) fail("{}: {} is no model of COLMAP's", lines.where(), quoted(words[1]));
+    lens.width = number<std::uint64_t>(lines, words[2], "number of pixels");
+    lens.height = number<std::uint64_t>(lines, words[3], "number of pixels");
+    for (std::size_t k = 4; k < words.size(); ++k)
+      lens.parameters.push_back(number<double>(lines, words[k], "number"));
+    if (lens.parameters.size() != parameters_of(lens.model)) {
+      fail("{}: {} parameters; the model {} has {}", lines.where(), lens.parameters.size(), words[1],
+           parameters_of(lens.model));
+    }
+    add(lenses, lines.where(), std::move(lens));
+  }
+  return lenses;
+}
+
+std::vector<ColmapImage> colmap_images(const std::filesystem::path& path) {
+  constexpr std::size_t observation = 24;
+  const MappedFile file(path);
+  Cursor cursor(path, file.bytes());
+  std::vector<ColmapImage> images;
+  const auto count = cursor.take<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    cursor.at_record("image", i, count);
+    ColmapImage& image = images.emplace_back();
+    image.id = cursor.take<std::uint32_t>();
+    for (int c = 0; c < 4; ++c) image.rotation[c] = cursor.take<double>();
+    for (int c = 0; c < 3; ++c) image.translation[c] = cursor.take<double>();
+    image.lens = cursor.take<std::uint32_t>();
+    image.rotation = unit(cursor.where(), image.rotation);
+    check_pose(cursor.where(), image);
+    image.name = cursor.take_name();
+    cursor.skip(cursor.take<std::uint64_t>(), observation);
+  }
+  return images;
+}
+
+std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  Lines lines(path, as_text(file.bytes()));
+  std::vector<ColmapImage> images;
+  for (std::string_view line; lines.next_record(line);) {
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.size() < 10) fail("{}: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", lines.where());
+    ColmapImage& image = images.emplace_back();
+    image.id = number<std::uint32_t>(lines, words[0], "image's number");
+    for (std::size_t c = 0; c < 4; ++c)
+      image.rotation[static_cast<int>(c)] = number<double>(lines, words[1 + c], "number");
+    for (std::size_t c = 0; c < 3; ++c)
+      image.translation[static_cast<int>(c)] = number<double>(lines, words[5 + c], "number");
+    image.rotation = unit(lines.where(), image.rotation);
+    check_pose(lines.where(), image);
+    image.lens = number<std::uint32_t>(lines, words[8], "camera's number");
+    image.name = std::string(words[9]);
+    // Where an image was observed; an empty line is one, too.
+    std::string_view observations;
+    if (lines.next(observations) && words_of(observations).size() % 3 != 0) {
+      fail("{}: expected the points seen in image {} (X Y POINT3D_ID ...), or an empty line", lines.where(),
+           image.id);
+    }
+  }
+  return images;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,39 @@
+#pragma once
+// The records of COLMAP's files as they stand there.
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace binosplat {
+
+struct ColmapLens {
+  std::uint32_t id = 0;
+  int model = 0;            // COLMAP's number of it
+  std::uint64_t width = 0;  // px
+  std::uint64_t height = 0;
+  std::vector<double> parameters;  // as many as the model has; none of a model that is not known
+};
+
+struct ColmapImage {
+  std::uint32_t id = 0;
+  glm::dvec4 rotation{0.0};  // world to camera, unit quaternion w x y z
+  glm::dvec3 translation{0.0};
+  std::uint32_t lens = 0;
+  std::string name;
+};
+
+/// "" for a number that none has.
+std::string_view colmap_model_name(int model);
+
+/// Each reads a whole file and throws Error naming it and the record where it is damaged or cut short.
+std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& file);
+std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::path& file);
+std::vector<ColmapImage> colmap_images(const std::filesystem::path& file);
+std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& file);
+
+}  // namespace binosplat

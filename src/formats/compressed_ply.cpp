@@ -1,0 +1,220 @@
+#include "formats/compressed_ply.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "formats/bytes.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::size_t chunk_size = 256;
+constexpr std::size_t plain_fields = 12;  // without the bounds of colours
+constexpr const char* chunk_fields[] = {
+    "min_x",       "min_y",       "min_z",       "max_x",       "max_y",       "max_z",
+    "min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z",
+    "min_r",       "min_g",       "min_b",       "max_r",       "max_g",       "max_b"};
+constexpr const char* vertex_fields[] = {"packed_position", "packed_rotation", "packed_scale",
+                                         "packed_color"};
+
+/// What is read of an element: where its rows begin, and where in them the wanted properties lie.
+struct Rows {
+  std::size_t at = 0;
+  std::size_t bytes = 0;  // of a row
+  std::vector<std::size_t> offsets;
+};
+
+/// 11, 10 and 11 bits as three fractions, the highest bits first.
+glm::dvec3 fractions(std::uint32_t word) {
+  return {bit_field(word, 21, 11) / 2047.0, bit_field(word, 11, 10) / 1023.0,
+          bit_field(word, 0, 11) / 2047.0};
+}
+
+/// The largest of w, x, y, z is left out (the highest two bits say which), the others have 10 bits each.
+glm::vec4 rotation_of(std::uint32_t word) {
+  const int largest = static_cast<int>(bit_field(word, 30, 2));
+  glm::vec4 rotation(0.0f);
+  double rest = 1.0;
+  int low = 20;
+  for (int c = 0; c < 4; ++c) {
+    if (c == largest) continue;
+    const double v = (bit_field(word, low, 10) / 1023.0 - 0.5) * std::sqrt(2.0);
+    low -= 10;
+    rotation[c] = static_cast<float>(v);
+    rest -= v * v;
+  }
+  rotation[largest] = static_cast<float>(std::sqrt(std::max(rest, 0.0)));
+  return rotation;
+}
+
+/// A byte of the harmonics: the middle of its step, but for the two ends.
+float harmonic_of(std::byte stored) {
+  const int b = std::to_integer<int>(stored);
+  const double n = b == 0 ? 0.0 : b == 255 ? 1.0 : (b + 0.5) / 256.0;
+  return static_cast<float>((n - 0.5) * 8.0);
+}
+
+class CompressedPlyReader {
+ public:
+  CompressedPlyReader(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                      const PlyHeader& header)
+      : path_(path), bytes_(bytes), header_(header) {
+    if (header.format != PlyFormat::little_endian)
+      fail("{}: a compressed ply must have the format binary_little_endian", path_.string());
+    find_elements();
+  }
+
+  Model read() const {
+    Model model;
+    model.name = path_.filename().string();
+    model.degree = degree_;
+    model.resize(count_);
+    std::vector<std::uint8_t> kept(count_);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count_, 2048), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i) kept[i] = decode(model, i) ? 1 : 0;
+    });
+    keep_only(model, kept);
+    return model;
+  }
+
+ private:
+  /// Walks the elements in the order of their data.
+  void find_elements() {
+    std::size_t at = header_.data;
+    for (const PlyElement& element : header_.elements) {
+      if (element.has_list()) {
+        fail("{}: element '{}' of a compressed ply has a list; expected numbers only", path_.string(),
+             element.name);
+      }
+      const std::size_t row = element.row_bytes(), left = bytes_.size() - at;
+      if (row > 0 && element.count > left / row) {
+        fail(
+            "{} is cut short: element '{}' needs {} rows of {} bytes from byte {} on, but {} bytes are "
+            "there; fetch "
+            "or export it again",
+            path_.string(), element.name, element.count, row, at, left);
+      }
+      if (element.name == "chunk") take_chunks(element, at);
+      if (element.name == "vertex") take_vertices(element, at);
+      if (element.name == "sh") take_harmonics(element, at);
+      at += row * element.count;
+    }
+    if (vertices_.offsets.empty()) fail("{}: a compressed ply without element 'vertex'", path_.string());
+    if (count_ == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_.string());
+    if (chunks_count_ < (count_ + chunk_size - 1) / chunk_size) {
+      fail("{}: element 'chunk' has {} rows, too few for {} Gaussians, of which {} share one", path_.string(),
+           chunks_count_, count_, chunk_size);
+    }
+    if (degree_ > 0 && harmonics_count_ < count_) {
+      fail("{}: element 'sh' has {} rows for {} Gaussians", path_.string(), harmonics_count_, count_);
+    }
+    if (at < bytes_.size())
+      log_warning("{}: {} bytes after the last element are ignored", path_.string(), bytes_.size() - at);
+  }
+
+  /// The offset of a property that must be there and of one type.
+  std::size_t offset_of(const PlyElement& element, const std::string& name, PlyType type) const {
+    std::size_t offset = 0;
+    for (const PlyProperty& property : element.properties) {
+      if (property.name == name && property.type == type) return offset;
+      if (property.name == name)
+        fail("{}: property '{}' of element '{}' has the wrong type", path_.string(), name, element.name);
+      offset += size_of(property.type);
+    }
+    fail("{}: element '{}' has no property '{}'", path_.string(), element.name, name);
+  }
+
+  void take_chunks(const PlyElement& element, std::size_t at) {
+    chunks_ = {at, element.row_bytes(), {}};
+    chunks_count_ = element.count;
+    coloured_ = element.properties.size() > plain_fields;
+    const std::size_t fields = coloured_ ? std::size(chunk_fields) : plain_fields;
+    for (std::size_t i = 0; i < fields; ++i)
+      chunks_.offsets.push_back(offset_of(element, chunk_fields[i], PlyType::float32));
+  }
+
+  void take_vertices(const PlyElement& element, std::size_t at) {
+    vertices_ = {at, element.row_bytes(), {}};
+    count_ = element.count;
+    for (const char* name : vertex_fields)
+      vertices_.offsets.push_back(offset_of(element, name, PlyType::uint32));
+  }
+
+  void take_harmonics(const PlyElement& element, std::size_t at) {
+    const std::size_t values = element.properties.size();
+    if (values != 0 && values != 9 && values != 24 && values != 45) {
+      fail(
+          "{}: element 'sh' has {} properties; expected 9, 24 or 45 (degrees 1 to 3 of the spherical "
+          "harmonics)",
+          path_.string(), values);
+    }
+    while (3 * static_cast<std::size_t>(sh_count(degree_) - 1) < values) ++degree_;
+    harmonics_ = {at, element.row_bytes(), {}};
+    harmonics_count_ = element.count;
+    for (std::size_t k = 0; k < values / 3; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        harmonics_.offsets.push_back(
+            offset_of(element, fmt::format("f_rest_{}", c * values / 3 + k), PlyType::uint8));
+      }
+    }
+  }
+
+  /// Three numbers of a chunk from `field` on, and the three after them: two ends.
+  glm::dvec3 between(std::size_t chunk, std::size_t field, const glm::dvec3& fraction) const {
+    const std::byte* row = bytes_.data() + chunks_.at + chunk * chunks_.bytes;
+    glm::dvec3 value;
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t at = field + static_cast<std::size_t>(c);
+      const double low = load_number<float>(row + chunks_.offsets[at]);
+      const double high = load_number<float>(row + chunks_.offsets[at + 3]);
+      value[c] = low + (high - low) * fraction[c];
+    }
+    return value;
+  }
+
+  bool decode(Model& model, std::size_t i) const {
+    const std::byte* row = bytes_.data() + vertices_.at + i * vertices_.bytes;
+    const auto word = [&](std::size_t k) { return load_number<std::uint32_t>(row + vertices_.offsets[k]); };
+    const std::size_t chunk = i / chunk_size;
+    const std::uint32_t rgba = word(3);
+    glm::dvec3 colour =
+        glm::dvec3(bit_field(rgba, 24, 8), bit_field(rgba, 16, 8), bit_field(rgba, 8, 8)) / 255.0;
+    if (coloured_) colour = between(chunk, plain_fields, colour);
+    std::array<float, 3 * sh_count(3)> sh{};
+    for (int c = 0; c < 3; ++c)
+      sh[static_cast<std::size_t>(c)] = static_cast<float>((colour[c] - 0.5) / sh_c0);
+    const std::byte* bytes = bytes_.data() + harmonics_.at + i * harmonics_.bytes;
+    for (std::size_t k = 0; k < harmonics_.offsets.size(); ++k)
+      sh[3 + k] = harmonic_of(bytes[harmonics_.offsets[k]]);
+    return place(model, i, between(chunk, 0, fractions(word(0))),
+                 glm::exp(between(chunk, 6, fractions(word(2)))), rotation_of(word(1)),
+                 static_cast<float>(bit_field(rgba, 0, 8) / 255.0), sh.data());
+  }
+
+  const std::filesystem::path& path_;
+  std::span<const std::byte> bytes_;
+  const PlyHeader& header_;
+  Rows chunks_, vertices_, harmonics_;
+  std::size_t chunks_count_ = 0, count_ = 0, harmonics_count_ = 0;
+  bool coloured_ = false;  // chunks have the bounds of colours
+  int degree_ = 0;
+};
+
+}  // namespace
+
+bool is_compressed_ply(const PlyHeader& header) {
+  return !header.elements.empty() && header.elements[0].name == "chunk";
+}
+
+Model load_compressed_ply(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                          const PlyHeader& header) {
+  return CompressedPlyReader(path, bytes, header).read();
+}
+
+}  // namespace binosplat

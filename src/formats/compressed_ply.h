@@ -1,0 +1,25 @@
+#pragma once
+// PlayCanvas' compressed ply: four words a Gaussian, relative to the bounds of its chunk of 256.
+//
+// Its first element is `chunk` (bounds of positions, logarithms of scales and, but for old SuperSplat, base
+// colours), then `vertex` with packed_position, packed_rotation, packed_scale and packed_color, and perhaps
+// `sh` with the higher harmonics, a byte each and channel-major as in a plain ply. Always binary, least byte
+// first. Frame: as a plain ply's (RDF).
+
+#include <filesystem>
+#include <span>
+
+#include "formats/ply_header.h"
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// Whether the header is one of a compressed ply.
+bool is_compressed_ply(const PlyHeader& header);
+
+/// Decodes the bytes of a file with such a header. Throws Error naming `path` and the element where something
+/// is missing or the file is too short.
+Model load_compressed_ply(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                          const PlyHeader& header);
+
+}  // namespace binosplat

@@ -1,0 +1,80 @@
+#include "formats/gzip.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr int with_gzip_header = 16 + MAX_WBITS;
+/// zlib counts in 32 bits.
+constexpr std::size_t most_at_once = std::size_t{1} << 30;
+
+}  // namespace
+
+GzipReader::GzipReader(std::string source, std::span<const std::byte> bytes)
+    : source_(std::move(source)), stream_(std::make_unique<z_stream>()) {
+  *stream_ = {};
+  // zlib does not write to what it reads.
+  stream_->next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
+  // Files beyond 4 GiB are none of those formats'.
+  stream_->avail_in = static_cast<uInt>(std::min<std::size_t>(bytes.size(), 0xffffffff));
+  if (inflateInit2(stream_.get(), with_gzip_header) != Z_OK) throw std::bad_alloc();
+}
+
+GzipReader::~GzipReader() { inflateEnd(stream_.get()); }
+
+std::vector<std::byte> GzipReader::read(std::size_t most) {
+  std::vector<std::byte> out(most);
+  std::size_t filled = 0;
+  while (!ended_ && filled < most) {
+    stream_->next_out = reinterpret_cast<Bytef*>(out.data() + filled);
+    const std::size_t room = std::min(most - filled, most_at_once);
+    stream_->avail_out = static_cast<uInt>(room);
+    const int result = inflate(stream_.get(), Z_NO_FLUSH);
+    filled += room - stream_->avail_out;
+    ended_ = result == Z_STREAM_END;
+    if (result == Z_BUF_ERROR || (result == Z_OK && stream_->avail_in == 0 && stream_->avail_out > 0)) {
+      fail("{} is cut short: its gzip data ends after {} unpacked bytes; fetch or export it again", source_,
+           stream_->total_out);
+    }
+    if (result != Z_OK && result != Z_STREAM_END) {
+      fail("{} is damaged: {} after {} unpacked bytes of its gzip data; fetch or export it again", source_,
+           stream_->msg != nullptr ? stream_->msg : "an unknown fault", stream_->total_out);
+    }
+  }
+  out.resize(filled);
+  return out;
+}
+
+std::vector<std::byte> gzipped(std::span<const std::byte> bytes) {
+  z_stream stream = {};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, with_gzip_header, 9, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    throw std::bad_alloc();
+  }
+  std::vector<std::byte> out;
+  std::size_t taken = 0;
+  for (int result = Z_OK; result != Z_STREAM_END;) {
+    const std::size_t piece = std::min(bytes.size() - taken, most_at_once);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data() + taken));
+    stream.avail_in = static_cast<uInt>(piece);
+    taken += piece;
+    do {
+      const std::size_t filled = out.size();
+      out.resize(filled + (std::size_t{1} << 20));
+      stream.next_out = reinterpret_cast<Bytef*>(out.data() + filled);
+      stream.avail_out = 1u << 20;
+      result = deflate(&stream, taken == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+      out.resize(out.size() - stream.avail_out);
+    } while (stream.avail_out == 0);
+  }
+  deflateEnd(&stream);
+  return out;
+}
+
+}  // namespace binosplat

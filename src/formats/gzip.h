@@ -1,0 +1,35 @@
+#pragma once
+// gzip, in pieces whose sizes the reader knows beforehand, so that nothing unfolds beyond them.
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+struct z_stream_s;
+
+namespace binosplat {
+
+class GzipReader {
+ public:
+  /// Starts with the first member of `bytes`, which outlive this; `source` names them in errors.
+  GzipReader(std::string source, std::span<const std::byte> bytes);
+  ~GzipReader();
+  GzipReader(const GzipReader&) = delete;
+  GzipReader& operator=(const GzipReader&) = delete;
+
+  /// The next bytes, `most` or those up to the end. Throws Error where they are damaged, cut short or their
+  /// checksum, which stands at the end, is wrong.
+  std::vector<std::byte> read(std::size_t most);
+
+ private:
+  std::string source_;
+  std::unique_ptr<z_stream_s> stream_;
+  bool ended_ = false;
+};
+
+/// Packs bytes as one member.
+std::vector<std::byte> gzipped(std::span<const std::byte> bytes);
+
+}  // namespace binosplat

@@ -1,0 +1,111 @@
+#include "formats/spz.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/log.h"
+#include "formats/bytes.h"
+#include "formats/spz_container.h"
+
+namespace binosplat {
+
+namespace {
+
+/// The scale of colours in bytes; wider than the base colours' own, so that those beyond 0 to 1 fit.
+constexpr double colour_scale = 0.15;
+
+class SpzDecoder {
+ public:
+  explicit SpzDecoder(const SpzContents& contents)
+      : contents_(contents), sizes_(spz_sizes(contents.version, contents.degree)) {
+    const std::byte* at = contents.attributes.data();
+    const auto next = [&](std::size_t size) { return std::exchange(at, at + contents.count * size); };
+    positions_ = next(sizes_.position);
+    opacities_ = next(sizes_.opacity);
+    colours_ = next(sizes_.colour);
+    scales_ = next(sizes_.scale);
+    rotations_ = next(sizes_.rotation);
+    harmonics_ = next(sizes_.harmonics);
+  }
+
+  bool decode(Model& model, std::size_t i) const {
+    std::array<float, 3 * sh_count(3)> sh{};
+    glm::vec3 scale;
+    for (std::size_t c = 0; c < 3; ++c) {
+      sh[c] = static_cast<float>((byte(colours_, 3 * i + c) / 255.0 - 0.5) / colour_scale);
+      scale[static_cast<int>(c)] = static_cast<float>(std::exp(byte(scales_, 3 * i + c) / 16.0 - 10.0));
+    }
+    const std::size_t kept = std::min<std::size_t>(sizes_.harmonics, sh.size() - 3);
+    for (std::size_t k = 0; k < kept; ++k)
+      sh[3 + k] = static_cast<float>(byte(harmonics_, sizes_.harmonics * i + k) - 128) / 128.0f;
+    const float opacity = static_cast<float>(byte(opacities_, i) / 255.0);
+    return place(model, i, position(i), scale, rotation(i), opacity, sh.data());
+  }
+
+ private:
+  static int byte(const std::byte* from, std::size_t i) { return std::to_integer<int>(from[i]); }
+
+  glm::vec3 position(std::size_t i) const {
+    const std::byte* at = positions_ + sizes_.position * i;
+    if (contents_.version == 1) return {load_half(at), load_half(at + 2), load_half(at + 4)};
+    glm::vec3 p;
+    for (int c = 0; c < 3; ++c, at += 3) {
+      const std::uint32_t bits = load_number<std::uint16_t>(at) | std::to_integer<std::uint32_t>(at[2]) << 16;
+      const int fixed = static_cast<int>(bits << 8) >> 8;  // 24 bits with their sign
+      p[c] = static_cast<float>(std::ldexp(fixed, -contents_.fraction_bits));
+    }
+    return p;
+  }
+
+  /// As w, x, y, z; stored are x, y, z and, from version 3 on, the three smallest of x, y, z, w.
+  glm::vec4 rotation(std::size_t i) const {
+    const std::byte* at = rotations_ + sizes_.rotation * i;
+    std::array<double, 4> xyzw{};
+    int left_out = 3;
+    if (contents_.version < 3) {
+      for (std::size_t c = 0; c < 3; ++c) xyzw[c] = byte(at, c) / 127.5 - 1.0;
+    } else {
+      const auto word = load_number<std::uint32_t>(at);
+      left_out = static_cast<int>(bit_field(word, 30, 2));
+      for (int c = 0, low = 20; c < 4; ++c) {
+        if (c == left_out) continue;
+        const double magnitude = bit_field(word, low, 9) / 511.0 * std::sqrt(0.5);
+        xyzw[static_cast<std::size_t>(c)] = bit_field(word, low + 9, 1) != 0 ? -magnitude : magnitude;
+        low -= 10;
+      }
+    }
+    double rest = 1.0;
+    for (const double v : xyzw) rest -= v * v;
+    xyzw[static_cast<std::size_t>(left_out)] = std::sqrt(std::max(rest, 0.0));
+    return glm::vec4(glm::dvec4(xyzw[3], xyzw[0], xyzw[1], xyzw[2]));
+  }
+
+  const SpzContents& contents_;
+  SpzSizes sizes_;
+  const std::byte *positions_, *opacities_, *colours_, *scales_, *rotations_, *harmonics_;
+};
+
+}  // namespace
+
+Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
+  const SpzContents contents = unpack_spz(source, bytes);
+  if (contents.degree == 4) log_warning("{}: spherical harmonics of degree 4 are cut to degree 3", source);
+  Model model;
+  model.degree = std::min(contents.degree, 3);
+  model.axes = contents.axes.value_or("RUB");
+  model.antialiased = contents.antialiased;
+  model.resize(contents.count);
+  const SpzDecoder decoder(contents);
+  std::vector<std::uint8_t> kept(contents.count);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, contents.count, 2048), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) kept[i] = decoder.decode(model, i) ? 1 : 0;
+  });
+  keep_only(model, kept);
+  return model;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,214 @@
+#include "formats/spz_container.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "formats/bytes.h"
+#include "formats/content.h"
+#include "formats/gzip.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::size_t header_bytes = 16, header_bytes_4 = 32;
+constexpr std::uint32_t magic = 0x5053474e;  // NGSP
+constexpr std::uint8_t antialiased_flag = 1, extensions_flag = 2, levels_flag = 0x80;
+constexpr std::uint32_t axes_extension = 0xadbe0003;
+constexpr const char* axes_names[] = {"LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF",
+                                      "LFD", "RFD", "LFU", "RFU", "LBD", "RBD", "LBU", "RBU"};
+/// The best that deflate reaches.
+constexpr std::size_t most_growth = 1032;
+constexpr std::size_t most_extensions = std::size_t{1} << 20;
+
+struct Header {
+  SpzContents contents;
+  std::uint8_t flags = 0;
+  std::uint8_t streams = 0;
+};
+
+Header read_header(const std::string& source, std::span<const std::byte> bytes) {
+  if (bytes.size() < header_bytes) {
+    fail("{} is cut short: an spz header has {} bytes, and {} are there", source, header_bytes, bytes.size());
+  }
+  if (load_number<std::uint32_t>(&bytes[0]) != magic) {
+    fail("{} holds no spz model: it is compressed like one, but does not begin with NGSP", source);
+  }
+  Header header;
+  SpzContents& contents = header.contents;
+  contents.version = load_number<std::uint32_t>(&bytes[4]);
+  if (contents.version < 1 || contents.version > 4)
+    fail("{}: spz of version {} is not known; 1 to 4 are", source, contents.version);
+  contents.count = load_number<std::uint32_t>(&bytes[8]);
+  contents.degree = std::to_integer<int>(bytes[12]);
+  contents.fraction_bits = std::to_integer<int>(bytes[13]);
+  header.flags = std::to_integer<std::uint8_t>(bytes[14]);
+  header.streams = std::to_integer<std::uint8_t>(bytes[15]);
+  if (contents.count == 0) fail("{} holds no Gaussians: its header says 0", source);
+  if (contents.degree > 4)
+    fail("{}: harmonics of degree {}, at byte 12; expected 0 to 4", source, contents.degree);
+  if (contents.fraction_bits > 24)
+    fail("{}: positions with {} bits of fraction, at byte 13; they have 24", source, contents.fraction_bits);
+  contents.antialiased = (header.flags & antialiased_flag) != 0;
+  if (contents.version < 4 && (header.flags & levels_flag) != 0) {
+    fail("{} is a tree of levels of detail (Spark), which cannot be drawn; export the plain model", source);
+  }
+  return header;
+}
+
+/// The bytes of all attributes, if `packed` ones may unfold to as many as `least` a Gaussian: room is made
+/// for no more than that.
+std::size_t attribute_bytes(const std::string& source, const SpzContents& contents, std::size_t least,
+                            std::size_t packed) {
+  if (contents.count * least / most_growth > packed) {
+    fail(
+        "{} is damaged or cut short: its header promises {} Gaussians of degree {}, which {} bytes cannot "
+        "hold",
+        source, contents.count, contents.degree, packed);
+  }
+  return contents.count * spz_sizes(contents.version, contents.degree).sum();
+}
+
+[[noreturn]] void fail_short(const std::string& source, const SpzContents& contents, std::size_t needed,
+                             std::size_t found) {
+  fail(
+      "{} is cut short: its {} Gaussians of degree {} take {} bytes after the header, and {} are there; "
+      "fetch or "
+      "export it again",
+      source, contents.count, contents.degree, needed, found);
+}
+
+/// Records of a type, a length and so many bytes. Unknown ones are passed over.
+void read_extensions(const std::string& source, std::span<const std::byte> bytes, SpzContents& contents) {
+  while (!bytes.empty()) {
+    const std::size_t length = bytes.size() < 8 ? 0 : load_number<std::uint32_t>(&bytes[4]);
+    if (bytes.size() < 8 || length > bytes.size() - 8) {
+      fail("{} is damaged: an extension of {} bytes runs past the {} that are left for it", source, length,
+           bytes.size() < 8 ? 0 : bytes.size() - 8);
+    }
+    if (load_number<std::uint32_t>(&bytes[0]) == axes_extension && length >= 4) {
+      const auto axes = load_number<std::uint32_t>(&bytes[8]);
+      if (axes > std::size(axes_names)) {
+        fail("{}: its extension names the coordinate system {}; 0 to {} are known", source, axes,
+             std::size(axes_names));
+      }
+      if (axes > 0) contents.axes = axes_names[axes - 1];
+    }
+    bytes = bytes.subspan(8 + length);
+  }
+}
+
+void warn_of_rest(const std::string& source, bool there) {
+  if (there) log_warning("{}: bytes after the last attribute are ignored", source);
+}
+
+SpzContents unpack_plain(const std::string& source, std::span<const std::byte> bytes) {
+  Header header = read_header(source, bytes);
+  SpzContents& contents = header.contents;
+  const std::size_t all = spz_sizes(contents.version, contents.degree).sum();
+  const std::size_t needed = attribute_bytes(source, contents, all, bytes.size());
+  const auto rest = bytes.subspan(header_bytes);
+  if (rest.size() < needed) fail_short(source, contents, needed, rest.size());
+  contents.attributes.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(needed));
+  if ((header.flags & extensions_flag) != 0) {
+    read_extensions(source, rest.subspan(needed), contents);
+  } else {
+    warn_of_rest(source, rest.size() > needed);
+  }
+  return std::move(header.contents);
+}
+
+SpzContents unpack_gzip(const std::string& source, std::span<const std::byte> bytes) {
+  GzipReader gzip(source, bytes);
+  Header header = read_header(source, gzip.read(header_bytes));
+  SpzContents& contents = header.contents;
+  if (contents.version == 4)
+    fail("{}: spz of version 4 within gzip; that version has none around it", source);
+  const std::size_t all = spz_sizes(contents.version, contents.degree).sum();
+  const std::size_t needed = attribute_bytes(source, contents, all, bytes.size());
+  contents.attributes = gzip.read(needed);
+  if (contents.attributes.size() < needed) fail_short(source, contents, needed, contents.attributes.size());
+  // The checksum is tested at the end, which this meets unless there is more.
+  const std::vector<std::byte> rest = gzip.read((header.flags & extensions_flag) != 0 ? most_extensions : 1);
+  if ((header.flags & extensions_flag) != 0) {
+    read_extensions(source, rest, contents);
+  } else {
+    warn_of_rest(source, !rest.empty());
+  }
+  return std::move(header.contents);
+}
+
+/// Unpacks the streams of version 4, whose table stands at byte `toc`.
+void unpack_streams(const std::string& source, std::span<const std::byte> bytes, std::size_t toc,
+                    SpzContents& contents) {
+  const SpzSizes sizes = spz_sizes(contents.version, contents.degree);
+  const std::array wanted = {sizes.position, sizes.opacity,  sizes.colour,
+                             sizes.scale,    sizes.rotation, sizes.harmonics};
+  constexpr const char* names[] = {"positions", "opacities", "colours", "scales", "rotations", "harmonics"};
+  const std::size_t streams = contents.degree == 0 ? 5 : 6;
+  // zstd has no bound of its own: a stream of one value takes a few bytes. Positions never are such.
+  contents.attributes.resize(attribute_bytes(source, contents, sizes.position, bytes.size()));
+  std::size_t at = toc + 16 * streams, to = 0;
+  for (std::size_t i = 0; i < streams; ++i) {
+    const auto packed = load_number<std::uint64_t>(&bytes[toc + 16 * i]);
+    const auto unpacked = load_number<std::uint64_t>(&bytes[toc + 16 * i + 8]);
+    const std::size_t size = contents.count * wanted[i];
+    if (unpacked != size) {
+      fail("{}: the table at byte {} promises {} bytes of {}; {} Gaussians have {}", source, toc, unpacked,
+           names[i], contents.count, size);
+    }
+    if (packed > bytes.size() - at) {
+      fail("{} is cut short: its {} take {} bytes from byte {} on, and {} are there", source, names[i],
+           packed, at, bytes.size() - at);
+    }
+    const std::size_t result = ZSTD_decompress(contents.attributes.data() + to, size, &bytes[at], packed);
+    if (ZSTD_isError(result) != 0 || result != size) {
+      fail("{} is damaged: its {}, {} bytes from byte {} on, cannot be unpacked: {}", source, names[i],
+           packed, at, ZSTD_isError(result) != 0 ? ZSTD_getErrorName(result) : "they are too few");
+    }
+    at += packed;
+    to += size;
+  }
+  warn_of_rest(source, at < bytes.size());
+}
+
+SpzContents unpack_4(const std::string& source, std::span<const std::byte> bytes) {
+  Header header = read_header(source, bytes);
+  SpzContents& contents = header.contents;
+  if (bytes.size() < header_bytes_4) {
+    fail("{} is cut short: the header has {} bytes, and {} are there", source, header_bytes_4, bytes.size());
+  }
+  const std::size_t streams = contents.degree == 0 ? 5 : 6;
+  if (header.streams != streams) {
+    fail("{}: {} streams, at byte 15; a model of degree {} has {}", source, header.streams, contents.degree,
+         streams);
+  }
+  const std::size_t toc = load_number<std::uint32_t>(&bytes[16]);
+  if (toc < header_bytes_4 || toc > bytes.size() || bytes.size() - toc < 16 * streams) {
+    fail("{} is damaged or cut short: its table of {} streams stands at byte {} of {}", source, streams, toc,
+         bytes.size());
+  }
+  if ((header.flags & extensions_flag) != 0)
+    read_extensions(source, bytes.subspan(header_bytes_4, toc - header_bytes_4), contents);
+  unpack_streams(source, bytes, toc, contents);
+  return std::move(header.contents);
+}
+
+}  // namespace
+
+SpzSizes spz_sizes(std::uint32_t version, int degree) {
+  const std::size_t harmonics = static_cast<std::size_t>(3 * ((degree + 1) * (degree + 1) - 1));
+  return {version == 1 ? 6u : 9u, 1, 3, 3, version < 3 ? 3u : 4u, harmonics};
+}
+
+SpzContents unpack_spz(const std::string& source, std::span<const std::byte> bytes) {
+  if (content_of(bytes) == Content::gzip) return unpack_gzip(source, bytes);
+  if (bytes.size() >= 8 && load_number<std::uint32_t>(&bytes[4]) == 4) return unpack_4(source, bytes);
+  return unpack_plain(source, bytes);
+}
+
+}  // namespace binosplat

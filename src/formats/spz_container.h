@@ -1,0 +1,35 @@
+#pragma once
+// What lies around the numbers of an spz file: headers, compression, extensions.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct SpzContents {
+  std::uint32_t version = 0;  // 1 to 4
+  std::size_t count = 0;
+  int degree = 0;  // 0 to 4
+  int fraction_bits = 0;
+  bool antialiased = false;
+  std::optional<std::string> axes;  // as scene/axes.h has them, where the file says
+
+  /// Positions, opacities, colours, scales, rotations and harmonics, one attribute of all Gaussians after the
+  /// other; exactly as long as count, degree and version say.
+  std::vector<std::byte> attributes;
+};
+
+/// Bytes a Gaussian of each attribute, in their order.
+struct SpzSizes {
+  std::size_t position, opacity, colour, scale, rotation, harmonics;
+  std::size_t sum() const { return position + opacity + colour + scale + rotation + harmonics; }
+};
+SpzSizes spz_sizes(std::uint32_t version, int degree);
+
+/// Checks and unpacks a file. Throws Error (formats/spz.h).
+SpzContents unpack_spz(const std::string& source, std::span<const std::byte> bytes);
+
+}  // namespace binosplat

@@ -1,0 +1,148 @@
+#include "formats/transforms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/log.h"
+#include "formats/image_file.h"
+#include "formats/json_file.h"
+#include "formats/lens.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One frame; what it does not have, the file may have for all.
+class Frame {
+ public:
+  Frame(const fs::path& path, const JsonValue& root, const JsonValue& frame)
+      : path_(path), root_(root), frame_(frame) {}
+
+  Camera read() const {
+    Camera camera;
+    camera.name = frame_.at("file_path").text();
+    read_size(camera);
+    read_focal(camera);
+    camera.cx = number("cx").value_or(camera.width / 2.0);
+    camera.cy = number("cy").value_or(camera.height / 2.0);
+    check_lens(fmt::format("{}: frame '{}'", path_.string(), camera.name), camera);
+    read_pose(camera);
+    return camera;
+  }
+
+  bool is_distorted() const {
+    constexpr const char* keys[] = {"k1", "k2", "k3", "k4", "p1", "p2"};
+    return std::any_of(std::begin(keys), std::end(keys),
+                       [&](const char* key) { return number(key).value_or(0.0) != 0.0; });
+  }
+
+  /// Throws for lenses that no plane holds.
+  void check_model() const {
+    const auto model = value("camera_model");
+    const std::string name = model ? model->text() : "";
+    const auto fisheye = value("is_fisheye");
+    if ((fisheye && fisheye->value() == true) || name.find("FISHEYE") != std::string::npos ||
+        name.find("EQUIRECT") != std::string::npos || name.find("ORTHO") != std::string::npos) {
+      (model ? *model : *fisheye).fail_here("only pinhole lenses can be drawn; undistort the pictures first");
+    }
+  }
+
+ private:
+  std::optional<JsonValue> value(const char* key) const {
+    if (frame_.has(key)) return frame_.at(key);
+    if (root_.has(key)) return root_.at(key);
+    return std::nullopt;
+  }
+
+  std::optional<double> number(const char* key) const {
+    const auto found = value(key);
+    return found ? std::optional(found->number()) : std::nullopt;
+  }
+
+  void read_size(Camera& camera) const {
+    const auto width = value("w"), height = value("h");
+    if (width && height) {
+      camera.width = static_cast<int>(width->whole(std::numeric_limits<int>::max()));
+      camera.height = static_cast<int>(height->whole(std::numeric_limits<int>::max()));
+      return;
+    }
+    const fs::path named = path_.parent_path() / camera.name;
+    for (const char* ending : {"", ".png", ".jpg", ".jpeg"}) {
+      const fs::path file(named.string() + ending);
+      std::error_code ignored;
+      if (!fs::is_regular_file(file, ignored)) continue;
+      const Image image = load_image(file);
+      camera.width = image.width;
+      camera.height = image.height;
+      return;
+    }
+    frame_.fail_here("there are no w and h, and no picture {} that would tell", named.string());
+  }
+
+  void read_focal(Camera& camera) const {
+    // An angle across `pixels`, in radians, or one in degrees.
+    const auto focal = [&](const char* radians, const char* degrees, int pixels) -> std::optional<double> {
+      auto angle = number(radians);
+      if (!angle && number(degrees)) angle = glm::radians(*number(degrees));
+      return angle ? std::optional(0.5 * pixels / std::tan(0.5 * *angle)) : std::nullopt;
+    };
+    auto fx = number("fl_x"), fy = number("fl_y");
+    if (!fx) fx = focal("camera_angle_x", "x_fov", camera.width);
+    if (!fy) fy = number("fl_x") ? fx : focal("camera_angle_y", "y_fov", camera.height);
+    if (!fx && !fy) frame_.fail_here("there is neither fl_x nor camera_angle_x, so no focal length");
+    camera.fx = fx.value_or(fy.value_or(0.0));
+    camera.fy = fy.value_or(camera.fx);
+  }
+
+  void read_pose(Camera& camera) const {
+    const JsonValue rows = frame_.at("transform_matrix");
+    if (rows.size() != 3 && rows.size() != 4)
+      rows.fail_here("expected 3 or 4 rows of 4 numbers, found {} rows", rows.size());
+    glm::dmat3 axes;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const JsonValue row = rows.at(i).list_of(4);
+      const int r = static_cast<int>(i);
+      for (std::size_t j = 0; j < 3; ++j) axes[static_cast<int>(j)][r] = row.at(j).number();
+      camera.position[r] = row.at(3).number();
+    }
+    // OpenGL's y is up and its z backwards.
+    camera.rotation = glm::dmat3(axes[0], -axes[1], -axes[2]);
+    if (const std::string fault = rotation_fault(camera.rotation); !fault.empty())
+      rows.fail_here("{}", fault);
+  }
+
+  const fs::path& path_;
+  const JsonValue& root_;
+  const JsonValue& frame_;
+};
+
+}  // namespace
+
+bool is_transforms(const nlohmann::json& root) { return root.is_object() && root.contains("frames"); }
+
+std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& json) {
+  const JsonValue root(path.string(), json);
+  const JsonValue frames = root.at("frames");
+  if (frames.size() == 0) frames.fail_here("there are no cameras in it");
+  std::vector<Camera> cameras;
+  bool distorted = false;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const JsonValue value = frames.at(i);
+    const Frame frame(path, root, value);
+    frame.check_model();
+    distorted = distorted || frame.is_distorted();
+    cameras.push_back(frame.read());
+  }
+  if (distorted) {
+    log_warning(
+        "{}: lenses are distorted (k1 ... p2), which is not drawn: pictures fit undistorted photos only",
+        path.string());
+  }
+  return cameras;
+}
+
+}  // namespace binosplat

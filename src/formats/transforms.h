@@ -1,0 +1,22 @@
+#pragma once
+// Cameras as instant-ngp, nerfstudio and Blender's NeRF scenes have them: transforms.json.
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "scene/camera.h"
+
+namespace binosplat {
+
+/// Whether a JSON file is one.
+bool is_transforms(const nlohmann::json& root);
+
+/// Reads the frames in file order; a camera's name is its file_path. Poses are camera-to-world with OpenGL's
+/// axes, as stored: what nerfstudio applied to them (applied_transform) stays. The size, fl_x, fl_y, cx and
+/// cy are the frame's or the file's; without fl_x, camera_angle_x or x_fov; without w and h, those of the
+/// picture beside. Distortion is not drawn, which is said; fisheye and 360 degree lenses end in an Error, as
+/// does all that is missing or wrong, naming the frame and the key.
+std::vector<Camera> load_transforms(const std::filesystem::path& path, const nlohmann::json& root);
+
+}  // namespace binosplat

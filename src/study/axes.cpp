@@ -1,0 +1,188 @@
+#include "study/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <regex>
+#include <set>
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "study/embedded.h"
+#include "study/settings.h"
+
+namespace binosplat::study {
+
+namespace {
+
+using nlohmann::json;
+
+/// An object of the file with a place for errors; every key must be a known one.
+class Block {
+ public:
+  Block(std::string place, const json& object, const std::set<std::string>& known)
+      : place_(std::move(place)), object_(object) {
+    if (!object_.is_object()) fail("{}: expected an object in braces", place_);
+    for (const auto& [key, value] : object_.items()) {
+      if (known.count(key) == 0) fail("{}: there is no key '{}'", place_, key);
+    }
+  }
+
+  /// The key's values: a list, a single one, or `otherwise`.
+  std::vector<json> values(const std::string& key, json otherwise) const {
+    const json value = object_.contains(key) ? object_.at(key) : std::move(otherwise);
+    if (!value.is_array()) return {value};
+    if (value.empty()) fail("{}: '{}' is an empty list", place_, key);
+    return {value.begin(), value.end()};
+  }
+
+  int whole(const std::string& key, const json& value, int low, int high) const {
+    const bool good =
+        value.is_number_integer() && value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high;
+    if (!good)
+      fail("{}: '{}' {}: expected a whole number from {} to {}", place_, key, value.dump(), low, high);
+    return value.get<int>();
+  }
+
+  int one(const std::string& key, int otherwise, int low, int high) const {
+    return object_.contains(key) ? whole(key, object_.at(key), low, high) : otherwise;
+  }
+
+  float loss(const json& value) const {
+    const double number = value.is_number() ? value.get<double>() : -1.0;
+    const bool good = number >= 0.0 && std::isfinite(static_cast<float>(number));
+    if (!good) fail("{}: 'loss' {}: expected a number of 0 or more", place_, value.dump());
+    return static_cast<float>(number);
+  }
+
+  int choice(const std::string& key, const json& value, std::span<const Choice> choices) const {
+    return find_choice(place_ + ", '" + key + "'",
+                       value.is_string() ? value.get<std::string>() : value.dump(), choices);
+  }
+
+  const std::string& place() const { return place_; }
+
+ private:
+  std::string place_;
+  const json& object_;
+};
+
+int tile_of(const Block& block, const json& value) {
+  const int size = block.whole("tile", value, 8, 32);
+  if (size != 8 && size != 16 && size != 32) fail("{}: 'tile' {}: expected 8, 16 or 32", block.place(), size);
+  return size;
+}
+
+/// One key of a block: how a value of it is set.
+struct Key {
+  const char* name;
+  json otherwise;
+  std::function<void(render::FrameSettings&, const json&)> set;
+};
+
+/// All combinations of a block's lists, appended; the last key's values follow one another.
+void add_settings(const Block& block, std::vector<render::FrameSettings>& settings) {
+  using S = render::FrameSettings;
+  const auto choice = [&block](const char* key, int S::*member, std::span<const Choice> choices) {
+    return Key{
+        key, choices[static_cast<std::size_t>(S{}.*member)].name,
+        [&block, key, member, choices](S& s, const json& v) { s.*member = block.choice(key, v, choices); }};
+  };
+  const Key keys[] = {
+      choice("th", &S::th, th_choices),
+      choice("transmittance", &S::transmittance, transmittance_choices),
+      choice("contrast", &S::contrast, contrast_choices),
+      choice("th_eyes", &S::th_eyes, th_eyes_choices),
+      choice("tiles", &S::tiles, tiles_choices),
+      {"tile", TILE_SIZE_DEFAULT, [&block](S& s, const json& v) { s.tile_size = tile_of(block, v); }},
+      {"loss", 0.0, [&block](S& s, const json& v) { s.loss = block.loss(v); }},
+  };
+  std::vector<S> all(1);
+  for (const Key& key : keys) {
+    std::vector<S> next;
+    for (const S& before : all) {
+      for (const json& value : block.values(key.name, key.otherwise))
+        key.set(next.emplace_back(before), value);
+    }
+    all = std::move(next);
+  }
+  settings.insert(settings.end(), all.begin(), all.end());
+}
+
+void remove_repeated(std::vector<render::FrameSettings>& settings) {
+  std::set<std::string> seen;
+  std::erase_if(settings, [&](const auto& s) { return !seen.insert(to_json(s).dump()).second; });
+}
+
+std::vector<std::string> sizes_of(const Block& top) {
+  static const std::regex size("own|preview|headset|[1-9][0-9]{0,4}x[1-9][0-9]{0,4}");
+  std::vector<std::string> sizes;
+  for (const json& value : top.values("sizes", "own")) {
+    if (!value.is_string() || !std::regex_match(value.get<std::string>(), size))
+      fail("{}: 'sizes' {}: expected own, WxH in px, preview or headset", top.place(), value.dump());
+    sizes.push_back(value.get<std::string>());
+  }
+  return sizes;
+}
+
+}  // namespace
+
+Axes parse_axes(const std::string& name, const std::string& text) {
+  json root;
+  try {
+    root = json::parse(text);
+  } catch (const json::parse_error& error) {
+    fail("{}: not JSON: {}", name, error.what());
+  }
+  const Block top(name, root, {"views", "frames", "repeats", "eyes", "sizes", "settings"});
+  Axes axes;
+  axes.name = name;
+  axes.views = top.one("views", axes.views, 1, 100000);
+  axes.frames = top.one("frames", axes.frames, 1, 100000);
+  axes.repeats = top.one("repeats", axes.repeats, 1, 1000);
+  axes.eyes.clear();
+  for (const json& value : top.values("eyes", 1)) axes.eyes.push_back(top.whole("eyes", value, 1, 2));
+  axes.sizes = sizes_of(top);
+  if (!root.contains("settings") || !root["settings"].is_array() || root["settings"].empty())
+    fail("{}: expected a list 'settings' of blocks", name);
+  int number = 0;
+  for (const json& object : root["settings"]) {
+    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
+                      {"tiles", "tile", "th", "transmittance", "contrast", "th_eyes", "loss"});
+    const std::size_t before = axes.settings.size();
+    add_settings(block, axes.settings);
+    for (std::size_t i = before; i < axes.settings.size(); ++i)
+      check(block.place(), axes.settings[i], *std::min_element(axes.eyes.begin(), axes.eyes.end()));
+  }
+  remove_repeated(axes.settings);
+  return axes;
+}
+
+std::vector<std::string> axes_presets() {
+  std::vector<std::string> names;
+  for (const auto& [file, text] : preset_files()) names.push_back(file.substr(0, file.rfind(".json")));
+  return names;
+}
+
+Axes load_axes(const std::string& preset_or_file) {
+  const auto preset = preset_files().find(preset_or_file + ".json");
+  if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
+  const MappedFile file(preset_or_file);
+  const auto bytes = file.bytes();
+  return parse_axes(preset_or_file, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+nlohmann::ordered_json to_json(const Axes& axes) {
+  nlohmann::ordered_json json = {{"views", axes.views},
+                                 {"frames", axes.frames},
+                                 {"repeats", axes.repeats},
+                                 {"eyes", axes.eyes},
+                                 {"sizes", axes.sizes}};
+  json["settings"] = nlohmann::ordered_json::array();
+  for (const render::FrameSettings& s : axes.settings) json["settings"].push_back(to_json(s));
+  return json;
+}
+
+}  // namespace binosplat::study

@@ -1,0 +1,295 @@
+#include "study/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <utility>
+
+#include "base/statistics.h"
+#include "measure/depth_table.h"
+#include "measure/metrics.h"
+#include "reference/render.h"
+#include "render/frame.h"
+#include "stereo/disagreement.h"
+#include "study/settings.h"
+
+namespace binosplat::study {
+
+namespace {
+
+using nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+constexpr double reference_db = 60.0;  // fp32 against float64: the bar below which a driver draws wrongly
+constexpr int settling_frames = 3;     // after which what a frame remembers has settled (METHOD 8)
+
+// The clock has settled when the medians of two successive windows of frames agree.
+constexpr std::size_t window = 10;
+constexpr double agreement = 0.03;
+constexpr double warm_up_seconds = 3.0;
+
+const glm::vec3 black(0.0f);
+
+bool same_bits(const std::vector<Picture>& a, const std::vector<Picture>& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool same =
+        std::memcmp(a[i].colour.data(), b[i].colour.data(), a[i].colour.size() * sizeof(glm::vec4)) == 0 &&
+        std::memcmp(a[i].z_sum.data(), b[i].z_sum.data(), a[i].z_sum.size() * sizeof(float)) == 0;
+    if (!same) return false;
+  }
+  return true;
+}
+
+bool is_finite(const Picture& picture) {
+  return std::all_of(picture.colour.begin(), picture.colour.end(), [](const glm::vec4& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+  });
+}
+
+bool is_empty(const Picture& picture) {
+  return std::all_of(picture.colour.begin(), picture.colour.end(),
+                     [](const glm::vec4& v) { return v.w == 1.0f; });
+}
+
+double mean_signed(const Image& a, const Image& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.data.size(); ++k) sum += double(a.data[k]) - double(b.data[k]);
+  return sum / static_cast<double>(a.data.size());
+}
+
+/// Draws until the GPU's clock has settled. Returns whether it did in time.
+bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSettings& settings) {
+  const auto limit =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(warm_up_seconds));
+  const Clock::time_point end = Clock::now() + limit;
+  double last = 0.0;
+  for (int drawn = 0; drawn < settling_frames || Clock::now() < end;) {
+    std::vector<double> times;
+    while (times.size() < window && (drawn < settling_frames || Clock::now() < end)) {
+      times.push_back(frame.draw(view.eyes, settings).total_ms);
+      ++drawn;
+    }
+    const double now = quantile(times, 0.5);
+    if (times.size() == window && std::abs(now - last) <= agreement * now) return true;
+    last = now;
+  }
+  return false;
+}
+
+/// Times of many frames.
+struct Times {
+  std::vector<double> frame, submit;
+  std::vector<std::string> stage_names;  // in order
+  std::map<std::string, std::vector<double>> stages;
+
+  void add(const render::FrameReport& report) {
+    frame.push_back(report.total_ms);
+    submit.push_back(report.submit_ms);
+    for (const gl::StageTime& stage : report.stages) {
+      if (stages.count(stage.name) == 0) stage_names.push_back(stage.name);
+      stages[stage.name].push_back(stage.ms);
+    }
+  }
+};
+
+/// Mean of a number over the views; null where one has none.
+ordered_json mean(const ordered_json& views, const char* key) {
+  double sum = 0.0;
+  for (const ordered_json& view : views) {
+    if (!view.contains(key) || !view[key].is_number()) return nullptr;
+    sum += view[key].get<double>();
+  }
+  return sum / static_cast<double>(views.size());
+}
+
+/// The view with the smallest number; those without one (infinite) only where none has one.
+const ordered_json& worst(const ordered_json& views, const char* key) {
+  const auto value = [key](const ordered_json& view) {
+    return view[key].is_number() ? view[key].get<double>() : INFINITY;
+  };
+  return *std::min_element(views.begin(), views.end(),
+                           [&](const ordered_json& a, const ordered_json& b) { return value(a) < value(b); });
+}
+
+ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
+ordered_json summary_of_quality(const ordered_json& views) {
+  const ordered_json& poorest = worst(views, "psnr_db");
+  return {{"psnr_db", mean(views, "psnr_db")},
+          {"worst_psnr_db", poorest["psnr_db"]},
+          {"worst_view", poorest["name"]},
+          {"ssim", mean(views, "ssim")},
+          {"flip", mean(views, "flip")},
+          {"signed", mean(views, "signed")},
+          {"disagreement_db", mean(views, "disagreement_db")}};
+}
+
+}  // namespace
+
+Bench::Bench(gl::Context& context, const Model& model, std::vector<BenchView> views,
+             const shared::View& small, const BenchEffort& effort)
+    : context_(context), model_(model), views_(std::move(views)), small_(small), effort_(effort) {}
+
+const std::vector<Bench::Exact>& Bench::exact() {
+  if (!exact_.empty()) return exact_;
+  render::Frame frame(context_, model_);
+  for (const BenchView& view : views_) {
+    frame.draw(view.eyes);
+    Exact& one = exact_.emplace_back();
+    one.pictures = frame.read_pictures();
+    for (const Picture& picture : one.pictures) one.eyes.push_back(composite(picture, black));
+    if (one.pictures.size() < 2) one.pictures.clear();
+    if (view.photo) one.photo_psnr = measure::psnr(quantised(one.eyes.front()), quantised(*view.photo));
+  }
+  return exact_;
+}
+
+const render::DepthTable& Bench::depth_table() {
+  if (!depth_table_.upper.empty()) return depth_table_;
+  std::vector<shared::View> views;
+  for (const BenchView& view : views_) views.push_back(view.eyes.front());
+  render::Frame frame(context_, model_);
+  depth_table_ = measure::measure_depth_table(frame, views);
+  return depth_table_;
+}
+
+// What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
+// with all others.
+std::string Bench::verify(const render::FrameSettings& settings) {
+  render::Frame frame(context_, model_);
+  if (settings.transmittance == TRANSMITTANCE_ONE) {
+    frame.draw(std::span(&small_, 1), settings);
+    const Picture judge = reference::render(
+        model_, small_, {settings.tiles, settings.tile_size, settings.th, settings.loss, {}});
+    const double db = measure::psnr(composite(frame.read_pictures().front(), black), composite(judge, black));
+    if (!(db >= reference_db))
+      return fmt::format("{} x {} px differ from the float64 reference: {:.1f} dB, expected {} or more",
+                         small_.width, small_.height, db, reference_db);
+  }
+  const BenchView& view = views_.front();
+  frame.draw(view.eyes, settings);
+  const std::vector<Picture> pictures = frame.read_pictures();
+  for (const Picture& picture : pictures) {
+    if (!is_finite(picture)) return view.name + ": a pixel is not a finite number";
+    if (is_empty(picture)) return view.name + ": the picture is empty";
+  }
+  if (settings.transmittance != TRANSMITTANCE_ONE) return "";
+  frame.draw(view.eyes, settings);
+  return same_bits(frame.read_pictures(), pictures) ? "" : view.name + ": two frames differ";
+}
+
+ordered_json Bench::compare(const BenchView& view, const Exact& exact,
+                            const std::vector<Picture>& drawn) const {
+  double psnr = 0, ssim = 0, flip = 0, darkening = 0;
+  const auto eyes = static_cast<double>(drawn.size());
+  ordered_json json = {{"name", view.name}};
+  for (std::size_t eye = 0; eye < drawn.size(); ++eye) {
+    const Image image = composite(drawn[eye], black);
+    psnr += measure::psnr(image, exact.eyes[eye]) / eyes;
+    ssim += measure::ssim(image, exact.eyes[eye]) / eyes;
+    flip += measure::flip(image, exact.eyes[eye], effort_.ppd) / eyes;
+    darkening += mean_signed(image, exact.eyes[eye]) / eyes;
+  }
+  json["psnr_db"] = number_or_null(psnr);
+  json["ssim"] = number_or_null(ssim);
+  json["flip"] = number_or_null(flip);
+  json["signed"] = number_or_null(darkening);
+  if (!exact.pictures.empty()) {
+    const std::array<shared::View, 2> eyes_of_view = {view.eyes[0], view.eyes[1]};
+    json["disagreement_db"] = number_or_null(stereo::disagreement(eyes_of_view, exact.pictures, drawn).db);
+  }
+  if (view.photo) {
+    const Image image = composite(drawn.front(), black);
+    const double db = measure::psnr(quantised(image), quantised(*view.photo));
+    json["photo_psnr_db"] = number_or_null(db);
+    json["drop_db"] = number_or_null(*exact.photo_psnr - db);
+    json["photo_ssim"] = number_or_null(measure::ssim(quantised(image), quantised(*view.photo)));
+    json["photo_flip"] = number_or_null(measure::flip(image, *view.photo, effort_.ppd));
+  }
+  return json;
+}
+
+void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
+  render::Frame frame(context_, model_);
+  Times times;
+  std::vector<double> repeats;
+  bool settled = true;
+  for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
+    std::vector<double> of_repeat;
+    for (const BenchView& view : views_) {
+      if (repeat == 0) settled = warm_up(frame, view, settings) && settled;
+      for (int n = 0; repeat > 0 && n < settling_frames; ++n) frame.draw(view.eyes, settings);
+      for (int n = 0; n < effort_.frames; ++n) {
+        times.add(frame.draw(view.eyes, settings));
+        of_repeat.push_back(times.frame.back());
+      }
+    }
+    repeats.push_back(quantile(of_repeat, 0.5));
+  }
+  const auto [least, most] = std::minmax_element(repeats.begin(), repeats.end());
+  point["frame_ms"] = quantile(times.frame, 0.5);
+  point["p99_ms"] = quantile(times.frame, 0.99);
+  point["noise_ms"] = effort_.repeats > 1 ? ordered_json((*most - *least) / 2) : ordered_json();
+  point["settled"] = settled;
+  point["frames"] = times.frame.size();
+  point["submit_ms"] = quantile(times.submit, 0.5);
+  point["stages_ms"] = ordered_json::object();
+  for (const std::string& stage : times.stage_names)
+    point["stages_ms"][stage] = quantile(times.stages[stage], 0.5);
+}
+
+void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
+  render::Frame frame(context_, model_);
+  ordered_json views = ordered_json::array();
+  ordered_json photographed = ordered_json::array();
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    render::FrameReport report;
+    for (int n = 0; n <= settling_frames; ++n) report = frame.draw(views_[v].eyes, settings);
+    ordered_json view = compare(views_[v], exact()[v], frame.read_pictures());
+    view["pairs"] = report.pairs;
+    view["visible"] = report.visible;
+    point["gpu_bytes"] = report.gpu_bytes;
+    if (views_[v].photo) photographed.push_back(view);
+    views.push_back(std::move(view));
+  }
+  point["pairs"] = mean(views, "pairs");
+  point["visible"] = mean(views, "visible");
+  point["exact"] = summary_of_quality(views);
+  if (!photographed.empty()) {
+    point["photos"] = {{"views", photographed.size()},
+                       {"psnr_db", mean(photographed, "photo_psnr_db")},
+                       {"drop_db", mean(photographed, "drop_db")},
+                       {"ssim", mean(photographed, "photo_ssim")},
+                       {"flip", mean(photographed, "photo_flip")}};
+  }
+  point["views"] = std::move(views);
+}
+
+ordered_json Bench::measure(render::FrameSettings settings) {
+  if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table();
+  ordered_json point = {{"device", context_.renderer()}};
+  const std::string problem = verify(settings);
+  if (!problem.empty()) {
+    point["problem"] = problem;
+    return point;
+  }
+  time(settings, point);
+  judge(settings, point);
+  return point;
+}
+
+std::vector<std::size_t> spread_evenly(std::size_t all, std::size_t count) {
+  std::vector<std::size_t> chosen;
+  count = std::min(all, count);
+  for (std::size_t i = 0; i < count; ++i)
+    chosen.push_back(count == 1 ? 0 : (i * (all - 1) + (count - 1) / 2) / (count - 1));
+  return chosen;
+}
+
+}  // namespace binosplat::study

@@ -1,0 +1,117 @@
+#include "study/carried.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "measure/search.h"
+#include "render/frame.h"
+
+namespace binosplat::study {
+
+namespace {
+
+bool same_bits(const std::vector<Picture>& a, const std::vector<Picture>& b) {
+  for (std::size_t v = 0; v < a.size(); ++v) {
+    if (std::memcmp(a[v].colour.data(), b[v].colour.data(), a[v].colour.size() * sizeof(glm::vec4)) != 0)
+      return false;
+  }
+  return true;
+}
+
+// `one` with as many pairs as were drawn, from the loss that the last frame needed. Pairs fall slowly with
+// the loss: a secant over logarithms gets there in a few frames.
+class SamePairs {
+ public:
+  SamePairs(gl::Context& context, const Model& model, Variant variant)
+      : frame_(context, model), variant_(variant) {
+    variant_.transmittance = TRANSMITTANCE_ONE;
+    variant_.contrast = CONTRAST_OFF;
+  }
+
+  double draw(const std::vector<shared::View>& views, double wanted) {
+    constexpr int attempts_max = 20;
+    double slope = -0.35;  // of log pairs over log loss, about
+    double pairs = draw_at(views, loss_);
+    for (int n = 0; n < attempts_max && std::abs(pairs / wanted - 1.0) > 0.01; ++n) {
+      const double before = loss_, pairs_before = pairs;
+      loss_ *= std::exp(std::clamp(std::log(wanted / pairs) / slope, -2.0, 2.0));
+      pairs = draw_at(views, loss_);
+      const double seen = std::log(pairs / pairs_before) / std::log(loss_ / before);
+      if (std::isfinite(seen) && seen < -0.01) slope = seen;
+    }
+    if (std::abs(pairs / wanted - 1.0) > 0.01)
+      fail("no loss makes {} pairs with --transmittance one: the nearest made {}", wanted, pairs);
+    return pairs;
+  }
+
+  double draw_at(const std::vector<shared::View>& views, double loss) {
+    variant_.loss = static_cast<float>(loss);
+    return static_cast<double>(frame_.draw(views, variant_.settings()).pairs);
+  }
+
+  std::vector<Picture> pictures() { return frame_.read_pictures(); }
+  void start_at(double loss) { loss_ = loss; }
+
+ private:
+  render::Frame frame_;
+  Variant variant_;
+  double loss_ = 0.0;
+};
+
+}  // namespace
+
+std::vector<CarriedFrame> run_carried(gl::Context& context, const Model& model,
+                                      const std::vector<std::vector<shared::View>>& frames,
+                                      const Variant& variant, float quality,
+                                      const std::function<void()>& progress) {
+  render::FrameSettings settings = variant.settings();
+  settings.quality = quality;
+  render::Frame exact(context, model), carried(context, model);
+  SamePairs one(context, model, variant);
+  std::vector<CarriedFrame> results;
+  for (const std::vector<shared::View>& views : frames) {
+    CarriedFrame& result = results.emplace_back();
+    const double exact_pairs = static_cast<double>(exact.draw(views).pairs);
+    const std::vector<Picture> truth = exact.read_pictures();
+    const render::FrameReport report = carried.draw(views, settings);
+    const std::vector<Picture> pictures = carried.read_pictures();
+    const FrameErrors errors = judge(views, truth, pictures, settings.tile_size);
+    result.db = errors.psnr;
+    result.signed_mean = errors.signed_mean;
+    result.pairs = static_cast<double>(report.pairs);
+    result.removed = 1.0 - result.pairs / exact_pairs;
+    result.fell_back = !report.remembered;
+    if (quality == 0.0f) {
+      if (results.size() == 1) one.start_at(variant.loss);
+      if (result.fell_back) {
+        one.draw_at(views, variant.loss);
+        result.equals_one = same_bits(pictures, one.pictures());
+      }
+      result.one_pairs = one.draw(views, result.pairs);
+      result.one_db = judge(views, truth, one.pictures(), settings.tile_size).psnr;
+    }
+    progress();
+  }
+  return results;
+}
+
+float carried_loss(gl::Context& context, const Model& model,
+                   const std::vector<std::vector<shared::View>>& frames, Variant variant, double target) {
+  render::Frame exact(context, model);
+  exact.draw(frames.at(1));
+  const std::vector<Picture> truth = exact.read_pictures();
+  const auto at = [&](double loss) {
+    render::Frame frame(context, model);
+    variant.loss = 0.0f;
+    frame.draw(frames[0], variant.settings());
+    variant.loss = static_cast<float>(loss);
+    const render::FrameSettings settings = variant.settings();
+    frame.draw(frames[1], settings);
+    return judge(frames[1], truth, frame.read_pictures(), settings.tile_size).psnr;
+  };
+  const double start = variant.th == TH_PERIPHERAL ? 1.5 : variant.contrast == CONTRAST_OFF ? 0.15 : 0.01;
+  return static_cast<float>(measure::find_loss(at, target, {.start = start, .tolerance = 0.1}).loss);
+}
+
+}  // namespace binosplat::study

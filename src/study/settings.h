@@ -1,0 +1,35 @@
+#pragma once
+// A way to draw, by the names that options and charts use (shared/axes.h).
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "render/settings.h"
+
+namespace binosplat::study {
+
+/// The number of a name of one of the lists of shared/axes.h. Throws Error, beginning with `place`, for a
+/// name that is not in it; the text lists those that are.
+int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices);
+
+/// What decides the picture and its time: tiles, tile, th and, where they matter, transmittance, contrast,
+/// th_eyes and loss.
+nlohmann::ordered_json to_json(const render::FrameSettings& settings);
+
+/// One line for legends: "ellipse", "peripheral, last, 0.5", "squared, last, final, 0.01"; tiles are named
+/// where they are not `ellipse`, tiles of another size than 16 px as "tile 8".
+std::string describe(const render::FrameSettings& settings);
+
+/// The same without the loss: what a line of the chart joins.
+std::string describe_family(const render::FrameSettings& settings);
+
+/// Throws Error, beginning with `place`, for settings that contradict each other, as the options do: a
+/// threshold without a loss or tau with one, a contrast without what it weighs, what needs both eyes with
+/// one.
+void check(const std::string& place, const render::FrameSettings& settings, int eyes);
+
+/// Whether the picture is exact by definition: no pair that could be seen is left out.
+bool is_exact(const render::FrameSettings& settings);
+
+}  // namespace binosplat::study

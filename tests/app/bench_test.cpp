@@ -1,0 +1,166 @@
+// binosplat bench: what it measures, that it goes on where it was, and that shards join to the same table.
+
+#include <chrono>
+#include <thread>
+
+#include "app/scene.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::ordered_json;
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::read_text;
+using test::write_text;
+
+struct BenchTest : test::SceneTest {
+  const std::string axes = folder / "axes.json";
+
+  BenchTest() {
+    add_cameras();
+    write_text(axes, R"({"views": 2, "frames": 2, "repeats": 2, "eyes": [1, 2], "sizes": ["own", "36x24"],
+      "settings": [{"tiles": ["aabb", "ellipse"]}, {"th": "squared", "transmittance": "last", "loss": [0.05, 2]}]})");
+  }
+  Outcome bench(std::vector<std::string> arguments, const std::string& to) const {
+    arguments.insert(arguments.begin(), {"bench", "-o", to});
+    return test::run_program(arguments);
+  }
+  Outcome measure(const std::string& to, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {model, "--axes", axes});
+    return bench(more, to);
+  }
+  static ordered_json results(const std::string& of) {
+    return ordered_json::parse(read_text(of + "/results.json"));
+  }
+};
+
+/// Results without what another run measures differently: times.
+ordered_json without_times(ordered_json results) {
+  for (ordered_json& point : results["points"]) {
+    for (const char* key : {"frame_ms", "p99_ms", "noise_ms", "settled", "submit_ms", "stages_ms"}) {
+      EXPECT_TRUE(point.contains(key)) << key;
+      point.erase(key);
+    }
+  }
+  return results;
+}
+
+TEST_F(BenchTest, MeasuresEveryPoint) {
+  const Outcome outcome = measure(out);
+  ASSERT_TRUE(good(outcome));
+  const ordered_json found = results(out);
+  ASSERT_EQ(found["points"].size(), 16);
+  for (const ordered_json& point : found["points"]) {
+    EXPECT_GT(point["frame_ms"].get<double>(), 0.0);
+    EXPECT_GE(point["p99_ms"], point["frame_ms"]);
+    EXPECT_EQ(point["frames"], 8);
+    EXPECT_EQ(point["views"].size(), 2);
+    EXPECT_GT(point["pairs"].get<double>(), 0.0);
+    if (point["name"] == "ellipse") {
+      EXPECT_TRUE(point["exact"]["psnr_db"].is_null());
+      EXPECT_EQ(point["exact"]["ssim"], 1.0);
+      EXPECT_EQ(point["exact"]["flip"], 0.0);
+    }
+    // 2 px of squared colour are a lot on so small a picture: seen, and fewer pairs.
+    if (point["name"] == "squared, last, 2") {
+      EXPECT_LT(point["exact"]["psnr_db"].get<double>(), 50.0);
+      EXPECT_LT(point["pairs"], found["points"][1]["pairs"]);
+      EXPECT_GT(point["exact"]["flip"].get<double>(), 0.0);
+    }
+  }
+  // One eye of the camera's own size, then of the other, then both eyes.
+  EXPECT_EQ(found["points"][4]["size"], "36x24");
+  EXPECT_LT(found["points"][5]["pairs"], found["points"][1]["pairs"]);
+  EXPECT_EQ(found["points"][8]["eyes"], 2);
+  EXPECT_NE(outcome.out.find("model, both eyes, size 36x24"), std::string::npos) << outcome.out;
+  EXPECT_NE(read_text(out + "/report.html").find("<!doctype html>"), std::string::npos);
+  EXPECT_NE(read_text(out + "/results.csv").find("\"squared, last, 2\""), std::string::npos);
+}
+
+TEST_F(BenchTest, GoesOnWhereItWas) {
+  test::Program run({"bench", model, "--axes", axes, "-o", out});
+  // Ended once it has finished some points.
+  while (!std::filesystem::exists(out + "/points/00002.json"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  run.send(SIGINT);
+  EXPECT_EQ(run.wait().code, -SIGINT);
+  EXPECT_FALSE(std::filesystem::exists(out + "/results.json"));
+  const std::string finished = read_text(out + "/points/00001.json");
+  std::size_t points = 0;
+  for (const std::string& name : folder.files()) {
+    points += name.find("points/") != std::string::npos;
+    EXPECT_EQ(name.find(".part"), std::string::npos) << "half a file is left";
+  }
+  ASSERT_LT(points, 16);
+  const Outcome again = measure(out);
+  ASSERT_TRUE(good(again));
+  EXPECT_NE(again.err.find(fmt::format("{} points to measure; {} are in", 16 - points, points)),
+            std::string::npos)
+      << again.err;
+  EXPECT_EQ(read_text(out + "/points/00001.json"), finished) << "measured again";
+  EXPECT_EQ(results(out)["points"].size(), 16);
+  const Outcome third = measure(out);
+  ASSERT_TRUE(good(third));
+  EXPECT_NE(third.err.find("0 points to measure; 16 are in"), std::string::npos) << third.err;
+}
+
+TEST_F(BenchTest, ShardsJoinToOneRun) {
+  const std::string one = folder / "one", two = folder / "two", whole = folder / "whole";
+  ASSERT_TRUE(good(measure(whole)));
+  ASSERT_TRUE(good(measure(one, {"--shard", "1/2"})));
+  ASSERT_TRUE(good(measure(two, {"--shard", "2/2"})));
+  EXPECT_FALSE(results(one)["points"][1].contains("frame_ms"));
+  EXPECT_NE(read_text(one + "/report.html").find("not measured yet"), std::string::npos);
+  ASSERT_TRUE(good(bench({"--merge", one, two}, out)));
+  EXPECT_EQ(without_times(results(out)), without_times(results(whole)));
+  // One shard alone is not the table.
+  ASSERT_TRUE(good(bench({"--merge", one}, folder / "half")));
+  EXPECT_NE(results(folder / "half"), results(out));
+
+  // Compared with itself nothing has changed; with pairs that are not its own, each point has.
+  ASSERT_TRUE(good(bench({"--merge", out, "--compare", out + "/results.json"}, out)));
+  ordered_json old = results(out);
+  for (ordered_json& point : old["points"]) point["pairs"] = 1.0;
+  write_text(folder / "old.json", old.dump());
+  const Outcome compared = bench({"--merge", out, "--compare", folder / "old.json"}, out);
+  EXPECT_NE(compared.out.find("16 of 16 points in both runs changed beyond noise"), std::string::npos)
+      << compared.out;
+}
+
+TEST_F(BenchTest, ErrorsSayWhatToDo) {
+  ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
+  write_text(folder / "other.json", R"({"settings": [{}], "views": 1, "frames": 1, "repeats": 1})");
+  write_text(folder / "list.json", "[1, 2]");
+  write_text(folder / "text.json", "{\"points\"");
+  const struct {
+    std::vector<std::string> arguments;
+    const char* said;
+  } cases[] = {
+      {{model, "--axes", folder / "other.json", "-o", out}, "holds the points of another run"},
+      {{model, "--axes", folder / "none.json", "-o", folder / "new"}, "none.json"},
+      {{model, "--axes", folder / "list.json", "-o", folder / "new"}, "list.json: expected an object"},
+      {{model, "--axes", axes, "--shard", "3/2", "-o", folder / "new"}, "--shard 3/2: expected I/N"},
+      {{model, "--axes", axes, "--shard", "0/2", "-o", folder / "new"}, "--shard 0/2: expected I/N"},
+      {{model, model, "--axes", axes, "-o", folder / "new"}, "two scenes are called model"},
+      {{model, "demo:room", "--cameras", folder / "cameras.json", "-o", folder / "new"}, "are of one scene"},
+      {{"-o", folder / "new"}, "needs scenes to measure, or --merge"},
+      {{model, "--merge", out, "-o", folder / "new"}, "needs scenes to measure, or --merge"},
+      {{"--merge", folder.path(), "-o", folder / "new"}, "plan.json"},
+      {{"--merge", out, "--compare", folder / "text.json", "-o", out}, "text.json: not JSON"},
+      {{"--merge", out, "--compare", folder / "list.json", "-o", out}, "not the results.json of a bench run"},
+      {{folder / "missing.ply", "--axes", axes, "-o", folder / "new"}, "missing.ply"},
+      {{model, "--axes", axes, "--photos", folder.path(), "-o", folder / "new"},
+       "there is no photo of any view"},
+      {{model, "--axes", axes, "-o", model}, "is a file where a folder is needed"},
+  };
+  for (const auto& c : cases) {
+    std::vector<std::string> arguments = c.arguments;
+    arguments.insert(arguments.begin(), "bench");
+    EXPECT_TRUE(ended(test::run_program(arguments), 2, c.said));
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

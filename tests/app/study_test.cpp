@@ -1,0 +1,51 @@
+// binosplat study, as a user runs it.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/scene.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+TEST(Study, APathIsCarriedAndTold) {
+  const test::TempFolder folder;
+  std::string frames;
+  for (int n = 0; n < 3; ++n) {
+    frames += fmt::format(R"({}{{"img_name": "frame_{}", "width": 96, "height": 54, "fx": 60, "fy": 60,
+      "position": [{}, -1.5, -1], "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}})",
+                          n > 0 ? "," : "", n, 0.005 * n);
+  }
+  test::write_text(folder / "path.json", "[" + frames + "]");
+  const test::Outcome outcome = test::run_program(
+      {"study", "demo:room", "--path", folder / "path.json", "--loss", "0.05", "--json", folder / "s.json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("fell back: equals `one`"), std::string::npos) << outcome.out;
+  const auto json = nlohmann::json::parse(test::read_text(folder / "s.json"));
+  ASSERT_EQ(json.at("frames").size(), 3u);
+  EXPECT_EQ(json.at("variant"), "squared, last, off, per-eye");
+  EXPECT_GT(json.at("frames")[2].at("removed").get<double>(), 0.0);
+}
+
+TEST(Study, WhatMakesNoSenseIsNamed) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+      {{}, "--stability"},
+      {{"--stability", "--path", "x.json"}, "choose --stability, or --path"},
+      {{"--stability", "--case", "no-such"}, "far-wall"},
+      {{"--stability", "--view", "no-such"}, "--view no-such"},
+      {{"--path", "no_such.json"}, "no_such.json"},
+      {{"--stability", "--json", "/no/such/folder/s.json"}, "/no/such"},
+  };
+  for (const auto& [options, message] : wrong) {
+    std::vector<std::string> all = {"study", "demo:room", "--size", "64x36"};
+    all.insert(all.end(), options.begin(), options.end());
+    const test::Outcome outcome = test::run_program(all);
+    EXPECT_EQ(outcome.code, 2) << message;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

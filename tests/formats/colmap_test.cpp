@@ -1,0 +1,209 @@
+// COLMAP's reconstructions: real and broken ones.
+
+#include <gtest/gtest.h>
+
+#include "formats/cameras_file.h"
+#include "support/broken.h"
+#include "support/fixtures.h"
+#include "support/truth.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::Copy;
+using test::little;
+using test::near3;
+using test::patched;
+using test::replaced;
+
+/// The real reconstruction's cameras have a lens that cannot be drawn. Its parameters without the distortion
+/// are SIMPLE_PINHOLE's.
+void make_pinhole(const Copy& copy) {
+  copy.write(replaced(replaced(copy.read("cameras.txt"), "SIMPLE_RADIAL", "SIMPLE_PINHOLE"),
+                      " 0.11303875172495252", ""),
+             "cameras.txt");
+}
+
+void make_pinhole_binary(const Copy& copy) {
+  const std::string cameras = copy.read("cameras.bin");
+  copy.write(patched(cameras, 12, little(0)).substr(0, cameras.size() - 8), "cameras.bin");
+}
+
+bool agrees(const Camera& camera, const json& truth) {
+  return near3(camera.position, truth["center"], 1e-6, 1e-6) &&
+         near3(camera.rotation[2], truth["forward"], 1e-6) && near3(-camera.rotation[1], truth["up"], 1e-6) &&
+         camera.fx == truth["fx"] && camera.fy == truth["fy"] && camera.cx == truth["cx"] &&
+         camera.cy == truth["cy"] && camera.width == truth["width"] && camera.height == truth["height"];
+}
+
+const Camera& named(const std::vector<Camera>& cameras, const std::string& name) {
+  const auto found =
+      std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == name; });
+  if (found == cameras.end()) throw std::out_of_range(name);
+  return *found;
+}
+
+TEST(Colmap, RealPosesAgreeWithAnIndependentReader) {
+  REQUIRE_FIXTURES(folder);
+  const json truth = test::load_json(folder / "truth.json")["cameras"]["cameras/colmap-real"];
+  const Copy text(folder / "cameras/colmap-real/txt"), binary(folder / "cameras/colmap-real/bin");
+  make_pinhole(text);
+  make_pinhole_binary(binary);
+  for (const fs::path& path : {text.path(), binary.path(), binary.path() / "images.bin"}) {
+    const std::vector<Camera> cameras = load_cameras(path);
+    ASSERT_EQ(cameras.size(), truth["count"].get<std::size_t>());
+    for (const json& expected : truth["cameras"]) {
+      const Camera& camera = named(cameras, expected["name"]);
+      EXPECT_TRUE(agrees(camera, expected)) << camera.name;
+      // Planted faults: rows taken for columns, the translation for the position.
+      Camera faulty = camera;
+      faulty.rotation = glm::transpose(camera.rotation);
+      EXPECT_FALSE(agrees(faulty, expected));
+      faulty = camera;
+      faulty.position = -(glm::transpose(camera.rotation) * camera.position);
+      EXPECT_FALSE(agrees(faulty, expected));
+    }
+    EXPECT_TRUE(
+        std::is_sorted(cameras.begin(), cameras.end(), [](auto& a, auto& b) { return a.name < b.name; }));
+  }
+}
+
+TEST(Colmap, LensesAgreeWithAnIndependentReader) {
+  REQUIRE_FIXTURES(folder);
+  const json truth = test::load_json(folder / "truth.json")["cameras"]["cameras/colmap-models"];
+  // Of eleven lenses two can be drawn: each image by itself.
+  for (const json& expected : truth["cameras"]) {
+    const Copy copy(folder / "cameras/colmap-models/txt");
+    const std::string id = expected["image_id"].dump() + " ";
+    const std::string images = copy.read("images.txt");
+    const std::size_t at = images.find("\n" + id) + 1;
+    copy.write(images.substr(at, images.find('\n', at) + 1 - at) + "\n", "images.txt");
+    const int model = expected["model_id"];
+    if (model < 2) {
+      const std::vector<Camera> cameras = load_cameras(copy.path());
+      ASSERT_EQ(cameras.size(), 1u);
+      EXPECT_EQ(cameras[0].name, expected["name"].get<std::string>());
+      EXPECT_TRUE(agrees(cameras[0], expected)) << model;
+    } else {
+      EXPECT_TRUE(test::fails_saying([&] { load_cameras(copy.path()); },
+                                     {"cameras.txt: camera", "colmap image_undistorter"}));
+    }
+  }
+  for (const char* kind : {"cameras/colmap-models/txt", "cameras/colmap-models/bin"}) {
+    EXPECT_TRUE(test::fails_saying([&] { load_cameras(folder / kind); },
+                                   {": camera ", "has a lens of the model", "colmap image_undistorter"}));
+  }
+}
+
+TEST(Colmap, OfARealSceneIsItsCamerasJson) {
+  REQUIRE_SCENE("fox", folder);
+  const std::vector<Camera> expected = load_cameras(folder / "cameras.json");
+  const std::vector<Camera> cameras = load_cameras(folder / "sparse/0");
+  EXPECT_GE(cameras.size(), 20u);
+  for (const Camera& camera : cameras) {
+    const Camera& same = named(expected, fs::path(camera.name).stem().string());
+    EXPECT_LT(glm::length(camera.position - same.position), 1e-6) << camera.name;
+    EXPECT_LT(glm::length(camera.rotation[2] - same.rotation[2]), 1e-6) << camera.name;
+    EXPECT_NEAR(camera.fx, same.fx, 1e-3 * same.fx) << camera.name;
+  }
+  EXPECT_EQ(find_photos(folder / "sparse/0"), folder / "photos");
+}
+
+TEST(Colmap, IsFoundBesideTheModel) {
+  REQUIRE_FIXTURES(folder);
+  const test::TempFolder temporary;
+  fs::create_directories(temporary / "scene/sparse/0");
+  fs::create_directories(temporary / "scene/images");
+  EXPECT_FALSE(find_cameras(temporary / "scene/model.ply").has_value());
+  EXPECT_TRUE(
+      test::fails_saying([&] { load_cameras(temporary / "scene"); }, {"is a folder without cameras.json"}));
+  for (const char* name : {"cameras.bin", "images.bin"})
+    fs::copy(folder / "cameras/colmap-real/bin" / name, temporary / "scene/sparse/0");
+  EXPECT_EQ(find_cameras(temporary / "scene/model.ply"), temporary / "scene/sparse/0");
+  EXPECT_EQ(find_cameras(temporary / "scene"), temporary / "scene/sparse/0");  // a model that is a folder
+  EXPECT_EQ(find_photos(temporary / "scene/sparse/0"), temporary / "scene/images");
+  EXPECT_FALSE(find_photos(temporary / "model.ply").has_value());
+  test::write_text(temporary / "scene/cameras.json", "[]");
+  EXPECT_EQ(find_cameras(temporary / "scene/model.ply"), temporary / "scene/cameras.json");
+}
+
+TEST(ColmapErrors, Binary) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "cameras/colmap-real/bin");
+  make_pinhole_binary(copy);
+  const std::string images = copy.read("images.bin"), cameras = copy.read("cameras.bin");
+  const auto with_images = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
+    copy.write(bytes, "images.bin");
+    const auto result = test::fails_saying([&] { load_cameras(copy.path()); }, parts);
+    copy.write(images, "images.bin");
+    return result;
+  };
+  EXPECT_TRUE(with_images(images.substr(0, 1000),
+                          {"images.bin is cut short or damaged: image 0 of 8", "1000 bytes"}));
+  const std::size_t name = 8 + 4 + 56 + 4;
+  EXPECT_TRUE(with_images(images.substr(0, name) + std::string(500, 'x'),
+                          {"image 0 of 8", "name that runs to the end"}));
+  const std::size_t points = images.find('\0', name) + 1;
+  EXPECT_TRUE(with_images(patched(images, points, little(std::uint64_t{1} << 60)),
+                          {"image 0 of 8", "goes on beyond"}));
+  EXPECT_TRUE(with_images(patched(images, name - 4, little(99u)),
+                          {"image 5 was taken with camera 99", "cameras.bin does not have"}));
+  EXPECT_TRUE(with_images(patched(images, 12, std::string(32, '\0')), {"image 0 of 8", "no quaternion"}));
+  EXPECT_TRUE(with_images(patched(images, 44, little(std::nan(""))), {"translation is not finite"}));
+  EXPECT_TRUE(
+      with_images(patched(images, 0, little(std::uint64_t{1} << 62)), {"image 8 of 4611686018427387904"}));
+  EXPECT_TRUE(with_images(little(std::uint64_t{0}), {"images.bin holds no images"}));
+  EXPECT_TRUE(with_images("1234", {"the number of records goes on beyond"}));
+  // Truncation at every byte of the first record and of the last.
+  for (std::size_t end = 0; end < points + 8; ++end)
+    EXPECT_TRUE(with_images(images.substr(0, end), {"images.bin"})) << end;
+  for (std::size_t end = images.size() - 100; end < images.size(); ++end)
+    EXPECT_TRUE(with_images(images.substr(0, end), {"images.bin is cut short", "image 7 of 8"})) << end;
+
+  const auto with_cameras = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
+    copy.write(bytes, "cameras.bin");
+    return test::fails_saying([&] { load_cameras(copy.path()); }, parts);
+  };
+  EXPECT_TRUE(with_cameras(patched(cameras, 12, little(42)),
+                           {"cameras.bin: camera 1 has the model 42, which is not known"}));
+  EXPECT_TRUE(with_cameras(patched(cameras, 12, little(-1)), {"has the model -1"}));
+  EXPECT_TRUE(with_cameras(patched(cameras, 16, little(std::uint64_t{1} << 40)),
+                           {"camera 1", "a picture of 2147483647 x"}));
+  EXPECT_TRUE(with_cameras(patched(cameras, 32, little(-1.0)), {"camera 1: focal lengths of -1 and -1 px"}));
+  EXPECT_TRUE(with_cameras(patched(cameras, 0, little(std::uint64_t{2})) + cameras.substr(8),
+                           {"there is a camera 1 already"}));
+  for (std::size_t end = 0; end < cameras.size(); ++end)
+    EXPECT_TRUE(with_cameras(cameras.substr(0, end), {"cameras.bin is cut short"})) << end;
+}
+
+TEST(ColmapErrors, Text) {
+  REQUIRE_FIXTURES(folder);
+  const auto with = [&](const char* file, const std::string& from, const std::string& to,
+                        std::initializer_list<std::string> parts) {
+    const Copy copy(folder / "cameras/colmap-models/txt");
+    copy.write(replaced(copy.read(file), from, to), file);
+    return test::fails_saying([&] { load_cameras(copy.path()); }, parts);
+  };
+  // Without the empty line of an image that nothing was observed in, the next image stands in its place.
+  EXPECT_TRUE(with("images.txt", "img_000.png\n\n", "img_000.png\n",
+                   {"images.txt, line 6", "the points seen in image 100", "an empty line"}));
+  EXPECT_TRUE(
+      with("images.txt", "100 -0.5 0.5", "100 -0.5 O.5", {"images.txt, line 5", "'O.5' is no number"}));
+  EXPECT_TRUE(with("images.txt", " 4 sub/img_001.png", "", {"images.txt, line 7", "expected IMAGE_ID QW"}));
+  EXPECT_TRUE(with("images.txt", "100 -0.5 0.5 0.5 0.5", "100 0 0 0 0", {"line 5", "no quaternion"}));
+  EXPECT_TRUE(with("images.txt", "0 0 0 1 sub", "0 0 0 99 sub", {"image 100 was taken with camera 99"}));
+  EXPECT_TRUE(
+      with("cameras.txt", "1 SIMPLE_PINHOLE", "1 SIMPLE", {"cameras.txt, line 4", "'SIMPLE' is no model"}));
+  EXPECT_TRUE(with("cameras.txt", "640 480 500 320 240\n", "640 480 500 320\n",
+                   {"line 4", "2 parameters; the model SIMPLE_PINHOLE has 3"}));
+  EXPECT_TRUE(with("cameras.txt", "1 SIMPLE_PINHOLE 640 480", "1 SIMPLE_PINHOLE -640 480",
+                   {"line 4", "'-640' is no number of pixels"}));
+  EXPECT_TRUE(with("cameras.txt", "4 PINHOLE", "1 PINHOLE", {"line 5", "there is a camera 1 already"}));
+  EXPECT_TRUE(with("cameras.txt", "1 SIMPLE_PINHOLE 640 480 500 320 240", "1 SIMPLE_PINHOLE",
+                   {"line 4", "expected CAMERA_ID"}));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,60 @@
+#include "scene/axes.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/framing.h"
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+TEST(Axes, LettersAreDirections) {
+  EXPECT_EQ(world_from_axes("RDF"), glm::dmat3(1.0));
+  const glm::dvec3 p(1, 2, 3);
+  EXPECT_EQ(world_from_axes("RUB") * p, glm::dvec3(1, -2, -3));
+  EXPECT_EQ(world_from_axes("LUF") * p, glm::dvec3(-1, -2, 3));
+  EXPECT_EQ(world_from_axes("RFU") * p, glm::dvec3(1, -3, 2));  // z up: the second number goes forward
+  EXPECT_EQ(glm::determinant(world_from_axes("RUF")), -1.0);    // Unity's, a mirrored one
+  for (const char* wrong : {"", "RD", "RDFF", "RLF", "RRF", "XYZ", "rdf"}) {
+    EXPECT_TRUE(test::fails_saying([&] { world_from_axes(wrong); }, {"axes '", wrong, "RDF"})) << wrong;
+  }
+}
+
+// A model and a camera, both brought into another frame, give the same picture: the same places in it, at the
+// same depth.
+TEST(Axes, CamerasSeeTheSame) {
+  Camera camera = look_at({1, -2, 3}, {0.5, 0.25, -1}, {0.1, -1, 0.2}, 60, 640, 480);
+  const glm::dvec3 p(0.3, -0.6, -0.9);
+  const glm::dvec3 seen = glm::transpose(camera.rotation) * (p - camera.position);
+  for (const char* letters : {"RDF", "RUB", "LUF", "RUF", "FRU", "BLD"}) {
+    const glm::dvec3 stored = glm::transpose(world_from_axes(letters)) * p;
+    const Camera entered = into_axes(camera, letters);
+    EXPECT_LT(glm::length(glm::transpose(entered.rotation) * (stored - entered.position) - seen), 1e-15)
+        << letters;
+    EXPECT_EQ(entered.width, 640);
+  }
+  // Planted fault: the camera left where it was.
+  const glm::dvec3 stored = glm::transpose(world_from_axes("RUB")) * p;
+  EXPECT_GT(glm::length(glm::transpose(camera.rotation) * (stored - camera.position) - seen), 0.1);
+}
+
+// However a model's numbers are turned, it is framed from above as seen in the world.
+TEST(Axes, FramesAreFoundInTheWorld) {
+  const Model model = test::random_model(3, 501, 0);
+  for (const char* letters : {"RUB", "LUF", "RUF", "RFU"}) {
+    Model turned = model;
+    turned.axes = letters;
+    for (glm::vec3& p : turned.position) p = glm::transpose(world_from_axes(letters)) * glm::dvec3(p);
+    const Camera expected = frame_model(model, 640, 480), found = frame_model(turned, 640, 480);
+    const double below = glm::dot(found.position - expected.position, glm::dvec3(0, 1, 0));
+    EXPECT_NEAR(below, 0.0, 1e-6) << letters;
+    EXPECT_NEAR(found.rotation[1].y, expected.rotation[1].y, 1e-9) << letters;
+    EXPECT_NEAR(glm::determinant(found.rotation), 1.0, 1e-9) << letters;
+    turned.axes = "RDF";  // planted fault
+    EXPECT_GT(std::abs((frame_model(turned, 640, 480).position - expected.position).y), 0.01) << letters;
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

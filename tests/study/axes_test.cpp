@@ -1,0 +1,94 @@
+#include "study/axes.h"
+
+#include <gtest/gtest.h>
+
+#include "study/settings.h"
+#include "support/errors.h"
+#include "support/program.h"
+
+namespace binosplat::study {
+namespace {
+
+TEST(Axes, AreEveryCombination) {
+  const Axes axes = parse_axes("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
+    "sizes": ["own", "64x48"], "settings": [
+      {"tiles": ["aabb", "ellipse"], "tile": [8, 16]},
+      {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "loss": [0.5, 2]},
+      {"tiles": "ellipse"}]})");
+  EXPECT_EQ(axes.views, 3);
+  EXPECT_EQ(axes.frames, 7);
+  EXPECT_EQ(axes.repeats, 2);
+  EXPECT_EQ(axes.eyes, (std::vector{1, 2}));
+  EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own", "64x48"}));
+  // 2 x 2 and 2 x 2 x 2; the last block's only one is in the first.
+  std::vector<std::string> names;
+  for (const render::FrameSettings& s : axes.settings) names.push_back(describe(s));
+  EXPECT_EQ(names, (std::vector<std::string>{"aabb, tile 8", "aabb", "ellipse, tile 8", "ellipse",
+                                             "peripheral, 0.5", "peripheral, 2", "peripheral, last, 0.5",
+                                             "peripheral, last, 2", "squared, 0.5", "squared, 2",
+                                             "squared, last, 0.5", "squared, last, 2"}));
+  EXPECT_EQ(
+      to_json(axes.settings.back()).dump(),
+      R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","contrast":"off","loss":2.0})");
+}
+
+TEST(Axes, OnesThatAreLeftOut) {
+  const Axes axes = parse_axes("a", R"({"settings": [{}]})");
+  EXPECT_EQ(axes.settings.size(), 1);
+  EXPECT_TRUE(is_exact(axes.settings[0]));
+  EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own"}));
+  EXPECT_EQ(axes.eyes, (std::vector{1}));
+}
+
+TEST(Axes, PresetsAreWellFormed) {
+  EXPECT_EQ(axes_presets(), (std::vector<std::string>{"headset", "paper", "quick"}));
+  for (const std::string& name : axes_presets()) EXPECT_GT(load_axes(name).settings.size(), 5) << name;
+  EXPECT_EQ(load_axes("headset").eyes, std::vector{2});
+}
+
+TEST(Axes, ErrorsNameThePlace) {
+  const struct {
+    const char* text;
+    const char* said;
+  } cases[] = {
+      {"{", "a.json: not JSON"},
+      {"[]", "a.json: expected an object"},
+      {R"({"settings": []})", "expected a list 'settings'"},
+      {R"({"settings": {}})", "expected a list 'settings'"},
+      {R"({})", "expected a list 'settings'"},
+      {R"({"settings": [{}], "frmaes": 3})", "there is no key 'frmaes'"},
+      {R"({"settings": [{}, 5]})", "block 2 (counted from 1): expected an object"},
+      {R"({"settings": [{"tile": 12}]})", "'tile' 12: expected 8, 16 or 32"},
+      {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
+      {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
+      {R"({"settings": [{"th": 3}]})", "'th': '3' is not one of tau"},
+      {R"({"settings": [{"th": "squared"}]})", "th needs a loss above 0"},
+      {R"({"settings": [{"loss": 1}]})", "a loss has no effect with tau"},
+      {R"({"settings": [{"transmittance": "last"}]})", "transmittance has no effect with tau"},
+      {R"({"settings": [{"th": "peripheral", "loss": 1, "contrast": "final"}]})", "contrast is for squared"},
+      {R"({"settings": [{"th": "squared", "loss": 1, "transmittance": "both"}]})", "needs eyes of 2"},
+      {R"({"settings": [{"th": "squared", "loss": 1, "th_eyes": "cyclopean"}]})",
+       "this th_eyes needs eyes of 2"},
+      {R"({"settings": [{"th_eyes": "shared-min"}]})", "th_eyes has no effect with tau"},
+      {R"({"settings": [{"th": "squared", "loss": -1}]})", "'loss' -1: expected a number of 0 or more"},
+      {R"({"settings": [{"th": "squared", "loss": 1e99}]})", "'loss' 1e+99: expected"},
+      {R"({"settings": [{}], "frames": 0})", "'frames' 0: expected a whole number from 1"},
+      {R"({"settings": [{}], "frames": 1.5})", "'frames' 1.5: expected a whole number"},
+      {R"({"settings": [{}], "eyes": 3})", "'eyes' 3: expected a whole number from 1 to 2"},
+      {R"({"settings": [{}], "sizes": "big"})", "'sizes' \"big\": expected own, WxH"},
+      {R"({"settings": [{}], "sizes": "0x5"})", "'sizes' \"0x5\""},
+  };
+  for (const auto& c : cases) {
+    try {
+      parse_axes("a.json", c.text);
+      ADD_FAILURE() << "accepted: " << c.text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_NE(std::string(error.what()).find(c.said), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_THROW(load_axes("no-such-preset"), Error);
+}
+
+}  // namespace
+}  // namespace binosplat::study

@@ -1,0 +1,89 @@
+#include "study/bench.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "render/frame.h"
+#include "scene/camera.h"
+#include "stereo/rig.h"
+#include "support/gl.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat::study {
+namespace {
+
+using nlohmann::ordered_json;
+
+TEST(Bench, ViewsAreSpreadEvenly) {
+  EXPECT_EQ(spread_evenly(10, 1), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(spread_evenly(10, 4), (std::vector<std::size_t>{0, 3, 6, 9}));
+  EXPECT_EQ(spread_evenly(3, 7), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_TRUE(spread_evenly(0, 3).empty());
+}
+
+struct BenchPoint : testing::Test {
+  Model model = test::random_model(3, 600, 1);
+  Camera head = test::front_camera(64, 48, 64.0);
+  shared::View small = make_view(resized(head, 32, 24));
+
+  Bench bench(gl::Context& context, int eyes) const {
+    BenchView view{"front", {make_view(head)}, {}};
+    if (eyes == 2) {
+      const auto rig = stereo::make_rig(head, {});
+      view.eyes = {rig.views[0], rig.views[1]};
+    }
+    return {context, model, {view}, small, {2, 2}};
+  }
+};
+
+TEST_F(BenchPoint, ExactIsEqualAndALossIsNot) {
+  Bench both = bench(test::gl_context(), 2);
+  const ordered_json exact = both.measure({});
+  EXPECT_TRUE(exact["exact"]["psnr_db"].is_null());
+  EXPECT_TRUE(exact["exact"].at("disagreement_db").is_null()) << "infinite: the eyes agree";
+  EXPECT_EQ(exact["frames"], 4);
+  EXPECT_EQ(exact["stages_ms"].size(), 6);
+  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
+    render::FrameSettings settings;
+    settings.th = TH_SQUARED;
+    settings.loss = 4.0f;
+    settings.transmittance = transmittance;
+    const ordered_json point = both.measure(settings);
+    EXPECT_LT(point["exact"]["psnr_db"].get<double>(), 60.0);
+    EXPECT_GT(point["exact"].at("disagreement_db").get<double>(), 3.0);
+    EXPECT_GT(point["exact"]["flip"].get<double>(), 0.0);
+    EXPECT_LT(point["pairs"], exact["pairs"]);
+  }
+}
+
+// The built-in shaders with a fault in them: what is drawn is not what the reference draws, and no time is
+// given.
+TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
+  const test::TempFolder folder;
+  std::filesystem::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/shaders", folder.path(),
+                        std::filesystem::copy_options::recursive);
+  const auto context = gl::Context::open();
+  context->set_shader_folder(folder.path());
+  EXPECT_TRUE(bench(*context, 1).measure({}).contains("frame_ms")) << "without a fault it is timed";
+
+  std::string blend = test::read_text(folder / "blend.comp");
+  const std::string right = "if (left < float(TRANSMITTANCE_MIN)) {";
+  ASSERT_NE(blend.find(right), std::string::npos);
+  blend.replace(blend.find(right), right.size(), "if (left < 0.05) {");
+  test::write_text(folder / "blend.comp", blend);
+  const auto faulty = gl::Context::open();
+  faulty->set_shader_folder(folder.path());
+  const ordered_json point = bench(*faulty, 1).measure({});
+  EXPECT_FALSE(point.contains("frame_ms"));
+  EXPECT_NE(point["problem"].get<std::string>().find("differ from the float64 reference"), std::string::npos)
+      << point["problem"];
+  // Nothing in view.
+  model.opacity.assign(model.count(), 0.0f);
+  EXPECT_NE(bench(test::gl_context(), 1).measure({})["problem"].get<std::string>().find("is empty"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace binosplat::study
