@@ -23,7 +23,7 @@ uniform uint view_end;
 void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 #if TRANSMITTANCE >= TRANSMITTANCE_LAST
   if (v >= exact_from) return;  // a probe
-  bool left_out = false;
+  bool left_out = is_hidden(gaussian - page_first, v);
 #if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);

@@ -15,7 +15,12 @@ layout(std430, binding = 2) readonly buffer Offsets { float offsets[]; };       
 #include "networks.glsl"                                                               // bindings 3 and 4
 layout(std430, binding = 5) writeonly buffer Gaussians { Gaussian gaussians[]; };      // (decoding, anchor, k)
 layout(std430, binding = 6) writeonly buffer Harmonics { vec4 harmonics[]; };          // of degree 0, likewise
-layout(std430, binding = 7) writeonly buffer Kept { uint kept[]; };                    // (decoding, anchor), bit k
+layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decoding, anchor), bit k; KEPT_HIDDEN
+#if REUSE == 1
+#include "threshold/threshold.glsl"                                          // binding 7
+layout(std430, binding = 10) readonly buffer KeptLast { uint kept_last[]; };  // of the last frame
+uniform uint page_first;
+#endif
 uniform uint view_count;  // without the probe
 uniform uint views_per_decoding;
 uniform uint anchor_cull;
@@ -30,6 +35,31 @@ bool sees(View view, Anchor anchor) {
   return project(view, g, scaled_axes(g), splat) && touches_a_tile(splat, view);
 }
 
+vec3 mean_of(Anchor anchor, uint n, uint k) {
+  uint at = 3u * (n * uint(OFFSETS) + k);
+  precise vec3 mean = anchor.position.xyz + vec3(offsets[at], offsets[at + 1u], offsets[at + 2u]) * anchor.offset_scale.xyz;
+  return mean;
+}
+
+#if REUSE == 1
+
+// Whether Th leaves out of view v all that the last frame had of an anchor, whatever the networks would make of it now: no
+// Gaussian is wider than the anchor's scale, and none has an alpha of more than 1.
+bool is_hidden(uint v, Anchor anchor, uint n, uint bits) {
+  float widest = max(max(anchor.scale.x, anchor.scale.y), anchor.scale.z);
+  for (uint k = 0u; k < offset_count; ++k) {
+    if ((bits >> k & 1u) == 0u) continue;
+    Gaussian g = Gaussian(vec4(mean_of(anchor, n, k), 1.0), vec4(1.0, 0.0, 0.0, 0.0), vec4(vec3(widest), 0.0));
+    Splat splat;
+    if (!project(views[v], g, scaled_axes(g), splat)) return false;
+    float upper = upper_of(page_first + n * uint(OFFSETS) + k, v, splat.depth);
+    if (!(threshold_of(splat, upper) > 1.0)) return false;
+  }
+  return bits != 0u;
+}
+
+#endif
+
 vec3 sigmoid(vec3 x) { return 1.0 / (1.0 + exp(-x)); }
 
 // Gaussian k of an anchor at `to`. False where its weights overflowed.
@@ -40,12 +70,9 @@ bool decode(Anchor anchor, uint n, uint k, float logit, Hidden covariance, Hidde
                        output_of(row + 5u, covariance), output_of(row + 6u, covariance));
   row = COLOUR_ROW + 3u * k;
   vec3 rgb = sigmoid(vec3(output_of(row, colour), output_of(row + 1u, colour), output_of(row + 2u, colour)));
-  uint at = 3u * (n * uint(OFFSETS) + k);
-  vec3 offset = vec3(offsets[at], offsets[at + 1u], offsets[at + 2u]);
 
   Gaussian g;
-  precise vec3 mean = anchor.position.xyz + offset * anchor.offset_scale.xyz;
-  g.position = vec4(mean, 1.0 - 2.0 / (exp(2.0 * logit) + 1.0));  // tanh
+  g.position = vec4(mean_of(anchor, n, k), 1.0 - 2.0 / (exp(2.0 * logit) + 1.0));  // tanh
   g.rotation = rotation / max(length(rotation), 1e-12);
   g.scale = vec4(anchor.scale.xyz * sigmoid(scale), 0.0);
   gaussians[to] = g;
@@ -85,6 +112,15 @@ void main() {
     eye += (views[v].anchor.xyz - views[first].anchor.xyz) + views[v].eye.xyz;
     seen = seen || sees(views[v], anchor);
   }
+#if REUSE == 1
+  uint last = kept_last[at] & ~KEPT_HIDDEN;
+  bool hidden = seen && remembers != 0u;
+  for (uint v = first; v < end; ++v) hidden = hidden && is_hidden(v, anchor, n, last);
+  if (hidden) {
+    kept[at] = last | KEPT_HIDDEN;
+    return;
+  }
+#endif
   vec3 towards = (anchor.position.xyz - views[first].anchor.xyz) - eye / float(end - first);
   kept[at] = seen ? decode_anchor(anchor, n, towards, at * uint(OFFSETS)) : 0u;
 }

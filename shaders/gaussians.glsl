@@ -20,7 +20,15 @@ uint place_of(uint i, uint v) {
 
 bool is_kept(uint i, uint v) {
   uint place = place_of(i, v);
-  return (kept[place / uint(OFFSETS)] >> (place % uint(OFFSETS)) & 1u) != 0u;
+  uint bits = kept[place / uint(OFFSETS)];
+  return (bits & KEPT_HIDDEN) == 0u && (bits >> (place % uint(OFFSETS)) & 1u) != 0u;
+}
+
+// Whether view v had it, and its anchor was not decoded again because Th would leave it out.
+bool is_hidden(uint i, uint v) {
+  uint place = place_of(i, v);
+  uint bits = kept[place / uint(OFFSETS)];
+  return (bits & KEPT_HIDDEN) != 0u && (bits >> (place % uint(OFFSETS)) & 1u) != 0u;
 }
 
 #else
@@ -28,5 +36,7 @@ bool is_kept(uint i, uint v) {
 uint place_of(uint i, uint v) { return i; }
 
 bool is_kept(uint i, uint v) { return true; }
+
+bool is_hidden(uint i, uint v) { return false; }
 
 #endif

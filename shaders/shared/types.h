@@ -73,6 +73,7 @@ struct Counters {
   uint probe_high;  // high half
 };
 
+#define KEPT_HIDDEN 0x80000000u  // among the bits of an anchor's Gaussians: not decoded, the last frame's
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
 #define DEPTH_KEY_NONE 0xFFFFFFFFu  // of a Gaussian that no view of the order group draws

@@ -139,7 +139,8 @@ AnchorBuffers::AnchorBuffers(gl::Context& context, const Scaffold& scaffold, std
       anchors(context, "anchors"),
       offsets(context, "offsets of an anchor's Gaussians"),
       view_free(context, "networks' first layers without the view"),
-      kept(context, "Gaussians kept by anchor") {
+      kept(std::make_unique<gl::Buffer>(context, "Gaussians kept by anchor")),
+      kept_last(std::make_unique<gl::Buffer>(context, "Gaussians kept by the last frame")) {
   anchors.upload(pack_anchors(scaffold, first, anchor_count));
   const std::size_t k = scaffold.offset_count;
   offsets.upload(std::span(scaffold.offset).subspan(first * k, anchor_count * k));

@@ -2,6 +2,7 @@
 // A Scaffold-GS model on the GPU (scene/scaffold.h): what the stage decode reads.
 
 #include <cstdint>
+#include <memory>
 
 #include "gl/buffer.h"
 #include "scene/scaffold.h"
@@ -17,7 +18,9 @@ struct AnchorBuffers {
   gl::Buffer anchors;    // Anchor
   gl::Buffer offsets;    // float (anchor, K, 3)
   gl::Buffer view_free;  // vec4 (resolution, network, quad, anchor), see networks.glsl
-  gl::Buffer kept;       // uint (decoding, anchor): bit k: Gaussian k is there
+  // uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN: none is, these are the last frame's.
+  // Written while the last frame's is read.
+  std::unique_ptr<gl::Buffer> kept, kept_last;
 };
 
 /// The networks; without weights for other models.

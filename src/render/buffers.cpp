@@ -89,7 +89,14 @@ void ModelBuffers::reserve(const FrameShape& shape) {
     const std::int64_t gaussians = std::int64_t{shape.decoding_count()} * page.count;
     page.gaussians->reserve(gaussians * static_cast<std::int64_t>(sizeof(shared::Gaussian)));
     page.harmonics->reserve(gaussians * harmonic_bytes(0));
-    page.anchors->kept.reserve(std::int64_t{shape.decoding_count()} * page.anchors->count * 4);
+    for (gl::Buffer* kept : {page.anchors->kept.get(), page.anchors->kept_last.get()})
+      kept->reserve(std::int64_t{shape.decoding_count()} * page.anchors->count * 4);
+  }
+}
+
+void ModelBuffers::keep_last() {
+  for (Page& page : pages) {
+    if (page.anchors) std::swap(page.anchors->kept, page.anchors->kept_last);
   }
 }
 

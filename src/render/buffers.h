@@ -32,6 +32,9 @@ struct ModelBuffers {
   /// Room for what a frame of this shape decodes.
   void reserve(const FrameShape& shape);
 
+  /// Once a frame is complete: what it kept of each anchor is the last frame's for the next.
+  void keep_last();
+
   std::vector<Page> pages;
   NetworkBuffers networks;
 

@@ -129,6 +129,7 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   last_shape_ = shape_;
   last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
   if (measures(shape_.settings.transmittance)) std::swap(buffers_.upper, buffers_.upper_next);
+  model_buffers_.keep_last();
   report.loss = shape_.settings.loss;
   report.remembered = shape_.remembers;
   if (!shape_.probe) return;

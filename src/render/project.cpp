@@ -9,7 +9,7 @@ namespace {
 
 // Of models that are not decoded no shader looks at it.
 const gl::Buffer& kept_of(const ModelBuffers::Page& page) {
-  return page.anchors ? page.anchors->kept : *page.gaussians;
+  return page.anchors ? *page.anchors->kept : *page.gaussians;
 }
 
 // Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no

@@ -42,6 +42,9 @@ struct FrameSettings {
   int probe_strips = 16;
   int decode = DECODE_EYES;  // DECODE_; of Scaffold-GS only, cyclopean for views in pairs as above
   bool anchor_cull = true;   // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
+  /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
+  /// become, is not decoded. With a measured transmittance, each eye's own Th, and no quality to probe.
+  bool anchor_reuse = true;
   int tile_size = TILE_SIZE_DEFAULT;  // px: 8, 16 or 32; the picture does not depend on it
   glm::vec3 background{0.0f};         // behind the scene, for contrast only: the pictures are without
   /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong

@@ -76,7 +76,7 @@ void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& m
     }
     page.gaussians->upload(decoded.gaussians);
     page.harmonics->upload(decoded.harmonics);
-    page.anchors->kept.upload(decoded.kept);
+    page.anchors->kept->upload(decoded.kept);
   }
 }
 

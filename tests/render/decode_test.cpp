@@ -24,8 +24,8 @@ std::map<std::size_t, reference::Decoded> read_decoding(const test::StageRun& ru
     const std::size_t first = std::size_t{decoding} * page.count;
     const auto gaussians = page.gaussians->read<shared::Gaussian>(page.count, first);
     const auto colours = page.harmonics->read<glm::vec4>(page.count, first);
-    const auto kept = page.anchors->kept.read<std::uint32_t>(page.anchors->count,
-                                                             std::size_t{decoding} * page.anchors->count);
+    const auto kept = page.anchors->kept->read<std::uint32_t>(page.anchors->count,
+                                                              std::size_t{decoding} * page.anchors->count);
     for (std::size_t i = 0; i < page.count; ++i) {
       if ((kept[i / offsets] >> (i % offsets) & 1u) == 0) continue;
       const shared::Gaussian& g = gaussians[i];
