@@ -54,6 +54,19 @@ vec4 conic_of(float xx, float xy, float yy) {
   return vec4(q, sqrt(det) * size);
 }
 
+// The share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P being C2 without it (Mip-Splatting,
+// Yu 2024). The axes' cross product has the length sqrt(det P), without the cancellation of long thin ellipses.
+float mass_kept(vec3 across, vec3 down, float root_det) {
+  precise vec3 n = vec3(difference_of_products(across.y, down.z, across.z, down.y),
+                        difference_of_products(across.z, down.x, across.x, down.z),
+                        difference_of_products(across.x, down.y, across.y, down.x));
+  precise float size = max(abs(n.x), max(abs(n.y), abs(n.z)));
+  if (!(size > 0.0)) return 0.0;
+  precise vec3 direction = n / size;
+  precise float kept = size * sqrt(dot_precise(direction, direction)) / root_det;
+  return min(kept, 1.0);
+}
+
 // Everything but the colour and the level of Th. False where this view does not draw it.
 bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
@@ -71,6 +84,9 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   splat.mean = mean;
   splat.depth = v.z;
   splat.opacity = g.position.w;
+#if ANTIALIASED
+  splat.opacity *= mass_kept(across, down, splat.conic.w);
+#endif
   splat.colour = vec4(0.0);
   return true;
 }

@@ -35,6 +35,19 @@
 #define DECODE_EYES 0
 #define DECODE_CYCLOPEAN 1
 
+// --layout: how both eyes are shown. Those from LAYOUT_ANAGLYPH on mix their colours.
+#define LAYOUT_SEPARATE 0
+#define LAYOUT_MULTI_VIEW 1
+#define LAYOUT_PARALLEL 2
+#define LAYOUT_CROSS_EYED 3
+#define LAYOUT_HALF_WIDTH 4
+#define LAYOUT_OVER_UNDER 5
+#define LAYOUT_ROWS 6
+#define LAYOUT_COLUMNS 7
+#define LAYOUT_ANAGLYPH 8
+#define LAYOUT_HALF_COLOUR 9
+#define LAYOUT_GREY 10
+
 #ifdef __cplusplus
 #include <algorithm>
 #include <iterator>
@@ -85,6 +98,20 @@ inline constexpr Choice th_eyes_choices[] = {
 inline constexpr Choice decode_choices[] = {
     {"eyes", "each eye its own: exact"},
     {"cyclopean", "both eyes of a pair share those of an eye between them"},
+};
+
+inline constexpr Choice layout_choices[] = {
+    {"separate", "a file for each eye"},
+    {"multi-view", "both eyes as the views of one OpenEXR file"},
+    {"parallel", "side by side, the left eye's picture on the left"},
+    {"cross-eyed", "side by side, swapped: for eyes that cross"},
+    {"half-width", "parallel, each squeezed to half its width: 3D televisions"},
+    {"over-under", "the left eye's picture above the right one's"},
+    {"rows", "left and right row by row, the left eye's first: polarised screens"},
+    {"columns", "the same column by column"},
+    {"anaglyph", "for red-cyan glasses, by Dubois's least squares"},
+    {"half-colour", "for red-cyan glasses: grey in the left eye, colour in the right"},
+    {"grey", "for red-cyan glasses: grey in both eyes"},
 };
 
 /// The number of the choice of that name; the number of choices if there is none.

@@ -11,8 +11,10 @@
 // A pixel has a depth where more than this much of it is covered.
 #define COVERAGE_FOR_DEPTH 0.5
 // Variance in px^2 added to both axes of every projected Gaussian, a low-pass for splats thinner than a pixel
-// (3D-GS).
+// (3D-GS). A model of another kernel is drawn by programs that define theirs.
+#ifndef KERNEL_PX2
 #define KERNEL_PX2 0.3
+#endif
 // J is evaluated at most this share of the picture's size beyond its edges; 0.15 a side is INRIA's 1.3
 // (METHOD 2).
 #define CLAMP_MARGIN 0.15

@@ -6,10 +6,10 @@
 
 #include "app/bench_plan.h"
 #include "app/command.h"
+#include "app/photos.h"
 #include "base/log.h"
 #include "base/output_file.h"
 #include "base/progress.h"
-#include "formats/image_file.h"
 #include "scene/framing.h"
 #include "study/bench.h"
 #include "study/bench_results.h"
@@ -38,29 +38,12 @@ Shard parse_shard(const std::string& text) {
   fail("--shard {}: expected I/N with I from 1 to N, as in 2/8", text);
 }
 
-/// The file of a view's photo, or nothing.
-std::optional<fs::path> find_photo(const RenderOptions& options, const Shot& shot) {
-  for (const std::string& name : {shot.name, shot.stem + ".jpg", shot.stem + ".png", shot.stem + ".JPG",
-                                  shot.stem + ".jpeg", shot.stem + ".PNG", shot.stem + ".JPEG"}) {
-    if (fs::is_regular_file(fs::path(options.photos) / name)) return fs::path(options.photos) / name;
-  }
-  return std::nullopt;
-}
-
-Image load_photo(const fs::path& file, const Camera& camera) {
-  Image photo = load_image(file);
-  if (photo.channels != 3 || photo.width != camera.width || photo.height != camera.height)
-    fail("photo {} has {} x {} px and {} channels; its view has {} x {} px and 3", file.string(), photo.width,
-         photo.height, photo.channels, camera.width, camera.height);
-  return photo;
-}
-
 /// The shots of a case: as many as the axes want, evenly spread, or all that --view names. Where photos can
 /// be compared, only shots that have one count.
 std::vector<Shot> choose_shots(const BenchPlan& plan, const BenchCase& which, const RenderOptions& options,
                                std::vector<Shot> shots) {
   if (!options.photos.empty() && which.eyes == 1 && which.size == "own") {
-    std::erase_if(shots, [&](const Shot& shot) { return !find_photo(options, shot); });
+    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(options.photos, shot); });
     if (shots.empty()) fail("--photos {}: there is no photo of any view", options.photos);
   }
   if (!plan.scenes[which.scene].options.views.empty()) return shots;
@@ -77,14 +60,13 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
   const RenderOptions render = case_options(scene, which);
   const CameraList list = scene.list.listed ? scene.list : made_up_cameras(render, model);
   const double near_plane = render.near_plane.value_or(list.listed ? near_default : near_for(model));
-  const std::vector<Shot> shots =
-      choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
+  const std::vector<Shot> shots = choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
   std::vector<study::BenchView> views;
   for (const Shot& shot : shots) {
     study::BenchView& view = views.emplace_back(study::BenchView{shot.name, {}, {}});
     for (const Eye& eye : shot.eyes) view.eyes.push_back(eye.view);
     const bool photos = !render.photos.empty() && which.eyes == 1 && which.size == "own";
-    if (photos) view.photo = load_photo(*find_photo(render, shot), shot.eyes.front().camera);
+    if (photos) view.photo = load_view_photo(*find_view_photo(render.photos, shot), shot.eyes.front().camera);
   }
   const Camera& camera = shots.front().eyes.front().camera;
   constexpr int small_width = 160;

@@ -20,6 +20,12 @@ std::mutex& writing() {
   return mutex;
 }
 
+// Of Unfinished; guarded by writing().
+fs::path& unfinished() {
+  static fs::path path;
+  return path;
+}
+
 }  // namespace
 
 void end_cleanly_on_signals() {
@@ -33,10 +39,13 @@ void end_cleanly_on_signals() {
   // Threads made from here on inherit the mask: the signals reach nobody but the one that waits for them.
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::mutex& mutex = writing();
-  std::thread([signals, &mutex] {
+  fs::path& partial = unfinished();
+  std::thread([signals, &mutex, &partial] {
     int signal = 0;
     if (sigwait(&signals, &signal) != 0) return;
     mutex.lock();
+    std::error_code ignored;
+    if (!partial.empty()) fs::remove(partial, ignored);
     // Ends the process the way the signal does by itself, so that a shell sees why.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     raise(signal);
@@ -44,6 +53,16 @@ void end_cleanly_on_signals() {
 }
 
 Uninterrupted::Uninterrupted() : lock_(writing()) {}
+
+Unfinished::Unfinished(const fs::path& path) {
+  const std::lock_guard<std::mutex> lock(writing());
+  unfinished() = path;
+}
+
+Unfinished::~Unfinished() {
+  const std::lock_guard<std::mutex> lock(writing());
+  unfinished().clear();
+}
 
 void check_output(const fs::path& path) {
   std::error_code error;

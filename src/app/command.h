@@ -22,6 +22,8 @@ void add_compare(CLI::App& program, Command& command);
 void add_devices(CLI::App& program, Command& command);
 void add_study(CLI::App& program, Command& command);
 void add_bench(CLI::App& program, Command& command);
+void add_calibrate(CLI::App& program, Command& command);
+void add_view(CLI::App& program, Command& command);
 
 /// From now on SIGINT and SIGTERM end the program at once, or after the file that is being written
 /// (Uninterrupted), so that no half file is left. Call it before any thread is made.
@@ -34,6 +36,15 @@ class Uninterrupted {
 
  private:
   std::lock_guard<std::mutex> lock_;
+};
+
+/// A file that is removed where a signal ends the program while this lives. One at a time.
+class Unfinished {
+ public:
+  explicit Unfinished(const std::filesystem::path& path);
+  ~Unfinished();
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
 };
 
 /// Throws Error if `path` cannot become an output: a file stands where a folder is needed, no permission, or

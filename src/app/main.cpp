@@ -34,10 +34,12 @@ int run(int argc, char** argv) {
   program.footer(epilogue);
   binosplat::app::Command command;
   binosplat::app::add_render(program, command);
+  binosplat::app::add_view(program, command);
   binosplat::app::add_compare(program, command);
   binosplat::app::add_devices(program, command);
   binosplat::app::add_study(program, command);
   binosplat::app::add_bench(program, command);
+  binosplat::app::add_calibrate(program, command);
   try {
     program.parse(argc, argv);
     return static_cast<int>(command());

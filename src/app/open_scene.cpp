@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "formats/model_file.h"
 #include "scene/demo_room.h"
 #include "scene/repeat.h"
@@ -29,6 +30,9 @@ Scene open_once(const RenderOptions& options) {
   return {{}, [&options] {
             Model model = load_model(options.scene, {.lod = options.lod, .appearance = options.appearance});
             if (!options.axes.empty()) model.axes = options.axes;
+            if (model.antialiased && !options.antialias)
+              log_info("{} was trained with anti-aliasing and is drawn so (--no-antialias: as if not)",
+                       options.scene);
             return model;
           }};
 }
@@ -44,6 +48,12 @@ CitySettings city_settings(const RenderOptions& options) {
 
 Scene open_scene(const RenderOptions& options) {
   Scene scene = open_once(options);
+  scene.model = [read = scene.model, &options] {
+    Model model = read();
+    model.antialiased = options.antialias.value_or(model.antialiased);
+    model.kernel_px2 = options.kernel_px2.value_or(model.kernel_px2);
+    return model;
+  };
   if (!options.repeat) return scene;
   const auto once = scene.model;
   scene.model = [once, &options] {

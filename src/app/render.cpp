@@ -19,6 +19,7 @@
 #include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
+#include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/scaffold.h"
 
@@ -65,6 +66,7 @@ std::optional<double> photo_psnr(const RenderOptions& options, const Shot& shot,
 
 gl::Backend backend_of(const std::string& name) {
   if (name == "device") return gl::Backend::device;
+  if (name == "osmesa") return gl::Backend::osmesa;
   return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
 }
 
@@ -115,12 +117,13 @@ render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& mode
 
 // What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
 render::DepthTable depth_table(render::Frame& frame, const RenderOptions& options, const CameraList& list,
-                               double near_plane) {
+                               double near_plane, const std::string& axes) {
   constexpr std::size_t views_max = 16;
   const std::size_t count = std::min(views_max, list.cameras.size());
   std::vector<shared::View> views;
   for (std::size_t k = 0; k < count; ++k)
-    views.push_back(make_view(sized(options, list.cameras[k * list.cameras.size() / count]), near_plane));
+    views.push_back(make_view(into_axes(sized(options, list.cameras[k * list.cameras.size() / count]), axes),
+                              near_plane));
   log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
   return measure::measure_depth_table(frame, views);
 }
@@ -146,7 +149,8 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   render::FrameSettings settings = settings_of(options);
   render::Frame frame(context, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH)
-    settings.depth_table = depth_table(frame, options, list, report.near_plane);
+    settings.depth_table = depth_table(frame, options, list, report.near_plane, report.model.axes);
+  const std::unique_ptr<Video> video = open_video(options, plan, shots);
   Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
   std::size_t done = 0;
   for (Shot& shot : shots) {
@@ -160,9 +164,13 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
       progress.update(++done);
     }
     const std::vector<Picture> pictures = frame.read_pictures();
-    drawn.files = write_outputs(options, plan, drawn.shot, pictures);
+    drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
+    if (video) video->add(frame_of(options, plan, pictures));
+    drawn.files =
+        video ? std::vector{plan.video.string()} : write_outputs(options, plan, drawn.shot, pictures);
     drawn.photo_psnr = photo_psnr(options, drawn.shot, pictures[0]);
   }
+  if (video) video->finish();
 }
 
 void log_model(const RenderOptions& options, const Model& model) {
@@ -197,9 +205,7 @@ ExitCode render(RenderOptions options) {
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
   std::vector<Shot> shots = make_shots(options, list, near_plane, model.axes);
-  if (!plan.file.empty() && shots.size() > 1) {
-    fail("-o {} is one file and {} views are to be drawn: name a folder", options.output, shots.size());
-  }
+  check_shots(plan, shots);
   if (!options.photos.empty()) check_photos(options.photos, shots);
 
   const auto context = open_context(options);
@@ -222,10 +228,12 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render demo:room -o out/demo\n"
       "  binosplat render demo:city --count 4250000 --view all\n"
       "  binosplat render garden.ply --view DSC07956 -o pair.png\n"
+      "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
       "  binosplat render scaffold-model --decode cyclopean\n"
-      "  binosplat render scan.ply --orbit 24 --preset headset --exr half");
+      "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
+      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });
 }
 

@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "scene/axes.h"
-#include "scene/demo_city.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {
@@ -82,6 +81,14 @@ CLI::Validator range(int low, int high) { return CLI::Range(low, high).descripti
 
 CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
 
+void add_scene_name(CLI::App& sub, RenderOptions& o) {
+  sub.add_option("SCENE", o.scene,
+                 "A model (ply; SOG as folder, .sog or streamed), or one that is\nbuilt in: demo:room, a "
+                 "room, or\ndemo:city, streets of any "
+                 "size")
+      ->required();
+}
+
 void add_scene(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Scene";
   sub.add_option("--lod", o.lod,
@@ -99,6 +106,22 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
          "or Back, "
          "as in rdf, rub (the format's)")
       ->type_name("XYZ")
+      ->group(group);
+  auto* antialias =
+      sub.add_flag_callback(
+             "--antialias", [&o] { o.antialias = true; },
+             "Draw as a model that was trained with anti-aliasing (gsplat's,\nMip-Splatting's); by default "
+             "what its file says")
+          ->group(group);
+  sub.add_flag_callback(
+         "--no-antialias", [&o] { o.antialias = false; }, "Draw as one that was not")
+      ->excludes(antialias)
+      ->group(group);
+  sub.add_option(
+         "--kernel-px2", o.kernel_px2,
+         "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)")
+      ->type_name("S")
+      ->check(positive)
       ->group(group);
   sub.add_option("--appearance", o.appearance,
                  "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
@@ -160,10 +183,7 @@ void add_cameras(CLI::App& sub, RenderOptions& o) {
       ->check(range(1, 10000))
       ->group(group);
   sub.add_option_function<std::string>(
-         "--size",
-         [&o](const std::string& text) {
-           o.size = parse_two("--size", text, "pixels as WIDTHxHEIGHT, for one 1280x720");
-         },
+         "--size", [&o](const std::string& text) { o.size = parse_size("--size", text); },
          "Pixels of each eye; keeps the vertical field of view")
       ->type_name("WxH")
       ->group(group);
@@ -242,11 +262,12 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->type_name("N")
       ->check(range(1, 100000))
       ->group(group);
-  sub.add_option("--backend", o.backend,
-                 "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, or the first "
-                 "that works (auto)")
-      ->check(one_of<std::string>({"auto", "device", "surfaceless"}))
-      ->type_name("auto|device|surfaceless")
+  sub.add_option(
+         "--backend", o.backend,
+         "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, Mesa without EGL, "
+         "or the first that works (auto)")
+      ->check(one_of<std::string>({"auto", "device", "surfaceless", "osmesa"}))
+      ->type_name("auto|device|surfaceless|osmesa")
       ->group(group);
   sub.add_option("--device", o.device, "Number of the EGL device")
       ->type_name("N")
@@ -258,17 +279,33 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->group(group);
 }
 
-void add_outputs(CLI::App& sub, RenderOptions& o) {
+// What files and the preview share.
+void add_look(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Outputs";
-  sub.add_option("-o,--output", o.output,
-                 "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
-                 "FILE.exr: both eyes side by side (out/SCENE)")
-      ->type_name("DIR|FILE")
+  choose(sub, "--layout", o.layout,
+         "How both eyes are shown (a folder: separate; FILE.png and videos:\nparallel; FILE.exr: multi-view)",
+         layout_choices)
       ->group(group);
   sub.add_option_function<std::string>(
          "--background", [&o](const std::string& text) { o.background = parse_background(text); },
          "Colour behind the model, 0 to 1, or none: keep alpha (0,0,0)")
       ->type_name("R,G,B|none")
+      ->group(group);
+}
+
+void add_outputs(CLI::App& sub, RenderOptions& o) {
+  const char* const group = "Outputs";
+  sub.add_option(
+         "-o,--output", o.output,
+         "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
+         "FILE.exr with both eyes, or a video of all views:\nFILE.mp4, .mov, .mkv or .webm, by ffmpeg "
+         "(out/SCENE)")
+      ->type_name("DIR|FILE")
+      ->group(group);
+  add_look(sub, o);
+  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30)")
+      ->type_name("N")
+      ->check(positive)
       ->group(group);
   sub.add_option("--bits", o.bits, "Bits a channel of PNG (8)")
       ->check(one_of({8, 16}))
@@ -304,12 +341,20 @@ glm::ivec2 parse_two(const std::string& option, const std::string& text, const c
   return two;
 }
 
+void add_view_options(CLI::App& sub, RenderOptions& options) {
+  add_scene_name(sub, options);
+  add_scene(sub, options);
+  add_cameras(sub, options);
+  add_rig(sub, options);
+  add_frame(sub, options);
+  add_look(sub, options);
+  sub.add_option("-o,--output", options.output, "A folder for pictures and paths (out/SCENE)")
+      ->type_name("DIR")
+      ->group("Outputs");
+}
+
 void add_options(CLI::App& sub, RenderOptions& options) {
-  sub.add_option("SCENE", options.scene,
-                 "A model (ply; SOG as folder, .sog or streamed), or one that is\nbuilt in: demo:room, a "
-                 "room, or\ndemo:city, streets of any "
-                 "size")
-      ->required();
+  add_scene_name(sub, options);
   add_scene(sub, options);
   add_cameras(sub, options);
   add_rig(sub, options);
@@ -317,77 +362,8 @@ void add_options(CLI::App& sub, RenderOptions& options) {
   add_outputs(sub, options);
 }
 
-namespace {
-
-void check_threshold(const RenderOptions& o) {
-  const std::string th = threshold_name(o);
-  if (o.loss && o.quality) fail("--loss with --quality, which chooses the loss: leave one of them out");
-  if (th != "tau" && !o.loss && !o.quality) fail("--th {} needs --loss or --quality: what it may cost", th);
-  if (th == "tau" && (o.loss || o.quality))
-    fail("{} has no effect with --th tau, which is exact", o.loss ? "--loss" : "--quality");
-  if (o.contrast != "off" && (th != "squared" || o.transmittance == "one")) {
-    fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
-  }
-  if ((o.transmittance == "other-eye" || o.transmittance == "both") && (o.mono || !o.only.empty())) {
-    fail("--transmittance {} needs both eyes: leave --mono and --only out", o.transmittance);
-  }
-  if (o.th_eyes != "per-eye" && (th == "tau" || o.mono || !o.only.empty())) {
-    fail("--th-eyes {} is for thresholds of both eyes: leave --mono and --only out, and give --loss",
-         o.th_eyes);
-  }
-  if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
-    fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
-  if (!o.reference_until.empty() && (o.transmittance != "one" || o.quality || o.th_eyes != "per-eye")) {
-    fail(
-        "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
-        "--quality and --th-eyes out");
-  }
-}
-
-}  // namespace
-
-std::string threshold_name(const RenderOptions& o) {
-  if (!o.th.empty()) return o.th;
-  return o.loss || o.quality ? "squared" : "tau";
-}
-
-void check(const RenderOptions& o) {
-  if (o.scene != demo_city_name && (o.seed || o.count)) {
-    fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
-  }
-  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || !o.axes.empty() || o.appearance)) {
-    fail("{} is for model files, and {} is none",
-         o.lod          ? "--lod"
-         : o.appearance ? "--appearance"
-                        : "--axes",
-         o.scene);
-  }
-  if (o.repeat.has_value() != o.spacing.has_value())
-    fail("--repeat and --spacing go together: how many copies, and how far apart");
-  if (o.eye.has_value() != o.at.has_value())
-    fail("--eye and --at go together: where the camera is, and what it looks at");
-  const bool made_up = o.eye || o.orbit;
-  if (o.eye && o.orbit) fail("--eye and --orbit: choose one of them");
-  if (made_up && (!o.cameras.empty() || !o.views.empty())) {
-    fail("{} makes its own camera: leave --cameras and --view out", o.eye ? "--eye" : "--orbit");
-  }
-  if (!o.path.empty() && (made_up || !o.cameras.empty() || !o.views.empty() || o.frames > 1)) {
-    fail(
-        "--path names its own cameras, each drawn once: leave --cameras, --view, --eye, --orbit and --frames "
-        "out");
-  }
-  check_threshold(o);
-  if (o.fov && o.preset == "headset")
-    fail("--fov with --preset headset: the preset's lens has 100 degrees across");
-  if (o.mono && !o.only.empty())
-    fail("--mono draws the camera itself and --only an eye beside it: choose one of them");
-  if (o.mono && (o.ipd || o.convergence || o.cant)) {
-    fail("--mono has no rig: leave --ipd, --convergence and --cant out");
-  }
-  if (!o.photos.empty() && !o.mono)
-    fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
-  if (o.device >= 0 && o.backend == "surfaceless")
-    fail("--device is for --backend device or auto: surfaceless has none");
+glm::ivec2 parse_size(const std::string& option, const std::string& text) {
+  return parse_two(option, text, "pixels as WIDTHxHEIGHT, for one 1280x720");
 }
 
 }  // namespace binosplat::app

@@ -29,6 +29,9 @@ struct RenderOptions {
   std::optional<glm::ivec2> repeat;  // along x and z
   std::optional<double> spacing;     // world units
 
+  std::optional<bool> antialias;     // as the model was trained; by default what its file says
+  std::optional<double> kernel_px2;  // px^2, likewise
+
   // Cameras.
   std::string cameras;             // a file; empty: found beside the model
   std::string path;                // a file whose cameras are the frames of a path, instead
@@ -66,6 +69,8 @@ struct RenderOptions {
 
   // Outputs.
   std::string output;
+  std::string layout;         // empty: by what -o names
+  std::optional<double> fps;  // of a video; none: by the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
   std::string exr;
@@ -80,6 +85,12 @@ glm::ivec2 parse_two(const std::string& option, const std::string& text, const c
 /// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
+
+/// "1280x720" as width and height in px. Throws Error, naming the option, for anything else.
+glm::ivec2 parse_size(const std::string& option, const std::string& text);
+
+/// Adds those that the preview takes, some of which check_view() of app/viewer refuses.
+void add_view_options(CLI::App& sub, RenderOptions& options);
 
 /// What --th is: squared where only a loss or a quality is given, which costs less at equal error than the
 /// paper's rule (METHOD 8).

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "app/command.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
+#include "stereo/layout.h"
 
 namespace binosplat::app {
 
@@ -19,12 +21,6 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-fs::path default_folder(const std::string& scene) {
-  const auto colon = scene.rfind("demo:", 0) == 0 ? scene.find(':') + 1 : 0;
-  const fs::path path = scene.substr(colon);
-  return fs::path("out") / (path.has_filename() ? path : path.parent_path()).stem();
-}
-
 // What a picture's file says of how it was drawn: a stereo picture is right only at its scale.
 Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string& side) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
@@ -36,26 +32,37 @@ Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string
   return notes;
 }
 
-Picture side_by_side(const std::vector<Picture>& pictures) {
-  int width = 0;
-  for (const Picture& picture : pictures) {
-    width += picture.width;
-    if (picture.height != pictures[0].height)
-      fail("-o FILE: the eyes differ in height; name a folder for one file an eye");
+bool one_picture(const RenderOptions& options) { return options.mono || !options.only.empty(); }
+
+// `picture_file`: one PNG or a video. The layout that is asked for or that fits the output, and what it does
+// not go with.
+int plan_layout(const RenderOptions& options, bool picture_file, bool exr_file) {
+  if (one_picture(options)) {
+    if (!options.layout.empty())
+      fail("--layout {} needs both eyes: leave --mono and --only out", options.layout);
+    return LAYOUT_SEPARATE;
   }
-  Picture joined(width, pictures[0].height);
-  for (int y = 0; y < joined.height; ++y) {
-    auto out = static_cast<std::size_t>(y) * width;
-    for (const Picture& picture : pictures) {
-      const auto row = static_cast<std::ptrdiff_t>(y) * picture.width;
-      std::copy_n(picture.colour.begin() + row, picture.width,
-                  joined.colour.begin() + static_cast<std::ptrdiff_t>(out));
-      std::copy_n(picture.z_sum.begin() + row, picture.width,
-                  joined.z_sum.begin() + static_cast<std::ptrdiff_t>(out));
-      out += static_cast<std::size_t>(picture.width);
-    }
+  if (options.layout.empty())
+    return picture_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
+  int layout = 0;
+  while (options.layout != layout_choices[layout].name) ++layout;
+  if (layout == LAYOUT_SEPARATE && (picture_file || exr_file))
+    fail("--layout separate writes a file for each eye: -o {} must be a folder", options.output);
+  if (layout == LAYOUT_MULTI_VIEW && picture_file)
+    fail("--layout multi-view is OpenEXR's: -o {} must be a folder or an .exr", options.output);
+  if (stereo::mixes_colours(layout) && (exr_file || !options.exr.empty())) {
+    fail("--layout {} mixes both eyes' display colours, which have no light and no depth: write PNG only",
+         options.layout);
   }
-  return joined;
+  if (stereo::mixes_colours(layout) && !options.background) {
+    fail("--layout {} mixes both eyes' colours and leaves no alpha: --background none is not for it",
+         options.layout);
+  }
+  return layout;
+}
+
+ExrOptions exr_options(const RenderOptions& options, const Notes& notes) {
+  return {options.exr != "float", options.exr_encoding == "display", options.background, notes};
 }
 
 void write(const RenderOptions& options, const OutputPlan& plan, const fs::path& path, const Picture& picture,
@@ -67,12 +74,46 @@ void write(const RenderOptions& options, const OutputPlan& plan, const fs::path&
   }
   if (plan.exr) {
     written.push_back(path.string() + ".exr");
-    save_exr(written.back(), picture,
-             {options.exr != "float", options.exr_encoding == "display", options.background, notes});
+    save_exr(written.back(), picture, exr_options(options, notes));
   }
 }
 
+OutputPlan plan_video(const RenderOptions& options, const fs::path& output) {
+  check_output(output);
+  find_ffmpeg();
+  if (options.bits || !options.exr.empty() || !options.exr_encoding.empty())
+    fail("--bits, --exr and --exr-encoding are for pictures: -o {} is a video", output.string());
+  if (!options.background) fail("--background none: a video has no alpha");
+  if (!options.json.empty()) check_output(options.json);
+  OutputPlan plan;
+  plan.video = output;
+  plan.png = false;
+  plan.layout = plan_layout(options, true, false);
+  return plan;
+}
+
+// From the times of a path's cameras, where they are evenly spaced; 30 where they say nothing.
+double frames_a_second(const RenderOptions& options, const std::vector<Shot>& shots) {
+  constexpr double usual = 30.0;
+  if (options.fps) return *options.fps;
+  const auto& first = shots.front().eyes[0].camera.time;
+  const auto& last = shots.back().eyes[0].camera.time;
+  if (shots.size() < 2 || !first || !last || !(*last > *first)) return usual;
+  const double step = (*last - *first) / static_cast<double>(shots.size() - 1);
+  for (std::size_t k = 1; k < shots.size(); ++k) {
+    const auto &a = shots[k - 1].eyes[0].camera.time, &b = shots[k].eyes[0].camera.time;
+    if (!a || !b || std::abs(*b - *a - step) > 0.01 * step) return usual;
+  }
+  return 1.0 / step;
+}
+
 }  // namespace
+
+fs::path default_folder(const std::string& scene) {
+  const auto colon = scene.rfind("demo:", 0) == 0 ? scene.find(':') + 1 : 0;
+  const fs::path path = scene.substr(colon);
+  return fs::path("out") / (path.has_filename() ? path : path.parent_path()).stem();
+}
 
 OutputPlan plan_outputs(const RenderOptions& options) {
   OutputPlan plan;
@@ -80,6 +121,8 @@ OutputPlan plan_outputs(const RenderOptions& options) {
   const fs::path output = options.output.empty() ? default_folder(options.scene) : fs::path(options.output);
   const std::string extension = lower_extension(output);
   const bool file = extension == ".png" || extension == ".exr";
+  if (is_video(output)) return plan_video(options, output);
+  if (options.fps) fail("--fps is for videos: -o FILE.mp4, .mov, .mkv or .webm");
   for (const char* other : {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp"}) {
     if (extension == other) fail("-o {}: pictures are written as .png or .exr", output.string());
   }
@@ -93,26 +136,79 @@ OutputPlan plan_outputs(const RenderOptions& options) {
     check_output(output / "picture");
     plan.folder = output;
   }
+  plan.layout = plan_layout(options, extension == ".png", extension == ".exr");
+  if (plan.layout == LAYOUT_MULTI_VIEW) {
+    plan.png = false;
+    plan.exr = true;
+  }
   if (options.bits && !plan.png)
-    fail("--bits is for PNG: -o {} writes OpenEXR, whose depth --exr sets", output.string());
+    fail("--bits is for PNG: this writes OpenEXR to {}, whose depth --exr sets", output.string());
   if (!options.exr_encoding.empty() && !plan.exr)
     fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
   if (!options.json.empty()) check_output(options.json);
   return plan;
 }
 
+void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots) {
+  if (!plan.file.empty() && shots.size() > 1) {
+    fail("-o {} is one file and {} views are to be drawn: name a folder", plan.file.string(), shots.size());
+  }
+  for (const Shot& shot : shots) {
+    const Camera &a = shots[0].eyes[0].camera, &b = shot.eyes[0].camera;
+    if (!plan.video.empty() && (a.width != b.width || a.height != b.height)) {
+      fail("-o {}: the views differ in size, {} x {} and {} x {} px: give them one with --size",
+           plan.video.string(), a.width, a.height, b.width, b.height);
+    }
+  }
+  if (plan.layout == LAYOUT_SEPARATE) return;
+  for (const Shot& shot : shots) {
+    const Camera &left = shot.eyes[0].camera, &right = shot.eyes[1].camera;
+    if (left.width != right.width || left.height != right.height) {
+      fail(
+          "--layout {}: the eyes of {} differ in size, {} x {} and {} x {} px: give them one with --size, or "
+          "use "
+          "--layout separate and a folder",
+          layout_choices[plan.layout].name, shot.name, left.width, left.height, right.width, right.height);
+    }
+    stereo::layout_size(plan.layout, {left.width, left.height});
+  }
+}
+
+std::unique_ptr<Video> open_video(const RenderOptions& options, const OutputPlan& plan,
+                                  const std::vector<Shot>& shots) {
+  if (plan.video.empty()) return nullptr;
+  const Camera& eye = shots[0].eyes[0].camera;
+  const glm::ivec2 size = stereo::layout_size(plan.layout, {eye.width, eye.height});
+  return std::make_unique<Video>(plan.video, size.x, size.y, frames_a_second(options, shots), plan.layout);
+}
+
+Image frame_of(const RenderOptions& options, const OutputPlan& plan, const std::vector<Picture>& pictures) {
+  if (plan.layout == LAYOUT_SEPARATE) return composite(pictures[0], options.background);
+  return composite(stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background),
+                   options.background);
+}
+
 std::vector<std::string> write_outputs(const RenderOptions& options, const OutputPlan& plan, const Shot& shot,
                                        const std::vector<Picture>& pictures) {
   std::vector<std::string> written;
-  if (plan.folder.empty()) {
-    const std::string side = shot.eyes.size() == 1 ? shot.eyes[0].side : "left, right";
-    write(options, plan, plan.file, side_by_side(pictures), notes_of(options, shot, side), written);
+  const fs::path base = plan.folder.empty() ? plan.file : plan.folder / shot.stem;
+  if (plan.layout == LAYOUT_SEPARATE) {
+    for (std::size_t k = 0; k < shot.eyes.size(); ++k) {
+      const std::string& side = shot.eyes[k].side;
+      const fs::path path = plan.folder.empty() || side.empty() ? base : fs::path(base.string() + "_" + side);
+      write(options, plan, path, pictures[k], notes_of(options, shot, side), written);
+    }
     return written;
   }
-  for (std::size_t k = 0; k < shot.eyes.size(); ++k) {
-    const std::string& side = shot.eyes[k].side;
-    const fs::path path = plan.folder / (side.empty() ? shot.stem : shot.stem + "_" + side);
-    write(options, plan, path, pictures[k], notes_of(options, shot, side), written);
+  Notes notes = notes_of(options, shot, "left, right");
+  notes["binosplatLayout"] = layout_choices[plan.layout].name;
+  if (plan.layout == LAYOUT_MULTI_VIEW) {
+    const Uninterrupted hold;
+    written.push_back(base.string() + ".exr");
+    save_exr(written.back(), pictures[0], pictures[1], exr_options(options, notes));
+  } else {
+    write(options, plan, base, stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background),
+          notes, written);
   }
   return written;
 }

@@ -2,25 +2,44 @@
 // The files that `binosplat render` leaves.
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "app/render_options.h"
 #include "app/shots.h"
+#include "app/video.h"
 #include "base/image.h"
+#include "shared/axes.h"
 
 namespace binosplat::app {
 
 /// Which files a shot becomes.
 struct OutputPlan {
-  std::filesystem::path folder;  // for one file an eye; empty: both eyes side by side in `file`
+  std::filesystem::path folder;  // for files with the shots' names; empty: one shot, in `file`
   std::filesystem::path file;    // without its ending
+  int layout = LAYOUT_SEPARATE;  // LAYOUT_ of shared/axes.h; separate in `file`: a single eye's
+  std::filesystem::path video;   // of all shots, instead of files
   bool png = true;
   bool exr = false;
 };
 
-/// From -o, --exr and --bits. Throws Error, before any long work, for what cannot be written.
+/// Where a scene's files go without -o: out/ and its name.
+std::filesystem::path default_folder(const std::string& scene);
+
+/// From -o, --layout, --exr and --bits. Throws Error, before any long work, for what cannot be written.
 OutputPlan plan_outputs(const RenderOptions& options);
+
+/// Throws Error for shots whose eyes cannot be laid out as planned, for many in one picture, and for videos
+/// whose frames differ in size.
+void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots);
+
+/// The video that is planned, to be given each shot's pictures as frame_of() has them; nothing if none is.
+std::unique_ptr<Video> open_video(const RenderOptions& options, const OutputPlan& plan,
+                                  const std::vector<Shot>& shots);
+
+/// A shot's pictures as a frame of the video.
+Image frame_of(const RenderOptions& options, const OutputPlan& plan, const std::vector<Picture>& pictures);
 
 /// Writes the pictures of a shot's eyes, in their order, and returns the files' names.
 std::vector<std::string> write_outputs(const RenderOptions& options, const OutputPlan& plan, const Shot& shot,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -54,6 +55,51 @@ ordered_json eye_json(const Eye& eye) {
   return json;
 }
 
+// At which the optics of headsets put their screens.
+constexpr double headset_focus_metres = 2.0;
+
+ordered_json comfort_json(const Comfort& comfort) {
+  const stereo::DisparityRange& r = comfort.range;
+  ordered_json json = {{"near_px", r.near_px},           {"far_px", r.far_px},
+                       {"near_degrees", r.near_degrees}, {"far_degrees", r.far_degrees},
+                       {"vertical_px", r.vertical_px},   {"comfortable", stereo::comfortable(r)}};
+  return json;
+}
+
+// How the disparities of a pair lie.
+void print_comfort(const Drawn& drawn) {
+  const stereo::DisparityRange& r = drawn.comfort->range;
+  fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees{}\n", r.far_px,
+             r.near_px, r.far_degrees, r.near_degrees,
+             r.vertical_px > 0.5 ? fmt::format("; vertical up to {:.1f} px", r.vertical_px) : "");
+}
+
+double discomfort(const Drawn& drawn) {
+  const stereo::DisparityRange& r = drawn.comfort->range;
+  return std::max(r.near_degrees, -r.far_degrees);
+}
+
+// Warns of the pair that asks most of the eyes, and how many others do.
+void warn_of_discomfort(const std::vector<Drawn>& all) {
+  const Drawn* worst = nullptr;
+  int others = -1;
+  for (const Drawn& drawn : all) {
+    if (!drawn.comfort || stereo::comfortable(drawn.comfort->range)) continue;
+    ++others;
+    if (worst == nullptr || discomfort(drawn) > discomfort(*worst)) worst = &drawn;
+  }
+  if (worst == nullptr) return;
+  std::string instead;
+  if (const auto& better = worst->comfort->better) {
+    instead = fmt::format("; --convergence {:.3g}", better->convergence);
+    if (better->ipd) instead += fmt::format(" --ipd {:.3g}", *better->ipd);
+    instead += " is within";
+  }
+  log_warning("{}{}: disparities beyond {:.0f} degree either way tire most eyes{}", worst->shot.name,
+              others > 0 ? fmt::format(" and {} other view{}", others, others == 1 ? "" : "s") : "",
+              stereo::comfortable_degrees, instead);
+}
+
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   ordered_json json = {{"name", drawn.shot.name}, {"units_per_metre", options.units_per_metre}};
   if (drawn.shot.ipd) json["ipd_metres"] = *drawn.shot.ipd;
@@ -69,14 +115,19 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   if (options.quality) json["loss"] = drawn.report.loss;
   if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
+  if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
   json["outputs"] = drawn.files;
   return json;
 }
 
 ordered_json settings_json(const RenderReport& report) {
   const RenderOptions& o = report.options;
-  ordered_json json = {
-      {"tiles", o.tiles}, {"tile", o.tile}, {"near", report.near_plane}, {"th", threshold_name(o)}};
+  ordered_json json = {{"tiles", o.tiles},
+                       {"tile", o.tile},
+                       {"near", report.near_plane},
+                       {"antialiased", report.model.antialiased},
+                       {"kernel_px2", report.model.kernel_px2},
+                       {"th", threshold_name(o)}};
   if (o.loss) json["loss"] = *o.loss;
   json["transmittance"] = o.transmittance;
   json["contrast"] = o.contrast;
@@ -108,6 +159,26 @@ ordered_json scene_json(const RenderReport& report) {
 }
 
 }  // namespace
+
+std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot, const Picture& left) {
+  if (shot.eyes.size() != 2) return std::nullopt;
+  const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
+  // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
+  const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
+  const auto focus = canted || options.preset == "headset"
+                         ? std::optional(headset_focus_metres * options.units_per_metre)
+                         : stereo::screen_distance(eyes);
+  const auto range = stereo::disparity_range(eyes, left, focus);
+  if (!range) return std::nullopt;
+  Comfort comfort{*range, {}};
+  const bool own_rig = !shot.given_eyes && !canted && options.preset != "headset";
+  if (own_rig && !stereo::comfortable(*range)) {
+    comfort.better = stereo::comfortable_rig(*range, eyes);
+    comfort.better->convergence /= options.units_per_metre;
+    if (comfort.better->ipd) *comfort.better->ipd /= options.units_per_metre;
+  }
+  return comfort;
+}
 
 void StageTimes::add(const render::FrameReport& report) { frames_.push_back(report); }
 
@@ -141,7 +212,9 @@ void print(const RenderReport& report) {
       line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
+    if (drawn.comfort) print_comfort(drawn);
   }
+  warn_of_discomfort(report.drawn);
   if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
   const std::size_t frames = report.times.frames();
   fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");

@@ -13,6 +13,7 @@
 #include "render/buffers.h"
 #include "render/frame.h"
 #include "scene/model.h"
+#include "stereo/comfort.h"
 
 namespace binosplat::app {
 
@@ -34,12 +35,22 @@ class StageTimes {
   std::vector<render::FrameReport> frames_;
 };
 
+/// How a pair's disparities lie, and what to change where they are beyond comfort.
+struct Comfort {
+  stereo::DisparityRange range;
+  std::optional<stereo::ComfortableRig> better;  // m; where the range is not comfortable and the rig ours
+};
+
+/// Of a shot with both eyes and something that has a depth, from the left eye's picture.
+std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot, const Picture& left);
+
 /// A shot once it is drawn.
 struct Drawn {
   Shot shot;
   render::FrameReport report;
   std::vector<std::string> files;
   std::optional<double> photo_psnr;  // dB
+  std::optional<Comfort> comfort;
 };
 
 struct RenderReport {

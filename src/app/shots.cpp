@@ -127,6 +127,7 @@ void add_eyes(const RenderOptions& options, const Choice& choice, double near_pl
     if (options.only.empty() || options.only == side)
       shot.eyes.push_back({side, pair.cameras[k], drawn.views[k]});
   }
+  shot.given_eyes = choice.cameras.size() == 2;
   const double apart = glm::length(pair.cameras[1].position - pair.cameras[0].position);
   shot.ipd =
       choice.cameras.size() == 1 ? rig_settings(options, near_plane).ipd : apart / options.units_per_metre;
@@ -191,7 +192,7 @@ std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& lis
   std::vector<Shot> shots;
   std::set<std::string> taken;
   for (const Choice& choice : chosen(options, list)) {
-    Shot& shot = shots.emplace_back(Shot{choice.name, stem_of(choice.name, taken), {}, {}});
+    Shot& shot = shots.emplace_back(Shot{choice.name, stem_of(choice.name, taken), {}, {}, false});
     add_eyes(options, choice, near_plane, axes, shot);
   }
   return shots;

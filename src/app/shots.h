@@ -24,6 +24,7 @@ struct Shot {
   std::string stem;  // of its files: unique among the shots, without folders and picture endings
   std::vector<Eye> eyes;
   std::optional<double> ipd;  // m, where there is a rig
+  bool given_eyes = false;    // as a pair by the cameras
 };
 
 /// Where cameras come from, for the log, and which they are.

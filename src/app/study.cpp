@@ -14,6 +14,7 @@
 #include "formats/cameras_file.h"
 #include "scene/framing.h"
 #include "study/carried.h"
+#include "study/eyes.h"
 
 namespace binosplat::app {
 
@@ -25,6 +26,7 @@ using study::Variant;
 struct StudyOptions {
   RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
   bool stability = false;
+  bool eyes = false;
   std::vector<std::string> cases;
   double target = 40.0;  // dB
   std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
@@ -178,9 +180,13 @@ std::vector<std::vector<shared::View>> path_views(const StudyOptions& options, d
   return frames;
 }
 
+Variant variant_of(const StudyOptions& o) {
+  return {number_of(o.th, th_choices), number_of(o.transmittance, transmittance_choices),
+          number_of(o.contrast, contrast_choices), number_of(o.th_eyes, th_eyes_choices)};
+}
+
 ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
-  Variant variant{number_of(options.th, th_choices), number_of(options.transmittance, transmittance_choices),
-                  number_of(options.contrast, contrast_choices), number_of(options.th_eyes, th_eyes_choices)};
+  Variant variant = variant_of(options);
   const auto frames = path_views(options, studied.near_plane);
   const float quality = options.scene.quality.value_or(0.0f);
   if (quality == 0.0f)
@@ -217,14 +223,52 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
   return json;
 }
 
+// The pair NAME_left, NAME_right of the cameras, or a rig on the camera.
+stereo::EyePair pair_of(const StudyOptions& options, const Studied& studied) {
+  const std::vector<std::string>& names = options.scene.views;
+  const auto given = names.empty() ? std::nullopt : stereo::find_eyes(studied.cameras.cameras, names.front());
+  if (!given) return stereo::make_rig(head_of(options, studied), rig(options, studied.near_plane));
+  return stereo::rig_from_eyes(sized(options.scene, (*given)[0]), sized(options.scene, (*given)[1]),
+                               studied.near_plane);
+}
+
+ordered_json eyes(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+  Progress progress("--th-eyes", std::size(th_eyes_choices));
+  std::size_t done = 0;
+  const auto results = study::run_eyes(context, *studied.model, pair_of(options, studied),
+                                       variant_of(options), options.target, [&] { progress.update(++done); });
+  fmt::print(
+      "| rule | loss | pairs | removed | left dB | right dB | disagreement dB | both eyes dB | `per-eye` at "
+      "as many pairs, dB |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
+  ordered_json json;
+  for (const study::EyesResult& r : results) {
+    fmt::print("| {} | {:.4g} | {:.0f} | {:.1f} % | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
+               r.variant.name(), r.variant.loss, r.pairs, 100.0 * r.removed, r.left_db, r.right_db,
+               r.disagreement_db, r.db, r.per_eye_db);
+    json.push_back({{"variant", r.variant.name()},
+                    {"loss", r.variant.loss},
+                    {"pairs", r.pairs},
+                    {"removed", r.removed},
+                    {"left_db", r.left_db},
+                    {"right_db", r.right_db},
+                    {"disagreement_db", r.disagreement_db},
+                    {"db", r.db},
+                    {"per_eye_db_at_as_many_pairs", r.per_eye_db}});
+  }
+  return json;
+}
+
 ExitCode study_scene(const StudyOptions& options) {
-  if (options.stability != options.scene.path.empty()) fail("study: choose --stability, or --path FILE");
+  const int chosen = int{options.stability} + int{options.eyes} + int{!options.scene.path.empty()};
+  if (chosen != 1) fail("study: choose --stability, --eyes or --path FILE");
   if (!options.json.empty()) check_output(options.json);
   const Studied studied = open(options);
   const auto context = gl::Context::open();
   log_info("drawing with {}", context->renderer());
-  const ordered_json json =
-      options.stability ? stability(*context, options, studied) : carried(*context, options, studied);
+  const ordered_json json = options.stability ? stability(*context, options, studied)
+                            : options.eyes    ? eyes(*context, options, studied)
+                                              : carried(*context, options, studied);
   if (!options.json.empty()) save_json(options.json, json);
   return ExitCode::done;
 }
@@ -238,6 +282,8 @@ void add_study(CLI::App& program, Command& command) {
   sub->add_option("SCENE", o.scene.scene, "A model, or demo:room or demo:city")->required();
   sub->add_flag("--stability", o.stability,
                 "Every rule, source, contrast and eye rule on every failure case");
+  sub->add_flag("--eyes", o.eyes,
+                "One rule with each --th-eyes on a still pair (both eyes' light by default)");
   sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME");
   sub->add_option("--path", o.scene.path, "Carry one rule along the cameras of this file instead")
       ->type_name("FILE");

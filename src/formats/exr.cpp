@@ -6,6 +6,7 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 #include <half.h>
@@ -13,9 +14,11 @@
 
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <thread>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/output_file.h"
 #include "formats/picture_readers.h"
 
@@ -61,7 +64,8 @@ struct Plane {
   std::vector<half> halves;  // instead of values where the channel is stored so
 };
 
-std::vector<Plane> planes_of(const Picture& picture, const ExrOptions& options) {
+/// The channels of a picture, their names after `prefix`.
+std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, const ExrOptions& options) {
   const Image image = composite(picture, options.background);
   const std::size_t count = picture.colour.size();
   std::vector<Plane> planes{{"R", {}, {}}, {"G", {}, {}}, {"B", {}, {}}, {"A", {}, {}}};
@@ -84,12 +88,14 @@ std::vector<Plane> planes_of(const Picture& picture, const ExrOptions& options) 
     }
   }
   planes.push_back({"Z", depth_map(picture).data, {}});
+  for (Plane& plane : planes) plane.name = prefix + plane.name;
   return planes;
 }
 
 void write_planes(Imf::OStream& stream, int width, int height, std::vector<Plane>& planes,
-                  const ExrOptions& options) {
+                  const Imf::StringVector& views, const ExrOptions& options) {
   Imf::Header header(width, height);
+  if (!views.empty()) Imf::addMultiView(header, views);
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [key, value] : options.notes) header.insert(key, Imf::StringAttribute(value));
   header.insert(encoding_name, Imf::StringAttribute(options.display ? "display" : "linear"));
@@ -145,6 +151,10 @@ Image read_channels(const std::filesystem::path& path, std::span<const std::byte
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   const auto* encoding = file.header().findTypedAttribute<Imf::StringAttribute>(encoding_name);
   display = encoding != nullptr && encoding->value() == "display";
+  if (Imf::hasMultiView(file.header()) && Imf::multiView(file.header()).size() > 1) {
+    const Imf::StringVector& views = Imf::multiView(file.header());
+    log_info("{} has {} views; this reads the default one, {}", path.string(), views.size(), views[0]);
+  }
 
   const std::vector<std::string> wanted = wanted_channels(path, file.header().channels());
   Image image(static_cast<int>(width), static_cast<int>(height), static_cast<int>(wanted.size()));
@@ -178,13 +188,21 @@ double linear_to_srgb(double v) {
   return std::copysign(display, v);
 }
 
-void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options) {
+namespace {
+
+/// Of one picture, or of a default view and those that are named.
+void save(const std::filesystem::path& path, const std::vector<const Picture*>& pictures,
+          const Imf::StringVector& views, const ExrOptions& options) {
   OutputFile file(path);
   MemoryStream stream(path.c_str());
   use_all_cores();
   try {
-    std::vector<Plane> planes = planes_of(picture, options);
-    write_planes(stream, picture.width, picture.height, planes, options);
+    std::vector<Plane> planes;
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+      std::vector<Plane> more = planes_of(*pictures[k], k == 0 ? "" : views[k] + ".", options);
+      std::move(more.begin(), more.end(), std::back_inserter(planes));
+    }
+    write_planes(stream, pictures[0]->width, pictures[0]->height, planes, views, options);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -194,6 +212,21 @@ void save_exr(const std::filesystem::path& path, const Picture& picture, const E
   }
   file.write(stream.data());
   file.commit();
+}
+
+}  // namespace
+
+void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options) {
+  save(path, {&picture}, {}, options);
+}
+
+void save_exr(const std::filesystem::path& path, const Picture& left, const Picture& right,
+              const ExrOptions& options) {
+  if (left.width != right.width || left.height != right.height) {
+    fail("cannot write {}: the views of one OpenEXR file have one size, not {} x {} and {} x {} px",
+         path.string(), left.width, left.height, right.width, right.height);
+  }
+  save(path, {&left, &right}, {"left", "right"}, options);
 }
 
 Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes) {

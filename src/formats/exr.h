@@ -7,9 +7,14 @@
 // elsewhere, always FLOAT. The header's attribute `binosplatEncoding`, "linear" or "display" (EOTF left out),
 // tells readers which it is.
 //
+// Both eyes go into one file as OpenEXR's multi-view standard has it: the attribute `multiView` lists left
+// and right, the left eye is the default view with the channels above, the right eye's are right.R, right.Z
+// and so on.
+//
 // load_image (formats/image_file.h) reads R, G, B or Y of any OpenEXR file and brings them back to display
 // values by that attribute; a file without it is taken as scene-linear. A becomes straight alpha; of a file
-// that has `coverage`, and so its background, it is left out.
+// that has `coverage`, and so its background, it is left out. Of several views it reads the default one, and
+// says so.
 
 #include <filesystem>
 
@@ -32,5 +37,10 @@ struct ExrOptions {
 
 /// Writes a picture. Throws Error naming the file.
 void save_exr(const std::filesystem::path& path, const Picture& picture, const ExrOptions& options);
+
+/// Writes a pair as the views left and right of one file. Throws Error naming the file, for one if the two
+/// differ in size: views share a window.
+void save_exr(const std::filesystem::path& path, const Picture& left, const Picture& right,
+              const ExrOptions& options);
 
 }  // namespace binosplat

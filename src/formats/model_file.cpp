@@ -101,10 +101,6 @@ Model load_model(const fs::path& named, const ModelOptions& options) {
     fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),
          model.left_out);
   }
-  if (model.antialiased) {
-    log_warning("{} was trained with anti-aliasing, which is not drawn: distant parts will look thicker",
-                path.string());
-  }
   if (model.left_out > 0) {
     log_warning("{}: {} of {} Gaussians left out (values not finite, or a zero quaternion)", path.string(),
                 model.left_out, model.left_out + model.count());

@@ -24,6 +24,9 @@ namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
+/// The low-pass that Mip-Splatting trains with.
+constexpr double mip_splatting_kernel_px2 = 0.1;
+
 /// A number as it is stored; every type of ply fits a double exactly.
 template <typename T, typename Bits>
 double load_as(const std::byte* at, bool swapped) {
@@ -78,6 +81,7 @@ class PlyReader {
     model_.name = path_.filename().string();
     model_.degree = layout_.degree;
     model_.antialiased = layout_.antialiased;
+    if (layout_.filter_3d) model_.kernel_px2 = mip_splatting_kernel_px2;
     for (const PlyElement& element : header_.elements) {
       const bool gaussians = &element == layout_.vertices;
       if (header_.format == PlyFormat::ascii) {

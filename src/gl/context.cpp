@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "gl/backends.h"
 
 namespace binosplat::gl {
 
@@ -20,10 +21,37 @@ std::string text(const Functions& gl, GLenum name) {
   return value == nullptr ? "" : value;
 }
 
+// Tries to open; keeps the reason if there is no such OpenGL here.
+template <typename Open>
+std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
+  try {
+    return open();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::no_gl) throw;
+    reasons += fmt::format("\n  {}", error.what());
+    return nullptr;
+  }
+}
+
 }  // namespace
 
-void Context::initialise(GetProcAddress get_proc_address, std::string backend) {
+std::unique_ptr<Context> Context::open(Backend backend, int device) {
+  const auto tries = [&](Backend one) {
+    return backend == one || (backend == Backend::automatic && (device < 0 || one == Backend::device));
+  };
+  std::string reasons;
+  std::unique_ptr<Context> context;
+  if (tries(Backend::device)) context = attempt([&] { return open_egl_device(device); }, reasons);
+  if (context == nullptr && tries(Backend::surfaceless)) context = attempt(open_egl_surfaceless, reasons);
+  if (context == nullptr && tries(Backend::osmesa)) context = attempt(open_osmesa, reasons);
+  if (context == nullptr)
+    throw Error(ExitCode::no_gl, fmt::format("no usable OpenGL 4.5 context. Tried:{}", reasons));
+  return context;
+}
+
+void Context::initialise(GetProcAddress get_proc_address, std::string backend, bool own) {
   functions_ = load_functions(get_proc_address);
+  if (own) functions_.DebugMessageCallback(on_message, nullptr);
   backend_ = std::move(backend);
   vendor_ = text(functions_, GL_VENDOR);
   renderer_ = text(functions_, GL_RENDERER);
@@ -36,7 +64,6 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend) {
     throw Error(ExitCode::no_gl,
                 fmt::format("{} offers OpenGL {}.{}: binosplat needs 4.5 core", renderer_, major, minor));
   }
-  functions_.DebugMessageCallback(on_message, nullptr);
   set_program_cache(ProgramCache::default_folder());
 
   read_limits();
@@ -80,7 +107,7 @@ bool Context::software() const { return renderer_.find("llvmpipe") != std::strin
 
 std::unique_ptr<Context> Context::adopt(GetProcAddress get_proc_address) {
   std::unique_ptr<Context> context(new Context());
-  context->initialise(get_proc_address, "caller's");
+  context->initialise(get_proc_address, "caller's", false);
   return context;
 }
 
@@ -107,6 +134,18 @@ void Context::count_allocation(std::int64_t bytes) {
 void Context::set_program_cache(const std::filesystem::path& folder) {
   program_cache_ = std::make_unique<ProgramCache>(folder, vendor_ + "\n" + renderer_ + "\n" + version_);
   programs_.clear();
+}
+
+std::vector<GLenum> Context::take_errors() const {
+  // A lost context may report without end.
+  constexpr std::size_t most = 16;
+  std::vector<GLenum> errors;
+  while (errors.size() < most) {
+    const GLenum error = functions_.GetError();
+    if (error == GL_NO_ERROR) break;
+    errors.push_back(error);
+  }
+  return errors;
 }
 
 void Context::check(const std::string& what) const {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "gl/functions.h"
 #include "gl/program.h"
@@ -14,8 +15,12 @@
 namespace binosplat::gl {
 
 /// Where a context comes from. `automatic` takes the first GPU that EGL's device platform offers, else Mesa's
-/// surfaceless platform (software: llvmpipe). None of them needs a display server.
-enum class Backend { automatic, device, surfaceless };
+/// surfaceless platform (software: llvmpipe), else Mesa as a library, OSMesa (llvmpipe, too, without EGL).
+/// None of them needs a display server.
+///
+/// Contexts of both libraries may live in one process; the last one made current, which opening does, is the
+/// one that both libraries draw with.
+enum class Backend { automatic, device, surfaceless, osmesa };
 
 /// Storage blocks that binosplat's largest shader uses.
 constexpr std::uint32_t storage_blocks_needed = 9;
@@ -41,7 +46,9 @@ class Context {
   /// Throws Error(no_gl) without EGL.
   static int device_count();
 
-  /// Wraps a context of the caller's that is current; it stays the caller's.
+  /// Wraps a context of the caller's that is current, 4.5 core or later; it stays the caller's, its state is
+  /// left as it is, and it must be current whenever what is made with the result is used or destroyed. Throws
+  /// Error(no_gl) that says what it lacks.
   static std::unique_ptr<Context> adopt(GetProcAddress get_proc_address);
 
   virtual ~Context() = default;
@@ -53,7 +60,7 @@ class Context {
   /// Largest group count that a dispatch may use along x; a test may lower it to see dispatches split.
   void limit_groups(std::uint32_t groups) { limits_.groups = groups; }
 
-  const std::string& backend() const { return backend_; }    // "EGL device 0", "EGL surfaceless", "caller's"
+  const std::string& backend() const { return backend_; }    // "EGL device 0", "OSMesa", "caller's"
   const std::string& renderer() const { return renderer_; }  // GL_RENDERER
   const std::string& version() const { return version_; }    // GL_VERSION
   bool software() const;                                     // llvmpipe
@@ -70,13 +77,18 @@ class Context {
   std::int64_t peak_bytes() const { return peak_; }
   void count_allocation(std::int64_t bytes);
 
+  /// GL errors recorded before this call, oldest first: asked before drawing, those of whoever used the
+  /// context until then.
+  std::vector<GLenum> take_errors() const;
+
   /// Throws std::runtime_error naming `what` if GL has recorded an error, Error(out_of_memory) for
   /// GL_OUT_OF_MEMORY.
   void check(const std::string& what) const;
 
  protected:
   Context() = default;
-  void initialise(GetProcAddress get_proc_address, std::string backend);
+  /// `own`: nobody else sets its state, such as who hears of its errors.
+  void initialise(GetProcAddress get_proc_address, std::string backend, bool own = true);
   /// For a destructor that ends the context: programs go before it.
   void release_programs() { programs_.clear(); }
 

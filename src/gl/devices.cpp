@@ -46,12 +46,14 @@ std::vector<Device> list_devices() {
     count = Context::device_count();
   } catch (const Error& error) {
     devices.push_back({.options = "EGL", .trouble = error.what()});
+    devices.push_back(look_at(Backend::osmesa, -1, "--backend osmesa"));
     return devices;
   }
   for (int i = 0; i < count; ++i) {
     devices.push_back(look_at(Backend::device, i, fmt::format("--backend device --device {}", i)));
   }
   devices.push_back(look_at(Backend::surfaceless, -1, "--backend surfaceless"));
+  devices.push_back(look_at(Backend::osmesa, -1, "--backend osmesa"));
   return devices;
 }
 

@@ -20,7 +20,8 @@ struct Device {
   std::vector<std::string> lacks;  // what binosplat can do without, at a cost that each says
 };
 
-/// Every EGL device, then EGL's surfaceless platform. Without EGL a single entry says so; nothing is thrown.
+/// Every EGL device, then EGL's surfaceless platform, then OSMesa. Without EGL one entry says so; nothing is
+/// thrown.
 std::vector<Device> list_devices();
 
 }  // namespace binosplat::gl

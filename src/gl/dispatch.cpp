@@ -10,6 +10,7 @@ namespace binosplat::gl {
 
 Dispatcher::~Dispatcher() {
   if (!queries_.empty()) context_.gl().DeleteQueries(static_cast<int>(queries_.size()), queries_.data());
+  if (no_vertices_ != 0) context_.gl().DeleteVertexArrays(1, &no_vertices_);
 }
 
 void Dispatcher::begin_frame() { marks_.clear(); }
@@ -70,6 +71,17 @@ void Dispatcher::run(const Program& program, const Work& work, std::initializer_
     gl.DispatchCompute(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), 1);
   }
   gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  context_.check(program.name());
+}
+
+void Dispatcher::fill(const Program& program, std::initializer_list<Binding> bindings,
+                      std::initializer_list<Uniform> uniforms) {
+  const Functions& gl = context_.gl();
+  bind(program, bindings, uniforms);
+  if (no_vertices_ == 0) gl.CreateVertexArrays(1, &no_vertices_);
+  gl.BindVertexArray(no_vertices_);
+  gl.UseProgram(program.id());
+  gl.DrawArrays(GL_TRIANGLES, 0, 3);
   context_.check(program.name());
 }
 

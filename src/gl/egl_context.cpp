@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "gl/context.h"
+#include "gl/backends.h"
 
 namespace binosplat::gl {
 
@@ -111,7 +111,8 @@ class EglContext final : public Context {
   [[noreturn]] void refuse(const std::string& backend, const char* why) {
     const EGLint error = egl().get_error();
     if (context_ != EGL_NO_CONTEXT) egl().destroy_context(display_, context_);
-    throw Error(ExitCode::no_gl, fmt::format("{}: {} (EGL error 0x{:04x})", backend, why, error));
+    throw Error(ExitCode::no_gl,
+                fmt::format("{}: {} (EGL error 0x{:04x}). {}", backend, why, error, what_to_install));
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;
@@ -135,53 +136,34 @@ bool is_software(EGLDeviceEXT device) {
   return names != nullptr && std::string(names).find("EGL_MESA_device_software") != std::string::npos;
 }
 
-// Tries to open; keeps the reason if it cannot be.
-template <typename Open>
-std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
-  try {
-    return open();
-  } catch (const Error& error) {
-    reasons += fmt::format("\n  {}", error.what());
-    return nullptr;
-  }
-}
-
 }  // namespace
 
 int Context::device_count() { return static_cast<int>(devices().size()); }
 
-std::unique_ptr<Context> Context::open(Backend backend, int device) {
+std::unique_ptr<Context> open_egl_device(int device) {
+  const std::vector<EGLDeviceEXT> list = devices();
+  if (device >= static_cast<int>(list.size())) {
+    fail("--device {}: EGL offers {} device(s), numbered from 0", device, list.size());
+  }
   std::string reasons;
-  if (backend != Backend::surfaceless) {
-    const std::vector<EGLDeviceEXT> list = devices();
-    if (device >= static_cast<int>(list.size())) {
-      fail("--device {}: EGL offers {} device(s), numbered from 0", device, list.size());
+  for (int i = 0; i < static_cast<int>(list.size()); ++i) {
+    // A software device is taken only when it is asked for: surfaceless is the plain way to the same
+    // llvmpipe.
+    if (device >= 0 ? i != device : is_software(list[static_cast<std::size_t>(i)])) continue;
+    try {
+      return std::make_unique<EglContext>(EGL_PLATFORM_DEVICE_EXT, list[static_cast<std::size_t>(i)],
+                                          fmt::format("EGL device {}", i));
+    } catch (const Error& error) {
+      reasons += fmt::format("{}{}", reasons.empty() ? "" : "\n  ", error.what());
     }
-    for (int i = 0; i < static_cast<int>(list.size()); ++i) {
-      // A software device is taken only when it is asked for: surfaceless is the plain way to the same
-      // llvmpipe.
-      if (device >= 0 ? i != device : is_software(list[static_cast<std::size_t>(i)])) continue;
-      auto context = attempt(
-          [&] {
-            return std::make_unique<EglContext>(EGL_PLATFORM_DEVICE_EXT, list[static_cast<std::size_t>(i)],
-                                                fmt::format("EGL device {}", i));
-          },
-          reasons);
-      if (context != nullptr) return context;
-    }
-    if (reasons.empty())
-      reasons += fmt::format("\n  EGL device platform: no GPU among {} device(s)", list.size());
   }
-  if (backend == Backend::surfaceless || (backend == Backend::automatic && device < 0)) {
-    auto context = attempt(
-        [] {
-          return std::make_unique<EglContext>(EGL_PLATFORM_SURFACELESS_MESA, nullptr, "EGL surfaceless");
-        },
-        reasons);
-    if (context != nullptr) return context;
-  }
-  throw Error(ExitCode::no_gl,
-              fmt::format("no usable OpenGL 4.5 context. Tried:{}\n{}", reasons, what_to_install));
+  if (reasons.empty())
+    reasons = fmt::format("EGL device platform: no GPU among {} device(s). {}", list.size(), what_to_install);
+  throw Error(ExitCode::no_gl, reasons);
+}
+
+std::unique_ptr<Context> open_egl_surfaceless() {
+  return std::make_unique<EglContext>(EGL_PLATFORM_SURFACELESS_MESA, nullptr, "EGL surfaceless");
 }
 
 }  // namespace binosplat::gl

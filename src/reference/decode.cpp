@@ -135,7 +135,7 @@ std::vector<Splat> project_all(const Model& model, const shared::View& view, con
   const std::vector<Decoded> decoded = decode(*model.scaffold, views, decoding.anchor_cull);
   std::vector<Splat> splats(model.count());
   tbb::parallel_for(std::size_t{0}, decoded.size(), [&](std::size_t i) {
-    Splat splat = project(decoded[i].gaussian, view);
+    Splat splat = project(decoded[i].gaussian, view, {model.kernel_px2, model.antialiased});
     splat.colour = decoded[i].colour;
     splats[decoded[i].id] = splat;
   });

@@ -76,7 +76,7 @@ glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& d
   return glm::max(colour, 0.0);
 }
 
-Splat project(const Gaussian& gaussian, const shared::View& view) {
+Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass) {
   const glm::dvec4 row_x = view.row_x, row_y = view.row_y, row_z = view.row_z, lens = view.lens;
   const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
   const glm::dvec3 v(glm::dot(glm::dvec3(row_x), p) + row_x.w, glm::dot(glm::dvec3(row_y), p) + row_y.w,
@@ -88,13 +88,15 @@ Splat project(const Gaussian& gaussian, const shared::View& view) {
       glm::transpose(glm::dmat3(glm::dvec3(row_x), glm::dvec3(row_y), glm::dvec3(row_z)));
   const glm::dmat3x2 projection = perspective_jacobian(v, view) * to_eye;
   const glm::dmat2 c2 = projection * covariance_in_world(gaussian) * glm::transpose(projection);
-  const glm::dvec3 covariance(c2[0][0] + KERNEL_PX2, c2[0][1], c2[1][1] + KERNEL_PX2);
+  const double kernel = low_pass.kernel_px2;
+  const glm::dvec3 covariance(c2[0][0] + kernel, c2[0][1], c2[1][1] + kernel);
   const double det = covariance.x * covariance.z - covariance.y * covariance.y;
   if (!(det > 0.0)) return splat;
 
   splat.mean = glm::dvec2(lens[0] * v.x / v.z + lens[2] - 0.5, lens[1] * v.y / v.z + lens[3] - 0.5);
   splat.depth = v.z;
   splat.opacity = gaussian.opacity;
+  if (low_pass.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / det);
   splat.covariance = covariance;
   splat.conic = glm::dvec3(covariance.z, -covariance.y, covariance.x) / det;
   splat.det = det;
@@ -104,7 +106,7 @@ Splat project(const Gaussian& gaussian, const shared::View& view) {
 
 Splat project(const Model& model, std::size_t i, const shared::View& view) {
   const Gaussian gaussian{model.position[i], model.scale[i], model.rotation[i], model.opacity[i]};
-  Splat splat = project(gaussian, view);
+  Splat splat = project(gaussian, view, {model.kernel_px2, model.antialiased});
   if (!splat.drawn) return splat;
   const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
   splat.colour = colour_towards(model, i, glm::normalize(p - glm::dvec3(view.eye)));

@@ -33,8 +33,14 @@ struct Splat {
   bool drawn = false;            // deeper than the near plane, det > 0, and Th (threshold.h) not above sigma
 };
 
+/// What widens every splat (METHOD.md section 2).
+struct LowPass {
+  double kernel_px2 = KERNEL_PX2;  // variance, px^2
+  bool antialiased = false;        // the opacity falls as the splat is widened
+};
+
 /// Everything but the colour.
-Splat project(const Gaussian& gaussian, const shared::View& view);
+Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass = {});
 
 /// Gaussian `i` of the model in a view; of Scaffold-GS its stand-in.
 Splat project(const Model& model, std::size_t i, const shared::View& view);

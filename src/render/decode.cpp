@@ -9,7 +9,7 @@ namespace {
 bool reuses(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
   return s.anchor_reuse && measures(s.transmittance) && s.th != TH_TAU && s.th_eyes == TH_EYES_PER_EYE &&
-         !shape.probe;
+         !shape.probe && shape.kernel_px2 == KERNEL_PX2;
 }
 
 // The anchor cull goes by 3D-GS's own tiles.
@@ -23,6 +23,7 @@ gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networ
           {"TH_NAME", th_choices[reuse ? s.th : TH_TAU].name},
           {"TH_EYES", std::to_string(TH_EYES_PER_EYE)},
           {"TRANSMITTANCE", std::to_string(reuse ? s.transmittance : TRANSMITTANCE_ONE)},
+          {"ANTIALIASED", "0"},
           {"HIDDEN", std::to_string(networks.hidden)},
           {"BANK", networks.bank ? "1" : "0"},
           {"OFFSETS", std::to_string(shape.offset_count)},

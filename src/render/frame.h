@@ -51,9 +51,18 @@ class Frame {
   /// The pictures of the last frame drawn, one a view.
   std::vector<Picture> read_pictures();
 
+  /// The next frame goes by nothing that earlier ones measured, as a first one does.
+  void forget() { last_shape_ = {}; }
+
   /// What the last frame measured in its view `v`, in index order; none unless its transmittance is one that
   /// is measured.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
+
+  /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with --reference-until
+  /// blend, whose pictures never get there.
+  const gl::Buffer& colours() const { return buffers_.colours; }
+  /// The views of the last frame drawn, with tiles, offsets and groups; a probe's comes last.
+  const std::vector<shared::View>& views() const { return shape_.views; }
 
  private:
   shared::Counters draw_once(FrameReport& report);

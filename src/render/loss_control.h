@@ -41,6 +41,7 @@ class LossControl {
   FrameSettings settings_;  // of the frames so far
   double power_ = 1.0;      // squared error grows as loss^power_
   double loss_ = 0.0;
+  double focal_ = 0.0;           // px
   bool fresh_ = true;            // no sample counts yet
   std::uint32_t next_ = 0;       // of the strips, in the order in which they are probed
   std::size_t probed_ = 0;       // sample of the frame at hand

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <bit>
 #include <cstddef>
 
@@ -68,10 +70,18 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuf
 
 gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  return {{"TILES_NAME", tiles_choices[s.tiles].name}, {"TH", std::to_string(s.th)},
-          {"TH_NAME", th_choices[s.th].name},          {"TRANSMITTANCE", std::to_string(s.transmittance)},
-          {"TH_EYES", std::to_string(s.th_eyes)},      {"TILES", std::to_string(s.tiles)},
-          {"TILE_SIZE", std::to_string(s.tile_size)},  {"OFFSETS", std::to_string(shape.offset_count)}};
+  gl::Defines defines = {{"TILES_NAME", tiles_choices[s.tiles].name},
+                         {"TH", std::to_string(s.th)},
+                         {"TH_NAME", th_choices[s.th].name},
+                         {"TRANSMITTANCE", std::to_string(s.transmittance)},
+                         {"TH_EYES", std::to_string(s.th_eyes)},
+                         {"TILES", std::to_string(s.tiles)},
+                         {"TILE_SIZE", std::to_string(s.tile_size)},
+                         {"ANTIALIASED", shape.antialiased ? "1" : "0"},
+                         {"OFFSETS", std::to_string(shape.offset_count)}};
+  if (shape.kernel_px2 != KERNEL_PX2)
+    defines.emplace_back("KERNEL_PX2", fmt::format("{:.9g}", shape.kernel_px2));
+  return defines;
 }
 
 void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,

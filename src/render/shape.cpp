@@ -109,6 +109,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   FrameShape shape;
   shape.settings = settings;
   shape.degree = model.degree;
+  shape.kernel_px2 = model.kernel_px2;
+  shape.antialiased = model.antialiased;
   shape.gaussian_count = static_cast<std::uint32_t>(model.count());
   if (model.scaffold) {
     shape.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);

@@ -29,7 +29,9 @@ struct Probe {
 /// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
 struct FrameShape {
   FrameSettings settings;
-  int degree = 0;  // of the model's SH
+  int degree = 0;                  // of the model's SH
+  double kernel_px2 = KERNEL_PX2;  // of the model
+  bool antialiased = false;
   std::uint32_t gaussian_count = 0;
   bool remembers = false;           // the last frame measured for this one
   std::uint32_t slots = 0;          // room for the Gaussians that one order group draws

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "shared/limits.h"
+
 namespace binosplat {
 
 /// The constant function of the spherical harmonics: a base colour is 0.5 + sh_c0 * coefficient.
@@ -30,8 +32,9 @@ struct Model {
   std::vector<float> opacity;       // in [0, 1] (not logits)
   std::vector<float> sh;            // (count, sh_count(degree), 3): coefficient-major, RGB together
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
-  bool antialiased = false;         // trained with Mip-Splatting's compensation of opacities (Yu 2024)
-  std::string axes = "RDF";         // where the model's x, y and z point in the cameras' world (scene/axes.h)
+  double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
+  bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
+  std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)
   /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
   /// stand-ins (scene/scaffold.h).
   std::shared_ptr<Scaffold> scaffold;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "scene/axes.h"
 #include "scene/scaffold.h"
 
 namespace binosplat {
@@ -24,20 +25,29 @@ void copy_times(std::vector<T>& values, std::size_t times) {
   values.swap(all);
 }
 
-/// Puts the copies of `once` positions side by side.
-void move_copies(std::vector<glm::vec3>& positions, std::size_t once, int nx, int nz, double spacing) {
-  glm::vec3* p = positions.data();
-  for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
-    for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
-      for (std::size_t k = 0; k < once; ++k, ++p)
-        *p = glm::vec3(glm::dvec3(*p) + glm::dvec3(i * spacing, 0.0, j * spacing));
+/// Where copies go, in the model's own frame.
+struct Grid {
+  int nx, nz;
+  glm::dmat3 into_frame;
+  double spacing;
+
+  std::size_t copies() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz); }
+
+  /// Puts the copies of `once` positions side by side.
+  void move(std::vector<glm::vec3>& positions, std::size_t once) const {
+    glm::vec3* p = positions.data();
+    for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
+      for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
+        for (std::size_t k = 0; k < once; ++k, ++p)
+          *p = glm::vec3(glm::dvec3(*p) + into_frame * glm::dvec3(i * spacing, 0.0, j * spacing));
+      }
     }
   }
-}
+};
 
 /// Copies of the anchors: each copy is seen, and decoded, from where it stands.
-std::shared_ptr<Scaffold> repeat(Scaffold s, int nx, int nz, double spacing) {
-  const auto copies = static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz);
+std::shared_ptr<Scaffold> repeat(Scaffold s, const Grid& grid) {
+  const std::size_t copies = grid.copies();
   const std::size_t once = s.anchor_count();
   copy_times(s.position, copies);
   copy_times(s.offset_scale, copies);
@@ -45,7 +55,7 @@ std::shared_ptr<Scaffold> repeat(Scaffold s, int nx, int nz, double spacing) {
   copy_times(s.rotation, copies);
   copy_times(s.offset, copies);
   copy_times(s.feature, copies);
-  move_copies(s.position, once, nx, nz, spacing);
+  grid.move(s.position, once);
   return std::make_shared<Scaffold>(std::move(s));
 }
 
@@ -62,8 +72,11 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   if (!std::isfinite(static_cast<float>(farthest))) {
     fail("--spacing {}: expected a distance between copies in world units", spacing);
   }
+  const Grid grid{nx, nz, glm::transpose(world_from_axes(model.axes)), spacing};
   if (model.scaffold) {
-    Model repeated = stand_in(repeat(*model.scaffold, nx, nz, spacing));
+    Model repeated = stand_in(repeat(*model.scaffold, grid));
+    repeated.kernel_px2 = model.kernel_px2;
+    repeated.antialiased = model.antialiased;
     repeated.axes = model.axes;
     return repeated;
   }
@@ -73,7 +86,7 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   copy_times(model.rotation, copies);
   copy_times(model.opacity, copies);
   copy_times(model.sh, copies);
-  move_copies(model.position, once, nx, nz, spacing);
+  grid.move(model.position, once);
   return model;
 }
 

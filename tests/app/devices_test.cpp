@@ -25,10 +25,28 @@ TEST(Devices, ListsWaysToDrawThatRenderTakes) {
   EXPECT_TRUE(any);
 }
 
-TEST(Devices, WithoutEglSaysWhatToInstall) {
-  // A library of that name which is none stands before the real one.
+TEST(Devices, WithoutEglOsMesaDraws) {
   const test::TempFolder folder;
   test::write_text(folder / "libEGL.so.1", "no library");
+  const test::Surroundings none = {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};
+  const test::Outcome outcome = test::run_program({"devices", "--json", folder / "devices.json"}, none);
+  if (outcome.code == 3) GTEST_SKIP() << "no OSMesa: apt install libosmesa6";
+  ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  const auto list = nlohmann::json::parse(test::read_text(folder / "devices.json"));
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_FALSE(list[0].at("usable").get<bool>());
+  EXPECT_EQ(list[1].at("options"), "--backend osmesa");
+  const test::Outcome render =
+      test::run_program({"render", "demo:room", "--size", "48x32", "-o", folder / "out"}, none);
+  EXPECT_EQ(render.code, 0) << render.err;
+  EXPECT_NE(render.err.find("(OSMesa,"), std::string::npos) << render.err;
+}
+
+TEST(Devices, WithoutAnySaysWhatToInstall) {
+  // Libraries of those names which are none stand before the real ones.
+  const test::TempFolder folder;
+  test::write_text(folder / "libEGL.so.1", "no library");
+  test::write_text(folder / "libOSMesa.so.8", "no library");
   const test::Surroundings none = {.variables = {{"LD_LIBRARY_PATH", folder.path().string()}}};
   const test::Outcome devices = test::run_program({"devices"}, none);
   EXPECT_EQ(devices.code, 3) << devices.out << devices.err;
@@ -36,6 +54,7 @@ TEST(Devices, WithoutEglSaysWhatToInstall) {
   const test::Outcome render = test::run_program({"render", "demo:room", "-o", folder / "out"}, none);
   EXPECT_EQ(render.code, 3) << render.err;
   EXPECT_NE(render.err.find("apt install libegl1"), std::string::npos) << render.err;
+  EXPECT_NE(render.err.find("apt install libosmesa6"), std::string::npos) << render.err;
 }
 
 TEST(Devices, WithoutProgramBinariesSaysWhatThatCosts) {

@@ -113,6 +113,7 @@ TEST_F(RenderErrors, OptionsThatContradict) {
   expect({"-o", folder / "a.exr", "--bits", "16"}, "--bits is for PNG");
   expect({"-o", out, "--exr-encoding", "display"}, "--exr-encoding is for OpenEXR");
   expect({"-o", out, "--device", "0", "--backend", "surfaceless"}, "surfaceless has none");
+  expect({"-o", out, "--device", "0", "--backend", "osmesa"}, "osmesa has none");
 }
 
 TEST_F(RenderErrors, ValuesThatAreNone) {
@@ -169,7 +170,10 @@ TEST_F(RenderErrors, AFullDisk) {
 TEST_F(RenderErrors, NoUsableOpenGl) {
   test::Surroundings bare;
   bare.variables["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/no/such/vendor.json";
+  test::write_text(folder / "libOSMesa.so.8", "no library");
+  bare.variables["LD_LIBRARY_PATH"] = folder.path().string();
   expect({"-o", out}, "no usable OpenGL", 3, bare);
+  expect({"-o", out, "--backend", "osmesa"}, "apt install libosmesa6", 3, bare);
 }
 
 TEST_F(RenderErrors, AnInterruptLeavesNoHalfFile) {

@@ -95,7 +95,8 @@ TEST_F(Render, EachEyeIsTheSameAlone) {
 TEST_F(Render, OneFileHasBothEyesSideBySide) {
   add_cameras();
   ASSERT_TRUE(good(render({"-o", folder / "pair.png"})));
-  ASSERT_TRUE(good(render({"-o", folder / "pair.exr", "--exr", "float", "--exr-encoding", "display"})));
+  ASSERT_TRUE(good(render(
+      {"-o", folder / "pair.exr", "--layout", "parallel", "--exr", "float", "--exr-encoding", "display"})));
   ASSERT_TRUE(good(render({"-o", out})));
   const Image pair = load_image(folder / "pair.png");
   const Image left = load_image(out + "/front_left.png"), right = load_image(out + "/front_right.png");

@@ -32,7 +32,7 @@ TEST(Study, APathIsCarriedAndTold) {
 TEST(Study, WhatMakesNoSenseIsNamed) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{}, "--stability"},
-      {{"--stability", "--path", "x.json"}, "choose --stability, or --path"},
+      {{"--stability", "--path", "x.json"}, "choose --stability, --eyes or --path"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
       {{"--path", "no_such.json"}, "no_such.json"},

@@ -133,6 +133,20 @@ TEST(Project, AGaussianWithoutSizeIsTheLowPassAlone) {
   expect_near(splat.covariance, {0.3, 0.0, 0.3}, 0.0);
 }
 
+// METHOD 2: what the low-pass takes from the peak stays in the mass, sigma sqrt(det P / det C2).
+TEST(Project, AntialiasedModelsKeepTheirMass) {
+  Model model;
+  add(model, {0, 0, 5}, {0.1f, 0.2f, 0.3f}, 0.75f);
+  add(model, {0, 0, 5}, {0.1f, 0.0f, 0.3f}, 0.75f);  // seen from its edge: nothing of it is left
+  model.kernel_px2 = 0.1;
+  EXPECT_EQ(project(model, 0, front_view()).opacity, 0.75);  // not without the tag
+  model.antialiased = true;
+  const Splat splat = project(model, 0, front_view());
+  expect_near(splat.covariance, {4.1, 0.0, 16.1}, 1e-6);
+  EXPECT_NEAR(splat.opacity, 0.75 * std::sqrt(4.0 * 16.0 / (4.1 * 16.1)), 1e-7);
+  EXPECT_EQ(project(model, 1, front_view()).opacity, 0.0);
+}
+
 /// Real spherical harmonics from associated Legendre functions with the Condon-Shortley sign, by recurrence.
 double legendre(int l, int m, double x) {
   double mm = 1.0;

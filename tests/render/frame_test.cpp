@@ -79,6 +79,20 @@ TEST(Frame, EqualsTheReference) {
   }
 }
 
+TEST(Frame, AntialiasedModelsEqualTheReference) {
+  Model model = test::random_model(54, 3000, 1);
+  for (glm::vec3& scale : model.scale) scale *= 0.2f;  // many are smaller than a pixel
+  model.antialiased = true;
+  model.kernel_px2 = 0.1;
+  const shared::View view = make_view(test::front_camera(150, 110, 140));
+  const Picture drawn = draw(model, view);
+  EXPECT_GE(test::psnr(drawn, reference::render(model, view)), 80.0);
+  // Planted fault: as if it were none.
+  Model plain = model;
+  plain.antialiased = false;
+  EXPECT_LT(test::psnr(drawn, reference::render(plain, view)), 40.0);
+}
+
 TEST(Frame, TheComparisonWithTheReferenceCatchesASignAndATile) {
   const Model model = test::random_model(51, 3000, 1);
   const shared::View view = make_view(test::front_camera(150, 110, 140));

@@ -9,6 +9,7 @@
 
 #include "render/frame.h"
 #include "study/carried.h"
+#include "study/eyes.h"
 #include "support/gl.h"
 #include "support/models.h"
 
@@ -34,8 +35,9 @@ TEST(Stability, EveryCombinationIsThereOnce) {
   std::set<std::string> names;
   for (const Variant& variant : all_variants()) names.insert(variant.name());
   EXPECT_EQ(names.size(), all_variants().size());
-  // tau; peripheral by 5 sources and 3 rules for eyes; squared likewise, the measured ones by 3 contrasts.
-  EXPECT_EQ(names.size(), 1u + 5 * 3 + (2 + 3 * 3) * 3);
+  // tau; peripheral by 5 sources; squared by 2, and by 3 with 3 contrasts; two more rules for eyes with `one`
+  // and `both`.
+  EXPECT_EQ(names.size(), 1u + 5 + (2 + 3 * 3) + 2 * (1 + 1 + 1 + 3));
   EXPECT_TRUE(names.count("squared, both, behind, cyclopean"));
 }
 
@@ -115,6 +117,21 @@ TEST(Stability, TheLossComesToItsTarget) {
   EXPECT_GE(db, 38.0);
   EXPECT_LT(db, 38.5);
   EXPECT_EQ(loss_at(test::gl_context(), *one.model, one.frames[0], {.th = TH_TAU}, 38.0), 0.0f);
+}
+
+TEST(Eyes, RulesAreComparedAtOneErrorAndAtAsManyPairs) {
+  const StabilityCase one = small_case(1);
+  const auto results = run_eyes(test::gl_context(), *one.model, one.frames[0],
+                                {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_BOTH}, 38.0, [] {});
+  ASSERT_EQ(results.size(), 3u);
+  for (const EyesResult& r : results) {
+    EXPECT_NEAR(r.db, 38.0, 0.5) << r.variant.name();
+    EXPECT_GT(r.removed, 0.05);
+    EXPECT_LE(std::min(r.left_db, r.right_db), r.db);
+    EXPECT_GE(std::max(r.left_db, r.right_db), r.db);
+    EXPECT_NEAR(r.per_eye_db, r.db, 2.0);
+  }
+  EXPECT_EQ(results[0].per_eye_db, results[0].db);
 }
 
 std::vector<std::vector<shared::View>> path() {

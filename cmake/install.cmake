@@ -1,0 +1,39 @@
+# cmake --install, cpack: the program, the rooms as libraries with their headers as binosplat/..., and what
+# find_package(binosplat) reads.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+get_property(rooms GLOBAL PROPERTY binosplat_rooms)
+install(TARGETS binosplat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET binosplat_view)
+  install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(TARGETS ${rooms} EXPORT binosplat_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/binosplat)
+install(EXPORT binosplat_targets NAMESPACE binosplat:: FILE binosplatTargets.cmake DESTINATION ${package})
+configure_package_config_file(cmake/binosplatConfig.cmake.in binosplatConfig.cmake INSTALL_DESTINATION ${package})
+write_basic_package_version_file(binosplatConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/binosplatConfig.cmake ${PROJECT_BINARY_DIR}/binosplatConfigVersion.cmake
+        DESTINATION ${package})
+
+# Headers name each other by their rooms; installed ones by binosplat/ROOM, so that nobody else's room is meant.
+install(CODE "set(ROOT \"${PROJECT_SOURCE_DIR}\")\nset(OUT \"${PROJECT_BINARY_DIR}/include\")")
+install(SCRIPT cmake/public_headers.cmake)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/include/binosplat DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES examples/embed.cpp examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+
+set(CPACK_GENERATOR "DEB;TGZ")
+set(CPACK_PACKAGE_NAME binosplat)
+set(CPACK_PACKAGE_CONTACT "The maintainers of binosplat")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Opened at run time: a GPU's driver or Mesa. And for programs that link to the libraries, the headers of theirs.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, pkg-config, libegl-dev, libgl-dev, libglm-dev, libfmt-dev, \
+libopenexr-dev, libpng-dev, libturbojpeg0-dev, libwebp-dev, libzip-dev, libzstd-dev, zlib1g-dev, libtbb-dev, nlohmann-json3-dev, libosmesa6")
+include(CPack)

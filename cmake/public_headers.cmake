@@ -1,0 +1,15 @@
+# cmake -DROOT=... -DOUT=... -P: the headers of all rooms but the programs' own to OUT/binosplat/ROOM, with includes of
+# "room/name.h" as "binosplat/room/name.h".
+file(GLOB rooms RELATIVE ${ROOT}/src ${ROOT}/src/*)
+list(REMOVE_ITEM rooms app preview)
+file(REMOVE_RECURSE ${OUT}/binosplat)
+file(GLOB_RECURSE headers ${ROOT}/src/*.h ${ROOT}/stereo/*.h ${ROOT}/shaders/shared/*.h)
+list(FILTER headers EXCLUDE REGEX "/src/(app|preview)/")
+list(JOIN rooms "|" names)
+foreach(header ${headers})
+  file(RELATIVE_PATH name ${ROOT} ${header})
+  string(REGEX REPLACE "^(src|shaders)/" "" name ${name})
+  file(READ ${header} text)
+  string(REGEX REPLACE "#include \"((${names}|stereo|shared)/[^\"]+)\"" "#include \"binosplat/\\1\"" text "${text}")
+  file(WRITE ${OUT}/binosplat/${name} "${text}")
+endforeach()

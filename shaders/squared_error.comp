@@ -1,0 +1,36 @@
+// The squared error of drawn pixels against wanted ones, summed by work group: calibration compares many frames without
+// reading a picture back. One invocation a pixel.
+#include "shared/limits.h"
+#include "shared/grid.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
+layout(std430, binding = 1) readonly buffer Wanted { vec4 wanted[]; };    // C
+layout(std430, binding = 2) writeonly buffer Sums { float sums_of_groups[]; };
+uniform uint pixel_count;
+uniform uint levels;  // 0: as they are; 255: both as 8 bits would keep them
+
+shared float sums[THREADS];
+
+vec3 kept(vec3 colour) {
+  vec3 shown = clamp(colour, 0.0, 1.0);
+  return levels == 0u ? shown : floor(shown * float(levels) + 0.5) / float(levels);
+}
+
+void main() {
+  uint pixel = thread_index();
+  uint self = gl_LocalInvocationIndex;
+  sums[self] = 0.0;
+  if (pixel < pixel_count) {
+    vec3 d = kept(colours[pixel].rgb) - kept(wanted[pixel].rgb);
+    sums[self] = dot(d, d);
+  }
+  barrier();
+  for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) {
+    if (self < half_way) sums[self] += sums[self + half_way];
+    barrier();
+  }
+  uint group = group_index();
+  if (self == 0u && group * THREADS < pixel_count) sums_of_groups[group] = sums[0];
+}

@@ -1,0 +1,156 @@
+// binosplat calibrate: the light by depth and the losses of a model, in a file that render and bench take.
+
+#include <cstdio>
+#include <memory>
+
+#include "app/command.h"
+#include "app/open_scene.h"
+#include "app/photos.h"
+#include "app/shots.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "scene/framing.h"
+#include "study/bench.h"
+#include "study/calibrate.h"
+
+namespace binosplat::app {
+
+namespace {
+
+struct CalibrateOptions {
+  RenderOptions render;  // scene, cameras, views, size, photos, device
+  std::optional<double> max_drop;
+  std::optional<double> quality;
+  int views = 16;
+  measure::DepthTableSettings table;
+  std::string output;
+};
+
+void check(const CalibrateOptions& o) {
+  if (o.max_drop.has_value() == o.quality.has_value())
+    fail("calibrate needs a target: --photos DIR --max-drop DB, or --quality DB against the exact pictures");
+  if (o.max_drop.has_value() != !o.render.photos.empty())
+    fail("--max-drop and --photos go together: a drop in dB is against photos");
+  if (o.render.size && o.max_drop) fail("--size with --photos: a drop is measured in the photos' own size");
+}
+
+/// The views: those named, or so many of the cameras (that have a photo), evenly spread.
+std::vector<study::CalibrationView> choose_views(const CalibrateOptions& o, const CameraList& list,
+                                                 double near_plane) {
+  RenderOptions render = o.render;
+  render.mono = true;
+  if (render.views.empty() && list.listed) render.views = {"all"};
+  std::vector<Shot> shots = make_shots(render, list, near_plane);
+  if (!render.photos.empty() && o.render.views.empty())
+    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(render.photos, shot); });
+  if (shots.empty()) fail("--photos {}: there is no photo of any view", render.photos);
+  const std::size_t wanted = o.render.views.empty() ? static_cast<std::size_t>(o.views) : shots.size();
+  std::vector<study::CalibrationView> views;
+  for (const std::size_t i : study::spread_evenly(shots.size(), wanted)) {
+    study::CalibrationView& view =
+        views.emplace_back(study::CalibrationView{shots[i].eyes.front().camera, {}});
+    if (render.photos.empty()) continue;
+    const auto file = find_view_photo(render.photos, shots[i]);
+    if (!file) fail("--photos {}: there is no photo of view {}", render.photos, shots[i].name);
+    view.photo = load_view_photo(*file, view.camera);
+  }
+  return views;
+}
+
+void print(const study::Calibration& c, const CalibrateOptions& o) {
+  const bool drop = c.target.kind == study::CalibrationTarget::Kind::drop;
+  fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
+             drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
+                  : fmt::format("target: {} dB against the exact pictures", c.target.db));
+  fmt::print("light by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.upper.size(),
+             c.depth_table.far, c.depth_table_seconds);
+  fmt::print("{:<12}{:<8}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "T from", "contrast", "loss",
+             drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
+  for (const study::CalibrationEntry& e : c.entries) {
+    fmt::print("{:<12}{:<8}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n",
+               th_choices[e.th].name, transmittance_choices[e.transmittance].name,
+               contrast_choices[e.contrast].name, e.loss, e.reached_db, e.worst_db, e.worst_view,
+               -100 * e.pairs_removed, e.seconds);
+  }
+  fmt::print("\n{}\n", o.output);
+}
+
+ExitCode calibrate(const CalibrateOptions& o) {
+  check(o);
+  check_output(o.output);
+  const Scene scene = open_scene(o.render);
+  CameraList list = listed_cameras(o.render, scene.cameras);
+  const Model model = scene.model();
+  if (!list.listed) list = made_up_cameras(o.render, model);
+  const double near_plane = o.render.near_plane.value_or(list.listed ? near_default : near_for(model));
+  const std::vector<study::CalibrationView> views = choose_views(o, list, near_plane);
+  const auto context = gl::Context::open(
+      o.render.backend == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic, o.render.device);
+  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
+  const study::CalibrationTarget target =
+      o.max_drop ? study::CalibrationTarget{study::CalibrationTarget::Kind::drop, *o.max_drop}
+                 : study::CalibrationTarget{study::CalibrationTarget::Kind::quality, *o.quality};
+  Progress progress("calibrating", study::calibrated_settings().size());
+  const study::Calibration found =
+      study::calibrate(*context, model, views, near_plane, target, o.table,
+                       [&](std::size_t entries, std::size_t) { progress.update(entries); });
+  save_json(o.output, study::to_json(found));
+  print(found, o);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program, Command& command) {
+  CLI::App* sub =
+      program.add_subcommand("calibrate", "Find the losses of a model that cost as much as you allow");
+  const auto o = std::make_shared<CalibrateOptions>();
+  const auto above_zero = CLI::PositiveNumber.description("");
+  sub->add_option("SCENE", o->render.scene, "A model, demo:room or demo:city")->required();
+  sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();
+  sub->add_option("--quality", o->quality, "Target: PSNR against the exact pictures, mean over the views")
+      ->type_name("DB")
+      ->check(above_zero);
+  sub->add_option("--max-drop", o->max_drop, "Target: dB lost against the photos, mean over the views")
+      ->type_name("DB")
+      ->check(above_zero);
+  sub->add_option("--photos", o->render.photos, "DIR/NAME.jpg or .png of the views")
+      ->type_name("DIR")
+      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+  sub->add_option("--cameras", o->render.cameras, "Cameras, where they are not beside the model")
+      ->type_name("FILE");
+  sub->add_option("--view", o->render.views, "Views by name, instead of --views")->type_name("NAME...");
+  sub->add_option("--views", o->views, "So many views, spread evenly over the cameras (16)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000).description(""));
+  sub->add_option_function<std::string>(
+         "--size", [o](const std::string& text) { o->render.size = parse_size("--size", text); },
+         "Pixels of a view, instead of the cameras' own")
+      ->type_name("WxH");
+  sub->add_option("--near", o->render.near_plane, "Nothing nearer is drawn, in world units (0.2)")
+      ->type_name("DEPTH")
+      ->check(above_zero);
+  sub->add_option("--bins", o->table.bins, "Of the light by depth (20)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000).description(""));
+  sub->add_option("--far", o->table.far,
+                  "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)")
+      ->type_name("DEPTH")
+      ->check(above_zero);
+  sub->add_option("--count", o->render.count, "Gaussians of demo:city (1000000)")->type_name("N");
+  sub->add_option("--seed", o->render.seed, "Which demo:city (1)")->type_name("N");
+  sub->add_option("--backend", o->render.backend, "A GPU, else Mesa; or Mesa without a GPU (auto)")
+      ->check(CLI::IsMember(std::vector<std::string>{"auto", "surfaceless"}).description(""))
+      ->type_name("auto|surfaceless");
+  sub->add_option("--device", o->render.device, "Number of the EGL device")
+      ->check(CLI::Range(0, 1000).description(""))
+      ->type_name("N");
+  sub->footer(
+      "Examples:\n"
+      "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"
+      "  binosplat calibrate garden.ply --quality 40 --far 100 -o garden.json\n"
+      "  binosplat render garden.ply --calibration garden.json --transmittance last");
+  sub->callback([o, &command] { command = [o] { return calibrate(*o); }; });
+}
+
+}  // namespace binosplat::app

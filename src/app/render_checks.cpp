@@ -1,0 +1,79 @@
+// Which options of `binosplat render` go together.
+
+#include "app/render_options.h"
+#include "base/error.h"
+#include "scene/demo_city.h"
+
+namespace binosplat::app {
+
+namespace {
+
+void check_threshold(const RenderOptions& o) {
+  const std::string th = threshold_name(o);
+  if (o.loss && o.quality) fail("--loss with --quality, which chooses the loss: leave one of them out");
+  if (th != "tau" && !o.loss && !o.quality) fail("--th {} needs --loss or --quality: what it may cost", th);
+  if (th == "tau" && (o.loss || o.quality))
+    fail("{} has no effect with --th tau, which is exact", o.loss ? "--loss" : "--quality");
+  if (o.contrast != "off" && (th != "squared" || o.transmittance == "one")) {
+    fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
+  }
+  if ((o.transmittance == "other-eye" || o.transmittance == "both") && (o.mono || !o.only.empty())) {
+    fail("--transmittance {} needs both eyes: leave --mono and --only out", o.transmittance);
+  }
+  if (o.th_eyes != "per-eye" && (th == "tau" || o.mono || !o.only.empty())) {
+    fail("--th-eyes {} is for thresholds of both eyes: leave --mono and --only out, and give --loss",
+         o.th_eyes);
+  }
+  if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
+    fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
+  if (!o.reference_until.empty() && (o.transmittance != "one" || o.quality || o.th_eyes != "per-eye")) {
+    fail(
+        "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
+        "--quality and --th-eyes out");
+  }
+}
+
+}  // namespace
+
+std::string threshold_name(const RenderOptions& o) {
+  if (!o.th.empty()) return o.th;
+  return o.loss || o.quality ? "squared" : "tau";
+}
+
+void check(const RenderOptions& o) {
+  if (o.scene != demo_city_name && (o.seed || o.count)) {
+    fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
+  }
+  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || o.appearance || !o.axes.empty())) {
+    const char* const option = o.lod ? "--lod" : o.appearance ? "--appearance" : "--axes";
+    fail("{} is for model files, and {} is none", option, o.scene);
+  }
+  if (o.repeat.has_value() != o.spacing.has_value())
+    fail("--repeat and --spacing go together: how many copies, and how far apart");
+  if (o.eye.has_value() != o.at.has_value())
+    fail("--eye and --at go together: where the camera is, and what it looks at");
+  const bool made_up = o.eye || o.orbit;
+  if (o.eye && o.orbit) fail("--eye and --orbit: choose one of them");
+  if (made_up && (!o.cameras.empty() || !o.views.empty())) {
+    fail("{} makes its own camera: leave --cameras and --view out", o.eye ? "--eye" : "--orbit");
+  }
+  if (!o.path.empty() && (made_up || !o.cameras.empty() || !o.views.empty() || o.frames > 1)) {
+    fail(
+        "--path names its own cameras, each drawn once: leave --cameras, --view, --eye, --orbit and --frames "
+        "out");
+  }
+  check_threshold(o);
+  if (o.fov && o.preset == "headset")
+    fail("--fov with --preset headset: the preset's lens has 100 degrees across");
+  if (o.mono && !o.only.empty())
+    fail("--mono draws the camera itself and --only an eye beside it: choose one of them");
+  if (o.mono && (o.ipd || o.convergence || o.cant)) {
+    fail("--mono has no rig: leave --ipd, --convergence and --cant out");
+  }
+  if (!o.photos.empty() && !o.mono)
+    fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
+  if (o.device >= 0 && (o.backend == "surfaceless" || o.backend == "osmesa"))
+    fail("--device is for --backend device or auto: {} has none", o.backend);
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,52 @@
+#pragma once
+// Videos, by an ffmpeg that is there: pictures go into its standard input.
+
+#include <sys/types.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "base/image.h"
+#include "shared/axes.h"
+
+namespace binosplat::app {
+
+/// Whether a file's ending is one of .mp4, .mov, .mkv and .webm, in small or capital letters.
+bool is_video(const std::filesystem::path& path);
+
+/// ffmpeg as the shell would find it. Throws Error that says what to install, or to name a folder.
+std::filesystem::path find_ffmpeg();
+
+class Video {
+ public:
+  /// Starts ffmpeg: H.264 of a quality at which losses are hard to see, VP9 in .webm. Matroska's files say
+  /// which layout the pictures are in. Colours are stored at half resolution, as players expect, except in
+  /// layouts whose neighbouring pixels belong to different eyes. A picture of odd size is given another row
+  /// or column.
+  Video(const std::filesystem::path& path, int width, int height, double frames_a_second, int layout);
+  ~Video();
+  Video(const Video&) = delete;
+  Video& operator=(const Video&) = delete;
+
+  /// The next frame, RGB. Throws Error with what ffmpeg said if it has ended.
+  void add(const Image& image);
+
+  /// Waits for ffmpeg, then gives the file its name: it appears whole or not at all.
+  void finish();
+
+ private:
+  void start(const std::vector<std::string>& arguments);
+  [[noreturn]] void fail_with_what_it_said();
+
+  std::filesystem::path target_, temporary_;
+  Unfinished unfinished_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // ffmpeg's standard error
+  int pictures_ = -1;                                     // socket to its standard input
+  pid_t ffmpeg_ = -1;
+};
+
+}  // namespace binosplat::app

@@ -1,0 +1,50 @@
+// binosplat view: starts the preview, a program beside this one. This one needs no window system.
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "app/command.h"
+
+namespace binosplat::app {
+
+namespace {
+
+ExitCode view(std::vector<std::string> arguments) {
+  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "binosplat-view";
+  if (access(program.c_str(), X_OK) != 0) {
+    throw Error(
+        ExitCode::no_gl,
+        fmt::format("{} is not there: this binosplat was built without its preview. On Debian apt install "
+                    "libglfw3-dev libimgui-dev and build again; `binosplat render` needs no window",
+                    program.string()));
+  }
+  arguments.insert(arguments.begin(), "binosplat-view");
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  // Signals wait for a thread of this program, which ends here.
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execv(program.c_str(), pointers.data());
+  throw Error(ExitCode::no_gl, fmt::format("cannot start {}: {}", program.string(), std::strerror(errno)));
+}
+
+}  // namespace
+
+void add_view(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("view", "Look at a model with both eyes, in a window");
+  sub->set_help_flag();  // all is for the preview, --help too
+  sub->prefix_command();
+  sub->callback([sub, &command] {
+    const std::vector<std::string> arguments = sub->remaining();
+    command = [arguments] { return view(arguments); };
+  });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,128 @@
+// binosplat-view: the preview as a program of its own, so that the other one needs no window system's
+// libraries. `binosplat view` starts it.
+
+#include <algorithm>
+#include <csignal>
+#include <memory>
+#include <new>
+
+#include "app/command.h"
+#include "app/open_scene.h"
+#include "app/render_options.h"
+#include "app/render_outputs.h"
+#include "app/shots.h"
+#include "base/log.h"
+#include "preview/window.h"
+#include "scene/framing.h"
+
+namespace binosplat::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_view(const RenderOptions& o) {
+  check(o);
+  if (o.mono || !o.only.empty() || o.frames > 1 || o.orbit || !o.path.empty() || o.views.size() > 1 ||
+      !o.reference_until.empty() || o.quality || o.backend != "auto" || o.device >= 0) {
+    fail(
+        "--mono, --only, --frames, --orbit, --path, --reference-until, --quality, --backend, --device and "
+        "more "
+        "than one --view are for `binosplat render`");
+  }
+  if (o.transmittance == "depth") fail("--transmittance depth is for `binosplat render`");
+  if (o.layout == "multi-view") fail("--layout multi-view is for OpenEXR files of `binosplat render`");
+}
+
+preview::Choices choices_of(const RenderOptions& o) {
+  preview::Choices choices;
+  choices.layout = o.layout.empty() ? LAYOUT_PARALLEL : number_of(o.layout, layout_choices);
+  choices.settings.tiles = number_of(o.tiles, tiles_choices);
+  choices.settings.th = number_of(threshold_name(o), th_choices);
+  choices.settings.loss = o.loss.value_or(0.0f);
+  choices.settings.transmittance = number_of(o.transmittance, transmittance_choices);
+  choices.settings.contrast = number_of(o.contrast, contrast_choices);
+  choices.settings.th_eyes = number_of(o.th_eyes, th_eyes_choices);
+  choices.settings.tile_size = o.tile;
+  choices.rig.ipd = o.ipd.value_or(choices.rig.ipd);
+  choices.rig.units_per_metre = o.units_per_metre;
+  choices.rig.convergence = o.convergence;
+  choices.rig.cant_degrees = o.cant.value_or(0.0);
+  choices.background = o.background.value_or(glm::vec3(0.0f));
+  return choices;
+}
+
+// The scene of these options, which the result keeps. Cameras that come as pairs of eyes are taken one by
+// one.
+preview::Opened open(const std::shared_ptr<RenderOptions>& o) {
+  const auto scene = std::make_shared<Scene>(open_scene(*o));
+  const auto list = std::make_shared<CameraList>(listed_cameras(*o, scene->cameras));
+  preview::Opened opened;
+  opened.name = o->scene;
+  opened.load = [o, scene] { return scene->model(); };
+  opened.cameras = [o, list](const Model& model, preview::Choices& choices) {
+    choices.rig.near_plane = o->near_plane.value_or(list->listed ? near_default : near_for(model));
+    std::vector<Camera> cameras = list->listed ? list->cameras : made_up_cameras(*o, model).cameras;
+    if (!o->views.empty()) {
+      const auto at = std::find_if(cameras.begin(), cameras.end(),
+                                   [&](const Camera& c) { return c.name == o->views[0]; });
+      if (at == cameras.end()) fail("--view {}: {} has no camera of this name", o->views[0], list->source);
+      std::rotate(cameras.begin(), at, cameras.end());
+    }
+    return cameras;
+  };
+  return opened;
+}
+
+void view(const std::shared_ptr<RenderOptions>& options) {
+  check_view(*options);
+  const fs::path folder =
+      options->output.empty() ? default_folder(options->scene) : fs::path(options->output);
+  check_output(folder / "picture");
+  preview::WindowSettings settings;
+  if (options->size) settings.size = *options->size;
+  settings.up = options->up.value_or(default_up);
+  settings.folder = folder;
+  settings.shader_folder = options->shader_dir;
+  preview::run(open(options), choices_of(*options), settings, [options](const std::string& file) {
+    const auto other = std::make_shared<RenderOptions>();
+    other->scene = file;
+    other->units_per_metre = options->units_per_metre;
+    return open(other);
+  });
+}
+
+int end(ExitCode code, const std::string& text) {
+  log_line(text);
+  return static_cast<int>(code);
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("binosplat view: look at a model with both eyes", "binosplat view");
+  const auto options = std::make_shared<RenderOptions>();
+  try {
+    add_view_options(program, *options);
+    program.parse(argc, argv);
+    view(options);
+    return 0;
+  } catch (const CLI::Success& asked) {
+    return program.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    return end(ExitCode::bad_input, fmt::format("{}\n  see: binosplat view --help", error.what()));
+  } catch (const Error& error) {
+    return end(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return end(ExitCode::out_of_memory, "out of memory: the model does not fit");
+  } catch (const std::exception& error) {
+    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+}  // namespace binosplat::app
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  return binosplat::app::run(argc, argv);
+}

@@ -1,0 +1,21 @@
+#pragma once
+// The ways to a context without a window, for Context::open. Each opens and makes current, or throws
+// Error(no_gl) that says what is missing.
+
+#include <memory>
+
+#include "gl/context.h"
+
+namespace binosplat::gl {
+
+/// Through EGL's device platform; `device` as in Context::open. Throws Error(bad_input) for a number that
+/// there is not.
+std::unique_ptr<Context> open_egl_device(int device);
+
+/// Through EGL's surfaceless platform, which Mesa has.
+std::unique_ptr<Context> open_egl_surfaceless();
+
+/// Mesa's renderer as a library of its own, libOSMesa: no EGL, no driver.
+std::unique_ptr<Context> open_osmesa();
+
+}  // namespace binosplat::gl

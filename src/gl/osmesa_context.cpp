@@ -1,0 +1,89 @@
+// Mesa as a plain library. It is loaded at run time: neither the program nor a bundle for GPUs drags Mesa
+// along, and its few names are written down here instead of taken from a package of headers.
+
+#include <dlfcn.h>
+
+#include <array>
+
+#include "base/error.h"
+#include "gl/backends.h"
+
+namespace binosplat::gl {
+
+namespace {
+
+constexpr const char* what_to_install = "On Debian: apt install libosmesa6.";
+
+// GL/osmesa.h.
+constexpr int osmesa_format = 0x22;
+constexpr int osmesa_profile = 0x33;
+constexpr int osmesa_core_profile = 0x34;
+constexpr int osmesa_context_major_version = 0x36;
+constexpr int osmesa_context_minor_version = 0x37;
+
+struct OsMesa {
+  void* (*create_context)(const int* attributes, void* shared) = nullptr;
+  void (*destroy_context)(void* context) = nullptr;
+  GLboolean (*make_current)(void* context, void* buffer, GLenum type, GLsizei width,
+                            GLsizei height) = nullptr;
+  GetProcAddress get_proc_address = nullptr;
+};
+
+template <typename F>
+void load(void* library, const char* name, F& function) {
+  function = reinterpret_cast<F>(dlsym(library, name));
+  if (function == nullptr)
+    throw Error(ExitCode::no_gl, fmt::format("OSMesa: the library has no {}. {}", name, what_to_install));
+}
+
+const OsMesa& osmesa() {
+  static const OsMesa loaded = [] {
+    void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr)
+      throw Error(ExitCode::no_gl, fmt::format("OSMesa: {}. {}", dlerror(), what_to_install));
+    OsMesa o;
+    load(library, "OSMesaCreateContextAttribs", o.create_context);
+    load(library, "OSMesaDestroyContext", o.destroy_context);
+    load(library, "OSMesaMakeCurrent", o.make_current);
+    load(library, "OSMesaGetProcAddress", o.get_proc_address);
+    return o;
+  }();
+  return loaded;
+}
+
+class OsMesaContext final : public Context {
+ public:
+  OsMesaContext() {
+    const std::array<int, 9> attributes = {osmesa_format,
+                                           GL_RGBA,
+                                           osmesa_profile,
+                                           osmesa_core_profile,
+                                           osmesa_context_major_version,
+                                           4,
+                                           osmesa_context_minor_version,
+                                           5,
+                                           0};
+    context_ = osmesa().create_context(attributes.data(), nullptr);
+    if (context_ == nullptr) throw Error(ExitCode::no_gl, "OSMesa: no OpenGL 4.5 core context");
+    if (osmesa().make_current(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
+      osmesa().destroy_context(context_);
+      throw Error(ExitCode::no_gl, "OSMesa: the context cannot be used");
+    }
+    initialise(osmesa().get_proc_address, "OSMesa");
+  }
+
+  ~OsMesaContext() override {
+    release_programs();
+    osmesa().destroy_context(context_);
+  }
+
+ private:
+  void* context_ = nullptr;
+  std::array<std::uint8_t, 4> pixel_{};  // its default framebuffer, which nothing is drawn into
+};
+
+}  // namespace
+
+std::unique_ptr<Context> open_osmesa() { return std::make_unique<OsMesaContext>(); }
+
+}  // namespace binosplat::gl

@@ -1,0 +1,210 @@
+#include "preview/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/output_file.h"
+#include "formats/exr.h"
+#include "formats/image_file.h"
+#include "measure/metrics.h"
+#include "scene/axes.h"
+#include "shared/layout.h"
+#include "stereo/layout.h"
+
+namespace binosplat::preview {
+
+namespace {
+
+// Frames until thresholds that go by the frames before have settled (docs/decisions.md).
+constexpr int settling_frames = 4;
+constexpr std::size_t reports_kept = 240;
+
+// Where the densest part of a model lies before a camera: the median view depth of what is ahead.
+double depth_ahead(const Model& model, const Camera& of_world) {
+  const Camera camera = into_axes(of_world, model.axes);
+  std::vector<double> depths;
+  const std::size_t step = std::max<std::size_t>(1, model.count() / 10000);
+  for (std::size_t i = 0; i < model.count(); i += step) {
+    const double z = glm::dot(camera.rotation[2], glm::dvec3(model.position[i]) - camera.position);
+    if (z > 0.0) depths.push_back(z);
+  }
+  if (depths.empty()) return 1.0;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& ending) {
+  for (int n = 1;; ++n) {
+    const auto path = folder / fmt::format("preview_{:03}{}", n, ending);
+    if (!std::filesystem::exists(path)) return path;
+  }
+}
+
+// As INRIA's cameras.json, with the principal point and the time.
+nlohmann::ordered_json to_json(const Camera& camera) {
+  nlohmann::ordered_json rotation = nlohmann::json::array();
+  for (int row = 0; row < 3; ++row)
+    rotation.push_back({camera.rotation[0][row], camera.rotation[1][row], camera.rotation[2][row]});
+  return {{"img_name", camera.name}, {"width", camera.width},
+          {"height", camera.height}, {"position", {camera.position.x, camera.position.y, camera.position.z}},
+          {"rotation", rotation},    {"fx", camera.fx},
+          {"fy", camera.fy},         {"cx", camera.cx},
+          {"cy", camera.cy},         {"time", camera.time.value_or(0.0)}};
+}
+
+}  // namespace
+
+void make_consistent(Choices& choices) {
+  render::FrameSettings& s = choices.settings;
+  if (s.th == TH_TAU) {
+    s.loss = 0.0f;
+    s.transmittance = TRANSMITTANCE_ONE;
+    s.th_eyes = TH_EYES_PER_EYE;
+  }
+  if (s.th != TH_SQUARED || !render::measures(s.transmittance)) s.contrast = CONTRAST_OFF;
+  s.background = choices.background;
+}
+
+Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
+                 Choices wanted, std::filesystem::path folder)
+    : head(cameras.at(0), up, depth_ahead(model, cameras[0])),
+      choices(std::move(wanted)),
+      model_(std::move(model)),
+      cameras_(std::move(cameras)),
+      up_(up),
+      folder_(std::move(folder)),
+      frame_(context, model_),
+      presenter_(context) {}
+
+void Session::change() {
+  make_consistent(choices);
+  pending_ = render::measures(choices.settings.transmittance) ? settling_frames : 1;
+}
+
+void Session::resize(const glm::ivec2& framebuffer) {
+  if (framebuffer == framebuffer_) return;
+  framebuffer_ = framebuffer;
+  change();
+}
+
+void Session::step_camera(int by) {
+  const int count = static_cast<int>(cameras_.size());
+  camera_ = static_cast<std::size_t>(((static_cast<int>(camera_) + by) % count + count) % count);
+  head = Navigator(cameras_[camera_], up_, depth_ahead(model_, cameras_[camera_]));
+  change();
+}
+
+glm::ivec2 Session::eye_size() const {
+  switch (choices.layout) {
+    case LAYOUT_PARALLEL:
+    case LAYOUT_CROSS_EYED:
+      return {framebuffer_.x / 2, framebuffer_.y};
+    case LAYOUT_HALF_WIDTH:
+      return {framebuffer_.x / 2 * 2, framebuffer_.y};
+    case LAYOUT_OVER_UNDER:
+      return {framebuffer_.x, framebuffer_.y / 2};
+    default:
+      return framebuffer_;
+  }
+}
+
+std::vector<shared::View> Session::views() {
+  const glm::ivec2 size = eye_size();
+  const Camera camera = resized(head.camera(), size.x, size.y);
+  eyes_ = stereo::make_rig(camera, choices.rig).cameras;
+  const auto drawn = stereo::make_rig(into_axes(camera, model_.axes), choices.rig).views;
+  return {drawn.begin(), drawn.end()};
+}
+
+bool Session::draw() {
+  const glm::ivec2 size = eye_size();
+  if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
+  --pending_;
+  try {
+    reports_.push_back(frame_.draw(views(), choices.settings));
+    shown_layout_ = choices.layout;
+    trouble_.clear();
+  } catch (const Error& error) {
+    trouble_ = error.what();
+    pending_ = 0;
+    return true;
+  }
+  if (reports_.size() > reports_kept) reports_.pop_front();
+  ++frames_drawn_;
+  return true;
+}
+
+void Session::present() {
+  if (frames_drawn_ == 0) return;
+  const shared::View& eye = frame_.views()[0];
+  const glm::ivec2 size =
+      stereo::layout_size(shown_layout_, {static_cast<int>(eye.width), static_cast<int>(eye.height)});
+  stereo::Target target;
+  target.y = std::max(0, framebuffer_.y - size.y);
+  presenter_.draw(frame_, 0, shown_layout_, target, choices.background);
+}
+
+void Session::focus(const glm::ivec2& pixel) {
+  if (frames_drawn_ == 0) return;
+  const shared::View& eye = frame_.views()[0];
+  const auto layout = static_cast<shared::uint>(shown_layout_);
+  const shared::LayoutSource from = shared::layout_source(
+      layout, static_cast<shared::uint>(pixel.x), static_cast<shared::uint>(pixel.y), eye.width, eye.height);
+  const std::size_t side = from.eye == EYE_RIGHT ? 1 : 0;
+  if (from.x >= eye.width || from.y >= eye.height) return;
+  const Image depth = depth_map(frame_.read_pictures()[side]);
+  const float z = depth.at(static_cast<int>(from.x), static_cast<int>(from.y), 0);
+  if (!std::isfinite(z)) return;
+  head.focus(eyes_[side], {from.x + 0.5, from.y + 0.5}, z);
+  change();
+}
+
+std::string Session::save_picture(bool exr) {
+  const std::vector<Picture> pictures = frame_.read_pictures();
+  const auto path = free_name(folder_, exr ? ".exr" : ".png");
+  if (exr) {
+    save_exr(path, pictures[0], pictures[1], {.half = false, .background = choices.background});
+  } else {
+    const Picture shown = shown_layout_ == LAYOUT_SEPARATE
+                              ? pictures[0]
+                              : stereo::lay_out(shown_layout_, pictures[0], pictures[1], choices.background);
+    save_png(path, composite(shown, choices.background));
+  }
+  return path.string();
+}
+
+std::string Session::save_camera(double seconds) {
+  const glm::ivec2 size = eye_size();
+  Camera camera = resized(head.camera(), size.x, size.y);
+  camera.name = fmt::format("key_{:03}", path_.size());
+  camera.time = path_.empty() ? 0.0 : std::max(seconds, *path_.back().time + 1e-3);
+  path_.push_back(camera);
+  nlohmann::ordered_json list = nlohmann::json::array();
+  for (const Camera& key : path_) list.push_back(to_json(key));
+  const auto path = folder_ / "cameras.json";
+  OutputFile file(path);
+  file.write(list.dump(2) + "\n");
+  file.commit();
+  return path.string();
+}
+
+double Session::psnr_against_exact() {
+  const std::vector<Picture> shown = frame_.read_pictures();
+  render::FrameSettings exact;
+  exact.tile_size = choices.settings.tile_size;
+  frame_.draw(views(), exact);
+  const std::vector<Picture> right = frame_.read_pictures();
+  double error = 0.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double psnr =
+        measure::psnr(composite(shown[k], choices.background), composite(right[k], choices.background));
+    error += 0.5 * std::pow(10.0, -0.1 * psnr);
+  }
+  change();
+  return -10.0 * std::log10(error);
+}
+
+}  // namespace binosplat::preview

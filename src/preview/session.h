@@ -1,0 +1,93 @@
+#pragma once
+// What the preview shows: a model, a head in it, choices, and the frame drawn of them. Knows OpenGL, but no
+// window: whoever has a context may drive it.
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "preview/navigator.h"
+#include "render/frame.h"
+#include "scene/model.h"
+#include "stereo/present.h"
+#include "stereo/rig.h"
+
+namespace binosplat::preview {
+
+/// What the user may change while looking.
+struct Choices {
+  int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE: the left eye alone
+  render::FrameSettings settings;
+  stereo::RigSettings rig;
+  glm::vec3 background{0.0f};
+};
+
+/// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no loss without
+/// one, no contrast but of a measured light with TH_SQUARED, and so on (METHOD 5).
+void make_consistent(Choices& choices);
+
+class Session {
+ public:
+  /// Uploads; the context is current here and in every call. `cameras` are where to start and what to step
+  /// through, not empty. `folder` is where pictures and paths are saved.
+  Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
+          Choices choices, std::filesystem::path folder);
+
+  Navigator head;
+  Choices choices;
+
+  /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
+  /// settled.
+  void change();
+  /// The size of the framebuffer in px; an eye's follows from the layout.
+  void resize(const glm::ivec2& framebuffer);
+  /// Goes on to the next camera, or back.
+  void step_camera(int by);
+  const std::string& camera_name() const { return cameras_[camera_].name; }
+
+  /// Draws a frame if anything changed; false if nothing did, or there is nothing to draw into. What goes
+  /// wrong is told by trouble(), and the last picture stays.
+  bool draw();
+  /// The last frame drawn into the framebuffer that is bound as the window's.
+  void present();
+
+  /// Turns to what lies at a pixel of the framebuffer, counted from its top left.
+  void focus(const glm::ivec2& pixel);
+  /// Writes what is shown as PNG, or both eyes with depth as multi-view OpenEXR; returns the file's name.
+  std::string save_picture(bool exr);
+  /// Adds the head to a path that `render --path` replays, and writes it: cameras.json with times in s from
+  /// the first on. Returns its name.
+  std::string save_camera(double seconds);
+  /// PSNR of what is shown against the exact frame, dB, over both eyes.
+  double psnr_against_exact();
+
+  /// Of the last frames drawn, newest last.
+  const std::deque<render::FrameReport>& reports() const { return reports_; }
+  std::size_t frames_drawn() const { return frames_drawn_; }
+  const std::string& trouble() const { return trouble_; }
+  const Model& model() const { return model_; }
+
+ private:
+  glm::ivec2 eye_size() const;
+  std::vector<shared::View> views();
+
+  Model model_;
+  std::vector<Camera> cameras_;
+  std::size_t camera_ = 0;
+  glm::dvec3 up_;
+  std::filesystem::path folder_;
+  render::Frame frame_;
+  stereo::Presenter presenter_;
+  glm::ivec2 framebuffer_{0};
+  std::array<Camera, 2> eyes_;
+  int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn
+  int pending_ = 1;                     // frames still to draw
+  std::size_t frames_drawn_ = 0;
+  std::deque<render::FrameReport> reports_;
+  std::vector<Camera> path_;
+  std::string trouble_;
+};
+
+}  // namespace binosplat::preview

@@ -1,0 +1,36 @@
+#pragma once
+// The preview's window (GLFW): input, and when to draw.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "preview/session.h"
+
+namespace binosplat::preview {
+
+/// A scene to open: read in a thread of its own, then shown.
+struct Opened {
+  std::string name;
+  std::function<Model()> load;
+  /// Where to start and what to step through, for the model; not empty. Sets what of the choices follows from
+  /// the model, such as the near plane.
+  std::function<std::vector<Camera>(const Model& model, Choices& choices)> cameras;
+};
+
+struct WindowSettings {
+  glm::ivec2 size{1280, 720};     // px
+  glm::dvec3 up{0.0, -1.0, 0.0};  // the world's
+  std::filesystem::path folder;   // for pictures and paths
+  std::filesystem::path
+      shader_folder;  // empty: the embedded shaders; else they are read again when they change
+};
+
+/// Shows a scene until the window is closed; files dropped on it are opened with `open`, whose Errors are
+/// shown. Throws Error(no_gl) where there is no display, or none with OpenGL 4.5, and what reading the first
+/// scene throws.
+void run(Opened scene, const Choices& choices, const WindowSettings& settings,
+         const std::function<Opened(const std::string& file)>& open);
+
+}  // namespace binosplat::preview

@@ -1,0 +1,184 @@
+#include "study/calibrate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/error.h"
+#include "measure/search.h"
+
+namespace binosplat::study {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int settling_frames = 4;  // what a frame remembers has settled by then (METHOD 8)
+constexpr double equal_db = 100.0;  // an equal picture's, so that means exist
+constexpr double tolerance_db = 0.01;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double psnr_of(double squared_error) {
+  return squared_error > 0.0 ? std::min(equal_db, -10.0 * std::log10(squared_error)) : equal_db;
+}
+
+}  // namespace
+
+/// What a view should look like, on the GPU, and what its exact picture is worth.
+struct Calibrator::Wanted {
+  explicit Wanted(gl::Context& context)
+      : colours(context, "wanted colours"), sums(context, "squared errors") {}
+
+  gl::Buffer colours;  // vec4 by pixel: the exact frame's C over black, or the photo
+  gl::Buffer sums;     // float by work group
+  std::uint32_t pixels = 0;
+  std::uint32_t levels = 0;    // of squared_error.comp
+  double exact_db = equal_db;  // of the exact picture against the photo
+  std::uint64_t exact_pairs = 0;
+};
+
+Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+                       double near_plane, CalibrationTarget::Kind kind)
+    : context_(context), dispatcher_(context), frame_(context, model), kind_(kind) {
+  if (views.empty()) fail("calibration needs at least one view");
+  for (const CalibrationView& view : views) {
+    const bool drop = kind == CalibrationTarget::Kind::drop;
+    if (drop && (!view.photo || view.photo->width != view.camera.width ||
+                 view.photo->height != view.camera.height || view.photo->channels != 3))
+      fail("view {}: a drop in dB is against a photo in the view's size, and there is none",
+           view.camera.name);
+    names_.push_back(view.camera.name);
+    views_.push_back(make_view(view.camera, near_plane));
+    Wanted& wanted = *wanted_.emplace_back(std::make_unique<Wanted>(context));
+    wanted.exact_pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
+    wanted.pixels =
+        static_cast<std::uint32_t>(view.camera.width) * static_cast<std::uint32_t>(view.camera.height);
+    std::vector<glm::vec4> colours;
+    if (drop) {
+      for (std::size_t k = 0; k < wanted.pixels; ++k)
+        colours.emplace_back(view.photo->data[3 * k], view.photo->data[3 * k + 1],
+                             view.photo->data[3 * k + 2], 0.0f);
+      wanted.levels = 255;
+    } else {
+      colours = frame_.read_pictures().front().colour;
+    }
+    wanted.colours.upload(colours);
+    wanted.sums.reserve(static_cast<std::int64_t>(wanted.pixels / THREADS + 1) * 4);
+    wanted.exact_db = psnr_of(squared_error(views_.size() - 1));
+  }
+}
+
+Calibrator::~Calibrator() = default;
+
+double Calibrator::squared_error(std::size_t view) {
+  Wanted& wanted = *wanted_[view];
+  dispatcher_.begin_frame();
+  dispatcher_.begin_stage("squared error");
+  dispatcher_.run(context_.program("squared_error.comp"), gl::Work::threads(wanted.pixels, THREADS),
+                  {{"Colours", frame_.colours()}, {"Wanted", wanted.colours}, {"Sums", wanted.sums}},
+                  {{"pixel_count", wanted.pixels}, {"levels", wanted.levels}});
+  dispatcher_.end_frame();
+  dispatcher_.wait_and_time();
+  double sum = 0.0;
+  for (const float part : wanted.sums.read<float>((wanted.pixels + THREADS - 1) / THREADS)) sum += part;
+  return sum / (3.0 * wanted.pixels);
+}
+
+Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
+  Cost cost;
+  const bool drop = kind_ == CalibrationTarget::Kind::drop;
+  const auto count = static_cast<double>(views_.size());
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    // Each view starts like a first frame: what another view measured says nothing here.
+    if (render::measures(settings.transmittance)) frame_.forget();
+    render::FrameReport report;
+    const int frames = render::measures(settings.transmittance) ? settling_frames : 1;
+    for (int n = 0; n < frames; ++n) report = frame_.draw(std::span(&views_[v], 1), settings);
+    const double db = psnr_of(squared_error(v)), value = drop ? wanted_[v]->exact_db - db : db;
+    const bool worse = drop ? value > cost.worst_db : value < cost.worst_db;
+    if (v == 0 || worse) {
+      cost.worst_db = value;
+      cost.worst_view = v;
+    }
+    cost.view_db.push_back(value);
+    cost.mean_db += value / count;
+    const double pairs = static_cast<double>(wanted_[v]->exact_pairs);
+    if (pairs > 0) cost.pairs_removed += (1.0 - static_cast<double>(report.pairs) / pairs) / count;
+  }
+  return cost;
+}
+
+render::DepthTable Calibrator::depth_table(const measure::DepthTableSettings& settings) {
+  return measure::measure_depth_table(frame_, views_, settings);
+}
+
+CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_db) {
+  const Clock::time_point start = Clock::now();
+  const double sign = kind_ == CalibrationTarget::Kind::drop ? -1.0 : 1.0;
+  const auto value = [&](double loss) {
+    settings.loss = static_cast<float>(loss);
+    return sign * cost(settings).mean_db;
+  };
+  measure::LossSearch search;
+  search.start = settings.loss;
+  search.tolerance = tolerance_db;
+  const measure::FoundLoss found = measure::find_loss(value, sign * target_db, search);
+  settings.loss = static_cast<float>(found.loss);
+  const Cost reached = cost(settings);
+  return {settings.th,       settings.transmittance, settings.contrast,          found.loss,
+          reached.mean_db,   reached.worst_db,       names_[reached.worst_view], reached.pairs_removed,
+          found.evaluations, seconds_since(start)};
+}
+
+std::vector<render::FrameSettings> calibrated_settings() {
+  std::vector<render::FrameSettings> all;
+  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+    for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
+      const bool weighed = th == TH_SQUARED && transmittance == TRANSMITTANCE_LAST;
+      for (const int contrast : {CONTRAST_OFF, CONTRAST_FINAL, CONTRAST_BEHIND}) {
+        if (contrast != CONTRAST_OFF && !weighed) continue;
+        render::FrameSettings settings;
+        settings.th = th;
+        settings.transmittance = transmittance;
+        settings.contrast = contrast;
+        settings.loss = th == TH_PERIPHERAL ? 1.0f : contrast == CONTRAST_OFF ? 0.1f : 0.01f;
+        all.push_back(settings);
+      }
+    }
+  }
+  return all;
+}
+
+Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+                      double near_plane, const CalibrationTarget& target,
+                      const measure::DepthTableSettings& table,
+                      const std::function<void(std::size_t, std::size_t)>& done) {
+  Calibrator calibrator(context, model, views, near_plane, target.kind);
+  Calibration c;
+  c.model_name = model.name;
+  c.gaussians = model.count();
+  c.hash = model_hash(model);
+  c.width = views.front().camera.width;
+  c.height = views.front().camera.height;
+  c.near_plane = near_plane;
+  c.target = target;
+  for (const CalibrationView& view : views) {
+    c.views.push_back({view.camera.name, view.camera.position});
+    c.focal += view.camera.fx / static_cast<double>(views.size());
+  }
+  const Clock::time_point start = Clock::now();
+  c.depth_table = calibrator.depth_table(table);
+  c.depth_table_seconds = seconds_since(start);
+  const std::vector<render::FrameSettings> all = calibrated_settings();
+  for (render::FrameSettings settings : all) {
+    settings.depth_table = c.depth_table;
+    c.entries.push_back(calibrator.find(settings, target.db));
+    if (done) done(c.entries.size(), all.size());
+  }
+  return c;
+}
+
+}  // namespace binosplat::study

@@ -1,0 +1,72 @@
+#pragma once
+// Finds the light by depth (AdaGScale, section 4.1) and the loss of each rule and source that costs as much
+// as is asked for, on some views of a model. The pictures stay on the GPU: only sums are read back.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "measure/depth_table.h"
+#include "render/frame.h"
+#include "scene/camera.h"
+#include "study/calibration.h"
+
+namespace binosplat::study {
+
+struct CalibrationView {
+  Camera camera;
+  std::optional<Image> photo;  // RGB in the camera's size
+};
+
+/// A model in some views, and what each way to draw it costs there.
+class Calibrator {
+ public:
+  /// Draws the exact pictures. Context and model must outlive it. Throws Error for no views, views of
+  /// different photos (some with, some without), or none where the target is a drop.
+  Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+             double near_plane, CalibrationTarget::Kind kind);
+  ~Calibrator();
+
+  struct Cost {
+    double mean_db = 0.0;  // in the target's terms: drop, or PSNR (at most 100)
+    double worst_db = 0.0;
+    std::size_t worst_view = 0;
+    double pairs_removed = 0.0;   // share of the exact frame's pairs, mean over the views
+    std::vector<double> view_db;  // by view
+  };
+
+  /// What settings cost; frames that go by measurements are drawn until those have settled.
+  Cost cost(const render::FrameSettings& settings);
+
+  render::DepthTable depth_table(const measure::DepthTableSettings& settings = {});
+
+  /// The largest loss that costs no more than the target: the mean over the views. The settings' own loss is
+  /// where the search begins.
+  CalibrationEntry find(render::FrameSettings settings, double target_db);
+
+ private:
+  double squared_error(std::size_t view);  // of the last frame drawn, mean
+
+  struct Wanted;
+  gl::Context& context_;
+  gl::Dispatcher dispatcher_;
+  render::Frame frame_;
+  CalibrationTarget::Kind kind_;
+  std::vector<std::string> names_;
+  std::vector<shared::View> views_;
+  std::vector<std::unique_ptr<Wanted>> wanted_;
+};
+
+/// The ways to draw that a calibration has entries for: both rules by every source that one eye has.
+std::vector<render::FrameSettings> calibrated_settings();
+
+/// Everything: the table, then every entry; `done(entries, of)` after each.
+Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+                      double near_plane, const CalibrationTarget& target,
+                      const measure::DepthTableSettings& table = {},
+                      const std::function<void(std::size_t, std::size_t)>& done = {});
+
+}  // namespace binosplat::study

@@ -1,0 +1,99 @@
+#include "stereo/comfort.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace binosplat::stereo {
+
+namespace {
+
+// Where a world point lies in a camera's picture.
+glm::dvec2 projected(const Camera& camera, const glm::dvec3& point) {
+  const glm::dvec3 v = glm::transpose(camera.rotation) * (point - camera.position);
+  return {camera.fx * v.x / v.z + camera.cx, camera.fy * v.y / v.z + camera.cy};
+}
+
+struct Sample {
+  double px;
+  double degrees;
+  double vertical_px;
+};
+
+// The angle between the lines from both eyes to a point.
+double angle_at(const std::array<Camera, 2>& eyes, const glm::dvec3& point) {
+  const glm::dvec3 a = point - eyes[0].position, b = point - eyes[1].position;
+  return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
+}
+
+Sample sample_at(const std::array<Camera, 2>& eyes, const glm::dvec2& pixel, double z,
+                 std::optional<double> focus) {
+  const Camera& left = eyes[0];
+  const glm::dvec3 ray =
+      left.rotation * glm::dvec3((pixel.x - left.cx) / left.fx, (pixel.y - left.cy) / left.fy, 1.0);
+  const glm::dvec3 point = left.position + z * ray;
+  const glm::dvec2 seen = projected(eyes[1], point);
+  const double at_focus = focus ? angle_at(eyes, left.position + *focus * ray) : 0.0;
+  return {pixel.x - seen.x, angle_at(eyes, point) - at_focus, std::abs(pixel.y - seen.y)};
+}
+
+double quantile_of(std::vector<double>& values, double share) {
+  const auto middle =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::optional<double> screen_distance(const std::array<Camera, 2>& eyes) {
+  const double shift = eyes[1].cx - eyes[0].cx;
+  if (!(shift > 0.0)) return std::nullopt;
+  return eyes[0].fx * glm::length(eyes[1].position - eyes[0].position) / shift;
+}
+
+std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes, const Picture& left,
+                                              std::optional<double> focus) {
+  constexpr double left_out = 0.01;
+  const Image depth = depth_map(left);
+  std::vector<double> px, degrees;
+  DisparityRange range;
+  // Of a large picture a quarter of a million pixels tell as much.
+  const int step = std::max(1, static_cast<int>(std::sqrt(left.width * (left.height / 250e3))));
+  for (int y = 0; y < left.height; y += step) {
+    for (int x = 0; x < left.width; x += step) {
+      const double z = depth.at(x, y, 0);
+      if (!std::isfinite(z) || z <= 0.0) continue;
+      const Sample sample = sample_at(eyes, {x + 0.5, y + 0.5}, z, focus);
+      if (!std::isfinite(sample.px)) continue;  // beside or behind the right eye
+      px.push_back(sample.px);
+      degrees.push_back(sample.degrees);
+      range.vertical_px = std::max(range.vertical_px, sample.vertical_px);
+    }
+  }
+  if (px.empty()) return std::nullopt;
+  range.near_px = quantile_of(px, 1.0 - left_out);
+  range.far_px = quantile_of(px, left_out);
+  range.near_degrees = quantile_of(degrees, 1.0 - left_out);
+  range.far_degrees = quantile_of(degrees, left_out);
+  return range;
+}
+
+bool comfortable(const DisparityRange& range) {
+  return range.near_degrees <= comfortable_degrees && range.far_degrees >= -comfortable_degrees;
+}
+
+ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes) {
+  // Of parallel eyes a disparity in px is fx ipd (1/z - 1/D), and over fx about the angle straight ahead,
+  // which to the sides is less.
+  const double ipd = glm::length(eyes[1].position - eyes[0].position);
+  const auto screen = screen_distance(eyes);
+  const double middle = 0.5 * (range.near_px + range.far_px) / (eyes[0].fx * ipd);
+  ComfortableRig rig;
+  rig.convergence = 1.0 / (middle + (screen ? 1.0 / *screen : 0.0));
+  const double spread = glm::degrees((range.near_px - range.far_px) / eyes[0].fx);
+  if (spread > 2.0 * comfortable_degrees) rig.ipd = ipd * 1.98 * comfortable_degrees / spread;
+  return rig;
+}
+
+}  // namespace binosplat::stereo

@@ -1,0 +1,51 @@
+#pragma once
+// A frame's pictures into any framebuffer or texture of the context, by the layouts of stereo/layout.h. Takes
+// a fraction of a millisecond and waits for nothing.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/image.h"
+#include "gl/dispatch.h"
+#include "render/frame.h"
+#include "shared/axes.h"
+
+namespace binosplat::stereo {
+
+/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer.
+struct Target {
+  std::uint32_t texture = 0;      // 2D, or 2D array with a layer; 0: the framebuffer below
+  int level = 0;                  // of the texture
+  int layer = -1;                 // of an array texture; -1: not one
+  std::uint32_t framebuffer = 0;  // 0: the default framebuffer
+  int x = 0;                      // px, lower left corner of the picture in it, as glViewport counts
+  int y = 0;
+};
+
+class Presenter {
+ public:
+  explicit Presenter(gl::Context& context) : dispatcher_(context) {}
+  ~Presenter();
+  Presenter(const Presenter&) = delete;
+  Presenter& operator=(const Presenter&) = delete;
+
+  /// Draws view `first` of the last frame (LAYOUT_SEPARATE), or views `first` and `first + 1` as left and
+  /// right eye in another layout; layout_size() says how many px that takes. The picture's top is the
+  /// texture's top as OpenGL sees it, t = 1.
+  ///
+  /// Colours are display-referred, as trained, and written as they are, without conversion by
+  /// GL_FRAMEBUFFER_SRGB: what a window shows, and what a texture of format SRGB8_ALPHA8 means. Without a
+  /// background they are premultiplied by the alpha beside them. All state is as before afterwards
+  /// (gl/state.h). Throws Error(bad_input) for views that are not there or differ in size, a texture that
+  /// cannot be drawn into, and what layout_size() and lay_out() refuse.
+  void draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
+            const Background& background = glm::vec3(0.0f));
+
+ private:
+  void bind(const Target& target);
+
+  gl::Dispatcher dispatcher_;
+  std::uint32_t framebuffer_ = 0;  // of textures, made at first use
+};
+
+}  // namespace binosplat::stereo

@@ -1,0 +1,67 @@
+// Models that were trained with anti-aliasing, by their tags and by --antialias.
+
+#include <gtest/gtest.h>
+
+#include "app/scene.h"
+#include "formats/image_file.h"
+
+namespace binosplat {
+namespace {
+
+struct Antialias : test::SceneTest {
+  Antialias() {
+    add_cameras();
+    // Far away, so that all are smaller than a pixel.
+    for (std::size_t i = 0; i < file.rows.size(); ++i) {
+      for (const char* scale : {"scale_0", "scale_1", "scale_2"}) file.at(i, scale) -= 3;
+    }
+  }
+
+  /// The picture of `file` with the options; what was said goes to `said`.
+  Image drawn(const std::vector<std::string>& more = {}) {
+    test::write_text(model, to_bytes(file));
+    std::vector<std::string> arguments = {"--view",         "front",  "--mono", "-o",
+                                          folder / "a.png", "--bits", "16"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const test::Outcome outcome = render(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    said = outcome.err;
+    return load_image(folder / "a.png");
+  }
+
+  test::PlyFile file = test::small_model();
+  std::string said;
+};
+
+double sum(const Image& image) {
+  double total = 0;
+  for (const float v : image.data) total += v;
+  return total;
+}
+
+TEST_F(Antialias, TagsAndOptionsMeanTheSame) {
+  const Image plain = drawn();
+  EXPECT_EQ(said.find("anti-aliasing"), std::string::npos);
+  const Image forced = drawn({"--antialias"});
+  EXPECT_LT(sum(forced), 0.5 * sum(plain));
+  file.comments = "comment SplatRenderMode: mip\n";
+  EXPECT_EQ(drawn().data, forced.data);
+  EXPECT_NE(said.find("was trained with anti-aliasing and is drawn so"), std::string::npos);
+  EXPECT_EQ(drawn({"--no-antialias"}).data, plain.data);
+  const Image narrow = drawn({"--kernel-px2", "0.1"});
+  EXPECT_NE(narrow.data, forced.data);
+  // Mip-Splatting's files say by their filter that their kernel is the narrow one.
+  file.comments = "";
+  file.columns.emplace_back("filter_3D");
+  for (auto& row : file.rows) row.push_back(0.0);
+  EXPECT_EQ(drawn().data, narrow.data);
+  EXPECT_EQ(drawn({"--kernel-px2", "0.3"}).data, forced.data);
+}
+
+TEST_F(Antialias, KernelsMustBePositive) {
+  for (const char* kernel : {"0", "-1", "nan", "x"})
+    EXPECT_EQ(render({"--kernel-px2", kernel}).code, 2) << kernel;
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,56 @@
+// render --backend: the same picture from each of Mesa's ways to a context.
+
+#include "app/scene.h"
+
+namespace binosplat {
+namespace {
+
+using test::good;
+using test::Outcome;
+using test::read_text;
+
+struct BackendTest : test::SceneTest {
+  // Both eyes as float EXR, which holds all bits of the pictures and says nothing of the device.
+  Outcome draw(const std::string& backend, const std::string& file,
+               const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"--backend", backend,  "-o",    folder / file,    "--exr",
+                                          "float",     "--view", "front", "--exr-encoding", "display"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return render(arguments);
+  }
+};
+
+TEST_F(BackendTest, SurfacelessAndOsMesaAreEqualBitForBit) {
+  add_cameras();
+  const Outcome surfaceless = draw("surfaceless", "egl.exr");
+  const Outcome osmesa = draw("osmesa", "osmesa.exr");
+  if (osmesa.code == 3) GTEST_SKIP() << osmesa.err;
+  if (surfaceless.err.find("llvmpipe") == std::string::npos)
+    GTEST_SKIP() << "the surfaceless platform is not Mesa's here: " << surfaceless.err;
+  ASSERT_TRUE(good(surfaceless));
+  ASSERT_TRUE(good(osmesa));
+  EXPECT_NE(osmesa.err.find("(OSMesa,"), std::string::npos) << osmesa.err;
+  EXPECT_EQ(surfaceless.err.find("(OSMesa,"), std::string::npos) << surfaceless.err;
+  EXPECT_EQ(read_text(folder / "egl.exr"), read_text(folder / "osmesa.exr"));
+  ASSERT_TRUE(good(draw("osmesa", "other.exr", {"--tiles", "aabb"})));
+  EXPECT_NE(read_text(folder / "egl.exr"), read_text(folder / "other.exr"))
+      << "another picture goes unnoticed";
+}
+
+TEST_F(BackendTest, TheDeviceAgreesWithMesa) {
+  add_cameras();
+  const Outcome device = draw("device", "device.exr");
+  if (device.code == 3) GTEST_SKIP() << "no GPU here";
+  ASSERT_TRUE(good(device));
+  const std::string other = draw("osmesa", "mesa.exr").code == 0 ? "osmesa" : "surfaceless";
+  ASSERT_TRUE(good(draw(other, "mesa.exr")));
+  const auto compared = [&](const std::string& file) {
+    return test::run_program({"compare", folder / "device.exr", folder / file, "--min-psnr", "60"}).code;
+  };
+  EXPECT_EQ(compared("mesa.exr"), 0);
+  ASSERT_TRUE(good(draw(other, "wide.exr", {"--ipd", "0.1"})));
+  EXPECT_EQ(compared("wide.exr"), 1) << "eyes too far apart go unnoticed";
+}
+
+}  // namespace
+}  // namespace binosplat

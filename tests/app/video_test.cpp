@@ -1,0 +1,139 @@
+// render -o FILE.mkv: the frames of a path as a video, by the ffmpeg that is there.
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "app/scene.h"
+#include "formats/image_file.h"
+#include "measure/metrics.h"
+
+namespace binosplat {
+namespace {
+
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::write_text;
+using Names = std::set<std::string>;
+
+struct Video : test::SceneTest {
+  const std::string path = folder / "path.json";
+
+  // Five cameras that move along x, `step` seconds apart.
+  explicit Video(double step = 0.04) {
+    nlohmann::json cameras;
+    for (int k = 0; k < 5; ++k) {
+      nlohmann::json camera = test::camera_json("frame" + std::to_string(k), -0.6 + 0.3 * k);
+      camera["time"] = step * k;
+      cameras.push_back(camera);
+    }
+    write_text(path, cameras.dump());
+  }
+
+  static bool have_ffmpeg() { return std::system("ffmpeg -version > /dev/null 2>&1") == 0; }
+
+  static glm::dvec3 mean(const Image& image) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t k = 0; k < image.data.size(); ++k) sum[static_cast<int>(k % 3)] += image.data[k];
+    return sum / (static_cast<double>(image.data.size()) / 3.0);
+  }
+
+  std::string asked(const std::string& command) const {
+    const std::string said = folder / "said";
+    EXPECT_EQ(std::system((command + " > " + said).c_str()), 0) << command;
+    const std::string text = test::read_text(said);
+    std::filesystem::remove(said);
+    return text;
+  }
+};
+
+TEST_F(Video, HasThePathsFramesInOrder) {
+  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  const std::string video = folder / "new/pair.mkv";
+  ASSERT_TRUE(good(render({"--path", path, "-o", video, "--layout", "cross-eyed"})));
+  ASSERT_TRUE(good(render({"--path", path, "-o", out, "--layout", "cross-eyed"})));
+  const std::string facts = asked("ffprobe -v error -count_frames -show_streams " + video);
+  for (const char* fact : {"width=144", "height=48", "r_frame_rate=25/1", "nb_read_frames=5",
+                           "codec_name=h264", "stereo_mode=right_left", "color_space=bt709"})
+    EXPECT_NE(facts.find(fact), std::string::npos) << fact << " is not in " << facts;
+  asked("ffmpeg -v error -i " + video + " " + (folder / "decoded%d.png").string());
+  const auto decoded = [&](int k) {
+    return load_image(folder / ("decoded" + std::to_string(k + 1) + ".png"));
+  };
+  const auto written = [&](int k) { return load_image(out + "/frame" + std::to_string(k) + ".png"); };
+  for (int k = 0; k < 5; ++k) {
+    // Confetti at half the colours' resolution is far from what was drawn, but nothing else is nearer.
+    const double own = measure::psnr(decoded(k), written(k));
+    EXPECT_GT(own, measure::psnr(decoded(k), written((k + 1) % 5)) + 3.0) << "another frame goes unnoticed";
+    // A wrong matrix or range of colours shifts their means.
+    EXPECT_LT(glm::length(mean(decoded(k)) - mean(written(k))), 1.5 / 255);
+    EXPECT_GT(glm::length(mean(decoded(k)) - 16.0 / 255 - mean(written(k)) * 219.0 / 255.0), 1.5 / 255);
+  }
+}
+
+TEST_F(Video, InterleavedEyesKeepTheirOwnColours) {
+  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  const auto format = [&](const std::string& layout) {
+    const std::string video = folder / (layout + ".mp4");
+    EXPECT_TRUE(good(render({"--path", path, "-o", video, "--layout", layout, "--fps", "12"})));
+    const std::string facts = asked("ffprobe -v error -show_streams " + video);
+    EXPECT_NE(facts.find("r_frame_rate=12/1"), std::string::npos) << facts;
+    return facts.substr(facts.find("pix_fmt="), 15);
+  };
+  EXPECT_EQ(format("columns"), "pix_fmt=yuv444p");
+  EXPECT_EQ(format("half-width"), "pix_fmt=yuv420p");
+}
+
+TEST_F(Video, WithoutFfmpegSaysSoBeforeAnyWork) {
+  test::Surroundings bare;
+  bare.variables["PATH"] = folder.path().string();
+  const Outcome outcome = render({"--path", path, "-o", folder / "a.mp4"}, bare);
+  EXPECT_TRUE(ended(outcome, 2, "apt install ffmpeg"));
+  EXPECT_EQ(outcome.err.find("drawing"), std::string::npos) << outcome.err;
+  EXPECT_EQ(folder.files(), (Names{"model.ply", "path.json"}));
+}
+
+TEST_F(Video, AnFfmpegThatFailsIsQuotedAndLeavesNothing) {
+  for (const char* script : {"#!/bin/sh\necho no such encoder >&2\nexit 1\n",
+                             "#!/bin/sh\necho no such encoder >&2\ncat > /dev/null\nexit 1\n"}) {
+    std::filesystem::create_directories(folder / "bin");
+    write_text(folder / "bin/ffmpeg", script);
+    std::filesystem::permissions(folder / "bin/ffmpeg", std::filesystem::perms::owner_all);
+    test::Surroundings broken;
+    broken.variables["PATH"] = (folder / "bin").string() + ":/usr/bin:/bin";
+    EXPECT_TRUE(
+        ended(render({"--path", path, "-o", folder / "a.mp4"}, broken), 2, "ffmpeg ended: no such encoder"));
+    EXPECT_EQ(folder.files(), (Names{"bin/ffmpeg", "model.ply", "path.json"}));
+  }
+}
+
+TEST_F(Video, AnInterruptLeavesNothing) {
+  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  const auto before = folder.files();
+  test::Program program({"render", model, "--orbit", "5000", "--size", "64x48", "-o", folder / "a.mp4"});
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (folder.files() == before && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_NE(folder.files(), before) << "it never began to write";
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait().code, -SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(folder.files(), before);
+}
+
+TEST_F(Video, WhatDoesNotGoTogetherIsRefused) {
+  const std::string video = folder / "a.webm";
+  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+  EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--exr", "half"}), 2, "is a video"));
+  EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--background", "none"}), 2, "no alpha"));
+  EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--layout", "separate"}), 2, "must be a folder"));
+  EXPECT_TRUE(ended(render({"--path", path, "-o", out, "--fps", "10"}), 2, "--fps is for videos"));
+  nlohmann::json other = test::camera_json("b", 0.1);
+  other["width"] = 80;
+  write_text(path, nlohmann::json({test::camera_json("a", 0), other}).dump());
+  EXPECT_TRUE(ended(render({"--path", path, "-o", video}), 2, "72 x 48 and 80 x 48 px"));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,205 @@
+// binosplat view, driven by synthetic input on a display of its own (Xvfb, xdotool).
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "app/scene.h"
+#include "formats/image_file.h"
+#include "measure/metrics.h"
+
+namespace binosplat {
+namespace {
+
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::Program;
+using test::Surroundings;
+namespace fs = std::filesystem;
+
+bool is_built() { return fs::exists(fs::path(BINOSPLAT_PROGRAM).parent_path() / "binosplat-view"); }
+
+TEST(View, WithoutADisplayNamesRender) {
+  if (!is_built()) GTEST_SKIP() << "the preview is not built";
+  const Outcome outcome = test::run_program({"view", "demo:room"}, {.variables = {{"DISPLAY", ""}}});
+  EXPECT_TRUE(ended(outcome, 3, "`binosplat render`"));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+}
+
+TEST(View, BadOptionsEndBeforeAnyWindow) {
+  if (!is_built()) GTEST_SKIP() << "the preview is not built";
+  const Surroundings none = {.variables = {{"DISPLAY", ""}}};
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& said) {
+    std::vector<std::string> all = {"view", "demo:room"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = test::run_program(all, none);
+    if (outcome.err.find("built without its preview") != std::string::npos)
+      return testing::AssertionSuccess();
+    return ended(outcome, 2, said);
+  };
+  EXPECT_TRUE(refused({"--mono"}, "binosplat render"));
+  EXPECT_TRUE(refused({"--layout", "multi-view"}, "multi-view"));
+  EXPECT_TRUE(refused({"--th", "squared"}, "--loss"));
+  EXPECT_TRUE(refused({"--no-such-option"}, "--no-such-option"));
+}
+
+/// A display without a screen, and hands on it.
+struct ViewOnADisplay : test::SceneTest {
+  std::string display;
+  pid_t server = -1;
+
+  void SetUp() override {
+    if (std::getenv("BINOSPLAT_LONG") == nullptr) GTEST_SKIP() << "takes a minute: BINOSPLAT_LONG=1";
+    if (std::system("command -v Xvfb > /dev/null && command -v xdotool > /dev/null") != 0)
+      GTEST_SKIP() << "Xvfb and xdotool are not installed";
+    if (!is_built()) GTEST_SKIP() << "the preview is not built";
+    add_cameras();
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    server = fork();
+    if (server == 0) {
+      dup2(ends[1], 3);
+      execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp", nullptr);
+      _exit(127);
+    }
+    close(ends[1]);
+    char number[16] = {};
+    ASSERT_GT(read(ends[0], number, sizeof(number) - 1), 0) << "Xvfb did not start";
+    display = fmt::format(":{}", std::atoi(number));
+  }
+  void TearDown() override {
+    if (server > 0) kill(server, SIGTERM);
+    if (server > 0) waitpid(server, nullptr, 0);
+  }
+
+  Program view(std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"view", model, "-o", out, "--size", "600x400"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Program(arguments, {.variables = {{"DISPLAY", display}}});
+  }
+
+  void hands(const std::string& what) const {
+    EXPECT_EQ(std::system(fmt::format("DISPLAY={} xdotool {}", display, what).c_str()), 0) << what;
+  }
+  /// Ends the preview. The window may be gone before the key is let go, of which xdotool complains.
+  Outcome leave(Program& program) const {
+    const std::string keys = "search --name binosplat windowfocus --sync key Escape";
+    if (std::system(fmt::format("DISPLAY={} xdotool {} 2> /dev/null", display, keys).c_str()) < 0)
+      ADD_FAILURE() << "no shell";
+    return program.wait();
+  }
+
+  void key(const std::string& name) const { hands("search --name binosplat windowfocus --sync key " + name); }
+
+  /// Waits until a run has said something so often.
+  static testing::AssertionResult says(const Program& program, const std::string& text, int times = 1) {
+    for (int tries = 0; tries < 600; ++tries) {
+      const std::string said = program.said();
+      int found = 0;
+      for (std::size_t at = said.find(text); at != std::string::npos; at = said.find(text, at + 1)) ++found;
+      if (found >= times) return testing::AssertionSuccess();
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return testing::AssertionFailure() << "no " << times << ". '" << text << "' in: " << program.said();
+  }
+
+  Image picture(int number) const {
+    return load_image(fs::path(out) / fmt::format("preview_{:03}.png", number));
+  }
+
+  /// The same pose as `render` draws it.
+  Image rendered(const std::string& key, const std::string& size,
+                 const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"--cameras", out + "/cameras.json",  "--view", key, "--size", size,
+                                          "-o",        folder / "rendered.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_TRUE(good(render(arguments)));
+    return load_image(folder / "rendered.png");
+  }
+};
+
+bool same(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height && measure::largest_difference(a, b).max == 0.0;
+}
+
+TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 1));
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 2));
+  EXPECT_TRUE(same(picture(1), rendered("key_000", "300x400", {"--layout", "parallel"})));
+  EXPECT_FALSE(same(picture(1), rendered("key_000", "300x400", {"--layout", "cross-eyed"})));
+
+  // Layout, tiles and a threshold, each by a key.
+  key("l");
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 3));
+  EXPECT_TRUE(same(picture(2), rendered("key_000", "300x400", {"--layout", "cross-eyed"})));
+  key("t");
+  key("h");
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 4));
+  const std::vector<std::string> approximate = {"--layout", "cross-eyed", "--tiles", "obb",
+                                                "--th",     "peripheral", "--loss",  "0.15"};
+  EXPECT_TRUE(same(picture(3), rendered("key_000", "300x400", approximate)));
+  EXPECT_FALSE(same(picture(3), picture(2))) << "tiles and th changed nothing";
+
+  // Moved by a held key and turned by the mouse; the path has both poses, and render replays it.
+  hands("keydown w sleep 0.5 keyup w");
+  hands("mousemove 500 300 mousedown 3 mousemove 520 310 mouseup 3");
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 5));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 6));
+  EXPECT_FALSE(same(picture(4), picture(3))) << "nothing moved";
+  EXPECT_TRUE(same(picture(4), rendered("key_001", "300x400", approximate)));
+  ASSERT_TRUE(
+      good(render({"--path", out + "/cameras.json", "-o", folder / "replayed", "--layout", "parallel"})));
+  EXPECT_TRUE(fs::exists(folder / "replayed/key_001.png"));
+
+  EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  hands("search --name binosplat windowsize --sync 500 300");
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 1));
+  EXPECT_EQ(picture(1).width, 500);
+  EXPECT_EQ(picture(1).height, 300);
+  hands("search --name binosplat windowunmap --sync windowmap --sync");
+  key("F11");
+  ASSERT_TRUE(says(program, "saved", 2));
+  EXPECT_NE(test::read_text(fs::path(out) / "preview_001.exr").find("right.Z"), std::string::npos);
+  EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, AtRestNothingIsDrawn) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  std::this_thread::sleep_for(std::chrono::seconds(4));
+  const Outcome outcome = leave(program);
+  EXPECT_EQ(outcome.code, 0);
+  const std::size_t at = outcome.err.find(" frames were drawn, ");
+  ASSERT_NE(at, std::string::npos) << outcome.err;
+  const std::size_t line = outcome.err.rfind('\n', at) + 1;
+  const std::string drawn = outcome.err.substr(outcome.err.find(' ', line) + 1);
+  EXPECT_GE(std::stoi(drawn), 1);
+  EXPECT_LE(std::stoi(drawn), 3) << outcome.err;
+}
+
+TEST_F(ViewOnADisplay, ABrokenModelIsTold) {
+  test::write_text(folder / "broken.ply", "ply\nformat ascii 1.0\n");
+  Program program({"view", folder / "broken.ply", "-o", out}, {.variables = {{"DISPLAY", display}}});
+  EXPECT_TRUE(ended(program.wait(), 2, "broken.ply"));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,119 @@
+// present_bench: what layouts and the preview's widgets take beyond the frame, on this machine's GPU through
+// EGL, at a headset's size. `--shrink 8` tries it where there is no GPU.
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui/backends/imgui_impl_opengl3.h>
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "preview/panel.h"
+#include "scene/demo_room.h"
+#include "stereo/layout.h"
+
+namespace binosplat {
+namespace {
+
+// Median GPU time of `draw`, ms.
+template <typename Draw>
+double time(gl::Dispatcher& dispatcher, int frames, const Draw& draw) {
+  std::vector<double> times;
+  for (int n = -3; n < frames; ++n) {  // some to warm up
+    dispatcher.begin_frame();
+    dispatcher.begin_stage("present");
+    draw();
+    dispatcher.end_frame();
+    const double ms = dispatcher.wait_and_time().front().ms;
+    if (n >= 0) times.push_back(ms);
+  }
+  return quantile(times, 0.5);
+}
+
+struct Bench {
+  std::unique_ptr<gl::Context> context = gl::Context::open();
+  gl::Dispatcher dispatcher{*context};
+  int frames;
+
+  // A texture to draw into, and a framebuffer of it.
+  std::pair<std::uint32_t, std::uint32_t> target(const glm::ivec2& size) {
+    std::uint32_t texture = 0, framebuffer = 0;
+    context->gl().CreateTextures(GL_TEXTURE_2D, 1, &texture);
+    context->gl().TextureStorage2D(texture, 1, GL_RGBA8, size.x, size.y);
+    context->gl().CreateFramebuffers(1, &framebuffer);
+    context->gl().NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
+    return {texture, framebuffer};
+  }
+
+  void layouts(const Model& model, const Camera& head) {
+    render::Frame frame(*context, model);
+    const auto report = frame.draw(stereo::make_rig(head, {}).views);
+    fmt::print("| frame of {} x {} px an eye | {:.3f} |\n", head.width, head.height, report.total_ms);
+    stereo::Presenter presenter(*context);
+    for (int layout = LAYOUT_PARALLEL; layout <= LAYOUT_GREY; ++layout) {
+      const auto [texture, framebuffer] = target(stereo::layout_size(layout, {head.width, head.height}));
+      const double ms =
+          time(dispatcher, frames, [&, to = texture] { presenter.draw(frame, 0, layout, {.texture = to}); });
+      fmt::print("| {} | {:.3f} |\n", layout_choices[layout].name, ms);
+    }
+  }
+
+  // The widgets in a window of full HD; the session's frames are small.
+  void widgets(Model model, const Camera& head) {
+    preview::Choices choices;
+    preview::Session session(*context, std::move(model), {head}, {0, -1, 0}, choices, ".");
+    session.resize({64, 64});
+    for (int n = 0; n < 130; ++n) {
+      session.change();
+      session.draw();
+    }
+    const glm::ivec2 size(1920, 1080);
+    context->gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, target(size).second);
+    ImGui::CreateContext();
+    ImGui::GetIO().DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
+    ImGui::GetIO().IniFilename = nullptr;
+    ImGui_ImplOpenGL3_Init("#version 450 core");
+    preview::Panel panel;
+    const double ms = time(dispatcher, frames, [&] {
+      ImGui_ImplOpenGL3_NewFrame();
+      ImGui::NewFrame();
+      panel.draw(session);
+      ImGui::Render();
+      ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    });
+    if (ImGui::GetDrawData()->TotalVtxCount == 0) fail("the widgets were not drawn");
+    fmt::print("| widgets in {} x {} px | {:.3f} |\n", size.x, size.y, ms);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext();
+  }
+};
+
+void run(int frames, int shrink) {
+  Bench bench{.frames = frames};
+  fmt::print("{}, {}\n\n| what | median ms |\n|---|---|\n", bench.context->renderer(),
+             bench.context->version());
+  Demo demo = demo_room();
+  const Camera headset = stereo::apply_preset(demo.cameras.at(0), "headset");
+  const Camera head = resized(headset, headset.width / shrink / 2 * 2, headset.height / shrink);
+  bench.layouts(demo.model, head);
+  bench.widgets(std::move(demo.model), head);
+}
+
+}  // namespace
+}  // namespace binosplat
+
+int main(int argc, char** argv) {
+  CLI::App app("What layouts and the preview's widgets take beyond the frame.");
+  int frames = 50, shrink = 1;
+  app.add_option("--frames", frames, "Frames that the medians are of")->check(CLI::Range(1, 10000));
+  app.add_option("--shrink", shrink, "Pictures so many times smaller")->check(CLI::Range(1, 64));
+  CLI11_PARSE(app, argc, argv);
+  try {
+    binosplat::run(frames, shrink);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "present_bench: {}\n", error.what());
+    return 2;
+  }
+  return 0;
+}

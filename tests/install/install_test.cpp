@@ -1,0 +1,120 @@
+// What cmake --install and cpack leave: libraries that another program finds, builds with and draws with.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "app/scene.h"
+#include "formats/image_file.h"
+#include "formats/model_file.h"
+#include "measure/metrics.h"
+#include "stereo/embed.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr const char* sanitize = "-fsanitize=address,undefined";
+#else
+constexpr const char* sanitize = "";
+#endif
+
+/// Whether a command of the shell ends well; shows what it said.
+testing::AssertionResult succeeds(const test::TempFolder& folder, const std::string& command) {
+  const fs::path said = folder / "said";
+  const int code = std::system((command + " > " + said.string() + " 2>&1").c_str());
+  if (code == 0) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << command << ": " << code << "\n" << test::read_text(said);
+}
+
+/// Both eyes as examples/embed.cpp asks for them, or with its lenses swapped.
+std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
+  const auto context = gl::Context::open(gl::Backend::surfaceless);
+  const Model model = load_model(file);
+  std::array<stereo::Fov, 2> fov = {stereo::Fov{-0.855, 0.646, 0.7, -0.7},
+                                    stereo::Fov{-0.646, 0.855, 0.7, -0.7}};
+  if (swapped) std::swap(fov[0], fov[1]);
+  const std::array<stereo::XrEye, 2> eyes = {stereo::XrEye{.position = {-0.0315, 0, 0}, .fov = fov[0]},
+                                             stereo::XrEye{.position = {0.0315, 0, 0}, .fov = fov[1]}};
+  const glm::ivec2 size(320, 300);
+  render::Frame frame(*context, model);
+  frame.draw(stereo::eyes_from_xr(eyes, {}, {size, size}).views);
+  std::vector<Image> images;
+  for (const Picture& picture : frame.read_pictures()) images.push_back(composite(picture, glm::vec3(0.0f)));
+  return images;
+}
+
+TEST(Install, AnotherProgramDrawsWithIt) {
+  const test::TempFolder folder;
+  const std::string first = (folder / "first").string(), prefix = (folder / "prefix").string();
+  const std::string build = (folder / "build").string();
+  test::write_text(folder / "model.ply", test::to_bytes(test::small_model()));
+  fs::create_directory(folder / "out");
+  // Moved after it was installed: nothing in it may name the place.
+  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " + first));
+  fs::rename(first, prefix);
+  for (const auto& entry : fs::recursive_directory_iterator(prefix + "/lib/cmake")) {
+    if (!entry.is_regular_file()) continue;
+    EXPECT_EQ(test::read_text(entry.path()).find(BINOSPLAT_SOURCE_DIR), std::string::npos) << entry.path();
+  }
+  ASSERT_TRUE(succeeds(folder, "cmake -S " + prefix + "/share/doc/binosplat/examples -B " + build +
+                                   " -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=" + prefix +
+                                   " -DCMAKE_CXX_COMPILER=" + BINOSPLAT_CXX + " -DCMAKE_CXX_FLAGS='" +
+                                   BINOSPLAT_CXX_FLAGS + " " + sanitize + "'"));
+  ASSERT_TRUE(succeeds(folder, "cmake --build " + build));
+  ASSERT_TRUE(succeeds(folder, "ASAN_OPTIONS=detect_leaks=0 " + build + "/embed " +
+                                   (folder / "model.ply").string() + " " + (folder / "out").string()));
+  const auto eyes = expected_eyes(folder / "model.ply"), others = expected_eyes(folder / "model.ply", true);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Image drawn = load_image(folder / (k == 0 ? "out/left.png" : "out/right.png"));
+    EXPECT_LE(measure::largest_difference(drawn, quantised(eyes[k])).max, 1.01 / 255);
+    EXPECT_GT(measure::largest_difference(drawn, quantised(others[k])).max, 0.1)
+        << "swapped lenses go unnoticed";
+  }
+  EXPECT_FALSE(succeeds(folder, "ASAN_OPTIONS=detect_leaks=0 " + build + "/embed /no/such.ply /tmp"));
+}
+
+TEST(Install, HeadersNameNobodyElsesRooms) {
+  const test::TempFolder folder;
+  ASSERT_TRUE(succeeds(folder, std::string("cmake -DROOT=") + BINOSPLAT_SOURCE_DIR +
+                                   " -DOUT=" + (folder / "include").string() + " -P " + BINOSPLAT_SOURCE_DIR +
+                                   "/cmake/public_headers.cmake"));
+  int headers = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "include")) {
+    if (!entry.is_regular_file()) continue;
+    ++headers;
+    std::istringstream lines(test::read_text(entry.path()));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.rfind("#include \"", 0) != 0) continue;
+      const std::string name = line.substr(10, line.find('"', 10) - 10);
+      EXPECT_TRUE(fs::exists(folder / ("include/" + name))) << entry.path() << ": " << line;
+    }
+  }
+  EXPECT_GT(headers, 50);
+  EXPECT_FALSE(fs::exists(folder / "include/binosplat/app")) << "the programs' own";
+  EXPECT_FALSE(fs::exists(folder / "include/binosplat/preview")) << "the programs' own";
+  EXPECT_TRUE(fs::exists(folder / "include/binosplat/shared/axes.h"));
+}
+
+TEST(Install, PackagesHoldAProgramThatRuns) {
+  if (std::getenv("BINOSPLAT_LONG") == nullptr) GTEST_SKIP() << "takes a minute: BINOSPLAT_LONG=1";
+  if (std::system("dpkg-shlibdeps --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no dpkg here";
+  const test::TempFolder folder;
+  ASSERT_TRUE(succeeds(folder, std::string("cpack --config ") + BINOSPLAT_BUILD_DIR +
+                                   "/CPackConfig.cmake -B " + (folder / "packages").string()));
+  ASSERT_TRUE(succeeds(folder, "cd " + folder.path().string() +
+                                   " && dpkg-deb -x packages/*.deb deb && mkdir tar && tar -xzf "
+                                   "packages/*.tar.gz --strip-components=1 -C tar"));
+  for (const char* program : {"deb/usr/bin/binosplat", "tar/bin/binosplat"}) {
+    ASSERT_TRUE(succeeds(folder, (folder / program).string() + " --version")) << program;
+    EXPECT_EQ(test::read_text(folder / "said"), "binosplat 0.1.0\n");
+  }
+  ASSERT_TRUE(succeeds(folder, "dpkg-deb -f " + folder.path().string() + "/packages/*.deb Depends"));
+  EXPECT_NE(test::read_text(folder / "said").find("libopenexr"), std::string::npos);
+  EXPECT_EQ(test::read_text(folder / "said").find("mesa"), std::string::npos) << "drags Mesa along";
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,196 @@
+// binosplat in another program: views as OpenXR gives them, that program's state, and whose errors are whose.
+
+#include "stereo/embed.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <glm/gtc/quaternion.hpp>
+
+#include "gl/state.h"
+#include "support/caller.h"
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat::stereo {
+namespace {
+
+constexpr glm::ivec2 size(72, 64);
+constexpr std::array<glm::ivec2, 2> sizes = {size, size};
+
+/// Eyes as a Quest gives them: 49 degrees outwards and 37 inwards, each turned outwards by `cant` degrees.
+std::array<XrEye, 2> quest_eyes(double cant = 0.0) {
+  std::array<XrEye, 2> eyes;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double side = k == 0 ? -1.0 : 1.0;
+    eyes[k].position = {side * 0.0315, 1.6, 0.0};
+    const glm::dquat turn = glm::angleAxis(glm::radians(-side * cant), glm::dvec3(0, 1, 0));
+    eyes[k].orientation = {turn.x, turn.y, turn.z, turn.w};
+    eyes[k].fov = {glm::radians(k == 0 ? -49.0 : -37.0), glm::radians(k == 0 ? 37.0 : 49.0),
+                   glm::radians(45.0), glm::radians(-48.0)};
+  }
+  return eyes;
+}
+
+/// The head of quest_eyes() is at the origin of the model's world, which looks along z with y down.
+const Stage stage = {.origin = {0.0, 1.6, 0.0}};
+
+/// One bright ball at (right, up, forward) of the head, in metres.
+Model ball(const glm::dvec3& at, double units = 1.0) {
+  Model model;
+  test::add(model, glm::vec3(glm::dvec3(at.x, -at.y, at.z) * units),
+            glm::vec3(0.01f * static_cast<float>(units)), 0.99f);
+  return model;
+}
+
+/// Centre of what is bright in pixels from OpenGL's lower left.
+glm::dvec2 centre(const std::vector<float>& pixels) {
+  glm::dvec2 sum(0.0);
+  double weight = 0.0;
+  for (int k = 0; k < size.x * size.y; ++k) {
+    const double v = pixels[static_cast<std::size_t>(4 * k)];
+    sum += v * glm::dvec2(k % size.x, k / size.x);
+    weight += v;
+  }
+  return sum / weight;
+}
+
+/// Where the angles put a direction (right, up, forward) of an eye, in the same pixels.
+glm::dvec2 expected(const Fov& fov, const glm::dvec3& v) {
+  const auto along = [](double low, double high, double tangent, int pixels) {
+    return (tangent - std::tan(low)) / (std::tan(high) - std::tan(low)) * pixels - 0.5;
+  };
+  return {along(fov.left, fov.right, v.x / v.z, size.x), along(fov.down, fov.up, v.y / v.z, size.y)};
+}
+
+struct Embed : testing::Test {
+  test::Caller caller;
+  const std::array<std::uint32_t, 2> textures = {caller.texture(GL_RGBA32F, size.x, size.y),
+                                                 caller.texture(GL_RGBA32F, size.x, size.y)};
+  const std::array<Target, 2> targets = {Target{.texture = textures[0]}, Target{.texture = textures[1]}};
+
+  std::vector<float> read(std::size_t eye) const { return caller.read<float>(textures[eye], size.x, size.y); }
+};
+
+TEST_F(Embed, AnglesAndPosesAreOpenXrs) {
+  for (const double cant : {0.0, 10.0}) {
+    for (const double units : {1.0, 4.0}) {
+      const glm::dvec3 at(0.3, 0.2, 1.5);
+      const Model model = ball(at, units);
+      EmbeddedRenderer renderer(caller.get_proc_address(), model);
+      const auto eyes = quest_eyes(cant);
+      Stage there = stage;
+      there.origin *= units;
+      there.units_per_metre = units;
+      const EyePair pair = eyes_from_xr(eyes, there, sizes);
+      EXPECT_EQ(pair.parallel, cant == 0.0);
+      renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double side = k == 0 ? -1.0 : 1.0, turn = glm::radians(side * cant);
+        const glm::dvec3 v(at.x - side * 0.0315, at.y, at.z);
+        const glm::dvec3 turned(std::cos(turn) * v.x - std::sin(turn) * v.z, v.y,
+                                std::sin(turn) * v.x + std::cos(turn) * v.z);
+        EXPECT_LT(glm::length(centre(read(k)) - expected(eyes[k].fov, turned)), 0.1) << cant << " " << k;
+        EXPECT_GT(glm::length(centre(read(k)) - expected(eyes[1 - k].fov, turned)), 1.0)
+            << "the other eye's angles go unnoticed";
+        EXPECT_GT(glm::length(centre(read(k)) - expected(eyes[k].fov, turned * glm::dvec3(1, -1, 1))), 1.0)
+            << "a picture on its head goes unnoticed";
+      }
+    }
+  }
+}
+
+TEST_F(Embed, EachEyeIsTheSameAlone) {
+  const Model model = test::random_model(3, 400, 2);
+  for (const double cant : {0.0, 10.0}) {
+    EmbeddedRenderer renderer(caller.get_proc_address(), model);
+    const EyePair pair = eyes_from_xr(quest_eyes(cant), stage, sizes);
+    const EmbeddedReport report = renderer.draw(pair.views, targets);
+    EXPECT_EQ(report.order_groups, cant == 0.0 ? 1u : 2u);
+    const std::array<std::vector<float>, 2> both = {read(0), read(1)};
+    for (std::size_t k = 0; k < 2; ++k) {
+      renderer.draw(std::span(&pair.views[k], 1), std::span(&targets[k], 1));
+      EXPECT_EQ(std::memcmp(both[k].data(), read(k).data(), both[k].size() * sizeof(float)), 0) << cant << k;
+    }
+    EXPECT_NE(both[0], both[1]) << "one eye twice goes unnoticed";
+  }
+}
+
+TEST_F(Embed, ModelsKnowWhichWayIsUp) {
+  // One ball to the upper right, in the frame of trained models and in that of OpenGL.
+  Model down = ball({0.3, 0.2, 1.5}), up = down;
+  up.axes = "RUB";
+  up.position[0] = {0.3f, 0.2f, -1.5f};
+  std::vector<std::vector<float>> seen;
+  for (const Model* model : {&down, &up}) {
+    EmbeddedRenderer renderer(caller.get_proc_address(), *model);
+    renderer.draw(eyes_from_xr(quest_eyes(), stage_of(*model, {0, 1.6, 0}), sizes).views, targets,
+                  LAYOUT_SEPARATE, glm::vec3(0.0f));
+    seen.push_back(read(0));
+  }
+  EXPECT_LT(glm::length(centre(seen[0]) - centre(seen[1])), 1e-3);
+  EmbeddedRenderer renderer(caller.get_proc_address(), up);
+  renderer.draw(eyes_from_xr(quest_eyes(), stage, sizes).views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  EXPECT_NE(read(0), seen[0]) << "the model's axes go unnoticed";
+}
+
+TEST_F(Embed, RoundedPosesAreStillParallel) {
+  auto eyes = quest_eyes();
+  eyes[1].position.z += 1e-7;  // as floats have it
+  const EyePair pair = eyes_from_xr(eyes, stage, sizes);
+  EXPECT_TRUE(pair.parallel);
+  eyes[1].position.z += 1e-3;
+  EXPECT_FALSE(eyes_from_xr(eyes, stage, sizes).parallel);
+}
+
+TEST_F(Embed, LayoutsGoIntoOneTarget) {
+  const Model model = test::random_model(3, 400, 2);
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const EyePair pair = eyes_from_xr(quest_eyes(), stage, sizes);
+  renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  const std::uint32_t wide = caller.texture(GL_RGBA32F, 2 * size.x, size.y);
+  renderer.draw(pair.views, std::array{Target{.texture = wide}}, LAYOUT_PARALLEL, glm::vec3(0.0f));
+  const auto pixels = caller.read<float>(wide, 2 * size.x, size.y);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const auto alone = read(eye);
+    for (int y = 0; y < size.y; ++y) {
+      const std::size_t row = 4 * static_cast<std::size_t>(y) * size.x;
+      ASSERT_EQ(std::memcmp(&pixels[2 * row + 4 * eye * size.x], &alone[row], 4 * sizeof(float) * size.x), 0);
+    }
+  }
+  EXPECT_TRUE(
+      test::fails_saying([&] { renderer.draw(pair.views, targets, LAYOUT_PARALLEL); }, {"2 targets"}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { renderer.draw(pair.views, std::span(targets).first(1)); }, {"1 targets"}));
+}
+
+TEST_F(Embed, BadEyesAreRefused) {
+  auto eyes = quest_eyes();
+  eyes[0].orientation = glm::dvec4(0.0);
+  EXPECT_TRUE(test::fails_saying([&] { eyes_from_xr(eyes, stage, sizes); }, {"quaternion"}));
+  eyes = quest_eyes();
+  std::swap(eyes[1].fov.left, eyes[1].fov.right);
+  EXPECT_TRUE(test::fails_saying([&] { eyes_from_xr(eyes, stage, sizes); }, {"field of view of right"}));
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        eyes_from_xr(quest_eyes(), stage, {glm::ivec2(0, 4), size});
+      },
+      {"0 x 4"}));
+}
+
+TEST_F(Embed, TheCallersErrorsAreTheCallers) {
+  const Model model = ball({0, 0, 1});
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const EyePair pair = eyes_from_xr(quest_eyes(), stage, sizes);
+  caller.gl.Enable(0xDEAD);
+  const EmbeddedReport report = renderer.draw(pair.views, targets);
+  EXPECT_EQ(report.callers_errors, std::vector<GLenum>{GL_INVALID_ENUM});
+  EXPECT_GT(report.pairs, 0u) << "the frame was not drawn";
+  EXPECT_TRUE(renderer.draw(pair.views, targets).callers_errors.empty());
+  EXPECT_EQ(caller.gl.GetError(), static_cast<GLenum>(GL_NO_ERROR));
+}
+
+}  // namespace
+}  // namespace binosplat::stereo

@@ -1,0 +1,151 @@
+// What is shown is what is written: the layouts on the GPU against those on the CPU.
+
+#include "stereo/present.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stereo/layout.h"
+#include "stereo/rig.h"
+#include "support/caller.h"
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat::stereo {
+namespace {
+
+constexpr int width = 60, height = 34;
+const glm::vec3 blue(0.1f, 0.2f, 0.6f);
+
+struct Present : testing::Test {
+  test::Caller caller;
+  const Model model = test::random_model(5, 300, 1, 0.6);
+  render::Frame frame{*caller.context, model};
+  Presenter presenter{*caller.context};
+  std::vector<Picture> eyes;
+
+  Present() {
+    const EyePair pair = make_rig(test::front_camera(width, height, 55.0), {.ipd = 0.2, .convergence = 2.0});
+    frame.draw(pair.views);
+    eyes = frame.read_pictures();
+  }
+
+  /// The largest difference between a texture's pixels, rows from the bottom, and a picture's.
+  static double difference(const std::vector<float>& pixels, const Image& image) {
+    double worst = 0;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        for (int c = 0; c < image.channels; ++c) {
+          const auto at = static_cast<std::size_t>(4 * ((image.height - 1 - y) * image.width + x) + c);
+          worst = std::max(worst, std::abs(double{pixels[at]} - image.at(x, y, c)));
+        }
+      }
+    }
+    return worst;
+  }
+
+  std::vector<float> shown(std::size_t first, int layout, const Background& background) {
+    const glm::ivec2 size = layout_size(layout, {width, height});
+    const std::uint32_t texture = caller.texture(GL_RGBA32F, size.x, size.y);
+    presenter.draw(frame, first, layout, {.texture = texture}, background);
+    const auto pixels = caller.read<float>(texture, size.x, size.y);
+    caller.DeleteTextures(1, &texture);
+    return pixels;
+  }
+};
+
+TEST_F(Present, EveryLayoutIsWhatFilesHold) {
+  for (int layout = LAYOUT_PARALLEL; layout <= LAYOUT_GREY; ++layout) {
+    const auto pixels = shown(0, layout, blue);
+    const auto written = [&](int as, const Picture& left, const Picture& right) {
+      return composite(lay_out(as, left, right, blue), blue);
+    };
+    // pow() of the two differs in the last digits, everything else by rounding only.
+    const double bound = layout == LAYOUT_ANAGLYPH ? 2e-5 : 1e-6;
+    EXPECT_LE(difference(pixels, written(layout, eyes[0], eyes[1])), bound) << layout_choices[layout].name;
+    EXPECT_GT(difference(pixels, written(layout, eyes[1], eyes[0])), 0.01)
+        << layout_choices[layout].name << ": swapped eyes go unnoticed";
+  }
+}
+
+TEST_F(Present, AnEyeByItself) {
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    EXPECT_LE(difference(shown(eye, LAYOUT_SEPARATE, blue), composite(eyes[eye], blue)), 1e-6);
+    EXPECT_GT(difference(shown(eye, LAYOUT_SEPARATE, blue), composite(eyes[1 - eye], blue)), 0.01);
+  }
+  // Without a background: colour that is multiplied by alpha, and alpha.
+  const auto pixels = shown(1, LAYOUT_SEPARATE, std::nullopt);
+  Image associated(width, height, 4);
+  for (std::size_t k = 0; k < eyes[1].colour.size(); ++k) {
+    for (std::size_t c = 0; c < 4; ++c)
+      associated.data[4 * k + c] =
+          c < 3 ? eyes[1].colour[k][static_cast<int>(c)] : 1.0f - eyes[1].colour[k].a;
+  }
+  EXPECT_LE(difference(pixels, associated), 1e-6);
+  EXPECT_GT(difference(pixels, composite(eyes[1], std::nullopt)), 0.01) << "straight alpha goes unnoticed";
+}
+
+TEST_F(Present, EncodedTexturesHoldDisplayValues) {
+  const std::uint32_t texture = caller.texture(GL_SRGB8_ALPHA8, width, height);
+  caller.gl.Enable(GL_FRAMEBUFFER_SRGB);
+  presenter.draw(frame, 0, LAYOUT_SEPARATE, {.texture = texture}, blue);
+  const auto bytes = caller.read<std::uint8_t>(texture, width, height);
+  const Image image = composite(eyes[0], blue);
+  int off = 0, encoded_twice = 0;
+  for (int k = 0; k < width * height; ++k) {
+    const int y = height - 1 - k / width;
+    const float v = std::min(1.0f, image.at(k % width, y, 1));
+    const int byte = bytes[static_cast<std::size_t>(4 * k + 1)];
+    if (std::abs(byte - 255.0f * v) > 0.51f) ++off;
+    if (std::abs(byte - 255.0f * std::pow(v, 1.0f / 2.2f)) > 2.0f) ++encoded_twice;
+  }
+  EXPECT_EQ(off, 0);
+  EXPECT_GT(encoded_twice, 100) << "this picture cannot tell";
+}
+
+TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
+  const std::uint32_t array = caller.texture(GL_RGBA32F, width, height, 2);
+  for (int eye = 0; eye < 2; ++eye) {
+    presenter.draw(frame, static_cast<std::size_t>(eye), LAYOUT_SEPARATE, {.texture = array, .layer = eye},
+                   blue);
+  }
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const auto pixels = caller.read<float>(array, width, height, static_cast<int>(eye));
+    EXPECT_LE(difference(pixels, composite(eyes[eye], blue)), 1e-6);
+  }
+
+  // Both into one framebuffer of the caller's, by hand: what parallel makes, and nothing beside it.
+  const std::uint32_t texture = caller.texture(GL_RGBA32F, 2 * width + 3, height + 5);
+  std::uint32_t framebuffer = 0;
+  caller.gl.CreateFramebuffers(1, &framebuffer);
+  caller.gl.NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
+  presenter.draw(frame, 0, LAYOUT_PARALLEL, {.framebuffer = framebuffer, .x = 2, .y = 4}, blue);
+  const auto pixels = caller.read<float>(texture, 2 * width + 3, height + 5);
+  const Image expected = composite(lay_out(LAYOUT_PARALLEL, eyes[0], eyes[1], blue), blue);
+  for (int y = 0; y < height + 5; ++y) {
+    for (int x = 0; x < 2 * width + 3; ++x) {
+      const bool inside = x >= 2 && x < 2 * width + 2 && y >= 4 && y < height + 4;
+      const float value = pixels[static_cast<std::size_t>(4 * (y * (2 * width + 3) + x) + 2)];
+      ASSERT_NEAR(value, inside ? expected.at(x - 2, height - 1 - (y - 4), 2) : 0.0f, 1e-6) << x << " " << y;
+    }
+  }
+}
+
+TEST_F(Present, WhatCannotBeIsRefused) {
+  const auto fails = [&](std::size_t first, int layout, const Target& target, const Background& background,
+                         const std::string& said) {
+    return test::fails_saying([&] { presenter.draw(frame, first, layout, target, background); }, {said});
+  };
+  const std::uint32_t depth = caller.texture(GL_DEPTH_COMPONENT32F, width, height);
+  const std::uint32_t plain = caller.texture(GL_RGBA8, width, height);
+  EXPECT_TRUE(fails(1, LAYOUT_ROWS, {.texture = plain}, blue, "view 2 of a frame of 2 views"));
+  EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = depth}, blue, "cannot be drawn into"));
+  EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = 4711}, blue, "texture 4711"));
+  EXPECT_TRUE(fails(0, LAYOUT_GREY, {.texture = plain}, std::nullopt, "give a background"));
+  EXPECT_TRUE(fails(0, LAYOUT_MULTI_VIEW, {.texture = plain}, blue, "for OpenEXR"));
+  EXPECT_TRUE(caller.context->take_errors().empty()) << "an error of binosplat's was left to the caller";
+}
+
+}  // namespace
+}  // namespace binosplat::stereo

@@ -1,0 +1,76 @@
+// Traps of METHOD 7 that need frames in a row; docs/stability.md names the tests of the others.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/statistics.h"
+#include "render/frame.h"
+#include "study/stability.h"
+#include "support/gl.h"
+
+namespace binosplat::study {
+namespace {
+
+StabilityCase case_named(const std::string& name) {
+  for (StabilityCase& one : built_in_cases()) {
+    if (one.name == name) return std::move(one);
+  }
+  throw std::runtime_error("no case " + name);
+}
+
+struct Shown {
+  double db, pairs;
+};
+
+// So many frames of a case (its last one again and again after its path), each against the exact one.
+std::vector<Shown> frames_of(const StabilityCase& one, const render::FrameSettings& settings,
+                             std::size_t count) {
+  render::Frame frame(test::gl_context(), *one.model), exact(test::gl_context(), *one.model);
+  std::vector<Shown> shown;
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& views = one.frames[std::min(n, one.frames.size() - 1)].views;
+    exact.draw(views);
+    const double pairs = static_cast<double>(frame.draw(views, settings).pairs);
+    shown.push_back({judge(views, exact.read_pictures(), frame.read_pictures(), 16).psnr, pairs});
+  }
+  return shown;
+}
+
+double median_db(const std::vector<Shown>& shown, std::size_t begin, std::size_t end) {
+  std::vector<double> db;
+  for (std::size_t n = begin; n < end; ++n) db.push_back(shown[n].db);
+  return quantile(std::move(db), 0.5);
+}
+
+TEST(Traps, AFarWallOfTinyGaussiansGoesAtALossThatIsFineElsewhere) {
+  // Trap 1. A loss that is chosen on something else takes the wall away by and by; --quality sees it.
+  const StabilityCase wall = case_named("far-wall"), clutter = case_named("still");
+  Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
+  variant.loss = loss_at(test::gl_context(), *clutter.model, clutter.frames[0], variant, 34.0);
+  const auto open = frames_of(wall, variant.settings(), 8);
+  EXPECT_LT(median_db(open, 4, 8), 30.0);
+  render::FrameSettings steered = variant.settings();
+  steered.quality = 40;
+  const auto kept = frames_of(wall, steered, 60);
+  for (std::size_t n = 30; n < 60; ++n) EXPECT_GT(kept[n].db, 37.0) << n;
+}
+
+TEST(Traps, AStillCameraSettlesAndDoesNotDrift) {
+  // Trap 3: what pruned frames measure of themselves, round and round.
+  const StabilityCase still = case_named("still");
+  for (const int contrast : {CONTRAST_OFF, CONTRAST_FINAL, CONTRAST_BEHIND}) {
+    Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = contrast};
+    variant.loss = loss_at(test::gl_context(), *still.model, still.frames[0], variant, 40.0);
+    const auto shown = frames_of(still, variant.settings(), 90);
+    const double early = median_db(shown, 5, 30), late = median_db(shown, 60, 90);
+    EXPECT_NEAR(late, early, 0.5) << contrast_choices[contrast].name;
+    EXPECT_NEAR(shown[89].pairs, shown[30].pairs, 0.03 * shown[30].pairs);
+    for (std::size_t n = 3; n < shown.size(); ++n) EXPECT_GT(shown[n].db, 37.0) << n;
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::study

@@ -1,0 +1,80 @@
+#pragma once
+// A program that has an OpenGL context of its own, as binosplat's callers do: what it calls, and textures to
+// draw into.
+
+#include <dlfcn.h>
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "gl/context.h"
+
+namespace binosplat::test {
+
+// Beyond what binosplat itself calls.
+#define BINOSPLAT_CALLER_FUNCTIONS(X)       \
+  X(ActiveTexture, ACTIVETEXTURE)           \
+  X(BindSampler, BINDSAMPLER)               \
+  X(BindTexture, BINDTEXTURE)               \
+  X(BlendFunc, BLENDFUNC)                   \
+  X(CreateSamplers, CREATESAMPLERS)         \
+  X(DeleteTextures, DELETETEXTURES)         \
+  X(DepthFunc, DEPTHFUNC)                   \
+  X(DepthMask, DEPTHMASK)                   \
+  X(GetFloatv, GETFLOATV)                   \
+  X(GetTextureSubImage, GETTEXTURESUBIMAGE) \
+  X(PixelStorei, PIXELSTOREI)               \
+  X(ScissorIndexed, SCISSORINDEXED)         \
+  X(TextureStorage3D, TEXTURESTORAGE3D)
+
+/// The caller's context, current from its making on, and its functions.
+struct Caller {
+  Caller() : context(gl::Context::open()), gl(context->gl()) {
+#define BINOSPLAT_CALLER_LOAD(name, upper) \
+  name = reinterpret_cast<PFNGL##upper##PROC>(get_proc_address()("gl" #name));
+    BINOSPLAT_CALLER_FUNCTIONS(BINOSPLAT_CALLER_LOAD)
+#undef BINOSPLAT_CALLER_LOAD
+  }
+
+  gl::GetProcAddress get_proc_address() const {
+    const bool osmesa = context->backend() == "OSMesa";
+    void* library = dlopen(osmesa ? "libOSMesa.so.8" : "libEGL.so.1", RTLD_NOW);
+    void* found =
+        library == nullptr ? nullptr : dlsym(library, osmesa ? "OSMesaGetProcAddress" : "eglGetProcAddress");
+    if (found == nullptr) throw std::runtime_error("the caller has no getProcAddress");
+    return reinterpret_cast<gl::GetProcAddress>(found);
+  }
+
+  std::uint32_t texture(GLenum format, int width, int height, int layers = 0) const {
+    std::uint32_t id = 0;
+    gl.CreateTextures(layers > 0 ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D, 1, &id);
+    if (layers > 0) {
+      TextureStorage3D(id, 1, format, width, height, layers);
+    } else {
+      gl.TextureStorage2D(id, 1, format, width, height);
+    }
+    return id;
+  }
+
+  /// RGBA of a layer, rows from OpenGL's bottom.
+  template <typename T>
+  std::vector<T> read(std::uint32_t id, int width, int height, int layer = 0) const {
+    std::vector<T> pixels(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    PixelStorei(GL_PACK_ALIGNMENT, 1);
+    GetTextureSubImage(id, 0, 0, 0, layer, width, height, 1, GL_RGBA,
+                       sizeof(T) == 4 ? GL_FLOAT : GL_UNSIGNED_BYTE,
+                       static_cast<GLsizei>(pixels.size() * sizeof(T)), pixels.data());
+    return pixels;
+  }
+
+  std::unique_ptr<gl::Context> context;
+  const gl::Functions& gl;
+#define BINOSPLAT_CALLER_MEMBER(name, upper) PFNGL##upper##PROC name = nullptr;
+  BINOSPLAT_CALLER_FUNCTIONS(BINOSPLAT_CALLER_MEMBER)
+#undef BINOSPLAT_CALLER_MEMBER
+};
+
+}  // namespace binosplat::test
