@@ -9,14 +9,12 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
+#include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
-layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // of the page
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
 #if TRANSMITTANCE >= TRANSMITTANCE_LAST
 layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 #endif
-uniform uint page_first;
-uniform uint page_count;
 uniform uint view_begin;
 uniform uint view_end;
 
@@ -25,7 +23,7 @@ uniform uint view_end;
 void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 #if TRANSMITTANCE >= TRANSMITTANCE_LAST
   if (v >= exact_from) return;  // a probe
-  bool left_out = false;
+  bool left_out = is_hidden(gaussian - page_first, v);
 #if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);
@@ -44,8 +42,12 @@ void main() {
   mat3 axes = scaled_axes(g);
   uint key = DEPTH_KEY_NONE;
   for (uint v = view_begin; v < view_end; ++v) {
+#if OFFSETS > 0
+    g = gaussians[place_of(i, v)];
+    axes = scaled_axes(g);
+#endif
     Splat splat;
-    bool projected = project(views[v], g, axes, splat);
+    bool projected = is_kept(i, v) && project(views[v], g, axes, splat);
     if (projected) splat.colour.w = tile_level(v, page_first + i, g, axes, splat);
     bool drawn = projected && touches_a_tile(splat, views[v]);
     if (drawn) key = floatBitsToUint(splat.depth);  // the same in all views of an order group

@@ -9,8 +9,8 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
+#include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
-layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // of the page
 #include "sh.glsl"  // binding 2, of the page
 layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
@@ -19,8 +19,6 @@ layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };
 #if TRANSMITTANCE >= TRANSMITTANCE_LAST
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), bits of floats
 #endif
-uniform uint page_first;
-uniform uint page_count;
 uniform uint view_begin;
 uniform uint view_end;
 uniform uint slots;  // of one view
@@ -34,9 +32,13 @@ void main() {
   mat3 axes = scaled_axes(g);
   for (uint v = view_begin; v < view_end; ++v) {
     View view = views[v];
+#if OFFSETS > 0
+    g = gaussians[place_of(i, v)];
+    axes = scaled_axes(g);
+#endif
     Splat splat;
     uint tiles = 0u;
-    if (project(view, g, axes, splat)) {
+    if (is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(v, indices[slot], g, axes, splat);
       tiles = tile_count(splat, view);
     }
@@ -45,7 +47,7 @@ void main() {
     measured[v * slots + slot] = 0u;
 #endif
     if (tiles > 0u) {
-      splat.colour.rgb = sh_colour(i, normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
+      splat.colour.rgb = sh_colour(place_of(i, v), normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
       splats[v * slots + slot] = splat;
     }
   }

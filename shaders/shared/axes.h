@@ -31,6 +31,9 @@
 #define TH_EYES_PER_EYE 0
 #define TH_EYES_SHARED_MIN 1
 #define TH_EYES_CYCLOPEAN 2
+// --decode: for which eye the networks of Scaffold-GS make Gaussians.
+#define DECODE_EYES 0
+#define DECODE_CYCLOPEAN 1
 
 // --layout: how both eyes are shown. Those from LAYOUT_ANAGLYPH on mix their colours.
 #define LAYOUT_SEPARATE 0
@@ -90,6 +93,11 @@ inline constexpr Choice th_eyes_choices[] = {
     {"per-eye", "each eye its own"},
     {"shared-min", "the smaller of the two for both"},
     {"cyclopean", "that of an eye between them"},
+};
+
+inline constexpr Choice decode_choices[] = {
+    {"eyes", "each eye its own: exact"},
+    {"cyclopean", "both eyes of a pair share those of an eye between them"},
 };
 
 inline constexpr Choice layout_choices[] = {

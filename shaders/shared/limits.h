@@ -20,6 +20,8 @@
 #define CLAMP_MARGIN 0.15
 // Side of a tile in px unless --tile says otherwise.
 #define TILE_SIZE_DEFAULT 16
+// Side of the tiles in px that an anchor of Scaffold-GS must touch, as trained.
+#define ANCHOR_TILE 16
 
 #define MAX_VIEWS 8
 

@@ -42,6 +42,14 @@ struct Gaussian {
   vec4 scale;     // standard deviations along its axes, world units; w: unused
 };
 
+// An anchor of a Scaffold-GS model as the GPU keeps it. Its Gaussians' offsets lie in a buffer of their own.
+struct Anchor {
+  vec4 position;      // world
+  vec4 rotation;      // unit quaternion (w, x, y, z)
+  vec4 offset_scale;  // world units of an offset; with `rotation` what the anchor cull goes by
+  vec4 scale;         // the largest standard deviations of its Gaussians, world units
+};
+
 // A Gaussian as one view sees it.
 struct Splat {
   vec2 mean;      // px; the centre of pixel (i, j) lies at (i, j)
@@ -65,6 +73,7 @@ struct Counters {
   uint probe_high;  // high half
 };
 
+#define KEPT_HIDDEN 0x80000000u  // among the bits of an anchor's Gaussians: not decoded, the last frame's
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
 #define DEPTH_KEY_NONE 0xFFFFFFFFu  // of a Gaussian that no view of the order group draws
@@ -88,6 +97,7 @@ struct Amount {
 #ifdef __cplusplus
 static_assert(sizeof(View) == 144 && offsetof(View, slopes) == 96 && offsetof(View, th_view) == 140);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
+static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
 static_assert(sizeof(Counters) == 32);
 static_assert(sizeof(Amount) == 48 && offsetof(Amount, threads_x) == 8 && offsetof(Amount, sort_x) == 32);

@@ -2,7 +2,7 @@
 // is a file beside this one with one function:
 //   float threshold(float size, float upper, float loss)   at least tau
 // size: sqrt(det C2), px^2; upper: T_upper, or W for `squared`, above 0; loss: K or kappa.
-// The program declares views[], and this file goes by it.
+// The program declares views[] and, in gaussians.glsl, what Gaussians there are, and this file goes by them.
 
 uniform uint loss_bits;   // --loss, a float's bits
 uniform uint exact_from;  // this view and those after it are exact
@@ -17,6 +17,13 @@ float threshold_in(uint v, uint gaussian, Gaussian g, mat3 axes, Splat splat) {
   if (v >= exact_from) return float(ALPHA_MIN);
   float own = threshold_of(splat, upper_of(gaussian, v, splat.depth));
 #if TH != TH_TAU && TH_EYES == TH_EYES_SHARED_MIN
+#if OFFSETS > 0
+  // The other eye's own, where it has it.
+  uint i = gaussian - page_first;
+  if (!is_kept(i, v ^ 1u)) return own;
+  g = gaussians[place_of(i, v ^ 1u)];
+  axes = scaled_axes(g);
+#endif
   Splat other;
   if (project(views[v ^ 1u], g, axes, other))
     return min(own, threshold_of(other, upper_of(gaussian, v ^ 1u, other.depth)));

@@ -22,6 +22,7 @@
 #include "render/frame.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
+#include "scene/scaffold.h"
 
 namespace binosplat::app {
 
@@ -79,6 +80,7 @@ render::FrameSettings settings_of(const RenderOptions& options) {
   settings.contrast = number_of(options.contrast, contrast_choices);
   settings.th_eyes = number_of(options.th_eyes, th_eyes_choices);
   settings.quality = options.quality.value_or(0.0f);
+  settings.decode = options.decode.empty() ? DECODE_EYES : number_of(options.decode, decode_choices);
   settings.tile_size = options.tile;
   settings.background = options.background.value_or(settings.background);
   for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
@@ -174,6 +176,17 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   if (video) video->finish();
 }
 
+void log_model(const RenderOptions& options, const Model& model) {
+  if (model.scaffold) {
+    log_info("{}: {}", options.scene, describe(*model.scaffold));
+  } else if (!options.decode.empty()) {
+    fail("--decode {}: {} is no Scaffold-GS model, whose Gaussians are made for each eye", options.decode,
+         options.scene);
+  } else {
+    log_info("{}: {} Gaussians, harmonics of degree {}", options.scene, model.count(), model.degree);
+  }
+}
+
 // The folder of photos that --photos names, or the one found beside the cameras.
 std::string photos_folder(const RenderOptions& options, const CameraList& list) {
   if (options.photos != photos_beside) return options.photos;
@@ -190,7 +203,7 @@ ExitCode render(RenderOptions options) {
   CameraList list = listed_cameras(options, scene.cameras);
   options.photos = photos_folder(options, list);
   const Model model = scene.model();
-  log_info("{}: {} Gaussians, harmonics of degree {}", options.scene, model.count(), model.degree);
+  log_model(options, model);
   if (!list.listed) list = made_up_cameras(options, model);
 
   const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
@@ -221,6 +234,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render garden.ply --convergence 3 --layout anaglyph -o red-cyan.png\n"
       "  binosplat render garden.ply --view all --mono --photos images -o out\n"
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
+      "  binosplat render scaffold-model --decode cyclopean\n"
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });

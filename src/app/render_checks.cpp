@@ -29,6 +29,8 @@ void check_threshold(const RenderOptions& o) {
     fail("--th-eyes {} is for thresholds of both eyes: leave --mono and --only out, and give --loss",
          o.th_eyes);
   }
+  if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
+    fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
   if (!o.reference_until.empty() &&
       (o.transmittance != "one" || o.quality || !o.calibration.empty() || o.th_eyes != "per-eye")) {
     fail(
@@ -48,8 +50,9 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
-  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || !o.axes.empty())) {
-    fail("{} is for model files, and {} is none", o.lod ? "--lod" : "--axes", o.scene);
+  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || o.appearance || !o.axes.empty())) {
+    const char* const option = o.lod ? "--lod" : o.appearance ? "--appearance" : "--axes";
+    fail("{} is for model files, and {} is none", option, o.scene);
   }
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");

@@ -123,6 +123,11 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
       ->type_name("S")
       ->check(positive)
       ->group(group);
+  sub.add_option("--appearance", o.appearance,
+                 "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
+      ->type_name("ID")
+      ->check(whole)
+      ->group(group);
   sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole)->group(group);
   sub.add_option("--count", o.count, "Gaussians of demo:city, 10000 to 100000000 (1000000)")
       ->type_name("N")
@@ -242,14 +247,18 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->group(group);
   choose(sub, "--th-eyes", o.th_eyes, "Whose threshold an eye goes by (per-eye)", th_eyes_choices)
       ->group(group);
+  choose(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
+         decode_choices)
+      ->group(group);
   sub.add_option("--tile", o.tile, "Side of a tile in px (16)")
       ->check(one_of({8, 16, 32}))
       ->type_name("8|16|32")
       ->group(group);
-  sub.add_option("--reference-until", o.reference_until,
-                 "Take the stages up to this one from the float64 reference:\nproject, order, pairs, "
-                 "tile_sort, ranges or blend")
-      ->check(one_of<std::string>({"project", "order", "pairs", "tile_sort", "ranges", "blend"}))
+  sub.add_option(
+         "--reference-until", o.reference_until,
+         "Take the stages up to this one from the float64 reference: decode\n(Scaffold-GS), project, order, "
+         "pairs, tile_sort, ranges or blend")
+      ->check(one_of<std::string>({"decode", "project", "order", "pairs", "tile_sort", "ranges", "blend"}))
       ->type_name("STAGE")
       ->group(group);
   sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")

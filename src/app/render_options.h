@@ -21,6 +21,7 @@ struct RenderOptions {
 
   std::optional<int> lod;  // of a model file that has levels of detail
   std::string axes;        // where a model file's x, y and z point; empty: what its format says
+  std::optional<std::size_t> appearance;  // of a Scaffold-GS model
 
   // Of scenes that the program makes, and how often a scene is repeated.
   std::optional<std::uint64_t> seed;
@@ -59,6 +60,7 @@ struct RenderOptions {
   std::string th_eyes = "per-eye";
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
+  std::string decode;            // of a Scaffold-GS model; empty: eyes
   int tile = TILE_SIZE_DEFAULT;
   std::string reference_until;
   std::string backend = "auto";

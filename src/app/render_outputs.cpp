@@ -111,7 +111,8 @@ double frames_a_second(const RenderOptions& options, const std::vector<Shot>& sh
 
 fs::path default_folder(const std::string& scene) {
   const auto colon = scene.rfind("demo:", 0) == 0 ? scene.find(':') + 1 : 0;
-  return fs::path("out") / fs::path(scene.substr(colon)).stem();
+  const fs::path path = scene.substr(colon);
+  return fs::path("out") / (path.has_filename() ? path : path.parent_path()).stem();
 }
 
 OutputPlan plan_outputs(const RenderOptions& options) {

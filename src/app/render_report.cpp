@@ -10,6 +10,8 @@
 #include "app/open_scene.h"
 #include "base/log.h"
 #include "base/statistics.h"
+#include "scene/scaffold.h"
+#include "shared/axes.h"
 
 namespace binosplat::app {
 
@@ -120,6 +122,7 @@ ordered_json settings_json(const RenderReport& report) {
   json["transmittance"] = o.transmittance;
   json["contrast"] = o.contrast;
   json["th_eyes"] = o.th_eyes;
+  if (report.model.scaffold) json["decode"] = o.decode.empty() ? decode_choices[DECODE_EYES].name : o.decode;
   if (o.quality) json["quality_db"] = *o.quality;
   if (!o.calibration.empty()) json["calibration"] = o.calibration;
   json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
@@ -136,6 +139,13 @@ ordered_json scene_json(const RenderReport& report) {
   json["gaussians"] = report.model.count();
   json["left_out"] = report.model.left_out;
   json["degree"] = report.model.degree;
+  if (const Scaffold* s = report.model.scaffold.get()) {
+    json["scaffold"] = {{"anchors", s->anchor_count()},
+                        {"gaussians_per_anchor", s->offset_count},
+                        {"features", s->feature_count},
+                        {"appearances", s->appearance_count()}};
+    if (s->appearance_count() > 0) json["scaffold"]["appearance"] = s->appearance;
+  }
   return json;
 }
 

@@ -21,8 +21,9 @@ namespace binosplat {
 /// camera's number in the list and its key; for broken JSON the line and byte.
 std::vector<Camera> load_cameras(const std::filesystem::path& path);
 
-/// The cameras that belong to a model: cameras.json, transforms.json or a COLMAP reconstruction in its folder
-/// or, for INRIA's MODEL/point_cloud/iteration_N/NAME.ply, in MODEL.
+/// The cameras that belong to a model, a file or its folder: cameras.json, transforms.json or a COLMAP
+/// reconstruction in that folder or, for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and
+/// MODEL/point_cloud/NAME.ply, in MODEL.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 
 /// The folder of the photos that cameras were found from: `images` or `photos` beside their file, or beside

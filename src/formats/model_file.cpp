@@ -7,6 +7,7 @@
 #include "formats/json_file.h"
 #include "formats/ksplat.h"
 #include "formats/ply.h"
+#include "formats/scaffold_file.h"
 #include "formats/sog.h"
 #include "formats/splat.h"
 #include "formats/spz.h"
@@ -26,8 +27,12 @@ fs::path file_of(const fs::path& path) {
   for (const char* name : {"lod-meta.json", "meta.json"}) {
     if (fs::is_regular_file(path / name, ignored)) return path / name;
   }
-  fail("{} is a folder without lod-meta.json or meta.json, so it is no SOG model; name a file in it",
-       path.string());
+  if (const auto ply = find_point_cloud(path)) return *ply;
+  fail(
+      "{} is a folder without a model: no lod-meta.json or meta.json of a SOG, and no point_cloud.ply, also "
+      "not "
+      "in point_cloud/ or point_cloud/iteration_N/; name a file in it",
+      path.string());
 }
 
 void refuse_level(const fs::path& path, const ModelOptions& options) {
@@ -35,6 +40,12 @@ void refuse_level(const fs::path& path, const ModelOptions& options) {
     fail("--lod {}: {} has no levels of detail; a streamed SOG's lod-meta.json has", *options.lod,
          path.string());
   }
+}
+
+Model load_scaffold_model(const fs::path& path, const ModelOptions& options) {
+  const std::shared_ptr<Scaffold> scaffold = load_scaffold(path);
+  if (options.appearance) choose_appearance(*scaffold, *options.appearance);
+  return stand_in(scaffold);
 }
 
 Model load_json_model(const fs::path& path, std::string_view text, const ModelOptions& options) {
@@ -60,6 +71,7 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
   if (content != Content::json) refuse_level(path, options);
   switch (content) {
     case Content::ply:
+      if (is_scaffold(read_ply_header(path, file.bytes()))) return load_scaffold_model(path, options);
       return load_ply(path);
     case Content::zip:
       return load_sog(path);
@@ -81,6 +93,9 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
 Model load_model(const fs::path& named, const ModelOptions& options) {
   const fs::path path = file_of(named);
   Model model = load_content(path, options);
+  if (options.appearance && !model.scaffold) {
+    fail("--appearance: {} is no Scaffold-GS model, whose colours have appearances", path.string());
+  }
   model.name = path.filename().string();
   if (model.count() == 0) {
     fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),

@@ -56,7 +56,7 @@ Model load_sog(const std::filesystem::path& archive) {
   const ZipFile zip(archive.string(), file.bytes());
   if (!zip.has("meta.json")) {
     fail("{} is a zip archive without a meta.json at its root, so it is no SOG model; it holds {}",
-         archive.string(), zip.names());
+         archive.string(), zip.list());
   }
   const std::vector<std::byte> meta = zip.read("meta.json");
   const nlohmann::json root = parse_json(archive.string() + ": meta.json", as_text(meta));

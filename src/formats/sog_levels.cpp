@@ -14,6 +14,7 @@
 #include "formats/json_file.h"
 #include "formats/sog.h"
 #include "formats/sog_source.h"
+#include "formats/zip_file.h"
 
 namespace binosplat {
 

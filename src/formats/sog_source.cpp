@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "formats/webp.h"
+#include "formats/zip_file.h"
 
 namespace binosplat {
 
@@ -51,13 +52,6 @@ std::string file_name(const JsonValue& value) {
 }
 
 }  // namespace
-
-bool stays_below(const std::string& name) {
-  const std::filesystem::path path(name);
-  return !name.empty() && name.find('\0') == std::string::npos && name.find('\\') == std::string::npos &&
-         path.is_relative() &&
-         std::none_of(path.begin(), path.end(), [](const auto& part) { return part == ".."; });
-}
 
 /// All pictures of a SOG, four bytes a texel.
 struct SogSource::Textures {

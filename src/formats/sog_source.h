@@ -16,9 +16,6 @@
 
 namespace binosplat {
 
-/// Whether a name that a file gives stays below that file's folder.
-bool stays_below(const std::string& name);
-
 class SogSource {
  public:
   /// The bytes of a file by the name that meta.json gives it; throws Error naming it.

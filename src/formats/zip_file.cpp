@@ -3,6 +3,7 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/error.h"
 #include "formats/content.h"
@@ -19,6 +20,13 @@ struct CloseEntry {
 };
 
 }  // namespace
+
+bool stays_below(const std::string& name) {
+  const std::filesystem::path path(name);
+  return !name.empty() && name.find('\0') == std::string::npos && name.find('\\') == std::string::npos &&
+         path.is_relative() &&
+         std::none_of(path.begin(), path.end(), [](const auto& part) { return part == ".."; });
+}
 
 void ZipFile::Close::operator()(zip* archive) const { zip_discard(archive); }
 
@@ -40,25 +48,34 @@ bool ZipFile::has(const std::string& name) const {
   return zip_name_locate(archive_.get(), name.c_str(), ZIP_FL_ENC_GUESS) >= 0;
 }
 
-std::string ZipFile::names() const {
-  constexpr zip_int64_t shown = 8;
+std::vector<std::string> ZipFile::names() const {
+  std::vector<std::string> names;
   const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
-  std::string text;
-  for (zip_int64_t i = 0; i < std::min(count, shown); ++i) {
+  for (zip_int64_t i = 0; i < count; ++i) {
     const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
-    text += (text.empty() ? "" : ", ") + quoted(name != nullptr ? name : "");
+    names.emplace_back(name != nullptr ? name : "");
   }
-  if (count > shown) text += fmt::format(" and {} more", count - shown);
+  return names;
+}
+
+std::string ZipFile::list() const {
+  constexpr std::size_t shown = 8;
+  const std::vector<std::string> all = names();
+  std::string text;
+  for (std::size_t i = 0; i < std::min(all.size(), shown); ++i)
+    text += (text.empty() ? "" : ", ") + binosplat::quoted(all[i]);
+  if (all.size() > shown) text += fmt::format(" and {} more", all.size() - shown);
   return text.empty() ? "nothing" : text;
 }
 
 void ZipFile::fail_entry(const std::string& name, const std::string& reason) const {
-  fail("{}: its file {} {}", source_, quoted(name), reason);
+  fail("{}: its file {} {}", source_, binosplat::quoted(name), reason);
 }
 
-std::vector<std::byte> ZipFile::read(const std::string& name) const {
+std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_max) const {
   const zip_int64_t index = zip_name_locate(archive_.get(), name.c_str(), ZIP_FL_ENC_GUESS);
-  if (index < 0) fail("{}: there is no file {} in the archive; it holds {}", source_, quoted(name), names());
+  if (index < 0)
+    fail("{}: there is no file {} in the archive; it holds {}", source_, binosplat::quoted(name), list());
   const auto at = static_cast<zip_uint64_t>(index);
   zip_stat_t status;
   zip_stat_init(&status);
@@ -69,6 +86,9 @@ std::vector<std::byte> ZipFile::read(const std::string& name) const {
   if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE) {
     fail_entry(name, fmt::format("is compressed by method {}; only stored and deflated ones can be read",
                                  status.comp_method));
+  }
+  if (status.size > bytes_max) {
+    fail_entry(name, fmt::format("promises {} bytes; expected at most {}", status.size, bytes_max));
   }
   if (status.size / most_growth > status.comp_size) {
     fail_entry(name, fmt::format("promises {} bytes, which {} compressed ones cannot hold; it is damaged",

@@ -2,6 +2,7 @@
 // Files in a zip archive, by name. Nothing is ever written to a disk by a name that an archive gives.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +12,9 @@ struct zip;
 
 namespace binosplat {
 
+/// Whether a name that a file gives stays below that file's folder.
+bool stays_below(const std::string& name);
+
 class ZipFile {
  public:
   /// Opens an archive whose bytes outlive this; `source` names it in errors. Throws Error where the list of
@@ -19,12 +23,15 @@ class ZipFile {
 
   bool has(const std::string& name) const;
 
-  /// The names of its files for an error's text, the first few.
-  std::string names() const;
+  /// The names of its files, in its order.
+  std::vector<std::string> names() const;
 
-  /// A whole file, stored or deflated, its checksum tested. Throws Error where it is missing, damaged or
-  /// promises more than its bytes can unfold to.
-  std::vector<std::byte> read(const std::string& name) const;
+  /// The same for an error's text, the first few.
+  std::string list() const;
+
+  /// A whole file, stored or deflated, its checksum tested. Throws Error where it is missing, damaged,
+  /// promises more than its bytes can unfold to, or more than `bytes_max`.
+  std::vector<std::byte> read(const std::string& name, std::size_t bytes_max = SIZE_MAX) const;
 
  private:
   [[noreturn]] void fail_entry(const std::string& name, const std::string& reason) const;

@@ -6,21 +6,22 @@
 #include <array>
 #include <cmath>
 
+#include "reference/decode.h"
 #include "shared/limits.h"
 
 namespace binosplat::reference {
 
 namespace {
 
-/// M M^T, M = Rot(q) diag(scale): the covariance of Gaussian i in world axes.
-glm::dmat3 covariance_in_world(const Model& model, std::size_t i) {
-  const glm::dvec4 q = model.rotation[i];
+/// M M^T, M = Rot(q) diag(scale): the covariance in world axes.
+glm::dmat3 covariance_in_world(const Gaussian& gaussian) {
+  const glm::dvec4& q = gaussian.rotation;
   const double w = q[0], x = q[1], y = q[2], z = q[3];
   const glm::dmat3 rotation(1 - 2 * (y * y + z * z), 2 * (x * y + w * z),
                             2 * (x * z - w * y),  // first column
                             2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x),   // second
                             2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y));  // third
-  const glm::dvec3 s = model.scale[i];
+  const glm::dvec3& s = gaussian.scale;
   const glm::dmat3 m(rotation[0] * s.x, rotation[1] * s.y, rotation[2] * s.z);
   return m * glm::transpose(m);
 }
@@ -75,9 +76,9 @@ glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& d
   return glm::max(colour, 0.0);
 }
 
-Splat project(const Model& model, std::size_t i, const shared::View& view) {
+Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass) {
   const glm::dvec4 row_x = view.row_x, row_y = view.row_y, row_z = view.row_z, lens = view.lens;
-  const glm::dvec3 p = glm::dvec3(model.position[i]) - glm::dvec3(view.anchor);
+  const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
   const glm::dvec3 v(glm::dot(glm::dvec3(row_x), p) + row_x.w, glm::dot(glm::dvec3(row_y), p) + row_y.w,
                      glm::dot(glm::dvec3(row_z), p) + row_z.w);
   Splat splat;
@@ -86,25 +87,34 @@ Splat project(const Model& model, std::size_t i, const shared::View& view) {
   const glm::dmat3 to_eye =
       glm::transpose(glm::dmat3(glm::dvec3(row_x), glm::dvec3(row_y), glm::dvec3(row_z)));
   const glm::dmat3x2 projection = perspective_jacobian(v, view) * to_eye;
-  const glm::dmat2 c2 = projection * covariance_in_world(model, i) * glm::transpose(projection);
-  const double kernel = model.kernel_px2;
+  const glm::dmat2 c2 = projection * covariance_in_world(gaussian) * glm::transpose(projection);
+  const double kernel = low_pass.kernel_px2;
   const glm::dvec3 covariance(c2[0][0] + kernel, c2[0][1], c2[1][1] + kernel);
   const double det = covariance.x * covariance.z - covariance.y * covariance.y;
   if (!(det > 0.0)) return splat;
 
   splat.mean = glm::dvec2(lens[0] * v.x / v.z + lens[2] - 0.5, lens[1] * v.y / v.z + lens[3] - 0.5);
   splat.depth = v.z;
-  splat.opacity = model.opacity[i];
-  if (model.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / det);
+  splat.opacity = gaussian.opacity;
+  if (low_pass.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / det);
   splat.covariance = covariance;
   splat.conic = glm::dvec3(covariance.z, -covariance.y, covariance.x) / det;
   splat.det = det;
-  splat.colour = colour_towards(model, i, glm::normalize(p - glm::dvec3(view.eye)));
   splat.drawn = true;
   return splat;
 }
 
+Splat project(const Model& model, std::size_t i, const shared::View& view) {
+  const Gaussian gaussian{model.position[i], model.scale[i], model.rotation[i], model.opacity[i]};
+  Splat splat = project(gaussian, view, {model.kernel_px2, model.antialiased});
+  if (!splat.drawn) return splat;
+  const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
+  splat.colour = colour_towards(model, i, glm::normalize(p - glm::dvec3(view.eye)));
+  return splat;
+}
+
 std::vector<Splat> project_all(const Model& model, const shared::View& view) {
+  if (model.scaffold) return project_all(model, view, Decoding{});
   std::vector<Splat> splats(model.count());
   tbb::parallel_for(std::size_t{0}, splats.size(),
                     [&](std::size_t i) { splats[i] = project(model, i, view); });

@@ -12,6 +12,14 @@
 
 namespace binosplat::reference {
 
+/// A Gaussian in the world.
+struct Gaussian {
+  glm::dvec3 position{0.0};                 // world units
+  glm::dvec3 scale{0.0};                    // standard deviations, world units
+  glm::dvec4 rotation{1.0, 0.0, 0.0, 0.0};  // unit quaternion (w, x, y, z)
+  double opacity = 0.0;
+};
+
 /// One Gaussian in one view. Symmetric matrices are kept as (xx, xy, yy).
 struct Splat {
   glm::dvec2 mean{0.0};          // px; the centre of pixel (i, j) lies at (i, j)
@@ -25,10 +33,19 @@ struct Splat {
   bool drawn = false;            // deeper than the near plane, det > 0, and Th (threshold.h) not above sigma
 };
 
-/// Gaussian `i` of the model in a view.
+/// What widens every splat (METHOD.md section 2).
+struct LowPass {
+  double kernel_px2 = KERNEL_PX2;  // variance, px^2
+  bool antialiased = false;        // the opacity falls as the splat is widened
+};
+
+/// Everything but the colour.
+Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass = {});
+
+/// Gaussian `i` of the model in a view; of Scaffold-GS its stand-in.
 Splat project(const Model& model, std::size_t i, const shared::View& view);
 
-/// All Gaussians of the model, in its order.
+/// All Gaussians of the model, in its order; of Scaffold-GS by id, as the view by itself has them (decode.h).
 std::vector<Splat> project_all(const Model& model, const shared::View& view);
 
 /// The colour of Gaussian `i` seen along the unit vector `direction`, from the eye to the Gaussian in world

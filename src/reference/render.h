@@ -4,6 +4,7 @@
 
 #include "base/image.h"
 #include "reference/blend.h"
+#include "reference/decode.h"
 #include "reference/project.h"
 #include "reference/threshold.h"
 #include "reference/tiles.h"
@@ -18,6 +19,7 @@ struct Settings {
   int th = TH_TAU;
   double loss = 0.0;          // of threshold()
   std::vector<double> upper;  // T_upper or W by Gaussian; empty: 1 for all
+  Decoding decoding;          // of a Scaffold-GS model
 };
 
 /// The picture of a model in a view. The view's members for the frame (tiles_x to th_group) are not looked

@@ -165,6 +165,12 @@ bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const
   return candidate && shape_meets(splat, tiles, tile_size, tx, ty, view);
 }
 
+bool touches_any(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
+  bool any = false;
+  for_each_tile(splat, tiles, tile_size, view, [&](std::size_t) { any = true; });
+  return any;
+}
+
 std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats) {
   std::vector<std::uint32_t> order;
   for (std::size_t i = 0; i < splats.size(); ++i) {

@@ -39,6 +39,9 @@ struct TileLists {
 /// - TILES_ALL: always.
 bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view);
 
+/// Whether it belongs to any tile of the view.
+bool touches_any(const Splat& splat, int tiles, int tile_size, const shared::View& view);
+
 /// The lists of all tiles of a view. `order` is from depth_order(); what has lost its `drawn` since is passed
 /// over.
 TileLists make_lists(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& order,

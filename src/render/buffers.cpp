@@ -38,10 +38,19 @@ std::vector<float> pad_harmonics(const Model& model, std::size_t first, std::siz
 
 }  // namespace
 
-ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians) {
-  const std::int64_t largest = std::max<std::int64_t>(sizeof(shared::Gaussian), harmonic_bytes(model.degree));
-  const std::int64_t reach = context.limits().storage_block_bytes / largest;
+ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
+    : networks(context) {
+  const std::int64_t each = std::max<std::int64_t>(sizeof(shared::Gaussian), harmonic_bytes(model.degree));
+  const std::int64_t reach = context.limits().storage_block_bytes / each;
   const std::size_t step = page_gaussians != 0 ? page_gaussians : static_cast<std::size_t>(reach);
+  if (model.scaffold) {
+    upload(context, *model.scaffold, page_gaussians != 0 ? step : step / MAX_VIEWS);
+  } else {
+    upload(context, model, step);
+  }
+}
+
+void ModelBuffers::upload(gl::Context& context, const Model& model, std::size_t step) {
   for (std::size_t first = 0; first < model.count(); first += step) {
     const std::size_t count = std::min(step, model.count() - first);
     Page& page = pages.emplace_back();
@@ -59,6 +68,38 @@ ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32
   }
 }
 
+void ModelBuffers::upload(gl::Context& context, const Scaffold& scaffold, std::size_t step) {
+  const std::size_t k = scaffold.offset_count;
+  const std::size_t anchors = std::max<std::size_t>(step / k, 1);
+  for (std::size_t first = 0; first < scaffold.anchor_count(); first += anchors) {
+    const std::size_t count = std::min(anchors, scaffold.anchor_count() - first);
+    Page& page = pages.emplace_back();
+    page.first = static_cast<std::uint32_t>(first * k);
+    page.count = static_cast<std::uint32_t>(count * k);
+    page.gaussians = std::make_unique<gl::Buffer>(context, "decoded Gaussians");
+    page.harmonics = std::make_unique<gl::Buffer>(context, "decoded colours");
+    page.anchors = std::make_unique<AnchorBuffers>(context, scaffold, first, count);
+  }
+  networks.upload(scaffold);
+}
+
+void ModelBuffers::reserve(const FrameShape& shape) {
+  if (shape.offset_count == 0) return;
+  for (Page& page : pages) {
+    const std::int64_t gaussians = std::int64_t{shape.decoding_count()} * page.count;
+    page.gaussians->reserve(gaussians * static_cast<std::int64_t>(sizeof(shared::Gaussian)));
+    page.harmonics->reserve(gaussians * harmonic_bytes(0));
+    for (gl::Buffer* kept : {page.anchors->kept.get(), page.anchors->kept_last.get()})
+      kept->reserve(std::int64_t{shape.decoding_count()} * page.anchors->count * 4);
+  }
+}
+
+void ModelBuffers::keep_last() {
+  for (Page& page : pages) {
+    if (page.anchors) std::swap(page.anchors->kept, page.anchors->kept_last);
+  }
+}
+
 std::int64_t starting_pairs(const FrameShape& shape) {
   constexpr std::int64_t pairs_per_splat = 16;
   return std::clamp(shape.slots * std::int64_t{shape.view_count()} * pairs_per_splat, std::int64_t{1} << 16,
@@ -67,8 +108,10 @@ std::int64_t starting_pairs(const FrameShape& shape) {
 
 MemoryNeeds memory_needs(const FrameShape& shape) {
   MemoryNeeds needs;
+  const std::uint32_t decodings = shape.offset_count == 0 ? 1 : shape.decoding_count();
   needs.model =
-      shape.gaussian_count * (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
+      shape.anchor_bytes + std::int64_t{decodings} * shape.gaussian_count *
+                               (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
   const bool measured = measures(shape.settings.transmittance);
   const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measured ? 2 : 1);
   const std::int64_t gaussian_bytes = 4 + (measured ? shape.asked * 8 : 0);

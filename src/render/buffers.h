@@ -7,25 +7,40 @@
 
 #include "gl/buffer.h"
 #include "primitives/radix_sort.h"
+#include "render/anchors.h"
 #include "render/shape.h"
 #include "scene/model.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
 
-/// The model on the GPU, in pages of Gaussians whose buffers a shader can reach.
+/// The model on the GPU, in pages of Gaussians whose buffers a shader can reach. Of Scaffold-GS a page holds
+/// whole anchors, and its Gaussians and their colours (as harmonics of degree 0) are made anew each frame,
+/// once for each decoding: (decoding, id).
 struct ModelBuffers {
   struct Page {
     std::uint32_t first = 0;  // Gaussian of the model
     std::uint32_t count = 0;
     std::unique_ptr<gl::Buffer> gaussians;  // Gaussian
     std::unique_ptr<gl::Buffer> harmonics;  // packed vec4s, see sh.glsl
+    std::unique_ptr<AnchorBuffers> anchors;
   };
 
   /// Uploads; `page_gaussians` limits a page for tests, 0: what the driver reaches.
   ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
 
+  /// Room for what a frame of this shape decodes.
+  void reserve(const FrameShape& shape);
+
+  /// Once a frame is complete: what it kept of each anchor is the last frame's for the next.
+  void keep_last();
+
   std::vector<Page> pages;
+  NetworkBuffers networks;
+
+ private:
+  void upload(gl::Context& context, const Model& model, std::size_t step);
+  void upload(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 };
 
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.

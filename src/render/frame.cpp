@@ -51,6 +51,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   for (;;) {
     shape_.slots = static_cast<std::uint32_t>(slots_);
     buffers_.reserve(shape_, pair_capacity_);
+    model_buffers_.reserve(shape_);
     counters = draw_once(report);
     if (counters.overflow == 0) break;
     if (++report.redrawn == attempts_max) throw std::logic_error("a frame overflowed again and again");
@@ -80,10 +81,14 @@ shared::Counters Frame::draw_once(FrameReport& report) {
   reference_pictures_.clear();
   if (shape_.settings.reference_until) {
     reference_pictures_ =
-        fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, buffers_);
+        fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, model_buffers_, buffers_);
   }
   const auto start = std::chrono::steady_clock::now();
   dispatcher_.begin_frame();
+  if (shape_.offset_count > 0 && !twin(Stage::decode)) {
+    dispatcher_.begin_stage("decode");
+    decode(dispatcher_, shape_, model_buffers_, buffers_);
+  }
   for (std::uint32_t group = 0; group < shape_.groups.size(); ++group) {
     if (!twin(Stage::project)) {
       dispatcher_.begin_stage("project");
@@ -124,6 +129,7 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   last_shape_ = shape_;
   last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
   if (measures(shape_.settings.transmittance)) std::swap(buffers_.upper, buffers_.upper_next);
+  model_buffers_.keep_last();
   report.loss = shape_.settings.loss;
   report.remembered = shape_.remembers;
   if (!shape_.probe) return;

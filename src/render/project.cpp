@@ -9,6 +9,11 @@ namespace binosplat::render {
 
 namespace {
 
+// Of models that are not decoded no shader looks at it.
+const gl::Buffer& kept_of(const ModelBuffers::Page& page) {
+  return page.anchors ? *page.anchors->kept : *page.gaussians;
+}
+
 // Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
@@ -18,12 +23,16 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
                    {{"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
+                    {"Kept", kept_of(page)},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
                     {"DepthTable", buffers.depth_table},
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
+                    {"views_per_decoding", shape.views_per_decoding},
+                    {"decoding_of_probe", shape.decoding_of_probe()},
+                    {"asked", shape.asked},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
@@ -61,11 +70,15 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuf
 
 gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  gl::Defines defines = {
-      {"TILES_NAME", tiles_choices[s.tiles].name}, {"TH", std::to_string(s.th)},
-      {"TH_NAME", th_choices[s.th].name},          {"TRANSMITTANCE", std::to_string(s.transmittance)},
-      {"TH_EYES", std::to_string(s.th_eyes)},      {"TILES", std::to_string(s.tiles)},
-      {"TILE_SIZE", std::to_string(s.tile_size)},  {"ANTIALIASED", shape.antialiased ? "1" : "0"}};
+  gl::Defines defines = {{"TILES_NAME", tiles_choices[s.tiles].name},
+                         {"TH", std::to_string(s.th)},
+                         {"TH_NAME", th_choices[s.th].name},
+                         {"TRANSMITTANCE", std::to_string(s.transmittance)},
+                         {"TH_EYES", std::to_string(s.th_eyes)},
+                         {"TILES", std::to_string(s.tiles)},
+                         {"TILE_SIZE", std::to_string(s.tile_size)},
+                         {"ANTIALIASED", shape.antialiased ? "1" : "0"},
+                         {"OFFSETS", std::to_string(shape.offset_count)}};
   if (shape.kernel_px2 != KERNEL_PX2)
     defines.emplace_back("KERNEL_PX2", fmt::format("{:.9g}", shape.kernel_px2));
   return defines;
@@ -84,6 +97,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
     dispatcher.run(program, gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
                    {{"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
+                    {"Kept", kept_of(page)},
                     {"Harmonics", *page.harmonics},
                     {"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},
@@ -94,6 +108,9 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
+                    {"views_per_decoding", shape.views_per_decoding},
+                    {"decoding_of_probe", shape.decoding_of_probe()},
+                    {"asked", shape.asked},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"slots", shape.slots},

@@ -11,9 +11,10 @@
 
 namespace binosplat::render {
 
-/// The stages of a frame, in order. Each is a shader, a file here and a test of one name.
-enum class Stage { project, order, pairs, tile_sort, ranges, blend };
-constexpr const char* stage_names[] = {"project", "order", "pairs", "tile_sort", "ranges", "blend"};
+/// The stages of a frame, in order; `decode` of Scaffold-GS only. Each is a shader, a file here and a test of
+/// one name.
+enum class Stage { decode, project, order, pairs, tile_sort, ranges, blend };
+constexpr const char* stage_names[] = {"decode", "project", "order", "pairs", "tile_sort", "ranges", "blend"};
 
 /// What TRANSMITTANCE_DEPTH goes by: the largest T in front of any Gaussian whose view depth lies in a bin
 /// (AdaGScale, section 4.1), in equal bins over [0, far) world units. 1 beyond, and in a bin of 0, which no
@@ -39,6 +40,11 @@ struct FrameSettings {
   /// (loss_control.h). A view has so many strips; with 1 a whole view is drawn twice.
   float quality = 0.0f;
   int probe_strips = 16;
+  int decode = DECODE_EYES;  // DECODE_; of Scaffold-GS only, cyclopean for views in pairs as above
+  bool anchor_cull = true;   // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
+  /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
+  /// become, is not decoded. With a measured transmittance, each eye's own Th, and no quality to probe.
+  bool anchor_reuse = true;
   int tile_size = TILE_SIZE_DEFAULT;  // px: 8, 16 or 32; the picture does not depend on it
   glm::vec3 background{0.0f};         // behind the scene, for contrast only: the pictures are without
   /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong

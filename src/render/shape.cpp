@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "render/anchors.h"
 
 namespace binosplat::render {
 
@@ -34,6 +35,9 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   }
   if (s.contrast != CONTRAST_OFF && !measures(s.transmittance)) {
     fail("--contrast {}: only with a measured --transmittance", contrast_choices[s.contrast].name);
+  }
+  if (s.decode != DECODE_EYES && views % 2 != 0) {
+    fail("--decode {}: only for both eyes together", decode_choices[s.decode].name);
   }
   const DepthTable& table = s.depth_table;
   const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
@@ -108,6 +112,11 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   shape.kernel_px2 = model.kernel_px2;
   shape.antialiased = model.antialiased;
   shape.gaussian_count = static_cast<std::uint32_t>(model.count());
+  if (model.scaffold) {
+    shape.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);
+    shape.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
+    shape.anchor_bytes = anchor_bytes(*model.scaffold);
+  }
   // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The
   // reference's results need all the room they take at once.
   const std::uint32_t half = shape.gaussian_count / 2;

@@ -42,10 +42,17 @@ struct FrameShape {
   std::vector<OrderGroup> groups;
   std::uint32_t tile_count = 0;  // over all views
   std::int64_t pixel_count = 0;  // over all views
+  // Of Scaffold-GS; K is 0 for other models.
+  std::uint32_t offset_count = 0;        // K
+  std::uint32_t views_per_decoding = 1;  // views that share what the networks made
+  std::int64_t anchor_bytes = 0;
 
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// Bits that tell the lists apart by which pairs are sorted: tiles, or views with --tiles all.
   std::uint32_t list_bits() const;
+  /// How often each anchor is decoded. A probe shares the Gaussians of its view.
+  std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }
+  std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
 
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that

@@ -6,6 +6,10 @@
 
 namespace binosplat::render {
 
+/// The Gaussians of a Scaffold-GS model for the eyes of the frame. Nothing to do for other models.
+void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuffers& model,
+            const FrameBuffers& buffers);
+
 /// The Gaussians that an order group draws, in index order, as each of its views sees them: splats and tile
 /// counts by slot, depths.
 void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group,

@@ -25,8 +25,59 @@ shared::Splat to_shared(const reference::Splat& s) {
   return out;
 }
 
-reference::Settings reference_settings(const FrameSettings& s) {
-  return {.tiles = s.tiles, .tile_size = s.tile_size, .th = s.th, .loss = s.loss};
+// What decodes the model for view v.
+reference::Decoding decoding_for(const FrameShape& shape, std::uint32_t v) {
+  const std::uint32_t begin = v - v % shape.views_per_decoding;
+  const std::uint32_t end = std::min(begin + shape.views_per_decoding, shape.asked);
+  return {{shape.views.begin() + begin, shape.views.begin() + end}, shape.settings.anchor_cull};
+}
+
+reference::Settings reference_settings(const FrameShape& shape, std::uint32_t v) {
+  const FrameSettings& s = shape.settings;
+  return {.tiles = s.tiles,
+          .tile_size = s.tile_size,
+          .th = s.th,
+          .loss = s.loss,
+          .decoding = decoding_for(shape, v)};
+}
+
+// Gaussians, colours and bits of one decoding of a page, as the stage decode leaves them.
+struct DecodedPage {
+  std::vector<shared::Gaussian> gaussians;
+  std::vector<glm::vec4> harmonics;
+  std::vector<std::uint32_t> kept;
+};
+
+void add(const reference::Decoded& decoded, std::size_t place, std::size_t offset_count, DecodedPage& page) {
+  constexpr double sh_c0 = 0.28209479177387814;
+  const reference::Gaussian& g = decoded.gaussian;
+  page.gaussians[place] = {glm::vec4(glm::dvec4(g.position, g.opacity)), glm::vec4(g.rotation),
+                           glm::vec4(glm::dvec4(g.scale, 0.0))};
+  page.harmonics[place] = glm::vec4(glm::dvec4((decoded.colour - 0.5) / sh_c0, 0.0));
+  page.kept[place / offset_count] |= 1u << place % offset_count;
+}
+
+void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& model_buffers) {
+  if (!model.scaffold) fail("--reference-until decode: {} is no Scaffold-GS model", model.name);
+  std::vector<std::vector<reference::Decoded>> decodings;
+  for (std::uint32_t v = 0; v < shape.view_count(); v += shape.views_per_decoding) {
+    const reference::Decoding decoding = decoding_for(shape, v);
+    decodings.push_back(reference::decode(*model.scaffold, decoding.views, decoding.anchor_cull));
+  }
+  for (ModelBuffers::Page& page : model_buffers.pages) {
+    const std::size_t all = decodings.size() * page.count;
+    DecodedPage decoded{std::vector<shared::Gaussian>(all), std::vector<glm::vec4>(all),
+                        std::vector<std::uint32_t>(all / shape.offset_count)};
+    for (std::size_t d = 0; d < decodings.size(); ++d) {
+      for (const reference::Decoded& one : decodings[d]) {
+        if (one.id < page.first || one.id - page.first >= page.count) continue;
+        add(one, d * page.count + one.id - page.first, shape.offset_count, decoded);
+      }
+    }
+    page.gaussians->upload(decoded.gaussians);
+    page.harmonics->upload(decoded.harmonics);
+    page.anchors->kept->upload(decoded.kept);
+  }
 }
 
 // What the reference makes of one view.
@@ -36,9 +87,11 @@ struct ViewResult {
   std::vector<std::uint32_t> tile_counts;
 };
 
-ViewResult reference_view(const Model& model, const shared::View& view, const FrameSettings& settings) {
+ViewResult reference_view(const Model& model, const FrameShape& shape, std::uint32_t v) {
+  const shared::View& view = shape.views[v];
+  const FrameSettings& settings = shape.settings;
   ViewResult result;
-  result.splats = reference::project_all(model, view);
+  result.splats = reference::project_all(model, view, decoding_for(shape, v));
   reference::set_thresholds(result.splats, settings.th, settings.loss);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
@@ -134,11 +187,16 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
 }
 
 // The slots as the stage project leaves them, or `sorted` as the stage order does.
-void upload_order(const Slots& slots, const std::vector<reference::Splat>& splats, bool sorted,
+void upload_order(const Slots& slots, const std::vector<ViewResult>& results, bool sorted,
                   std::uint32_t groups_max, FrameBuffers& buffers) {
   std::vector<std::uint32_t> values(slots.indices.size());
   std::iota(values.begin(), values.end(), 0u);
-  const auto depth = [&](std::uint32_t slot) { return splats[slots.indices[slot]].depth; };
+  // Of the first view that draws it: of Scaffold-GS an eye may lack what the other has.
+  const auto depth = [&](std::uint32_t slot) {
+    const std::uint32_t i = slots.indices[slot];
+    const auto draws = [&](const ViewResult& result) { return result.splats[i].drawn; };
+    return std::find_if(results.begin(), results.end(), draws)->splats[i].depth;
+  };
   if (sorted) {
     std::stable_sort(values.begin(), values.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return depth(a) < depth(b); });
@@ -165,7 +223,8 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
 }  // namespace
 
 std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& shape,
-                                         std::uint32_t groups_max, FrameBuffers& buffers) {
+                                         std::uint32_t groups_max, ModelBuffers& model_buffers,
+                                         FrameBuffers& buffers) {
   const Stage until = *shape.settings.reference_until;
   if (shape.settings.transmittance != TRANSMITTANCE_ONE || shape.settings.quality > 0.0f ||
       shape.settings.th_eyes != TH_EYES_PER_EYE) {
@@ -174,10 +233,13 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
         "--quality and --th-eyes out");
   }
   std::vector<Picture> pictures;
+  if (until == Stage::decode) {
+    upload_decoded(model, shape, model_buffers);
+    return pictures;
+  }
   if (until == Stage::blend) {
-    for (const shared::View& view : shape.views) {
-      pictures.push_back(reference::render(model, view, reference_settings(shape.settings)));
-    }
+    for (std::uint32_t v = 0; v < shape.view_count(); ++v)
+      pictures.push_back(reference::render(model, shape.views[v], reference_settings(shape, v)));
     return pictures;
   }
   if (until < Stage::pairs && shape.groups.size() > 1) {
@@ -185,12 +247,12 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
          stage_names[static_cast<int>(until)]);
   }
   std::vector<ViewResult> results;
-  for (const shared::View& view : shape.views) results.push_back(reference_view(model, view, shape.settings));
+  for (std::uint32_t v = 0; v < shape.view_count(); ++v) results.push_back(reference_view(model, shape, v));
   std::vector<Slots> slots;
   for (const OrderGroup& group : shape.groups) slots.push_back(make_slots(shape, group, results));
   upload_projection(shape, slots, results, buffers);
   if (until < Stage::pairs) {
-    upload_order(slots.front(), results.front().splats, until == Stage::order, groups_max, buffers);
+    upload_order(slots.front(), results, until == Stage::order, groups_max, buffers);
     return pictures;
   }
   std::vector<Pair> pairs = pairs_in_depth_order(shape, slots, results);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ constexpr double sh_c0 = 0.28209479177387814;
 
 /// Number of SH coefficients per colour channel of a degree.
 constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
+
+struct Scaffold;
 
 /// Arrays of equal length, one element a Gaussian, in file order. Every value is finite and every rotation of
 /// unit length: readers leave out what is not, and count it.
@@ -33,6 +36,9 @@ struct Model {
   double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
   bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
   std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)
+  /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
+  /// stand-ins (scene/scaffold.h).
+  std::shared_ptr<Scaffold> scaffold;
 
   std::size_t count() const { return position.size(); }
   void reserve(std::size_t n);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/axes.h"
+#include "scene/scaffold.h"
 
 namespace binosplat {
 
@@ -23,6 +25,40 @@ void copy_times(std::vector<T>& values, std::size_t times) {
   values.swap(all);
 }
 
+/// Where copies go, in the model's own frame.
+struct Grid {
+  int nx, nz;
+  glm::dmat3 into_frame;
+  double spacing;
+
+  std::size_t copies() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz); }
+
+  /// Puts the copies of `once` positions side by side.
+  void move(std::vector<glm::vec3>& positions, std::size_t once) const {
+    glm::vec3* p = positions.data();
+    for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
+      for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
+        for (std::size_t k = 0; k < once; ++k, ++p)
+          *p = glm::vec3(glm::dvec3(*p) + into_frame * glm::dvec3(i * spacing, 0.0, j * spacing));
+      }
+    }
+  }
+};
+
+/// Copies of the anchors: each copy is seen, and decoded, from where it stands.
+std::shared_ptr<Scaffold> repeat(Scaffold s, const Grid& grid) {
+  const std::size_t copies = grid.copies();
+  const std::size_t once = s.anchor_count();
+  copy_times(s.position, copies);
+  copy_times(s.offset_scale, copies);
+  copy_times(s.scale, copies);
+  copy_times(s.rotation, copies);
+  copy_times(s.offset, copies);
+  copy_times(s.feature, copies);
+  grid.move(s.position, once);
+  return std::make_shared<Scaffold>(std::move(s));
+}
+
 }  // namespace
 
 Model repeat(Model model, int nx, int nz, double spacing) {
@@ -36,20 +72,21 @@ Model repeat(Model model, int nx, int nz, double spacing) {
   if (!std::isfinite(static_cast<float>(farthest))) {
     fail("--spacing {}: expected a distance between copies in world units", spacing);
   }
+  const Grid grid{nx, nz, glm::transpose(world_from_axes(model.axes)), spacing};
+  if (model.scaffold) {
+    Model repeated = stand_in(repeat(*model.scaffold, grid));
+    repeated.kernel_px2 = model.kernel_px2;
+    repeated.antialiased = model.antialiased;
+    repeated.axes = model.axes;
+    return repeated;
+  }
   const std::size_t once = model.count();
   copy_times(model.position, copies);
   copy_times(model.scale, copies);
   copy_times(model.rotation, copies);
   copy_times(model.opacity, copies);
   copy_times(model.sh, copies);
-  glm::vec3* p = model.position.data();
-  const glm::dmat3 into_frame = glm::transpose(world_from_axes(model.axes));
-  for (int i = -((nx - 1) / 2); i <= nx / 2; ++i) {
-    for (int j = -((nz - 1) / 2); j <= nz / 2; ++j) {
-      for (std::size_t k = 0; k < once; ++k, ++p)
-        *p = glm::vec3(glm::dvec3(*p) + into_frame * glm::dvec3(i * spacing, 0.0, j * spacing));
-    }
-  }
+  grid.move(model.position, once);
   return model;
 }
 

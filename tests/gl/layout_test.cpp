@@ -70,6 +70,12 @@ TEST(Layout, GaussianAndSplatAreWhereTheDriverPutsThem) {
   EXPECT_EQ(driver_offsets("Splat"), splat);
 }
 
+TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
+  const Offsets anchor = {AT(Anchor, position), AT(Anchor, rotation), AT(Anchor, offset_scale),
+                          AT(Anchor, scale), STRIDE(Anchor)};
+  EXPECT_EQ(driver_offsets("Anchor"), anchor);
+}
+
 TEST(Layout, CountersAndAmountAreWhereTheDriverPutsThem) {
   const Offsets counters = {AT(Counters, visible),   AT(Counters, order_wanted), AT(Counters, pairs),
                             AT(Counters, overflow),  AT(Counters, loop_cut),     AT(Counters, median_depth),

@@ -61,12 +61,15 @@ struct StageRun {
     frame.upload(shape);
     frame.counters.upload(std::vector{shared::Counters{}});
     frame.reserve(shape, 1 << 20);
+    model_buffers.reserve(shape);
     const std::uint32_t blocks = (shape.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
     frame.block_amount.upload(std::vector{primitives::make_amount(blocks, gl_context().limits().groups)});
   }
 
   void run_until(render::Stage stage) {
     gl::Dispatcher dispatcher(gl_context());
+    render::decode(dispatcher, shape, model_buffers, frame);
+    if (stage == render::Stage::decode) return;
     for (std::uint32_t group = 0; group < shape.groups.size(); ++group) {
       render::project(dispatcher, shape, group, model_buffers, frame);
       indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(

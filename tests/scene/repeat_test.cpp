@@ -6,6 +6,7 @@
 
 #include "support/errors.h"
 #include "support/models.h"
+#include "support/scaffold.h"
 
 namespace binosplat {
 namespace {
@@ -43,6 +44,24 @@ TEST(Repeat, CopiesLieAsTheMeasurementsOfOthersHaveThem) {
   EXPECT_EQ(places_of(repeat(one(), 3, 1, 10.0)), places_from(-1, 1, 0, 0));
   EXPECT_NE(places_of(repeat(one(), 8, 4, 10.0)), places_from(-4, 3, -2, 1)) << "shifted by one";
   EXPECT_NE(places_of(repeat(one(), 8, 4, 10.0)), places_from(-1, 2, -3, 4)) << "x and z swapped";
+}
+
+TEST(Repeat, AnchorsAreCopiedWithTheirNetworks) {
+  const Model model = test::scaffold_model(1, {.anchors = 5, .offsets = 4});
+  const Model many = repeat(model, 2, 1, 10.0);
+  ASSERT_EQ(many.count(), 40u);
+  const Scaffold &one = *model.scaffold, &two = *many.scaffold;
+  EXPECT_EQ(one.anchor_count(), 5u) << "the model itself is left alone";
+  for (std::size_t id = 0; id < 20; ++id) {
+    EXPECT_EQ(two.mean(id), one.mean(id));
+    EXPECT_LT(glm::length(two.mean(20 + id) - one.mean(id) - glm::vec3(10, 0, 0)), 1e-5f);
+    EXPECT_EQ(many.position[id], two.mean(id));
+    EXPECT_EQ(two.offset[20 + id], one.offset[id]);
+  }
+  EXPECT_EQ(two.feature.size(), 2 * one.feature.size());
+  EXPECT_EQ(two.feature[5 * 32 + 7], one.feature[7]);
+  EXPECT_EQ(two.scale[9], one.scale[4]);
+  EXPECT_EQ(two.colour.second, one.colour.second);
 }
 
 TEST(Repeat, EverythingElseIsCopied) {

@@ -1,0 +1,126 @@
+// Stage 0, decode (Scaffold-GS only): what the networks make of each anchor for an eye. One invocation an anchor of the page
+// and a decoding; a decoding serves one view, or both eyes of a pair from between them. What is kept of an anchor is told by
+// the bits of a word, so that a Gaussian's place, and what is remembered of it, is its id whoever is kept beside it.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "projection.glsl"
+#include "tiles/tiles.glsl"  // aabb, 16 px, for the anchor cull
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 1) readonly buffer Anchors { Anchor anchors[]; };             // of the page
+layout(std430, binding = 2) readonly buffer Offsets { float offsets[]; };              // (anchor, k, 3)
+#include "networks.glsl"                                                               // bindings 3 and 4
+layout(std430, binding = 5) writeonly buffer Gaussians { Gaussian gaussians[]; };      // (decoding, anchor, k)
+layout(std430, binding = 6) writeonly buffer Harmonics { vec4 harmonics[]; };          // of degree 0, likewise
+layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decoding, anchor), bit k; KEPT_HIDDEN
+#if REUSE == 1
+#include "threshold/threshold.glsl"                                          // binding 7
+layout(std430, binding = 10) readonly buffer KeptLast { uint kept_last[]; };  // of the last frame
+uniform uint page_first;
+#endif
+uniform uint view_count;  // without the probe
+uniform uint views_per_decoding;
+uniform uint anchor_cull;
+uniform uint offset_count;  // OFFSETS
+
+// As trained: as if it were a Gaussian of its offsets' scales that must touch a tile of 3D-GS.
+bool sees(View view, Anchor anchor) {
+  Gaussian g = Gaussian(vec4(anchor.position.xyz, 1.0), anchor.rotation, anchor.offset_scale);
+  view.tiles_x = (view.width + uint(TILE_SIZE - 1)) / uint(TILE_SIZE);
+  view.tiles_y = (view.height + uint(TILE_SIZE - 1)) / uint(TILE_SIZE);
+  Splat splat;
+  return project(view, g, scaled_axes(g), splat) && touches_a_tile(splat, view);
+}
+
+vec3 mean_of(Anchor anchor, uint n, uint k) {
+  uint at = 3u * (n * uint(OFFSETS) + k);
+  precise vec3 mean = anchor.position.xyz + vec3(offsets[at], offsets[at + 1u], offsets[at + 2u]) * anchor.offset_scale.xyz;
+  return mean;
+}
+
+#if REUSE == 1
+
+// Whether Th leaves out of view v all that the last frame had of an anchor, whatever the networks would make of it now: no
+// Gaussian is wider than the anchor's scale, and none has an alpha of more than 1.
+bool is_hidden(uint v, Anchor anchor, uint n, uint bits) {
+  float widest = max(max(anchor.scale.x, anchor.scale.y), anchor.scale.z);
+  for (uint k = 0u; k < offset_count; ++k) {
+    if ((bits >> k & 1u) == 0u) continue;
+    Gaussian g = Gaussian(vec4(mean_of(anchor, n, k), 1.0), vec4(1.0, 0.0, 0.0, 0.0), vec4(vec3(widest), 0.0));
+    Splat splat;
+    if (!project(views[v], g, scaled_axes(g), splat)) return false;
+    float upper = upper_of(page_first + n * uint(OFFSETS) + k, v, splat.depth);
+    if (!(threshold_of(splat, upper) > 1.0)) return false;
+  }
+  return bits != 0u;
+}
+
+#endif
+
+vec3 sigmoid(vec3 x) { return 1.0 / (1.0 + exp(-x)); }
+
+// Gaussian k of an anchor at `to`. False where its weights overflowed.
+bool decode(Anchor anchor, uint n, uint k, float logit, Hidden covariance, Hidden colour, uint to) {
+  uint row = COVARIANCE_ROW + 7u * k;
+  vec3 scale = vec3(output_of(row, covariance), output_of(row + 1u, covariance), output_of(row + 2u, covariance));
+  vec4 rotation = vec4(output_of(row + 3u, covariance), output_of(row + 4u, covariance),
+                       output_of(row + 5u, covariance), output_of(row + 6u, covariance));
+  row = COLOUR_ROW + 3u * k;
+  vec3 rgb = sigmoid(vec3(output_of(row, colour), output_of(row + 1u, colour), output_of(row + 2u, colour)));
+
+  Gaussian g;
+  g.position = vec4(mean_of(anchor, n, k), 1.0 - 2.0 / (exp(2.0 * logit) + 1.0));  // tanh
+  g.rotation = rotation / max(length(rotation), 1e-12);
+  g.scale = vec4(anchor.scale.xyz * sigmoid(scale), 0.0);
+  gaussians[to] = g;
+  harmonics[to] = vec4((rgb - 0.5) / 0.28209479177387814, 0.0);
+  float sum = dot(g.rotation, vec4(1.0)) + dot(g.scale.xyz, vec3(1.0)) + dot(rgb, vec3(1.0));
+  return abs(sum) < 1e38;
+}
+
+// Bits of the Gaussians kept; `to` is the place of the anchor's first.
+uint decode_anchor(Anchor anchor, uint n, vec3 towards, uint to) {
+  float away = length(towards);
+  vec4 sight = vec4(towards / away, away);
+  vec3 mixed = bank_mix(sight);
+  Hidden opacity = hidden_of(OPACITY, n, sight, mixed);
+  Hidden covariance = hidden_of(COVARIANCE, n, sight, mixed);
+  Hidden colour = hidden_of(COLOUR, n, sight, mixed);
+  uint bits = 0u;
+  // Up to a uniform, not OFFSETS: unrolled, it takes compilers minutes.
+  for (uint k = 0u; k < offset_count; ++k) {
+    float logit = output_of(OPACITY_ROW + k, opacity);
+    if (logit > 0.0 && decode(anchor, n, k, logit, covariance, colour, to + k)) bits |= 1u << k;
+  }
+  return bits;
+}
+
+void main() {
+  uint at = thread_index();
+  uint decoding = at / anchor_count;
+  uint first = decoding * views_per_decoding;
+  if (first >= view_count) return;
+  uint n = at % anchor_count;
+  Anchor anchor = anchors[n];
+  uint end = min(first + views_per_decoding, view_count);
+  vec3 eye = vec3(0.0);  // from the first view's anchor point
+  bool seen = anchor_cull == 0u;
+  for (uint v = first; v < end; ++v) {
+    eye += (views[v].anchor.xyz - views[first].anchor.xyz) + views[v].eye.xyz;
+    seen = seen || sees(views[v], anchor);
+  }
+#if REUSE == 1
+  uint last = kept_last[at] & ~KEPT_HIDDEN;
+  bool hidden = seen && remembers != 0u;
+  for (uint v = first; v < end; ++v) hidden = hidden && is_hidden(v, anchor, n, last);
+  if (hidden) {
+    kept[at] = last | KEPT_HIDDEN;
+    return;
+  }
+#endif
+  vec3 towards = (anchor.position.xyz - views[first].anchor.xyz) - eye / float(end - first);
+  kept[at] = seen ? decode_anchor(anchor, n, towards, at * uint(OFFSETS)) : 0u;
+}

@@ -1,0 +1,42 @@
+// The Gaussians of a page of the model. Those of Scaffold-GS depend on the eye: a view has those of its decoding, as far as
+// the networks keep them.
+//   OFFSETS   K of Scaffold-GS, 0 for other models
+
+layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // (decoding, Gaussian)
+uniform uint page_first;
+uniform uint page_count;
+
+#if OFFSETS > 0
+
+layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding, anchor), a bit each
+uniform uint views_per_decoding;
+uniform uint asked;              // views before the probe
+uniform uint decoding_of_probe;  // that of the view it belongs to
+
+// Where view v finds Gaussian i of the page, and whether it has it.
+uint place_of(uint i, uint v) {
+  return (v < asked ? v / views_per_decoding : decoding_of_probe) * page_count + i;
+}
+
+bool is_kept(uint i, uint v) {
+  uint place = place_of(i, v);
+  uint bits = kept[place / uint(OFFSETS)];
+  return (bits & KEPT_HIDDEN) == 0u && (bits >> (place % uint(OFFSETS)) & 1u) != 0u;
+}
+
+// Whether view v had it, and its anchor was not decoded again because Th would leave it out.
+bool is_hidden(uint i, uint v) {
+  uint place = place_of(i, v);
+  uint bits = kept[place / uint(OFFSETS)];
+  return (bits & KEPT_HIDDEN) != 0u && (bits >> (place % uint(OFFSETS)) & 1u) != 0u;
+}
+
+#else
+
+uint place_of(uint i, uint v) { return i; }
+
+bool is_kept(uint i, uint v) { return true; }
+
+bool is_hidden(uint i, uint v) { return false; }
+
+#endif

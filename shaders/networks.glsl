@@ -1,0 +1,75 @@
+// The networks of Scaffold-GS (Lu et al. 2024): two layers each. Of the first, what depends on the anchor's feature alone is
+// computed once a model (ViewFree); what the eye adds is left: direction and distance. Hidden units stand in quads.
+//   HIDDEN   hidden units, a multiple of 4     OFFSETS   K, Gaussians of an anchor     BANK   1 with a feature bank
+
+#define QUADS (HIDDEN / 4)
+
+#define OPACITY 0u
+#define COVARIANCE 1u
+#define COLOUR 2u
+#define FEATURE_BANK 3u
+
+// Rows of the second layers.
+#define OPACITY_ROW 0u
+#define COVARIANCE_ROW uint(OFFSETS)
+#define COLOUR_ROW uint(8 * OFFSETS)
+#define BANK_ROW uint(11 * OFFSETS)
+
+// For each network QUADS of biases, then the weights of direction and distance by hidden unit; then for each row of the second
+// layers QUADS of weights and its bias.
+layout(std430, binding = 3) readonly buffer Networks { vec4 networks[]; };
+// (resolution of the feature, network, quad, anchor); one resolution without a feature bank.
+layout(std430, binding = 4) readonly buffer ViewFree { vec4 view_free[]; };
+
+uniform uint anchor_count;  // of the page
+
+struct Hidden {
+  vec4 quads[QUADS];
+};
+
+vec4 from_sight(uint network, uint quad, vec4 sight) {
+  uint at = network * uint(QUADS + HIDDEN);
+  uint row = at + uint(QUADS) + 4u * quad;
+  return networks[at + quad] + vec4(dot(networks[row], sight), dot(networks[row + 1u], sight),
+                                    dot(networks[row + 2u], sight), dot(networks[row + 3u], sight));
+}
+
+float output_of(uint row, Hidden hidden) {
+  uint at = uint((3 + BANK) * (QUADS + HIDDEN)) + row * uint(QUADS + 1);
+  vec4 sum = vec4(networks[at + uint(QUADS)].x, 0.0, 0.0, 0.0);
+  for (int q = 0; q < QUADS; ++q) sum += networks[at + uint(q)] * hidden.quads[q];
+  return (sum.x + sum.y) + (sum.z + sum.w);
+}
+
+vec4 from_feature(uint resolution, uint network, uint quad, uint anchor) {
+  return view_free[((resolution * 3u + network) * uint(QUADS) + quad) * anchor_count + anchor];
+}
+
+// How much of the feature at a quarter, at half and at all of its resolution a feature bank takes.
+vec3 bank_mix(vec4 sight) {
+#if BANK == 1
+  Hidden hidden;
+  for (int q = 0; q < QUADS; ++q) hidden.quads[q] = max(from_sight(FEATURE_BANK, uint(q), sight), 0.0);
+  vec3 w = vec3(output_of(BANK_ROW, hidden), output_of(BANK_ROW + 1u, hidden), output_of(BANK_ROW + 2u, hidden));
+  w = exp(w - max(w.x, max(w.y, w.z)));
+  return w / (w.x + w.y + w.z);
+#else
+  return vec3(0.0);
+#endif
+}
+
+// The first layer of a network for an anchor; sight: direction from the eye, and distance.
+Hidden hidden_of(uint network, uint anchor, vec4 sight, vec3 mixed) {
+  Hidden hidden;
+  for (int q = 0; q < QUADS; ++q) {
+    uint quad = uint(q);
+#if BANK == 1
+    vec4 feature = mixed.x * from_feature(0u, network, quad, anchor) + mixed.y * from_feature(1u, network, quad, anchor) +
+                   mixed.z * from_feature(2u, network, quad, anchor);
+#else
+    vec4 feature = from_feature(0u, network, quad, anchor);
+#endif
+    hidden.quads[q] = max(feature + from_sight(network, quad, sight), 0.0);
+  }
+  return hidden;
+}

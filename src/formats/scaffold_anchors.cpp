@@ -1,0 +1,203 @@
+#include "formats/scaffold_anchors.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "formats/ply_header.h"
+
+namespace binosplat {
+
+namespace {
+
+// A shader tells the Gaussians of an anchor by the bits of a word.
+constexpr std::size_t offsets_max = 31;
+constexpr std::size_t features_max = 256;
+
+/// Where in a row of the file each number of an anchor lies.
+struct AnchorLayout {
+  std::size_t row = 0;  // bytes
+  std::vector<std::size_t> position, scale, rotation, offset, feature;
+};
+
+class AnchorReader {
+ public:
+  AnchorReader(const std::filesystem::path& path, std::span<const std::byte> bytes, Scaffold& scaffold)
+      : path_(path), bytes_(bytes), header_(read_ply_header(path, bytes)), scaffold_(scaffold) {
+    const PlyElement* vertices = header_.find("vertex");
+    if (vertices == nullptr) fail("{}: the ply header has no element 'vertex'", path.string());
+    vertices_ = vertices;
+  }
+
+  void read() {
+    check_form();
+    find_columns();
+    check_length();
+    const std::size_t count = vertices_->count;
+    const std::size_t k = scaffold_.offset_count;
+    scaffold_.position.resize(count);
+    scaffold_.offset_scale.resize(count);
+    scaffold_.scale.resize(count);
+    scaffold_.rotation.resize(count);
+    scaffold_.offset.resize(count * k);
+    scaffold_.feature.resize(count * scaffold_.feature_count);
+    std::vector<std::uint8_t> good(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+      for (std::size_t n = range.begin(); n != range.end(); ++n) good[n] = decode(n) ? 1 : 0;
+    });
+    keep_only(good);
+  }
+
+ private:
+  void check_form() const {
+    if (header_.format != PlyFormat::little_endian || header_.elements.front().name != "vertex" ||
+        vertices_->has_list()) {
+      fail(
+          "{}: anchors of Scaffold-GS are expected first in a ply of format binary_little_endian, without "
+          "lists",
+          path_.string());
+    }
+  }
+
+  void check_length() {
+    layout_.row = vertices_->row_bytes();
+    if (vertices_->count == 0)
+      fail("{} holds no anchors: its header says 'element vertex 0'", path_.string());
+    const std::size_t left = bytes_.size() - header_.data;
+    if (vertices_->count > left / layout_.row) {
+      fail(
+          "{} is cut short: {} anchors of {} bytes from byte {} on, but {} bytes are there. Fetch or export "
+          "it "
+          "again",
+          path_.string(), vertices_->count, layout_.row, header_.data, left);
+    }
+  }
+
+  std::size_t column(const std::string& name) const {
+    std::size_t at = 0;
+    for (const PlyProperty& property : vertices_->properties) {
+      if (property.name == name) {
+        if (property.type == PlyType::float32) return at;
+        fail("{}: property '{}' is not of type float, as Scaffold-GS writes it", path_.string(), name);
+      }
+      at += size_of(property.type);
+    }
+    fail("{}: element 'vertex' has no property '{}', which the anchors of Scaffold-GS have", path_.string(),
+         name);
+  }
+
+  // The columns NAME0, NAME1, ... in the order of their numbers, whatever the file's.
+  std::vector<std::size_t> columns(const std::string& name, std::size_t count) const {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < count; ++i) out.push_back(column(name + std::to_string(i)));
+    return out;
+  }
+
+  std::size_t count_of(const std::string& start) const {
+    return static_cast<std::size_t>(
+        std::count_if(vertices_->properties.begin(), vertices_->properties.end(),
+                      [&](const PlyProperty& property) { return property.name.starts_with(start); }));
+  }
+
+  void find_columns() {
+    const std::size_t offsets = count_of("f_offset_");
+    const std::size_t features = count_of("f_anchor_feat_");
+    if (offsets == 0 || offsets % 3 != 0 || offsets > 3 * offsets_max) {
+      fail(
+          "{}: {} properties f_offset_*; expected 3 for each Gaussian of an anchor, of which there are 1 to "
+          "{}",
+          path_.string(), offsets, offsets_max);
+    }
+    if (features > features_max) {
+      fail("{}: {} properties f_anchor_feat_*; expected at most {}", path_.string(), features, features_max);
+    }
+    scaffold_.offset_count = offsets / 3;
+    scaffold_.feature_count = features;
+    layout_.position = {column("x"), column("y"), column("z")};
+    layout_.scale = columns("scale_", 6);
+    layout_.rotation = columns("rot_", 4);
+    layout_.offset = columns("f_offset_", offsets);
+    layout_.feature = columns("f_anchor_feat_", features);
+  }
+
+  // Anchor n of the file into slot n; whether it may be kept.
+  bool decode(std::size_t n) {
+    const std::byte* row = bytes_.data() + header_.data + n * layout_.row;
+    bool finite = true;
+    const auto number = [&](std::size_t at) {
+      float value = 0.0f;
+      std::memcpy(&value, row + at, sizeof(value));
+      finite = finite && std::isfinite(value);
+      return value;
+    };
+    const auto standard_deviation = [&](std::size_t at) {
+      const float value = std::exp(number(at));
+      finite = finite && std::isfinite(value);
+      return value;
+    };
+    const std::size_t k = scaffold_.offset_count;
+    glm::dvec4 q(0.0);
+    for (int c = 0; c < 3; ++c) {
+      scaffold_.position[n][c] = number(layout_.position[c]);
+      scaffold_.offset_scale[n][c] = standard_deviation(layout_.scale[c]);
+      scaffold_.scale[n][c] = standard_deviation(layout_.scale[3 + c]);
+      for (std::size_t i = 0; i < k; ++i)
+        scaffold_.offset[n * k + i][c] = number(layout_.offset[static_cast<std::size_t>(c) * k + i]);
+    }
+    for (int c = 0; c < 4; ++c) q[c] = number(layout_.rotation[c]);
+    const double norm = glm::length(q);
+    scaffold_.rotation[n] = glm::vec4(q / norm);
+    for (std::size_t i = 0; i < scaffold_.feature_count; ++i)
+      scaffold_.feature[n * scaffold_.feature_count + i] = number(layout_.feature[i]);
+    return finite && norm > 0.0;
+  }
+
+  // Closes the gaps of what is left out, and counts it.
+  void keep_only(const std::vector<std::uint8_t>& good) {
+    const auto close = [&](auto& values, std::size_t each) {
+      auto to = values.begin();
+      for (std::size_t n = 0; n < good.size(); ++n) {
+        if (good[n] == 0) continue;
+        const auto from = values.begin() + static_cast<std::ptrdiff_t>(n * each);
+        if (to != from) std::copy_n(from, each, to);
+        to += static_cast<std::ptrdiff_t>(each);
+      }
+      values.erase(to, values.end());
+    };
+    close(scaffold_.position, 1);
+    close(scaffold_.offset_scale, 1);
+    close(scaffold_.scale, 1);
+    close(scaffold_.rotation, 1);
+    close(scaffold_.offset, scaffold_.offset_count);
+    close(scaffold_.feature, scaffold_.feature_count);
+    scaffold_.left_out = good.size() - scaffold_.anchor_count();
+    if (scaffold_.anchor_count() == 0) {
+      fail("{}: all of its {} anchors have values that are not finite or zero quaternions", path_.string(),
+           good.size());
+    }
+  }
+
+  const std::filesystem::path& path_;
+  std::span<const std::byte> bytes_;
+  PlyHeader header_;
+  const PlyElement* vertices_ = nullptr;
+  AnchorLayout layout_;
+  Scaffold& scaffold_;
+};
+
+}  // namespace
+
+void load_anchors(const std::filesystem::path& ply, Scaffold& scaffold) {
+  const MappedFile file(ply);
+  scaffold.name = ply.filename().string();
+  AnchorReader(ply, file.bytes(), scaffold).read();
+}
+
+}  // namespace binosplat

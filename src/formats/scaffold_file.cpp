@@ -1,0 +1,151 @@
+#include "formats/scaffold_file.h"
+
+#include <charconv>
+#include <optional>
+
+#include "base/error.h"
+#include "formats/scaffold_anchors.h"
+#include "formats/torch_file.h"
+
+namespace binosplat {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t direction = 3;
+
+// N of a folder's name iteration_N.
+std::optional<std::uint64_t> iteration_of(const std::string& name) {
+  const std::string_view start = "iteration_";
+  if (!name.starts_with(start)) return std::nullopt;
+  std::uint64_t n = 0;
+  const auto [end, error] = std::from_chars(name.data() + start.size(), name.data() + name.size(), n);
+  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return n;
+}
+
+fs::path beside(const fs::path& ply, const char* name) { return ply.parent_path() / name; }
+
+// A network's weights, with sizes that fit each other and `outputs`.
+Network load_network(const fs::path& path, std::size_t outputs) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) {
+    const bool united = fs::exists(beside(path, "checkpoints.pth"), ignored);
+    fail("{} is missing: a Scaffold-GS model has it beside its point_cloud.ply{}", path.string(),
+         united ? "; checkpoints.pth holds the networks in one file: save them with mode 'split'" : "");
+  }
+  std::vector<std::vector<float>> tensors = load_torch_tensors(path, 4);
+  Network network;
+  network.first = std::move(tensors[0]);
+  network.first_bias = std::move(tensors[1]);
+  network.second = std::move(tensors[2]);
+  network.second_bias = std::move(tensors[3]);
+  network.hidden = network.first_bias.size();
+  network.outputs = network.second_bias.size();
+  if (network.hidden == 0 || network.first.empty() || network.first.size() % network.hidden != 0) {
+    fail("{}: {} weights and {} biases make no first layer; expected inputs x hidden and hidden",
+         path.string(), network.first.size(), network.hidden);
+  }
+  network.inputs = network.first.size() / network.hidden;
+  if (network.outputs != outputs || network.second.size() != outputs * network.hidden) {
+    fail("{}: its second layer has {} weights and {} biases; expected {} x {} and {}", path.string(),
+         network.second.size(), network.outputs, outputs, network.hidden, outputs);
+  }
+  return network;
+}
+
+[[noreturn]] void fail_inputs(const fs::path& path, const Network& network, const std::string& expected) {
+  fail("{}: its first layer has {} inputs; expected {}", path.string(), network.inputs, expected);
+}
+
+Network load_plain(const fs::path& path, std::size_t features, std::size_t outputs) {
+  Network network = load_network(path, outputs);
+  const std::size_t least = features + direction;
+  if (network.inputs != least && network.inputs != least + 1) {
+    fail_inputs(path, network,
+                fmt::format("{} (features and direction) or {} (and distance)", least, least + 1));
+  }
+  network.distance = network.inputs == least + 1;
+  return network;
+}
+
+// The colour network, with the appearances where it takes one.
+void load_colour(const fs::path& ply, Scaffold& scaffold) {
+  const fs::path path = beside(ply, "color_mlp.pt");
+  scaffold.colour = load_network(path, 3 * scaffold.offset_count);
+  Network& network = scaffold.colour;
+  const std::size_t least = scaffold.feature_count + direction;
+  if (network.inputs < least) {
+    fail_inputs(path, network, fmt::format("{} (features and direction) or more", least));
+  }
+  const std::size_t more = network.inputs - least;
+  network.distance = more == 1;
+  if (more <= 1) return;
+  const fs::path rows = beside(ply, "embedding_appearance.pt");
+  std::error_code ignored;
+  if (!fs::exists(rows, ignored)) {
+    fail("{} is missing: {} takes {} inputs beyond features and direction, an appearance's", rows.string(),
+         path.string(), more);
+  }
+  scaffold.appearances = std::move(load_torch_tensors(rows, 1).front());
+  const std::size_t values = scaffold.appearances.size();
+  network.distance = values % more != 0 && values % (more - 1) == 0;
+  scaffold.appearance_size = network.distance ? more - 1 : more;
+  if (values == 0 || values % scaffold.appearance_size != 0) {
+    fail("{}: {} values; expected rows of {}, as {} takes them", rows.string(), values, more, path.string());
+  }
+}
+
+void load_bank(const fs::path& ply, Scaffold& scaffold) {
+  const fs::path path = beside(ply, "feature_bank_mlp.pt");
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return;
+  Network network = load_network(path, 3);
+  if (network.inputs != direction + 1) fail_inputs(path, network, "4 (direction and distance)");
+  if (scaffold.feature_count % 4 != 0) {
+    fail("{}: a feature bank needs features in fours; {} has {}", path.string(), ply.string(),
+         scaffold.feature_count);
+  }
+  network.distance = true;
+  scaffold.bank = std::move(network);
+}
+
+}  // namespace
+
+bool is_scaffold(const PlyHeader& header) {
+  const PlyElement* vertices = header.find("vertex");
+  return vertices != nullptr && vertices->find("f_anchor_feat_0") != nullptr;
+}
+
+std::optional<fs::path> find_point_cloud(const fs::path& folder) {
+  const char* const name = "point_cloud.ply";
+  std::error_code ignored;
+  for (const fs::path& candidate : {folder / name, folder / "point_cloud" / name}) {
+    if (fs::is_regular_file(candidate, ignored)) return candidate;
+  }
+  fs::path found;
+  std::uint64_t latest = 0;
+  for (const auto& entry : fs::directory_iterator(folder / "point_cloud", ignored)) {
+    const auto n = iteration_of(entry.path().filename().string());
+    if (!n || (!found.empty() && *n < latest) || !fs::is_regular_file(entry.path() / name, ignored)) continue;
+    latest = *n;
+    found = entry.path() / name;
+  }
+  if (found.empty()) return std::nullopt;
+  return found;
+}
+
+std::shared_ptr<Scaffold> load_scaffold(const fs::path& ply) {
+  auto scaffold = std::make_shared<Scaffold>();
+  load_anchors(ply, *scaffold);
+  const std::size_t features = scaffold->feature_count;
+  const std::size_t k = scaffold->offset_count;
+  scaffold->opacity = load_plain(beside(ply, "opacity_mlp.pt"), features, k);
+  scaffold->covariance = load_plain(beside(ply, "cov_mlp.pt"), features, 7 * k);
+  load_colour(ply, *scaffold);
+  load_bank(ply, *scaffold);
+  return scaffold;
+}
+
+}  // namespace binosplat

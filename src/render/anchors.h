@@ -1,0 +1,41 @@
+#pragma once
+// A Scaffold-GS model on the GPU (scene/scaffold.h): what the stage decode reads.
+
+#include <cstdint>
+#include <memory>
+
+#include "gl/buffer.h"
+#include "scene/scaffold.h"
+
+namespace binosplat::render {
+
+/// The anchors of one page of the model, and which of their Gaussians the frame at hand has.
+struct AnchorBuffers {
+  /// Uploads anchors [first, first + count).
+  AnchorBuffers(gl::Context& context, const Scaffold& scaffold, std::size_t first, std::size_t count);
+
+  std::uint32_t count = 0;
+  gl::Buffer anchors;    // Anchor
+  gl::Buffer offsets;    // float (anchor, K, 3)
+  gl::Buffer view_free;  // vec4 (resolution, network, quad, anchor), see networks.glsl
+  // uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN: none is, these are the last frame's.
+  // Written while the last frame's is read.
+  std::unique_ptr<gl::Buffer> kept, kept_last;
+};
+
+/// The networks; without weights for other models.
+struct NetworkBuffers {
+  explicit NetworkBuffers(gl::Context& context) : weights(context, "networks") {}
+
+  /// Uploads, with the chosen appearance in the colours' bias.
+  void upload(const Scaffold& scaffold);
+
+  gl::Buffer weights;        // vec4, see networks.glsl
+  std::uint32_t hidden = 0;  // units of each network as the shader counts them: in fours
+  bool bank = false;         // there is a feature bank
+};
+
+/// Bytes that the anchors and networks take on the GPU.
+std::int64_t anchor_bytes(const Scaffold& scaffold);
+
+}  // namespace binosplat::render

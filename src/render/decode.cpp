@@ -1,0 +1,66 @@
+#include <bit>
+
+#include "render/stages.h"
+
+namespace binosplat::render {
+
+namespace {
+
+bool reuses(const FrameShape& shape) {
+  const FrameSettings& s = shape.settings;
+  return s.anchor_reuse && measures(s.transmittance) && s.th != TH_TAU && s.th_eyes == TH_EYES_PER_EYE &&
+         !shape.probe && shape.kernel_px2 == KERNEL_PX2;
+}
+
+// The anchor cull goes by 3D-GS's own tiles.
+gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networks) {
+  const FrameSettings& s = shape.settings;
+  const bool reuse = reuses(shape);
+  return {{"TILES_NAME", "aabb"},
+          {"TILES", std::to_string(TILES_AABB)},
+          {"TILE_SIZE", std::to_string(ANCHOR_TILE)},
+          {"TH", std::to_string(reuse ? s.th : TH_TAU)},
+          {"TH_NAME", th_choices[reuse ? s.th : TH_TAU].name},
+          {"TH_EYES", std::to_string(TH_EYES_PER_EYE)},
+          {"TRANSMITTANCE", std::to_string(reuse ? s.transmittance : TRANSMITTANCE_ONE)},
+          {"ANTIALIASED", "0"},
+          {"HIDDEN", std::to_string(networks.hidden)},
+          {"BANK", networks.bank ? "1" : "0"},
+          {"OFFSETS", std::to_string(shape.offset_count)},
+          {"REUSE", reuse ? "1" : "0"}};
+}
+
+}  // namespace
+
+void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuffers& model,
+            const FrameBuffers& buffers) {
+  if (shape.offset_count == 0) return;
+  const gl::Program& program =
+      dispatcher.context().program("decode.comp", decode_defines(shape, model.networks));
+  for (const ModelBuffers::Page& page : model.pages) {
+    const AnchorBuffers& anchors = *page.anchors;
+    dispatcher.run(program, gl::Work::threads(std::uint64_t{shape.decoding_count()} * anchors.count, THREADS),
+                   {{"Views", buffers.views},
+                    {"Anchors", anchors.anchors},
+                    {"Offsets", anchors.offsets},
+                    {"Networks", model.networks.weights},
+                    {"ViewFree", anchors.view_free},
+                    {"Gaussians", *page.gaussians},
+                    {"Harmonics", *page.harmonics},
+                    {"Kept", *anchors.kept},
+                    {"KeptLast", *anchors.kept_last},
+                    {"Upper", *buffers.upper}},
+                   {{"anchor_count", anchors.count},
+                    {"view_count", shape.asked},
+                    {"views_per_decoding", shape.views_per_decoding},
+                    {"offset_count", shape.offset_count},
+                    {"page_first", page.first},
+                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
+                    {"exact_from", shape.asked},
+                    {"gaussian_count", shape.gaussian_count},
+                    {"remembers", shape.remembers ? 1u : 0u},
+                    {"anchor_cull", shape.settings.anchor_cull ? 1u : 0u}});
+  }
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,303 @@
+// Scaffold-GS models: what is written is read back whatever the networks' kind, and what does not fit is
+// named. That the layout is the trainer's own is shown by tests/reference/decode_test.cpp on its files.
+
+#include <gtest/gtest.h>
+
+#include "formats/model_file.h"
+#include "formats/scaffold_file.h"
+#include "formats/torch_file.h"
+#include "support/errors.h"
+#include "support/program.h"
+#include "support/scaffold_files.h"
+#include "support/scenes.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool same(const Network& a, const Network& b) {
+  return a.inputs == b.inputs && a.hidden == b.hidden && a.outputs == b.outputs && a.first == b.first &&
+         a.first_bias == b.first_bias && a.second == b.second && a.second_bias == b.second_bias &&
+         a.distance == b.distance;
+}
+
+template <typename Vector>
+double largest_difference(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+  if (a.size() != b.size()) return INFINITY;
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = std::max(most, static_cast<double>(glm::length(a[i] - b[i])));
+  return most;
+}
+
+testing::AssertionResult same(const Scaffold& a, const Scaffold& b) {
+  if (a.offset_count != b.offset_count || a.feature_count != b.feature_count)
+    return testing::AssertionFailure() << "K or F";
+  if (a.position != b.position || a.offset != b.offset || a.feature != b.feature)
+    return testing::AssertionFailure() << "positions, offsets or features";
+  // Logarithms, and quaternions of any length, are stored.
+  if (largest_difference(a.offset_scale, b.offset_scale) > 1e-6)
+    return testing::AssertionFailure() << "offset scales";
+  if (largest_difference(a.scale, b.scale) > 1e-6) return testing::AssertionFailure() << "scales";
+  if (largest_difference(a.rotation, b.rotation) > 1e-6) return testing::AssertionFailure() << "rotations";
+  if (!same(a.opacity, b.opacity) || !same(a.covariance, b.covariance) || !same(a.colour, b.colour))
+    return testing::AssertionFailure() << "networks";
+  if (a.appearance_size != b.appearance_size || a.appearances != b.appearances)
+    return testing::AssertionFailure() << "appearances";
+  if (a.bank.has_value() != b.bank.has_value() || (a.bank && !same(*a.bank, *b.bank)))
+    return testing::AssertionFailure() << "feature bank";
+  return testing::AssertionSuccess();
+}
+
+TEST(ScaffoldFile, EveryKindIsReadBack) {
+  const test::ScaffoldKind kinds[] = {
+      {},
+      {.distances = true},
+      {.appearances = 3},
+      {.distances = true, .appearances = 4},
+      {.bank = true},
+      {.anchors = 1, .offsets = 1, .features = 1, .hidden = 1},
+      {.anchors = 7, .offsets = 31, .features = 8, .hidden = 20, .distances = true, .bank = true},
+  };
+  for (const test::ScaffoldKind& kind : kinds) {
+    const test::TempFolder folder;
+    const Scaffold written = test::random_scaffold(3, kind);
+    test::write_scaffold(folder.path(), written);
+    EXPECT_TRUE(same(*load_scaffold(folder / "point_cloud.ply"), written)) << kind.offsets;
+  }
+}
+
+TEST(ScaffoldFile, PlantedFaultsAreSeen) {
+  const test::TempFolder folder;
+  const Scaffold written = test::random_scaffold(3);
+  test::write_scaffold(folder.path(), written);
+  const auto read = load_scaffold(folder / "point_cloud.ply");
+  ASSERT_TRUE(same(*read, written));
+  Scaffold fault = *read;
+  std::swap(fault.offset[0], fault.offset[1]);
+  EXPECT_FALSE(same(fault, written));
+  fault = *read;
+  fault.scale.swap(fault.offset_scale);
+  EXPECT_FALSE(same(fault, written));
+  fault = *read;
+  std::swap(fault.colour.first, fault.opacity.first);
+  EXPECT_FALSE(same(fault, written));
+}
+
+TEST(ScaffoldFile, ColumnsAreFoundByNameAndEntriesMayBeCompressed) {
+  const test::TempFolder folder;
+  const Scaffold written = test::random_scaffold(4);
+  test::write_scaffold(folder.path(), written);
+  test::PlyFile file = test::anchor_file(written);
+  std::reverse(file.columns.begin(), file.columns.end());
+  for (auto& row : file.rows) std::reverse(row.begin(), row.end());
+  test::write_text(folder / "point_cloud.ply", to_bytes(file));
+  test::write_zip(folder / "cov_mlp.pt", test::entries_of(written.covariance), true);
+  EXPECT_TRUE(same(*load_scaffold(folder / "point_cloud.ply"), written));
+}
+
+TEST(ScaffoldFile, AFolderStandsForItsLatestIteration) {
+  const test::TempFolder folder;
+  for (const auto& [name, anchors] :
+       {std::pair{"iteration_7000", 5}, {"iteration_30000", 6}, {"iteration_x", 7}}) {
+    fs::create_directories(folder / "point_cloud" / name);
+    test::write_scaffold(folder / "point_cloud" / name,
+                         test::random_scaffold(1, {.anchors = static_cast<std::size_t>(anchors)}));
+  }
+  EXPECT_EQ(load_model(folder.path()).scaffold->anchor_count(), 6u);
+  test::write_scaffold(folder.path(), test::random_scaffold(1, {.anchors = 8}));
+  const Model model = load_model(folder.path());
+  EXPECT_EQ(model.scaffold->anchor_count(), 8u);
+  EXPECT_EQ(model.count(), 80u);
+  EXPECT_EQ(model.position[23], model.scaffold->mean(23));
+  fs::create_directory(folder / "empty");
+  EXPECT_TRUE(test::fails_saying([&] { load_model(folder / "empty"); },
+                                 {"empty is a folder without a model", "point_cloud/iteration_N"}));
+}
+
+TEST(ScaffoldFile, AppearancesAreChosenByRow) {
+  Scaffold scaffold = test::random_scaffold(1, {.appearances = 3});
+  choose_appearance(scaffold, 2);
+  EXPECT_EQ(scaffold.appearance, 2u);
+  EXPECT_TRUE(test::fails_saying([&] { choose_appearance(scaffold, 3); }, {"--appearance 3", "0 to 2"}));
+  Scaffold without = test::random_scaffold(1);
+  EXPECT_TRUE(test::fails_saying([&] { choose_appearance(without, 0); }, {"without appearances"}));
+}
+
+TEST(ScaffoldFile, TheTrainersOwnFiles) {
+  REQUIRE_SCENE("scaffold", scenes);
+  const auto fox = load_scaffold(scenes / "fox" / "point_cloud.ply");
+  EXPECT_EQ(fox->anchor_count(), 18290u);
+  EXPECT_EQ(fox->offset_count, 10u);
+  EXPECT_EQ(fox->feature_count, 32u);
+  EXPECT_EQ(fox->opacity.inputs, 35u);
+  EXPECT_EQ(fox->appearance_size, 0u);
+  EXPECT_FALSE(fox->opacity.distance || fox->covariance.distance || fox->colour.distance || fox->bank);
+  EXPECT_EQ(fox->left_out, 0u);
+}
+
+/// A good model in a folder, to be broken.
+class BrokenScaffold : public testing::Test {
+ protected:
+  BrokenScaffold() : good(test::random_scaffold(5, {.appearances = 3})) {
+    test::write_scaffold(folder.path(), good);
+  }
+
+  testing::AssertionResult refused(std::initializer_list<std::string> parts) const {
+    return test::fails_saying([&] { load_model(folder.path()); }, parts);
+  }
+  // The networks' file with some of its entries replaced.
+  void write(const std::string& name, const test::ZipEntries& entries, bool deflate = false) const {
+    test::write_zip(folder / name, entries, deflate);
+  }
+
+  test::TempFolder folder;
+  Scaffold good;
+};
+
+TEST_F(BrokenScaffold, MissingFiles) {
+  fs::remove(folder / "cov_mlp.pt");
+  EXPECT_TRUE(refused({"cov_mlp.pt is missing"}));
+  test::write_text(folder / "checkpoints.pth", "PK");
+  EXPECT_TRUE(refused({"cov_mlp.pt is missing", "'split'"}));
+  write("cov_mlp.pt", test::entries_of(good.covariance));
+  fs::remove(folder / "embedding_appearance.pt");
+  EXPECT_TRUE(refused({"embedding_appearance.pt is missing", "color_mlp.pt takes 5 inputs beyond"}));
+}
+
+TEST_F(BrokenScaffold, WrongSizes) {
+  const auto with = [&](const char* name, Network network, const auto& change) {
+    change(network);
+    write(name, test::entries_of(network));
+  };
+  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.first.pop_back(); });
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "1119 weights and 32 biases make no first layer"}));
+  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.first.resize(32 * 37); });
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "37 inputs; expected 35", "or 36"}));
+  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.first_bias.clear(); });
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "0 biases"}));
+  with("opacity_mlp.pt", good.opacity, [](Network& n) { n.second_bias.pop_back(); });
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "320 weights and 9 biases; expected 10 x 32 and 10"}));
+  write("opacity_mlp.pt", test::entries_of(good.opacity));
+  with("color_mlp.pt", good.colour, [](Network& n) { n.first.resize(32 * 34); });
+  EXPECT_TRUE(refused({"color_mlp.pt", "34 inputs; expected 35"}));
+  write("color_mlp.pt", test::entries_of(good.colour));
+  write("embedding_appearance.pt", test::torch_entries({std::vector<float>(13)}));
+  EXPECT_TRUE(refused({"embedding_appearance.pt", "13 values; expected rows of 5"}));
+  write("embedding_appearance.pt", test::torch_entries({good.appearances}));
+  write("feature_bank_mlp.pt", test::entries_of(good.opacity));
+  EXPECT_TRUE(refused({"feature_bank_mlp.pt", "expected 3 x 32 and 3"}));
+}
+
+TEST_F(BrokenScaffold, WeightsThatAreNone) {
+  Network network = good.opacity;
+  network.second[17] = NAN;
+  write("opacity_mlp.pt", test::entries_of(network));
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "value 17 of tensor 'net/data/2' is not finite"}));
+  test::ZipEntries entries = test::entries_of(good.opacity);
+  entries.pop_back();
+  write("opacity_mlp.pt", entries);
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "no tensor 3; expected 4"}));
+  entries = test::entries_of(good.opacity);
+  entries[2].second += "x";
+  write("opacity_mlp.pt", entries);
+  EXPECT_TRUE(refused({"'net/data/0' has 4481 bytes, not a number of float32"}));
+  entries = test::entries_of(good.opacity);
+  entries.emplace_back("net/byteorder", "big");
+  write("opacity_mlp.pt", entries);
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "byte order is 'big'"}));
+}
+
+TEST_F(BrokenScaffold, ArchivesThatAreNone) {
+  test::write_text(folder / "color_mlp.pt", "<html>not found</html>");
+  EXPECT_TRUE(refused({"color_mlp.pt", "expected a zip archive", "HTML"}));
+  write("color_mlp.pt", {{"hello", "you"}});
+  EXPECT_TRUE(refused({"color_mlp.pt", "without data.pkl"}));
+  write("color_mlp.pt", test::entries_of(good.colour));
+  const std::string whole = test::read_text(folder / "color_mlp.pt");
+  for (const std::size_t bytes : {whole.size() - 1, whole.size() / 2, std::size_t{30}, std::size_t{4}}) {
+    test::write_text(folder / "color_mlp.pt", whole.substr(0, bytes));
+    EXPECT_TRUE(refused({"color_mlp.pt", "zip archive is damaged or cut short", "fetch or export it again"}))
+        << bytes;
+  }
+  std::string flipped = whole;
+  flipped[flipped.find("net/data/0") + 100] ^= 1;
+  test::write_text(folder / "color_mlp.pt", flipped);
+  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0' is damaged", "CRC"}));
+  for (const char* name : {"../data/0", "/etc/passwd", "a/../../b", "a\\b"}) {
+    test::ZipEntries entries = test::entries_of(good.colour);
+    entries.emplace_back(name, "x");
+    write("color_mlp.pt", entries);
+    EXPECT_TRUE(refused({"color_mlp.pt", "leads out of the archive", name})) << name;
+  }
+}
+
+TEST_F(BrokenScaffold, Bombs) {
+  test::ZipEntries entries = test::entries_of(good.colour);
+  entries[2].second.assign(std::size_t{65} << 20, '\0');
+  write("color_mlp.pt", entries, true);
+  EXPECT_LT(fs::file_size(folder / "color_mlp.pt"), 200000u);
+  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0' promises 68157440 bytes; expected at most 67108864"}));
+  // One that promises less than it holds.
+  entries[2].second.assign(4480000, '\0');
+  write("color_mlp.pt", entries, true);
+  std::string bytes = test::read_text(folder / "color_mlp.pt");
+  const std::uint32_t truth = 4480000, promise = 4480;
+  const std::string sought(reinterpret_cast<const char*>(&truth), 4);
+  for (std::size_t at = bytes.find(sought); at != std::string::npos; at = bytes.find(sought))
+    bytes.replace(at, 4, reinterpret_cast<const char*>(&promise), 4);
+  test::write_text(folder / "color_mlp.pt", bytes);
+  EXPECT_TRUE(refused({"color_mlp.pt", "'net/data/0'", "damaged"}));
+}
+
+TEST_F(BrokenScaffold, Anchors) {
+  const test::PlyFile file = test::anchor_file(good);
+  const auto with = [&](const auto& change) {
+    test::PlyFile changed = file;
+    change(changed);
+    test::write_text(folder / "point_cloud.ply", to_bytes(changed));
+  };
+  const auto rename = [&](const char* from, const char* to) {
+    with([&](test::PlyFile& f) { f.columns[f.column(from)] = to; });
+  };
+  const std::string bytes = to_bytes(file);
+  test::write_text(folder / "point_cloud.ply", bytes.substr(0, bytes.size() - 1));
+  EXPECT_TRUE(refused({"point_cloud.ply is cut short", "40 anchors of 316 bytes"}));
+  with([](test::PlyFile& f) { f.format = "ascii"; });
+  EXPECT_TRUE(refused({"point_cloud.ply", "Scaffold-GS", "binary_little_endian"}));
+  with([](test::PlyFile& f) { f.type = "double"; });
+  EXPECT_TRUE(refused({"point_cloud.ply", "property 'x' is not of type float"}));
+  with([](test::PlyFile& f) { f.rows.clear(); });
+  EXPECT_TRUE(refused({"holds no anchors"}));
+  rename("f_offset_7", "other");
+  EXPECT_TRUE(refused({"29 properties f_offset_*"}));
+  rename("f_offset_7", "f_offset_30");
+  EXPECT_TRUE(refused({"no property 'f_offset_7'"}));
+  with([](test::PlyFile& f) {
+    f.columns[f.column("f_anchor_feat_31")] = f.columns[f.column("f_anchor_feat_30")] = "a";
+  });
+  EXPECT_TRUE(refused({"point_cloud.ply", "'a' occurs twice"}));
+  with([](test::PlyFile& f) {
+    f.columns[f.column("f_anchor_feat_31")] = "a";
+    f.columns[f.column("f_anchor_feat_30")] = "b";
+  });
+  EXPECT_TRUE(refused({"opacity_mlp.pt", "35 inputs; expected 33", "or 34"})) << "two features too few";
+  rename("scale_5", "other");
+  EXPECT_TRUE(refused({"no property 'scale_5'"}));
+  with([](test::PlyFile& f) {
+    f.at(3, "x") = NAN;
+    f.at(4, "scale_1") = 1000;
+  });
+  EXPECT_EQ(load_model(folder.path()).scaffold->left_out, 2u);
+  const auto kept = load_model(folder.path()).scaffold;
+  EXPECT_EQ(kept->position[3], good.position[5]);
+  EXPECT_EQ(kept->feature[3 * 32 + 1], good.feature[5 * 32 + 1]);
+  with([](test::PlyFile& f) {
+    for (std::size_t n = 0; n < f.rows.size(); ++n) f.at(n, "f_anchor_feat_0") = INFINITY;
+  });
+  EXPECT_TRUE(refused({"all of its 40 anchors"}));
+}
+
+}  // namespace
+}  // namespace binosplat

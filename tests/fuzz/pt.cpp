@@ -1,0 +1,22 @@
+// Networks: load_torch_tensors, and with it the zip archives.
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/torch_file.h"
+#include "fuzz/input.h"
+
+namespace binosplat::fuzz {
+
+void target(std::span<const std::byte> bytes) {
+  feed(bytes, [](const std::filesystem::path& path) {
+    const auto tensors = load_torch_tensors(path, 4);
+    demand(tensors.size() == 4, "another number of tensors");
+    for (const std::vector<float>& tensor : tensors) {
+      demand(std::all_of(tensor.begin(), tensor.end(), [](float v) { return std::isfinite(v); }),
+             "values that are not finite");
+    }
+  });
+}
+
+}  // namespace binosplat::fuzz

@@ -1,0 +1,236 @@
+// Whole frames of Scaffold-GS models: against the reference and the trainer's pictures, and that nothing else
+// of a frame minds that its Gaussians are made for each eye.
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "formats/cameras_file.h"
+#include "formats/image_file.h"
+#include "formats/model_file.h"
+#include "reference/transmittance.h"
+#include "render/support.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+#include "support/scaffold.h"
+#include "support/scenes.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using render::FrameSettings;
+using render::Stage;
+using test::draw;
+using test::same_bits;
+
+const test::ScaffoldKind four_hundred{.anchors = 400};
+
+std::vector<shared::View> eyes(const stereo::RigSettings& settings = {.ipd = 0.2}) {
+  const auto rig = stereo::make_rig(test::front_camera(150, 110, 140), settings);
+  return {rig.views.begin(), rig.views.end()};
+}
+
+reference::Settings shared_by(const std::vector<shared::View>& views) {
+  reference::Settings settings;
+  settings.decoding.views = views;
+  return settings;
+}
+
+TEST(ScaffoldFrame, EqualsTheReference) {
+  const Model model = test::scaffold_model(21, four_hundred);
+  for (const double cant : {0.0, 5.0}) {
+    const std::vector<shared::View> views = eyes({.ipd = 0.2, .cant_degrees = cant});
+    const std::vector<Picture> own = draw(model, views);
+    const std::vector<Picture> shared = draw(model, views, {.decode = DECODE_CYCLOPEAN});
+    for (std::size_t v = 0; v < 2; ++v) {
+      const Picture expected = reference::render(model, views[v]);
+      const Picture between = reference::render(model, views[v], shared_by(views));
+      EXPECT_GE(test::psnr(own[v], expected), 80.0) << v;
+      EXPECT_GE(test::psnr(shared[v], between), 80.0) << v;
+      // The two are told apart, and so is the other eye's decoding.
+      EXPECT_LT(test::psnr(own[v], between), 60.0) << v;
+      EXPECT_LT(test::psnr(own[v], reference::render(model, views[v], shared_by({views[1 - v]}))), 60.0) << v;
+    }
+  }
+}
+
+TEST(ScaffoldFrame, TileTestsAgreeBitForBit) {
+  const Model model = test::scaffold_model(22, four_hundred);
+  const std::vector<shared::View> views = eyes();
+  const std::vector<Picture> brute = draw(model, views, {.tiles = TILES_ALL});
+  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
+    const std::vector<Picture> drawn = draw(model, views, {.tiles = tiles, .tile_size = 8});
+    for (std::size_t v = 0; v < 2; ++v)
+      EXPECT_TRUE(same_bits(drawn[v], brute[v])) << tiles_choices[tiles].name;
+  }
+  EXPECT_FALSE(same_bits(draw(model, views, {.tiles = TILES_AABB})[0], brute[0]));
+}
+
+TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
+  const Model model = test::scaffold_model(23, four_hundred);
+  for (const double cant : {0.0, 5.0}) {
+    const std::vector<shared::View> views = eyes({.ipd = 0.2, .cant_degrees = cant});
+    for (const FrameSettings& way : {FrameSettings{}, FrameSettings{.th = TH_SQUARED, .loss = 0.05f}}) {
+      const std::vector<Picture> both = draw(model, views, way);
+      for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(both[v], draw(model, views[v], way))) << v;
+    }
+    // Gaussians that are shared make other pictures, and none for one eye.
+    const FrameSettings shared{.decode = DECODE_CYCLOPEAN};
+    EXPECT_FALSE(same_bits(draw(model, views, shared)[0], draw(model, views[0])));
+    EXPECT_TRUE(
+        test::fails_saying([&] { draw(model, views[0], shared); }, {"--decode cyclopean", "both eyes"}));
+  }
+}
+
+TEST(ScaffoldFrame, PagesMakeNoDifference) {
+  const Model model = test::scaffold_model(24, four_hundred);
+  const std::vector<shared::View> views = eyes();
+  for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
+    render::Frame frame(test::gl_context(), model, 70);
+    frame.draw(views, {.decode = decode});
+    const std::vector<Picture> whole = draw(model, views, {.decode = decode});
+    for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(frame.read_pictures()[v], whole[v]));
+  }
+}
+
+TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
+  const Model model = test::scaffold_model(25, {.anchors = 200});
+  const std::vector<shared::View> views = eyes();
+  for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
+    const Picture expected =
+        reference::render(model, views[1], shared_by(decode == DECODE_EYES ? std::vector{views[1]} : views));
+    for (int stage = 0; stage <= static_cast<int>(Stage::blend); ++stage) {
+      const FrameSettings settings{.decode = decode, .reference_until = static_cast<Stage>(stage)};
+      EXPECT_GE(test::psnr(draw(model, views, settings)[1], expected), 80.0) << render::stage_names[stage];
+    }
+  }
+  const Model plain = test::random_model(1, 10, 0);
+  EXPECT_TRUE(test::fails_saying([&] { draw(plain, views, {.reference_until = Stage::decode}); },
+                                 {"--reference-until decode", "no Scaffold-GS"}));
+}
+
+TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
+  const Model model = test::scaffold_model(26, four_hundred);
+  const std::vector<shared::View> views = eyes();
+  render::Frame frame(test::gl_context(), model);
+  frame.draw(std::vector{views[1]});
+  frame.draw(views, {.decode = DECODE_CYCLOPEAN});
+  frame.draw(std::vector{views[0]});
+  EXPECT_TRUE(same_bits(frame.read_pictures().front(), draw(model, views[0])));
+  EXPECT_EQ(frame.draw(views).stages.front().name, "decode");
+}
+
+// How many Gaussians have another measurement in the reference than a first frame leaves, by id.
+std::size_t differing(const Model& model, const Model& expected_of, const shared::View& view) {
+  test::StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
+  run.run_until(Stage::ranges);
+  gl::Dispatcher dispatcher(test::gl_context());
+  render::blend(dispatcher, run.shape, run.frame);
+  render::remember(dispatcher, run.shape, run.frame);
+  const auto measured = run.frame.upper_next->read<float>(model.count());
+  const auto splats = reference::project_all(expected_of, view);
+  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+  const auto expected =
+      reference::floored(reference::measure_transmittance(splats, lists, view), UPPER_FLOOR);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    count += std::abs(measured[i] - expected[i]) > 1e-4 ? 1 : 0;
+  return count;
+}
+
+TEST(ScaffoldFrame, WhatIsMeasuredIsKeptById) {
+  const Model model = test::scaffold_model(27, four_hundred);
+  const shared::View view = eyes()[0];
+  const std::size_t few = model.count() / 500;
+  EXPECT_LE(differing(model, model, view), few);
+  Model fainter = stand_in(std::make_shared<Scaffold>(*model.scaffold));
+  for (float& bias : fainter.scaffold->opacity.second_bias) bias -= 0.1f;
+  EXPECT_GT(differing(model, fainter, view), 10 * few);
+}
+
+TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
+  const Model model = test::scaffold_model(28, {.anchors = 1500});
+  std::vector<shared::View> views = eyes();
+  const std::vector<Picture> exact = draw(model, views);
+  for (const int source : {TRANSMITTANCE_LAST, TRANSMITTANCE_BOTH}) {
+    const FrameSettings settings{.th = TH_SQUARED, .transmittance = source, .loss = 0.01f};
+    render::Frame frame(test::gl_context(), model);
+    const std::uint64_t first = frame.draw(views, settings).pairs;
+    std::uint64_t pairs = first;
+    for (int n = 0; n < 5; ++n) pairs = frame.draw(views, settings).pairs;
+    EXPECT_LT(static_cast<double>(pairs), 0.9 * static_cast<double>(first));
+    EXPECT_GT(test::psnr(frame.read_pictures()[0], exact[0]), 40.0);
+  }
+}
+
+TEST(ScaffoldFrame, EveryKindOfThresholdTakesEachEyesOwn) {
+  const Model model = test::scaffold_model(29, four_hundred);
+  const std::vector<shared::View> views = eyes();
+  const std::vector<Picture> exact = draw(model, views);
+  for (const int th_eyes : {TH_EYES_PER_EYE, TH_EYES_SHARED_MIN, TH_EYES_CYCLOPEAN}) {
+    const auto settings = [&](float loss) {
+      return FrameSettings{.th = TH_SQUARED, .th_eyes = th_eyes, .loss = loss};
+    };
+    const std::vector<Picture> drawn = draw(model, views, settings(0.0f));
+    for (std::size_t v = 0; v < 2; ++v)
+      EXPECT_TRUE(same_bits(drawn[v], exact[v])) << th_eyes_choices[th_eyes].name;
+    EXPECT_FALSE(same_bits(draw(model, views, settings(0.05f))[0], exact[0]))
+        << th_eyes_choices[th_eyes].name;
+  }
+}
+
+TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
+  // Without loss a strip beside the picture differs from it by nothing, though the strip alone would see
+  // other anchors.
+  const Model model = test::scaffold_model(30, four_hundred);
+  const std::vector<shared::View> views = eyes();
+  for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
+    render::Frame frame(test::gl_context(), model);
+    const FrameSettings settings{.th = TH_SQUARED, .quality = 200.0f, .decode = decode};
+    render::FrameReport report;
+    for (int n = 0; n < 40; ++n) report = frame.draw(views, settings);
+    EXPECT_GT(report.quality, 100.0f) << decode_choices[decode].name;
+  }
+}
+
+class ScaffoldScenes : public testing::TestWithParam<const char*> {};
+
+TEST_P(ScaffoldScenes, MatchTheTrainerThePhotosAndTheReference) {
+  REQUIRE_SCENE("scaffold", scenes);
+  REQUIRE_SCENE("fox", fox);
+  const std::string name = GetParam();
+  if (name != "0042" && !test::switched_on("BINOSPLAT_LONG")) {
+    GTEST_SKIP() << "one of the longer runs: set BINOSPLAT_LONG=1";
+  }
+  const Model model = load_model(scenes / "fox");
+  const std::vector<Camera> cameras = load_cameras(fox / "cameras.json");
+  const auto camera =
+      std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == name; });
+  ASSERT_NE(camera, cameras.end());
+  const shared::View view = make_view(*camera);
+  const auto on_black = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
+  const auto number = [&](const char* file) {
+    return nlohmann::json::parse(std::ifstream(scenes / "fox" / file)).at(name);
+  };
+  const Image photo = load_image(fox / "photos" / (name + ".jpg"));
+  const Picture drawn = draw(model, view, {.tiles = TILES_AABB});
+  const fs::path inria = scenes / "fox" / "inria" / (name + ".png");
+  if (fs::exists(inria)) {
+    EXPECT_GT(measure::psnr(on_black(drawn), load_image(inria)), 65.0);
+  }
+  EXPECT_NEAR(measure::psnr(on_black(drawn), photo), number("psnr.json").get<double>(), 0.01);
+  const Picture whole = draw(model, view, {.tiles = TILES_AABB, .anchor_cull = false});
+  EXPECT_NEAR(measure::psnr(on_black(whole), photo), number("nocull.json").at("psnr").get<double>(), 0.01);
+  const double db = test::psnr(draw(model, view), reference::render(model, view));
+  EXPECT_GE(db, 70.0);
+  RecordProperty("reference", std::to_string(db));
+}
+
+INSTANTIATE_TEST_SUITE_P(Fox, ScaffoldScenes,
+                         testing::Values("0001", "0012", "0027", "0042", "0073", "0089", "0110"),
+                         [](const auto& named) { return std::string(named.param); });
+
+}  // namespace
+}  // namespace binosplat
