@@ -19,7 +19,7 @@ void check_threshold(const RenderOptions& o) {
   if (th != "tau" && givers == 0)
     fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
   if (th == "tau" && givers > 0) fail("{} has no effect with --th tau, which is exact", giver);
-  if (o.contrast != "off" && (th != "squared" || o.transmittance == "one")) {
+  if (o.contrast != "off" && (th != "squared" || o.transmittance == "one" || o.transmittance == "depth")) {
     fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
   }
   if ((o.transmittance == "other-eye" || o.transmittance == "both") && (o.mono || !o.only.empty())) {

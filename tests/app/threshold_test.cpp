@@ -50,6 +50,7 @@ TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
       {{"--th", "tau", "--loss", "1"}, "--loss has no effect"},
       {{"--loss", "-1"}, "--loss"},
       {{"--loss", "1", "--contrast", "final"}, "--contrast final"},
+      {{"--loss", "1", "--transmittance", "depth", "--contrast", "final"}, "--contrast final"},
       {{"--th", "peripheral", "--loss", "1", "--transmittance", "last", "--contrast", "final"},
        "--contrast final"},
       {{"--loss", "1", "--transmittance", "both", "--mono"}, "needs both eyes"},
