@@ -60,7 +60,8 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
   const RenderOptions render = case_options(scene, which);
   const CameraList list = scene.list.listed ? scene.list : made_up_cameras(render, model);
   const double near_plane = render.near_plane.value_or(list.listed ? near_default : near_for(model));
-  const std::vector<Shot> shots = choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
+  const std::vector<Shot> shots =
+      choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
   std::vector<study::BenchView> views;
   for (const Shot& shot : shots) {
     study::BenchView& view = views.emplace_back(study::BenchView{shot.name, {}, {}});
@@ -194,8 +195,9 @@ void check(const BenchOptions& options) {
     fail("bench needs scenes to measure, or --merge and the folders of shards");
   if (!options.merge.empty() && !options.shard.empty())
     fail("--shard measures and --merge does not: choose one");
-  if (options.scenes.size() > 1 && (!options.render.cameras.empty() || !options.render.photos.empty()))
-    fail("--cameras and --photos are of one scene: bench the scenes one by one");
+  if (options.scenes.size() > 1 &&
+      (!options.render.cameras.empty() || !options.render.photos.empty() || !options.calibration.empty()))
+    fail("--cameras, --photos and --calibration are of one scene: bench the scenes one by one");
   if (options.render.device >= 0 && options.render.backend == "surfaceless")
     fail("--device is for --backend auto: surfaceless has none");
 }
@@ -225,6 +227,9 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--axes", o->axes,
                   "What is measured: " + presets + ", or a file like those in\nsrc/study/presets (quick)")
       ->type_name("NAME|FILE");
+  sub->add_option("--calibration", o->calibration,
+                  "Measure the settings of a file of binosplat calibrate, too")
+      ->type_name("FILE");
   sub->add_option("--cameras", o->render.cameras, "Cameras, where they are not beside the model")
       ->type_name("FILE");
   sub->add_option("--view", o->render.views, "Views by name, instead of the axes' number of them")

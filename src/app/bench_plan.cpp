@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "scene/demo_city.h"
+#include "study/calibration.h"
 #include "study/settings.h"
 
 namespace binosplat::app {
@@ -62,6 +63,21 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
   }
 }
 
+/// A calibration's ways to draw, with the losses as they are, after the axes' own.
+void add_calibrated(const std::string& file, study::Axes& axes) {
+  std::set<std::string> known;
+  for (const render::FrameSettings& settings : axes.settings) known.insert(study::to_json(settings).dump());
+  for (const study::CalibrationEntry& entry : study::load_calibration(file).entries) {
+    render::FrameSettings settings;
+    settings.th = entry.th;
+    settings.transmittance = entry.transmittance;
+    settings.contrast = entry.contrast;
+    settings.loss = static_cast<float>(entry.loss);
+    study::check(file, settings, 1);
+    if (known.insert(study::to_json(settings).dump()).second) axes.settings.push_back(settings);
+  }
+}
+
 }  // namespace
 
 ordered_json load_json(const fs::path& path) {
@@ -90,6 +106,7 @@ RenderOptions case_options(const BenchScene& scene, const BenchCase& which) {
 BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan;
   plan.axes = study::load_axes(options.axes);
+  if (!options.calibration.empty()) add_calibrated(options.calibration, plan.axes);
   plan.json = {{"format", "binosplat bench plan"},  {"version", 1},
                {"program", BINOSPLAT_VERSION},      {"axes_name", plan.axes.name},
                {"axes", study::to_json(plan.axes)}, {"ppd", options.ppd},

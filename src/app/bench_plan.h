@@ -21,6 +21,7 @@ struct BenchOptions {
   std::string shard;               // I/N; empty: all
   std::vector<std::string> merge;  // folders, instead of scenes
   std::string compare;             // results.json of an older run
+  std::string calibration;         // a file whose settings are measured, too
   double ppd = 67.0;
   RenderOptions render;  // cameras, photos, views, the built-in scenes' options and the device
 };

@@ -36,11 +36,11 @@ void check(const CalibrateOptions& o) {
 
 /// The views: those named, or so many of the cameras (that have a photo), evenly spread.
 std::vector<study::CalibrationView> choose_views(const CalibrateOptions& o, const CameraList& list,
-                                                 double near_plane) {
+                                                 const Model& model, double near_plane) {
   RenderOptions render = o.render;
   render.mono = true;
   if (render.views.empty() && list.listed) render.views = {"all"};
-  std::vector<Shot> shots = make_shots(render, list, near_plane);
+  std::vector<Shot> shots = make_shots(render, list, near_plane, model.axes);
   if (!render.photos.empty() && o.render.views.empty())
     std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(render.photos, shot); });
   if (shots.empty()) fail("--photos {}: there is no photo of any view", render.photos);
@@ -83,7 +83,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const Model model = scene.model();
   if (!list.listed) list = made_up_cameras(o.render, model);
   const double near_plane = o.render.near_plane.value_or(list.listed ? near_default : near_for(model));
-  const std::vector<study::CalibrationView> views = choose_views(o, list, near_plane);
+  const std::vector<study::CalibrationView> views = choose_views(o, list, model, near_plane);
   const auto context = gl::Context::open(
       o.render.backend == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic, o.render.device);
   log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/calibrated.h"
 #include "app/command.h"
 #include "app/open_scene.h"
 #include "app/render_options.h"
@@ -148,7 +149,8 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
   render::Frame frame(context, report.model);
-  if (settings.transmittance == TRANSMITTANCE_DEPTH)
+  const CalibratedSettings calibrated(options, report.model);
+  if (settings.transmittance == TRANSMITTANCE_DEPTH && options.calibration.empty())
     settings.depth_table = depth_table(frame, options, list, report.near_plane, report.model.axes);
   const std::unique_ptr<Video> video = open_video(options, plan, shots);
   Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
@@ -158,8 +160,9 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     if (options.quality && options.path.empty()) settle(frame, views, settings);
+    const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
     for (int n = 0; n < options.frames; ++n) {
-      drawn.report = frame.draw(views, settings);
+      drawn.report = frame.draw(views, of_shot);
       report.times.add(drawn.report);
       progress.update(++done);
     }

@@ -10,10 +10,15 @@ namespace {
 
 void check_threshold(const RenderOptions& o) {
   const std::string th = threshold_name(o);
-  if (o.loss && o.quality) fail("--loss with --quality, which chooses the loss: leave one of them out");
-  if (th != "tau" && !o.loss && !o.quality) fail("--th {} needs --loss or --quality: what it may cost", th);
-  if (th == "tau" && (o.loss || o.quality))
-    fail("{} has no effect with --th tau, which is exact", o.loss ? "--loss" : "--quality");
+  const int givers = int(o.loss.has_value()) + int(o.quality.has_value()) + int(!o.calibration.empty());
+  const char* const giver = o.loss ? "--loss" : o.quality ? "--quality" : "--calibration";
+  if (givers > 1) {
+    fail("{} with {}: each chooses the loss: leave one of them out", giver,
+         o.calibration.empty() ? "--quality" : "--calibration");
+  }
+  if (th != "tau" && givers == 0)
+    fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
+  if (th == "tau" && givers > 0) fail("{} has no effect with --th tau, which is exact", giver);
   if (o.contrast != "off" && (th != "squared" || o.transmittance == "one")) {
     fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
   }
@@ -26,10 +31,11 @@ void check_threshold(const RenderOptions& o) {
   }
   if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
     fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
-  if (!o.reference_until.empty() && (o.transmittance != "one" || o.quality || o.th_eyes != "per-eye")) {
+  if (!o.reference_until.empty() &&
+      (o.transmittance != "one" || o.quality || !o.calibration.empty() || o.th_eyes != "per-eye")) {
     fail(
         "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
-        "--quality and --th-eyes out");
+        "--quality, --calibration and --th-eyes out");
   }
 }
 
@@ -37,7 +43,7 @@ void check_threshold(const RenderOptions& o) {
 
 std::string threshold_name(const RenderOptions& o) {
   if (!o.th.empty()) return o.th;
-  return o.loss || o.quality ? "squared" : "tau";
+  return o.loss || o.quality || !o.calibration.empty() ? "squared" : "tau";
 }
 
 void check(const RenderOptions& o) {

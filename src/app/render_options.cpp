@@ -236,6 +236,9 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->type_name("DB")
       ->check(positive)
       ->group(group);
+  sub.add_option("--calibration", o.calibration, "Take the loss from a file of binosplat calibrate")
+      ->type_name("FILE")
+      ->group(group);
   choose(sub, "--transmittance", o.transmittance, "The light that reaches a Gaussian, for --th (one)",
          transmittance_choices)
       ->group(group);

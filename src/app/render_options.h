@@ -59,6 +59,7 @@ struct RenderOptions {
   std::string contrast = "off";
   std::string th_eyes = "per-eye";
   std::optional<float> quality;  // dB
+  std::string calibration;       // a file of binosplat calibrate
   std::string decode;            // of a Scaffold-GS model; empty: eyes
   int tile = TILE_SIZE_DEFAULT;
   std::string reference_until;
@@ -92,8 +93,8 @@ glm::ivec2 parse_size(const std::string& option, const std::string& text);
 /// Adds those that the preview takes, some of which check_view() of app/viewer refuses.
 void add_view_options(CLI::App& sub, RenderOptions& options);
 
-/// What --th is: squared where only a loss or a quality is given, which costs less at equal error than the
-/// paper's rule (METHOD 8).
+/// What --th is: squared where only a loss, a quality or a calibration is given, which costs less at equal
+/// error than the paper's rule (METHOD 8).
 std::string threshold_name(const RenderOptions& options);
 
 /// Throws Error for options that contradict each other.

@@ -31,16 +31,6 @@ std::optional<double> mean_photo_psnr(const RenderReport& report) {
   return sum / count;
 }
 
-// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
-std::string megabytes(std::int64_t bytes) {
-  const double whole = std::round(static_cast<double>(bytes) / 1e6);
-  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
-  std::string digits = fmt::format("{:.0f}", whole);
-  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
-    digits.insert(static_cast<std::size_t>(place), ",");
-  return digits + " MB";
-}
-
 ordered_json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 ordered_json eye_json(const Eye& eye) {
@@ -112,7 +102,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   json["gpu_ms"] = drawn.report.total_ms;
   json["depth_orders"] = drawn.report.order_groups;
   json["drawn_again"] = drawn.report.redrawn;
-  if (options.quality) json["loss"] = drawn.report.loss;
+  if (options.quality || !options.calibration.empty()) json["loss"] = drawn.report.loss;
   if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
@@ -134,6 +124,7 @@ ordered_json settings_json(const RenderReport& report) {
   json["th_eyes"] = o.th_eyes;
   if (report.model.scaffold) json["decode"] = o.decode.empty() ? decode_choices[DECODE_EYES].name : o.decode;
   if (o.quality) json["quality_db"] = *o.quality;
+  if (!o.calibration.empty()) json["calibration"] = o.calibration;
   json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
   if (!o.reference_until.empty()) json["reference_until"] = o.reference_until;
   return json;
@@ -178,6 +169,15 @@ std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot
     if (comfort.better->ipd) *comfort.better->ipd /= options.units_per_metre;
   }
   return comfort;
+}
+
+std::string megabytes(std::int64_t bytes) {
+  const double whole = std::round(static_cast<double>(bytes) / 1e6);
+  if (whole < 10.0) return fmt::format("{:.1f} MB", static_cast<double>(bytes) / 1e6);
+  std::string digits = fmt::format("{:.0f}", whole);
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), ",");
+  return digits + " MB";
 }
 
 void StageTimes::add(const render::FrameReport& report) { frames_.push_back(report); }

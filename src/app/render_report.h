@@ -63,6 +63,9 @@ struct RenderReport {
   StageTimes times;
 };
 
+/// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.
+std::string megabytes(std::int64_t bytes);
+
 /// The line about memory, before anything is uploaded.
 void print_needs(const render::MemoryNeeds& needs);
 void print(const RenderReport& report);

@@ -73,6 +73,7 @@ class CompressedPlyReader {
   Model read() const {
     Model model;
     model.name = path_.filename().string();
+    model.format = "compressed ply";
     model.degree = degree_;
     model.resize(count_);
     std::vector<std::uint8_t> kept(count_);

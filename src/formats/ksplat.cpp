@@ -58,6 +58,7 @@ class KsplatReader {
 
   Model read() const {
     Model model;
+    model.format = ".ksplat";
     for (const Section& section : sections_) model.degree = std::max(model.degree, section.degree);
     model.resize(count_);
     std::vector<std::uint8_t> kept(count_);

@@ -79,6 +79,7 @@ class PlyReader {
 
   Model read() {
     model_.name = path_.filename().string();
+    model_.format = "ply";
     model_.degree = layout_.degree;
     model_.antialiased = layout_.antialiased;
     if (layout_.filter_3d) model_.kernel_px2 = mip_splatting_kernel_px2;

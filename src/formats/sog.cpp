@@ -16,6 +16,7 @@ namespace {
 Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   Model model;
   model.name = path.filename().string();
+  model.format = "SOG";
   model.degree = source.degree();
   model.antialiased = source.antialiased();
   model.resize(source.count());

@@ -174,6 +174,7 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
   std::vector<Part> parts = open_parts(lod_meta, levels, level);
   Model model;
   model.name = lod_meta.filename().string();
+  model.format = fmt::format("streamed SOG, level {} of {}", level, levels.count());
   std::size_t total = 0;
   for (Part& part : parts) {
     model.degree = std::max(model.degree, part.source.degree());

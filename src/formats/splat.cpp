@@ -52,6 +52,7 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
     fail("{} does not hold .splat's records: scales or quaternions are none that Gaussians have", source);
   }
   Model model;
+  model.format = ".splat";
   model.resize(bytes.size() / record_bytes);
   std::vector<std::uint8_t> kept(model.count());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kept.size(), 2048), [&](const auto& range) {

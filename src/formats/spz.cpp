@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
 #include "base/log.h"
 #include "formats/bytes.h"
 #include "formats/spz_container.h"
@@ -95,6 +96,7 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   const SpzContents contents = unpack_spz(source, bytes);
   if (contents.degree == 4) log_warning("{}: spherical harmonics of degree 4 are cut to degree 3", source);
   Model model;
+  model.format = fmt::format("spz {}", contents.version);
   model.degree = std::min(contents.degree, 3);
   model.axes = contents.axes.value_or("RUB");
   model.antialiased = contents.antialiased;

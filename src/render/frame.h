@@ -58,8 +58,8 @@ class Frame {
   /// is measured.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
-  /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with --reference-until
-  /// blend, whose pictures never get there.
+  /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with
+  /// --reference-until blend, whose pictures never get there.
   const gl::Buffer& colours() const { return buffers_.colours; }
   /// The views of the last frame drawn, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return shape_.views; }

@@ -25,6 +25,7 @@ struct Scaffold;
 /// unit length: readers leave out what is not, and count it.
 struct Model {
   std::string name;                 // for people: the file's or scene's name
+  std::string format;               // of its file, for people
   int degree = 0;                   // of the spherical harmonics, 0 to 3
   std::vector<glm::vec3> position;  // world units
   std::vector<glm::vec3> scale;     // standard deviations, world units (not logarithms)

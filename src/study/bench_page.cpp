@@ -21,6 +21,7 @@ constexpr double good_db = 40.0;  // an error that is hard to see
 struct Chart {
   std::string title;
   std::string id;
+  std::vector<std::string> families;  // in the plan's order: colours mean the same in every chart
   std::vector<const ordered_json*> measured;
   std::vector<const ordered_json*> others;  // problems, and what is yet to be measured
   std::set<const ordered_json*> front;
@@ -46,10 +47,13 @@ std::vector<Chart> charts_of(const ordered_json& points) {
                                           point["eyes"] == 2 ? "both eyes" : "one eye", text(point["size"]));
     const auto [found, is_new] = numbers.insert({title, charts.size()});
     if (is_new)
-      charts.push_back({title, fmt::format("chart-{}", charts.size() + 1), {}, {}, {}, false, false});
+      charts.push_back({title, fmt::format("chart-{}", charts.size() + 1), {}, {}, {}, {}, false, false});
     Chart& chart = charts[found->second];
     (is_measured(point) ? chart.measured : chart.others).push_back(&point);
     if (front[i]) chart.front.insert(&point);
+    const std::string family = text(point["family"]);
+    if (std::find(chart.families.begin(), chart.families.end(), family) == chart.families.end())
+      chart.families.push_back(family);
     chart.pair = point["eyes"] == 2;
     chart.photos = chart.photos || point.contains("photos");
   }
@@ -74,11 +78,11 @@ std::string sentence_of(const Chart& chart) {
   if (good == chart.measured.end())
     return fmt::format("Of {} settings none comes to {} dB against exact.", chart.measured.size(), good_db);
   std::string sentence =
-      fmt::format("Of {} settings, “{}” is the quickest with {} dB or more against exact: {:.3g} ms a frame",
+      fmt::format("Of {} settings, “{}” is the quickest with {} dB or more against exact: {:.4g} ms a frame",
                   chart.measured.size(), text((**good)["name"]), good_db, ms(**good));
   const ordered_json* exact = exact_of(chart);
   if (exact != nullptr && exact != *good)
-    sentence += fmt::format(", {:.2f} times as fast as the exact picture ({:.3g} ms)",
+    sentence += fmt::format(", {:.2f} times as fast as the exact picture ({:.4g} ms)",
                             ms(*exact) / ms(**good), ms(*exact));
   return sentence + ". Filled points are on the Pareto front: nothing is both quicker and nearer to exact.";
 }
@@ -87,12 +91,10 @@ Section accuracy(const Chart& chart) {
   Plot plot;
   plot.x = {"frame time, median", "ms"};
   plot.y = {"PSNR against exact, equal pictures at 100", "dB"};
-  std::map<std::string, std::size_t> families;
+  for (const std::string& family : chart.families) plot.series.push_back({family, {}, false, false, true});
   for (const ordered_json* point : chart.measured) {
-    const std::string family = text((*point)["family"]);
-    const auto [found, is_new] = families.insert({family, plot.series.size()});
-    if (is_new) plot.series.push_back({family, {}, false, false, true});
-    plot.series[found->second].points.push_back(
+    const auto family = std::find(chart.families.begin(), chart.families.end(), text((*point)["family"]));
+    plot.series[static_cast<std::size_t>(family - chart.families.begin())].points.push_back(
         {ms(*point), db(*point), text((*point)["name"]), chart.front.count(point) != 0});
   }
   Series front{"Pareto front", {}, true, true, false};

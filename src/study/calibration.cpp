@@ -228,14 +228,12 @@ bool covers(const Calibration& calibration, const glm::dvec3& position) {
   return nearest(position, nullptr) <= 2.0 * reach;
 }
 
-double loss_power(int th) { return th == TH_PERIPHERAL ? 1.5 : 1.0; }
-
 std::optional<render::FrameSettings> calibrated(const Calibration& calibration,
                                                 render::FrameSettings settings, double focal) {
   const int source = render::measures(settings.transmittance) ? TRANSMITTANCE_LAST : settings.transmittance;
   for (const CalibrationEntry& e : calibration.entries) {
     if (e.th != settings.th || e.transmittance != source || e.contrast != settings.contrast) continue;
-    settings.loss = static_cast<float>(e.loss * std::pow(focal / calibration.focal, loss_power(e.th)));
+    settings.loss = static_cast<float>(e.loss * std::pow(focal / calibration.focal, loss_power));
     settings.depth_table = calibration.depth_table;
     return settings;
   }

@@ -128,8 +128,8 @@ std::vector<Variant> all_variants() {
       const bool contrasts = th == TH_SQUARED && render::measures(source);
       for (int contrast = CONTRAST_OFF; contrast <= (contrasts ? CONTRAST_BEHIND : CONTRAST_OFF);
            ++contrast) {
-        const bool alike = source == TRANSMITTANCE_ONE || source == TRANSMITTANCE_BOTH;
-        const int last_rule = alike ? TH_EYES_CYCLOPEAN : TH_EYES_PER_EYE;
+        const bool of_eyes = source == TRANSMITTANCE_LAST || source == TRANSMITTANCE_BOTH;
+        const int last_rule = of_eyes ? TH_EYES_CYCLOPEAN : TH_EYES_PER_EYE;
         for (int th_eyes = TH_EYES_PER_EYE; th_eyes <= last_rule; ++th_eyes)
           variants.push_back({th, source, contrast, th_eyes});
       }

@@ -25,8 +25,8 @@ struct Variant {
   std::string name() const;  // "squared, last, final, per-eye"
 };
 
-/// Every threshold, source and contrast that go together, and the eyes' rules where both eyes know the same
-/// (`one`, `both`); --th tau once, since nothing else matters to it. Losses are 0.
+/// Every threshold, source and contrast that go together, and the eyes' rules with what each eye measured
+/// (`last`) and what both did (`both`); --th tau once, since nothing else matters to it. Losses are 0.
 std::vector<Variant> all_variants();
 
 /// What a verdict follows from. A case holds if none of these is broken.

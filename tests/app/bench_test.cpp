@@ -129,6 +129,23 @@ TEST_F(BenchTest, ShardsJoinToOneRun) {
       << compared.out;
 }
 
+TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
+  const std::string calibration = folder / "c.json";
+  ASSERT_TRUE(
+      good(test::run_program({"calibrate", model, "-o", calibration, "--quality", "38", "--view", "front"})));
+  write_text(axes, R"({"views": 1, "frames": 1, "repeats": 1, "settings": [{}]})");
+  const Outcome outcome = measure(out, {"--calibration", calibration, "--view", "front"});
+  ASSERT_TRUE(good(outcome)) << outcome.out;
+  const ordered_json points = results(out)["points"];
+  ASSERT_EQ(points.size(), 9) << "exact, and eight that were calibrated";
+  const ordered_json entries = ordered_json::parse(read_text(calibration))["entries"];
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    EXPECT_EQ(points[i + 1]["settings"]["th"], entries[i]["th"]);
+    EXPECT_NEAR(points[i + 1]["settings"]["loss"].get<double>(), entries[i]["loss"].get<double>(), 1e-5);
+    EXPECT_NEAR(points[i + 1]["exact"]["psnr_db"].get<double>(), entries[i]["reached_db"].get<double>(), 0.3);
+  }
+}
+
 TEST_F(BenchTest, ErrorsSayWhatToDo) {
   ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
   write_text(folder / "other.json", R"({"settings": [{}], "views": 1, "frames": 1, "repeats": 1})");

@@ -66,7 +66,11 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
                         std::filesystem::copy_options::recursive);
   const auto context = gl::Context::open();
   context->set_shader_folder(folder.path());
-  EXPECT_TRUE(bench(*context, 1).measure({}).contains("frame_ms")) << "without a fault it is timed";
+  render::FrameSettings lossy;
+  lossy.th = TH_SQUARED;
+  lossy.loss = 0.05f;
+  for (const auto& settings : {render::FrameSettings{}, lossy})
+    EXPECT_EQ(bench(*context, 1).measure(settings).value("problem", ""), "") << "without a fault it is timed";
 
   std::string blend = test::read_text(folder / "blend.comp");
   const std::string right = "if (left < float(TRANSMITTANCE_MIN)) {";
@@ -79,10 +83,10 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   EXPECT_FALSE(point.contains("frame_ms"));
   EXPECT_NE(point["problem"].get<std::string>().find("differ from the float64 reference"), std::string::npos)
       << point["problem"];
+  EXPECT_FALSE(bench(*faulty, 1).measure(lossy).contains("frame_ms")) << "a loss is no excuse";
   // Nothing in view.
   model.opacity.assign(model.count(), 0.0f);
-  EXPECT_NE(bench(test::gl_context(), 1).measure({})["problem"].get<std::string>().find("is empty"),
-            std::string::npos);
+  EXPECT_NE(bench(*faulty, 1).measure({})["problem"].get<std::string>().find("is empty"), std::string::npos);
 }
 
 }  // namespace

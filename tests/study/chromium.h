@@ -18,17 +18,17 @@ class Chromium {
   /// `width` px wide. It may await.
   std::string ask(const std::filesystem::path& page, int width, bool dark, const std::string& script) const {
     const std::filesystem::path harness = folder_ / "harness.html";
-    write_text(harness,
-               "<!doctype html><iframe id=f style='border:0;width:" + std::to_string(width) +
-                   "px;height:3000px' src='file://" + std::filesystem::absolute(page).string() +
-                   "'></iframe><pre id=answer>none</pre><script>onload = async () => {\n"
-                   "const frame = document.getElementById('f').contentWindow;\n"
-                   "await new Promise((done) => setTimeout(done, 500));\n"
-                   "const look = async (document, window) => {" +
-                   script +
-                   "};\nlet text; try { text = String(await look(frame.document, frame)); }"
-                   " catch (error) { text = 'failed: ' + error; }\n"
-                   "document.getElementById('answer').textContent = 'ANSWER' + '[' + text + ']' + 'END'; };</script>");
+    write_text(harness, "<!doctype html><iframe id=f style='border:0;width:" + std::to_string(width) +
+                            "px;height:3000px' src='file://" + std::filesystem::absolute(page).string() +
+                            "'></iframe><pre id=answer>none</pre><script>onload = async () => {\n"
+                            "const frame = document.getElementById('f').contentWindow;\n"
+                            "await new Promise((done) => setTimeout(done, 500));\n"
+                            "const look = async (document, window) => {" +
+                            script +
+                            "};\nlet text; try { text = String(await look(frame.document, frame)); }"
+                            " catch (error) { text = 'failed: ' + error; }\n"
+                            "document.getElementById('answer').textContent = 'ANSWER' + '[' + text + ']' + "
+                            "'END'; };</script>");
     const std::string out =
         run("--allow-file-access-from-files --virtual-time-budget=20000 --dump-dom", harness, dark);
     const std::size_t begin = out.rfind("ANSWER["), end = out.rfind("]END");

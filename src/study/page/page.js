@@ -25,7 +25,7 @@ function shown(value) {
   if (!isNumber(value)) return String(value);
   if (Number.isInteger(value)) return value.toLocaleString("en");
   const size = Math.abs(value);
-  if (size >= 1e5) return Math.round(value).toLocaleString("en");
+  if (size >= 1e4) return Math.round(value).toLocaleString("en");
   return size >= 1e-3 ? String(Number(value.toPrecision(5))) : value.toExponential(2);
 }
 
@@ -71,7 +71,7 @@ function bars(plot, chosen, width) {
   const longest = Math.max(0, ...categories.map((name) => name.length));
   const place = { x: "y", y: "x", z: (p) => p.of.name, order: null };
   return {
-    height: 60 + 30 * categories.length, marginLeft: Math.min(14 + 7 * longest, width * 0.4),
+    height: 72 + 30 * categories.length, marginBottom: 42, marginLeft: Math.min(14 + 7 * longest, width * 0.4),
     x: scale(plot.y), y: { label: null, domain: categories },
     marks: [
       Plot.barX(points, Plot.stackX({ ...place, fill: (p) => p.of.style.colour,

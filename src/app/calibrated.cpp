@@ -1,0 +1,57 @@
+#include "app/calibrated.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace binosplat::app {
+
+namespace {
+
+constexpr double same_focal = 0.05;  // share: nearer than this the loss needs no scaling to speak of
+
+render::FrameSettings exact(render::FrameSettings settings) {
+  settings.th = TH_TAU;
+  settings.loss = 0.0f;
+  settings.transmittance = TRANSMITTANCE_ONE;
+  settings.contrast = CONTRAST_OFF;
+  settings.th_eyes = TH_EYES_PER_EYE;
+  return settings;
+}
+
+}  // namespace
+
+CalibratedSettings::CalibratedSettings(const RenderOptions& options, const Model& model) {
+  if (options.calibration.empty()) return;
+  calibration_ = study::load_calibration(options.calibration);
+  render::FrameSettings asked;
+  asked.th = number_of(threshold_name(options), th_choices);
+  asked.transmittance = number_of(options.transmittance, transmittance_choices);
+  asked.contrast = number_of(options.contrast, contrast_choices);
+  if (!study::calibrated(*calibration_, asked, calibration_->focal))
+    fail("--calibration {} has no entry for --th {} --transmittance {} --contrast {}", options.calibration,
+         th_choices[asked.th].name, options.transmittance, options.contrast);
+  other_model_ = !study::is_of(*calibration_, model);
+  if (other_model_)
+    log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly",
+                options.calibration, calibration_->model_name, calibration_->gaussians);
+}
+
+render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSettings settings) const {
+  if (!calibration_) return settings;
+  if (other_model_) return exact(settings);
+  const Camera& camera = shot.eyes.front().camera;
+  if (!study::covers(*calibration_, camera.position)) {
+    log_warning("{} is far from the calibrated views: drawing it exactly", shot.name);
+    return exact(settings);
+  }
+  if (std::abs(camera.fx / calibration_->focal - 1.0) > same_focal)
+    log_warning(
+        "{} has a focal length of {:.0f} px and was calibrated at {:.0f}: the loss is scaled, the dB are "
+        "rough",
+        shot.name, camera.fx, calibration_->focal);
+  return *study::calibrated(*calibration_, settings, camera.fx);
+}
+
+}  // namespace binosplat::app

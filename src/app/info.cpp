@@ -1,0 +1,171 @@
+// binosplat info: what a model is made of, and what drawing it takes.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "app/command.h"
+#include "app/render_report.h"
+#include "formats/cameras_file.h"
+#include "formats/model_file.h"
+#include "render/shape.h"
+#include "scene/axes.h"
+#include "scene/framing.h"
+#include "scene/summary.h"
+#include "stereo/rig.h"
+
+namespace binosplat::app {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::string model;
+  std::optional<int> lod;
+  std::string json;
+};
+
+/// Where the three axes point in the cameras' world, in words.
+std::string axes_in_words(const Model& model) {
+  const auto word = [](char letter) {
+    switch (letter) {
+      case 'R':
+        return "right";
+      case 'L':
+        return "left";
+      case 'U':
+        return "up";
+      case 'D':
+        return "down";
+      case 'F':
+        return "forward";
+      default:
+        return "back";
+    }
+  };
+  return fmt::format("x {}, y {}, z {}", word(model.axes[0]), word(model.axes[1]), word(model.axes[2]));
+}
+
+/// What a headset's frame of a model starts with, seen so that the model fills the eyes.
+render::MemoryNeeds headset_needs(const Model& model) {
+  const Camera head = stereo::apply_preset(into_axes(frame_model(model, 1280, 720), model.axes), "headset");
+  const stereo::EyePair eyes = stereo::make_rig(head, {.near_plane = near_for(model)});
+  return render::memory_needs(render::make_shape(eyes.views, {}, model));
+}
+
+void print_bounds(const char* name, const Bounds& b) {
+  fmt::print("{:<14} {:.4g} to {:.4g}, {:.4g} to {:.4g}, {:.4g} to {:.4g}\n", name, b.low.x, b.high.x,
+             b.low.y, b.high.y, b.low.z, b.high.z);
+}
+
+/// One line of a histogram: the share of all as a number and as a bar.
+void print_bar(const std::string& label, std::size_t count, std::size_t all) {
+  constexpr double widest = 40.0;
+  const double share = static_cast<double>(count) / static_cast<double>(all);
+  const auto length = static_cast<std::size_t>(std::ceil(widest * share));
+  fmt::print("  {:<16} {:>10} {:>6.2f} %  {}\n", label, count, 100.0 * share, std::string(length, '#'));
+}
+
+void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
+  const std::size_t n = model.count();
+  fmt::print("{} ({})\n", model.name, model.format);
+  fmt::print("{:<14} {}{}\n", "Gaussians", n,
+             model.left_out > 0
+                 ? fmt::format(" ({} more left out: values not finite, or no rotation)", model.left_out)
+                 : "");
+  fmt::print("{:<14} degree {}\n", "harmonics", model.degree);
+  fmt::print("{:<14} {} ({})\n", "axes", model.axes, axes_in_words(model));
+  fmt::print("{:<14} {:.4g} px^2{}\n", "low-pass", model.kernel_px2,
+             model.antialiased ? ", trained with anti-aliasing" : "");
+  print_bounds("bounds", s.all);
+  print_bounds("98 % within", s.core);
+  fmt::print("{:<14} {} for the model, at least {} for a frame of a headset's eyes\n", "GPU memory",
+             megabytes(needs.model), megabytes(needs.frame));
+  if (model.scaffold) {
+    fmt::print("\nopacities, scales and colours are made for each eye\n");
+    return;
+  }
+  fmt::print("\nopacity (median {:.3f})\n", s.opacity_median);
+  for (std::size_t k = 0; k < s.opacity.size(); ++k)
+    print_bar(fmt::format("{:.1f} to {:.1f}", 0.1 * static_cast<double>(k), 0.1 * static_cast<double>(k + 1)),
+              s.opacity[k], n);
+  fmt::print("\nlargest scale (median {:.4g})\n", s.scale_median);
+  for (const auto& [decade, count] : s.scale)
+    print_bar(fmt::format("1e{:+} to 1e{:+}", decade, decade + 1), count, n);
+  fmt::print("\nharmonics in use\n");
+  for (int degree = 0; degree <= model.degree; ++degree)
+    print_bar(fmt::format("degree {}", degree), s.degree[static_cast<std::size_t>(degree)], n);
+  fmt::print("\nodd ones\n");
+  print_bar("never visible", s.invisible, n);
+  print_bar("without size", s.without_size, n);
+  print_bar("flat", s.flat, n);
+  print_bar("needles", s.needles, n);
+  print_bar("far outside", s.far, n);
+  print_bar("huge", s.huge, n);
+}
+
+ordered_json to_json(const Bounds& b) {
+  return {{"low", {b.low.x, b.low.y, b.low.z}}, {"high", {b.high.x, b.high.y, b.high.z}}};
+}
+
+ordered_json to_json(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
+  ordered_json scale;
+  for (const auto& [decade, count] : s.scale)
+    scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
+  ordered_json json = {{"name", model.name},
+                       {"format", model.format},
+                       {"gaussians", model.count()},
+                       {"left_out", model.left_out},
+                       {"degree", model.degree},
+                       {"axes", model.axes},
+                       {"kernel_px2", model.kernel_px2},
+                       {"antialiased", model.antialiased},
+                       {"bounds", to_json(s.all)},
+                       {"core_bounds", to_json(s.core)},
+                       {"gpu_bytes", {{"model", needs.model}, {"headset_frame", needs.frame}}}};
+  if (model.scaffold) return json;  // the rest is made for each eye
+  json.update({{"opacity", {{"median", s.opacity_median}, {"tenths", s.opacity}}},
+               {"largest_scale", {{"median", s.scale_median}, {"decades", scale}}},
+               {"degrees_in_use", s.degree},
+               {"odd",
+                {{"invisible", s.invisible},
+                 {"without_size", s.without_size},
+                 {"flat", s.flat},
+                 {"needles", s.needles},
+                 {"far", s.far},
+                 {"huge", s.huge}}}});
+  return json;
+}
+
+ExitCode info(const InfoOptions& options) {
+  if (!options.json.empty()) check_output(options.json);
+  const Model model = load_model(options.model, {.lod = options.lod});
+  const ModelSummary summary = summarise(model);
+  const render::MemoryNeeds needs = headset_needs(model);
+  print(model, summary, needs);
+  if (!options.json.empty()) save_json(options.json, to_json(model, summary, needs));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("info", "Say what a model is made of");
+  const auto options = std::make_shared<InfoOptions>();
+  sub->add_option("MODEL", options->model, "A model file, or the folder of a SOG or of Scaffold-GS")
+      ->required();
+  sub->add_option("--lod", options->lod, "Level of detail of a streamed SOG, 0 the finest")
+      ->check(CLI::Range(0, 100).description(""))
+      ->type_name("N");
+  sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
+  sub->footer(
+      "Odd ones: never visible: opacity below 1/255; flat, needles: a hundred times thinner or longer than "
+      "wide;\n"
+      "far outside: over five diagonals from the box of 98 %; huge: larger than its diagonal.");
+  sub->callback([options, &command] { command = [options] { return info(*options); }; });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,100 @@
+// binosplat calibrate, and render with what it found.
+
+#include "app/scene.h"
+#include "formats/image_file.h"
+#include "measure/metrics.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::ordered_json;
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::read_text;
+using test::write_text;
+
+struct CalibrateTest : test::SceneTest {
+  const std::string file = folder / "calib.json";
+
+  CalibrateTest() { add_cameras(); }
+  Outcome calibrate(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"calibrate", model, "-o", file});
+    return test::run_program(more);
+  }
+  ordered_json report() const { return ordered_json::parse(read_text(folder / "r.json")); }
+};
+
+TEST_F(CalibrateTest, RenderGoesByIt) {
+  const Outcome outcome = calibrate({"--quality", "38", "--views", "2"});
+  ASSERT_TRUE(good(outcome));
+  EXPECT_NE(outcome.out.find("target: 38 dB against the exact pictures"), std::string::npos) << outcome.out;
+  const ordered_json found = ordered_json::parse(read_text(file));
+  EXPECT_EQ(found["views"].size(), 2);
+  EXPECT_EQ(found["entries"].size(), 8);
+  ASSERT_TRUE(good(render({"--mono", "--view", "front", "-o", folder / "exact.png", "--bits", "16"})));
+  ASSERT_TRUE(good(render({"--mono", "--view", "front", "-o", folder / "lossy.png", "--bits", "16",
+                           "--calibration", file, "--transmittance", "depth", "--json", folder / "r.json"})));
+  EXPECT_NEAR(report()["views"][0]["loss"].get<double>(), found["entries"][4]["loss"].get<double>(), 1e-6);
+  EXPECT_EQ(report()["settings"]["th"], "squared");
+  const double db = measure::psnr(load_image(folder / "exact.png"), load_image(folder / "lossy.png"));
+  EXPECT_GT(db, 34.0);
+  EXPECT_LT(db, 60.0) << "drawn exactly";
+
+  // Another model, and a camera far away: a warning, and the exact picture.
+  const Outcome far = render(
+      {"--mono", "--eye", "0,0,-40", "--at", "0,0,0", "-o", folder / "far.png", "--calibration", file});
+  ASSERT_TRUE(good(far));
+  EXPECT_NE(far.err.find("is far from the calibrated views"), std::string::npos) << far.err;
+  ordered_json other = found;
+  other["model"]["hash"] = "0123456789abcdef";
+  write_text(folder / "other.json", other.dump());
+  const Outcome warned = render({"--mono", "--view", "front", "-o", folder / "again.png", "--bits", "16",
+                                 "--calibration", folder / "other.json", "--transmittance", "last"});
+  ASSERT_TRUE(good(warned));
+  EXPECT_NE(warned.err.find("is of another model"), std::string::npos) << warned.err;
+  EXPECT_EQ(read_text(folder / "again.png"), read_text(folder / "exact.png"));
+  const Outcome small = render(
+      {"--mono", "--view", "front", "--size", "36x24", "-o", folder / "small.png", "--calibration", file});
+  ASSERT_TRUE(good(small));
+  EXPECT_NE(small.err.find("the loss is scaled"), std::string::npos) << small.err;
+}
+
+TEST_F(CalibrateTest, DropsAreAgainstPhotos) {
+  for (const char* view : {"front", "side"})
+    ASSERT_TRUE(
+        good(render({"--mono", "--view", view, "-o", folder / "photos" / (std::string(view) + ".png")})));
+  const Outcome outcome = calibrate({"--photos", folder / "photos", "--max-drop", "0.5"});
+  // The photos are the exact pictures themselves: nothing is lost only where they stay equal.
+  ASSERT_TRUE(good(outcome));
+  const ordered_json found = ordered_json::parse(read_text(file));
+  EXPECT_EQ(found["views"].size(), 2) << "the pair has no photos";
+  EXPECT_EQ(found["target"]["drop_db"], 0.5);
+  for (const ordered_json& entry : found["entries"]) EXPECT_LE(entry["reached_db"].get<double>(), 0.5);
+}
+
+TEST_F(CalibrateTest, ErrorsSayWhatToDo) {
+  ASSERT_TRUE(good(calibrate({"--quality", "30", "--view", "front"})));
+  const std::string none = folder / "none.json";
+  EXPECT_TRUE(ended(calibrate({}), 2, "calibrate needs a target"));
+  EXPECT_TRUE(ended(calibrate({"--quality", "40", "--max-drop", "1"}), 2, "calibrate needs a target"));
+  EXPECT_TRUE(ended(calibrate({"--max-drop", "1"}), 2, "--max-drop and --photos go together"));
+  EXPECT_TRUE(
+      ended(calibrate({"--max-drop", "1", "--photos", folder.path()}), 2, "there is no photo of any view"));
+  EXPECT_TRUE(ended(calibrate({"--quality", "40", "--view", "nowhere"}), 2, "nowhere"));
+  EXPECT_TRUE(ended(calibrate({"--quality", "0"}), 2, "--help"));
+  EXPECT_TRUE(ended(calibrate({"--quality", "40", "--size", "big"}), 2, "--size big: expected pixels"));
+  EXPECT_TRUE(ended(render({"-o", out, "--calibration", none}), 2, "none.json"));
+  EXPECT_TRUE(ended(render({"-o", out, "--calibration", model}), 2, "not JSON"));
+  EXPECT_TRUE(ended(render({"-o", out, "--calibration", file, "--loss", "1"}), 2, "leave one of them out"));
+  EXPECT_TRUE(
+      ended(render({"-o", out, "--calibration", file, "--th", "tau"}), 2, "has no effect with --th tau"));
+  ordered_json cut = ordered_json::parse(read_text(file));
+  cut["entries"].clear();
+  write_text(none, cut.dump());
+  EXPECT_TRUE(ended(render({"-o", out, "--calibration", none}), 2,
+                    "has no entry for --th squared --transmittance one"));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,59 @@
+// binosplat info, from the command line.
+
+#include <gtest/gtest.h>
+
+#include "app/scene.h"
+#include "support/fixtures.h"
+
+namespace binosplat {
+namespace {
+
+using Info = test::SceneTest;
+
+TEST_F(Info, SaysTheSameInTextAndJson) {
+  const test::Outcome outcome = test::run_program({"info", model, "--json", folder / "info.json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const nlohmann::json json = test::load_json(folder / "info.json");
+  EXPECT_EQ(json["gaussians"], 300);
+  EXPECT_EQ(json["format"], "ply");
+  EXPECT_EQ(json["degree"], 1);
+  EXPECT_EQ(json["axes"], "RDF");
+  EXPECT_EQ(json["degrees_in_use"], (std::vector<int>{0, 300, 0, 0}));
+  std::size_t tenths = 0;
+  for (const auto& count : json["opacity"]["tenths"]) tenths += count.get<std::size_t>();
+  EXPECT_EQ(tenths, 300u);
+  EXPECT_GT(json["gpu_bytes"]["model"], 300 * 48);
+  for (const char* part : {"model.ply (ply)", "Gaussians      300\n", "degree 1",
+                           "x right, y down, z forward", "98 % within", "GPU memory", "never visible"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part << " in:\n" << outcome.out;
+}
+
+TEST_F(Info, TellsWhatWasLeftOutAndRefusesWhatIsNoModel) {
+  test::PlyFile file = test::small_model();
+  file.at(7, "x") = std::nan("");
+  test::write_text(model, to_bytes(file));
+  const test::Outcome outcome = test::run_program({"info", model});
+  EXPECT_NE(outcome.out.find("299 (1 more left out"), std::string::npos) << outcome.out;
+  test::write_text(model, "no model");
+  EXPECT_EQ(test::run_program({"info", model}).code, 2);
+}
+
+TEST(InfoOfFixtures, KnowsTheirFormats) {
+  REQUIRE_FIXTURES(folder);
+  const std::vector<std::pair<std::string, std::string>> expected = {
+      {"spz/adobe-train-v4-sh3-rdf2rub-aa.spz", "(spz 4)"},
+      {"spz/st-train-v3-sh3.spz", "x right, y up, z back"},
+      {"cply/st-train-sh1.compressed.ply", "(compressed ply)"},
+      {"splat/minimal.splat", "(.splat)"},
+      {"ksplat/st-minimal.ksplat", "(.ksplat)"},
+      {"sog/playbot-lod6", "(SOG)"},
+      {"sog/st-lod", "(streamed SOG, level 0 of 2)"}};
+  for (const auto& [file, part] : expected) {
+    const test::Outcome outcome = test::run_program({"info", folder / file});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << file << ":\n" << outcome.out;
+  }
+}
+
+}  // namespace
+}  // namespace binosplat
