@@ -84,6 +84,10 @@ void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds&
   print_bounds("98 % within", s.core);
   fmt::print("{:<14} {} for the model, at least {} for a frame of a headset's eyes\n", "GPU memory",
              megabytes(needs.model), megabytes(needs.frame));
+  if (model.scaffold) {
+    fmt::print("\nopacities, scales and colours are made for each eye\n");
+    return;
+  }
   fmt::print("\nopacity (median {:.3f})\n", s.opacity_median);
   for (std::size_t k = 0; k < s.opacity.size(); ++k)
     print_bar(fmt::format("{:.1f} to {:.1f}", 0.1 * static_cast<double>(k), 0.1 * static_cast<double>(k + 1)),
@@ -111,27 +115,29 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
   ordered_json scale;
   for (const auto& [decade, count] : s.scale)
     scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
-  return {{"name", model.name},
-          {"format", model.format},
-          {"gaussians", model.count()},
-          {"left_out", model.left_out},
-          {"degree", model.degree},
-          {"axes", model.axes},
-          {"kernel_px2", model.kernel_px2},
-          {"antialiased", model.antialiased},
-          {"bounds", to_json(s.all)},
-          {"core_bounds", to_json(s.core)},
-          {"opacity", {{"median", s.opacity_median}, {"tenths", s.opacity}}},
-          {"largest_scale", {{"median", s.scale_median}, {"decades", scale}}},
-          {"degrees_in_use", s.degree},
-          {"odd",
-           {{"invisible", s.invisible},
-            {"without_size", s.without_size},
-            {"flat", s.flat},
-            {"needles", s.needles},
-            {"far", s.far},
-            {"huge", s.huge}}},
-          {"gpu_bytes", {{"model", needs.model}, {"headset_frame", needs.frame}}}};
+  ordered_json json = {{"name", model.name},
+                       {"format", model.format},
+                       {"gaussians", model.count()},
+                       {"left_out", model.left_out},
+                       {"degree", model.degree},
+                       {"axes", model.axes},
+                       {"kernel_px2", model.kernel_px2},
+                       {"antialiased", model.antialiased},
+                       {"bounds", to_json(s.all)},
+                       {"core_bounds", to_json(s.core)},
+                       {"gpu_bytes", {{"model", needs.model}, {"headset_frame", needs.frame}}}};
+  if (model.scaffold) return json;  // the rest is made for each eye
+  json.update({{"opacity", {{"median", s.opacity_median}, {"tenths", s.opacity}}},
+               {"largest_scale", {{"median", s.scale_median}, {"decades", scale}}},
+               {"degrees_in_use", s.degree},
+               {"odd",
+                {{"invisible", s.invisible},
+                 {"without_size", s.without_size},
+                 {"flat", s.flat},
+                 {"needles", s.needles},
+                 {"far", s.far},
+                 {"huge", s.huge}}}});
+  return json;
 }
 
 ExitCode info(const InfoOptions& options) {
@@ -149,7 +155,8 @@ ExitCode info(const InfoOptions& options) {
 void add_info(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("info", "Say what a model is made of");
   const auto options = std::make_shared<InfoOptions>();
-  sub->add_option("MODEL", options->model, "A model file, or the folder of a SOG")->required();
+  sub->add_option("MODEL", options->model, "A model file, or the folder of a SOG or of Scaffold-GS")
+      ->required();
   sub->add_option("--lod", options->lod, "Level of detail of a streamed SOG, 0 the finest")
       ->check(CLI::Range(0, 100).description(""))
       ->type_name("N");

@@ -17,6 +17,7 @@ constexpr float usual_opacity = 0.5f;
 Model stand_in(std::shared_ptr<Scaffold> scaffold) {
   Model model;
   model.name = scaffold->name;
+  model.format = describe(*scaffold);
   model.resize(scaffold->count());
   for (std::size_t id = 0; id < model.count(); ++id) {
     model.position[id] = scaffold->mean(id);

@@ -66,6 +66,16 @@ TEST_F(ScaffoldFolder, AppearancesAndDecodingsMakeOtherPictures) {
   EXPECT_FALSE(draw({"--repeat", "2x1", "--spacing", "1"}) == plain);
 }
 
+TEST_F(ScaffoldFolder, InfoSaysWhatItIs) {
+  const Outcome outcome = run_program({"info", folder.path(), "--json", folder / "info.json"});
+  ASSERT_TRUE(good(outcome));
+  EXPECT_NE(outcome.out.find("point_cloud.ply (Scaffold-GS, 100 anchors of 10 Gaussians"), std::string::npos);
+  EXPECT_EQ(outcome.out.find("never visible"), std::string::npos) << "said of stand-ins";
+  const auto json = nlohmann::json::parse(read_text(folder / "info.json"));
+  EXPECT_EQ(json["gaussians"], 1000);
+  EXPECT_FALSE(json.contains("opacity"));
+}
+
 TEST_F(ScaffoldFolder, OptionsThatHaveNoEffectAreRefused) {
   EXPECT_TRUE(ended(render({"--appearance", "3", "-o", out}), 2, "has appearances 0 to 2"));
   EXPECT_TRUE(ended(render({"--decode", "cyclopean", "--mono", "-o", out}), 2, "--decode cyclopean"));
