@@ -162,7 +162,7 @@ std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& m
   std::error_code ignored;
   const fs::path path = fs::absolute(model);
   const fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
-  if (const auto found = cameras_in(folder)) return found;
+  if (auto found = cameras_in(folder)) return found;
   if (folder.filename() == "point_cloud") return cameras_in(folder.parent_path());
   if (!folder.filename().string().starts_with("iteration_")) return std::nullopt;
   return cameras_in(folder.parent_path().parent_path());

@@ -31,9 +31,9 @@ struct ColmapImage {
 std::string_view colmap_model_name(int model);
 
 /// Each reads a whole file and throws Error naming it and the record where it is damaged or cut short.
-std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& file);
-std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::path& file);
-std::vector<ColmapImage> colmap_images(const std::filesystem::path& file);
-std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& file);
+std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path);
+std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::path& path);
+std::vector<ColmapImage> colmap_images(const std::filesystem::path& path);
+std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path);
 
 }  // namespace binosplat

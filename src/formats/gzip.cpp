@@ -51,30 +51,4 @@ std::vector<std::byte> GzipReader::read(std::size_t most) {
   return out;
 }
 
-std::vector<std::byte> gzipped(std::span<const std::byte> bytes) {
-  z_stream stream = {};
-  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, with_gzip_header, 9, Z_DEFAULT_STRATEGY) !=
-      Z_OK) {
-    throw std::bad_alloc();
-  }
-  std::vector<std::byte> out;
-  std::size_t taken = 0;
-  for (int result = Z_OK; result != Z_STREAM_END;) {
-    const std::size_t piece = std::min(bytes.size() - taken, most_at_once);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data() + taken));
-    stream.avail_in = static_cast<uInt>(piece);
-    taken += piece;
-    do {
-      const std::size_t filled = out.size();
-      out.resize(filled + (std::size_t{1} << 20));
-      stream.next_out = reinterpret_cast<Bytef*>(out.data() + filled);
-      stream.avail_out = 1u << 20;
-      result = deflate(&stream, taken == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
-      out.resize(out.size() - stream.avail_out);
-    } while (stream.avail_out == 0);
-  }
-  deflateEnd(&stream);
-  return out;
-}
-
 }  // namespace binosplat

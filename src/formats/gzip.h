@@ -29,7 +29,4 @@ class GzipReader {
   bool ended_ = false;
 };
 
-/// Packs bytes as one member.
-std::vector<std::byte> gzipped(std::span<const std::byte> bytes);
-
 }  // namespace binosplat

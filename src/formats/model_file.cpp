@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "formats/content.h"
+#include "formats/gltf.h"
 #include "formats/json_file.h"
 #include "formats/ksplat.h"
 #include "formats/ply.h"
@@ -18,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* known = "a ply, spz, .splat, .ksplat, or a SOG (meta.json, lod-meta.json or .sog)";
+constexpr const char* known =
+    "a ply, spz, .splat, .ksplat, glTF, or a SOG (meta.json, lod-meta.json or .sog)";
 
 /// The file to read where a folder is named.
 fs::path file_of(const fs::path& path) {
@@ -53,8 +55,9 @@ Model load_json_model(const fs::path& path, std::string_view text, const ModelOp
   if (is_sog_levels(root)) return load_streamed_sog(path, root, options.lod);
   refuse_level(path, options);
   if (is_sog_meta(root)) return load_sog(path, root);
-  fail("{} is a JSON file, but not the meta.json or lod-meta.json of a SOG model{}", path.string(),
-       root.is_array() ? "; it may hold cameras, which --cameras takes" : "");
+  if (is_gltf(root)) return load_gltf(path, std::as_bytes(std::span(text)));
+  fail("{} is a JSON file, but no glTF and not the meta.json or lod-meta.json of a SOG model{}",
+       path.string(), root.is_array() ? "; it may hold cameras, which --cameras takes" : "");
 }
 
 /// Formats without a mark of their own. A name helps to say what is wrong, not to tell what a file is.
@@ -77,6 +80,8 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
       return load_sog(path);
     case Content::json:
       return load_json_model(path, as_text(file.bytes()), options);
+    case Content::glb:
+      return load_gltf(path, file.bytes());
     case Content::gzip:
     case Content::spz:
       return load_spz(path.string(), file.bytes());

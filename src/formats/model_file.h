@@ -16,9 +16,10 @@ struct ModelOptions {
 
 /// Reads a trained model: INRIA's ply and PlayCanvas' compressed one (formats/ply.h), Scaffold-GS's with the
 /// networks beside it (formats/scaffold_file.h), SOG as a folder, a .sog archive, or streamed
-/// (formats/sog.h). `path` may be a folder that holds lod-meta.json, meta.json, or point_cloud.ply, also in
-/// point_cloud/ or the latest point_cloud/iteration_N/. Says on standard error how many Gaussians were left
-/// out because a value is not finite or the quaternion is zero. Throws Error for anything that is not such a
+/// (formats/sog.h), spz, .splat, .ksplat, and glTF with Gaussians. `path` may be a folder that holds
+/// lod-meta.json, meta.json, or point_cloud.ply, also in point_cloud/ or the latest
+/// point_cloud/iteration_N/. Says on standard error how many Gaussians were left out because a value is not
+/// finite or the quaternion is zero. Throws Error for anything that is not such a
 /// model; the text says what the file looks like instead.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});
 

@@ -22,9 +22,6 @@ using nlohmann::json;
 
 using test::near;
 
-/// The only format that cannot be read.
-constexpr const char* unreadable = "gltf/";
-
 /// The Gaussian of truth.json in our model: row 5 of one file has a zero quaternion and is left out.
 std::size_t index_of(const std::string& name, const json& gaussian) {
   const std::size_t index = gaussian["index"].get<std::size_t>();
@@ -61,16 +58,29 @@ void compare(const std::string& name, const Model& model, const json& truth) {
   }
 }
 
+/// Takes back the transform of that file's one node: a quarter turn about x, then a translation.
+void undo_node(Model& model) {
+  const glm::vec3 translation(2, 12, -7);
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    const glm::vec3 p = model.position[i] - translation;
+    model.position[i] = {p.x, -p.z, p.y};
+    const glm::vec4 q = model.rotation[i];
+    model.rotation[i] =
+        static_cast<float>(std::sqrt(0.5)) * glm::vec4(q[0] - q[1], q[1] + q[0], q[2] - q[3], q[3] + q[2]);
+  }
+}
+
 TEST(RealFiles, ModelsAgreeWithAnIndependentDecoder) {
   REQUIRE_FIXTURES(folder);
   const json models = test::load_json(folder / "truth.json")["models"];
   int files = 0;
   for (const auto& [name, truth] : models.items()) {
-    if (name.starts_with(unreadable)) continue;
-    compare(name, load_model(folder / name), truth);
+    Model model = load_model(folder / name);
+    if (name == "gltf/cesium-draft-synthetic.gltf") undo_node(model);
+    compare(name, model, truth);
     ++files;
   }
-  EXPECT_EQ(files, 48);
+  EXPECT_EQ(files, 51);
 }
 
 TEST(RealFiles, OtherFormatsAreNamed) {
@@ -78,7 +88,6 @@ TEST(RealFiles, OtherFormatsAreNamed) {
   const auto refuses = [&](const char* name, const char* part) {
     return test::fails_saying([&] { load_model(folder / name); }, {name, part});
   };
-  EXPECT_TRUE(refuses("gltf/st-train-sh3.glb", "binary glTF"));
   EXPECT_TRUE(refuses("cameras/inria-cameras.json", "JSON"));
 }
 

@@ -14,11 +14,6 @@ namespace {
 using test::little;
 using test::patched;
 
-std::string packed(const std::string& text) {
-  const auto bytes = gzipped(std::as_bytes(std::span(text)));
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 std::string unpacked(const std::string& text) {
   const auto bytes = GzipReader("a fixture", std::as_bytes(std::span(text))).read(std::size_t{1} << 24);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -54,24 +49,26 @@ TEST(SpzErrors, Gzip) {
   std::string flipped = good;
   flipped[good.size() - 8] ^= 1;
   EXPECT_TRUE(refuses(flipped, {"is damaged: incorrect data check"}));
-  EXPECT_TRUE(refuses(packed("hello, this is no model"), {"holds no spz model", "NGSP"}));
-  EXPECT_TRUE(refuses(packed(raw.substr(0, 15)), {"an spz header has 16 bytes, and 15 are there"}));
-  EXPECT_TRUE(refuses(packed(raw.substr(0, 16)), {"promises 1000 Gaussians of degree 3, which"}));
+  EXPECT_TRUE(refuses(test::gzipped("hello, this is no model"), {"holds no spz model", "NGSP"}));
+  EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, 15)), {"an spz header has 16 bytes, and 15 are there"}));
+  EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, 16)), {"promises 1000 Gaussians of degree 3, which"}));
   // Every boundary between attributes, and a byte before it.
   for (const std::size_t bytes : {9u, 10u, 13u, 16u, 20u, 65u}) {
     const std::size_t end = 16 + std::size_t{1000} * bytes;
     if (bytes < 65) {
-      EXPECT_TRUE(refuses(packed(raw.substr(0, end)),
+      EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, end)),
                           {fmt::format("take 65000 bytes after the header, and {} are there", end - 16)}));
     }
-    EXPECT_TRUE(refuses(packed(raw.substr(0, end - 1)), {fmt::format("and {} are there", end - 17)}));
+    EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, end - 1)), {fmt::format("and {} are there", end - 17)}));
   }
 }
 
 TEST(SpzErrors, Header) {
   REQUIRE_FIXTURES(folder);
   const std::string raw = unpacked(test::read_text(folder / "spz/st-train-v3-sh3.spz"));
-  const auto with = [&](std::size_t at, const std::string& bytes) { return packed(patched(raw, at, bytes)); };
+  const auto with = [&](std::size_t at, const std::string& bytes) {
+    return test::gzipped(patched(raw, at, bytes));
+  };
   EXPECT_TRUE(refuses(with(4, little(9u)), {"spz of version 9 is not known"}));
   EXPECT_TRUE(refuses(with(4, little(0u)), {"spz of version 0"}));
   EXPECT_TRUE(refuses(with(4, little(4u)), {"version 4 within gzip"}));
@@ -91,16 +88,16 @@ TEST(SpzErrors, Header) {
 TEST(SpzErrors, NothingUnfoldsBeyondItsHeader) {
   REQUIRE_FIXTURES(folder);
   const std::string raw = unpacked(test::read_text(folder / "spz/minimal-v3.spz"));
-  const std::string bomb = packed(raw + std::string(std::size_t{1} << 28, '\0'));
+  const std::string bomb = test::gzipped(raw + std::string(std::size_t{1} << 28, '\0'));
   EXPECT_LT(bomb.size(), 1000000u);
   EXPECT_NE(said_of(bomb).find("bytes after the last attribute are ignored"), std::string::npos);
   EXPECT_EQ(load(bomb).count(), 4u);
   // The same as extensions, of which there may be a megabyte.
   const std::string extended = patched(raw, 14, "\x02");
-  EXPECT_TRUE(
-      refuses(packed(extended + little(1u) + little(0xfffffff0u) + std::string(std::size_t{1} << 22, '\0')),
-              {"an extension of 4294967280 bytes runs past"}));
-  EXPECT_EQ(load(packed(extended + little(0xadbe0003u) + little(4u) + little(7u))).axes, "LUF");
+  EXPECT_TRUE(refuses(
+      test::gzipped(extended + little(1u) + little(0xfffffff0u) + std::string(std::size_t{1} << 22, '\0')),
+      {"an extension of 4294967280 bytes runs past"}));
+  EXPECT_EQ(load(test::gzipped(extended + little(0xadbe0003u) + little(4u) + little(7u))).axes, "LUF");
 }
 
 TEST(SpzErrors, Streams) {

@@ -3,6 +3,7 @@
 
 #include <webp/encode.h>
 #include <zip.h>
+#include <zlib.h>
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -84,6 +85,23 @@ inline std::string webp(int width, int height, const std::vector<std::uint8_t>& 
   WebPPictureFree(&picture);
   if (!good) throw std::runtime_error("no WebP");
   return bytes;
+}
+
+/// Bytes as gzip packs them.
+inline std::string gzipped(const std::string& bytes) {
+  z_stream stream = {};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, 16 + MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) {
+    throw std::runtime_error("no gzip");
+  }
+  std::string packed(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  deflate(&stream, Z_FINISH);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
 }
 
 /// A zip archive of named files.

@@ -1,0 +1,225 @@
+#include "formats/gltf_document.h"
+
+#include <algorithm>
+
+#include "base/mapped_file.h"
+#include "formats/bytes.h"
+#include "formats/content.h"
+#include "formats/sog_source.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
+constexpr std::uint64_t most = std::uint64_t{1} << 40;
+
+enum ComponentType { int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, float32 = 5126 };
+
+/// 0 for a type that numbers of Gaussians do not have.
+std::size_t size_of_component(int type) {
+  switch (type) {
+    case int8:
+    case uint8:
+      return 1;
+    case int16:
+    case uint16:
+      return 2;
+    case float32:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+float load_component(const std::byte* at, int type, bool normalized) {
+  switch (type) {
+    case int8: {
+      const auto v = static_cast<float>(load_number<std::int8_t>(at));
+      return normalized ? std::max(v / 127.0f, -1.0f) : v;
+    }
+    case uint8: {
+      const auto v = static_cast<float>(load_number<std::uint8_t>(at));
+      return normalized ? v / 255.0f : v;
+    }
+    case int16: {
+      const auto v = static_cast<float>(load_number<std::int16_t>(at));
+      return normalized ? std::max(v / 32767.0f, -1.0f) : v;
+    }
+    case uint16: {
+      const auto v = static_cast<float>(load_number<std::uint16_t>(at));
+      return normalized ? v / 65535.0f : v;
+    }
+    default:
+      return load_number<float>(at);
+  }
+}
+
+std::vector<std::byte> decode_base64(const JsonValue& uri, std::string_view text) {
+  std::vector<std::byte> bytes;
+  std::uint32_t bits = 0;
+  int filled = 0;
+  while (text.ends_with('=')) text.remove_suffix(1);
+  for (const char c : text) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::size_t digit = digits.find(c);
+    if (digit == std::string_view::npos) uri.fail_here("{} is no digit of base64", quoted({&c, 1}));
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    filled += 6;
+    if (filled < 8) continue;
+    filled -= 8;
+    bytes.push_back(static_cast<std::byte>(bits >> filled & 0xff));
+  }
+  return bytes;
+}
+
+std::size_t optional_size(const JsonValue& value, const char* key) {
+  return value.has(key) ? value.at(key).whole(most) : 0;
+}
+
+}  // namespace
+
+GltfDocument::GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes)
+    : path_(path) {
+  if (content_of(bytes) == Content::glb) {
+    open_binary(bytes);
+  } else {
+    json_ = parse_json(path.string(), as_text(bytes));
+  }
+  root_ = std::make_unique<JsonValue>(path.string(), json_);
+}
+
+void GltfDocument::open_binary(std::span<const std::byte> bytes) {
+  const std::string name = path_.string();
+  if (bytes.size() < 20)
+    fail("{} is cut short: a .glb begins with 20 bytes, and {} are there", name, bytes.size());
+  const auto version = load_number<std::uint32_t>(&bytes[4]), length = load_number<std::uint32_t>(&bytes[8]);
+  if (version != 2) fail("{}: glTF of version {} is not known; 2 is", name, version);
+  if (length > bytes.size()) {
+    fail("{} is cut short: its header says {} bytes, at byte 8, and {} are there; fetch or export it again",
+         name, length, bytes.size());
+  }
+  const auto json_length = load_number<std::uint32_t>(&bytes[12]);
+  if (load_number<std::uint32_t>(&bytes[16]) != json_chunk || json_length % 4 != 0 ||
+      json_length > bytes.size() - 20) {
+    fail("{}: the first chunk, {} bytes at byte 12, is no JSON that fits the file", name, json_length);
+  }
+  json_ = parse_json(name, as_text(bytes.subspan(20, json_length)));
+  const auto rest = bytes.subspan(20 + json_length);
+  if (rest.size() < 8 || load_number<std::uint32_t>(&rest[4]) != binary_chunk) return;
+  const auto binary_length = load_number<std::uint32_t>(rest.data());
+  if (binary_length > rest.size() - 8) {
+    fail("{} is cut short: its binary chunk has {} bytes, and {} are there", name, binary_length,
+         rest.size() - 8);
+  }
+  binary_ = rest.subspan(8, binary_length);
+}
+
+std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
+  const JsonValue buffer = root().at("buffers").at(index);
+  if (!buffer.has("uri")) {
+    if (index != 0 || binary_.empty()) buffer.fail_here("it has no uri, and the file no binary chunk for it");
+    return binary_;
+  }
+  const auto known = buffers_.find(index);
+  if (known != buffers_.end()) return known->second;
+  const JsonValue uri = buffer.at("uri");
+  const std::string text = uri.text();
+  if (text.starts_with("data:")) {
+    const std::size_t comma = text.find(";base64,");
+    if (comma == std::string::npos) uri.fail_here("expected base64 in a data: URI");
+    return buffers_[index] = decode_base64(uri, std::string_view(text).substr(comma + 8));
+  }
+  const std::filesystem::path file = path_.parent_path() / text;
+  std::error_code ignored;
+  if (!stays_below(text)) uri.fail_here("a buffer must lie beside the file or below; it is named '{}'", text);
+  if (!std::filesystem::is_regular_file(file, ignored))
+    uri.fail_here("{} is missing; fetch or export it again", file.string());
+  const MappedFile mapped(file);
+  return buffers_[index] = {mapped.bytes().begin(), mapped.bytes().end()};
+}
+
+std::span<const std::byte> GltfDocument::view(std::size_t index) {
+  const JsonValue view = root().at("bufferViews").at(index);
+  if (view.has("extensions") && (view.at("extensions").has("EXT_meshopt_compression") ||
+                                 view.at("extensions").has("KHR_meshopt_compression"))) {
+    view.fail_here("it is compressed with meshopt, which cannot be read; export the model without");
+  }
+  const auto bytes = buffer(view.at("buffer").whole(most));
+  const std::size_t offset = optional_size(view, "byteOffset"), length = view.at("byteLength").whole(most);
+  if (offset > bytes.size() || length > bytes.size() - offset) {
+    view.fail_here("{} bytes from byte {} on leave its buffer of {}", length, offset, bytes.size());
+  }
+  return bytes.subspan(offset, length);
+}
+
+std::size_t GltfDocument::count(std::size_t accessor) const {
+  return root().at("accessors").at(accessor).at("count").whole(most);
+}
+
+std::vector<float> GltfDocument::read(std::size_t index, std::size_t components, std::size_t count) {
+  const JsonValue accessor = root().at("accessors").at(index);
+  constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
+  if (accessor.at("type").text() != types[components])
+    accessor.at("type").fail_here("expected {}, found {}", types[components], accessor.at("type").text());
+  if (accessor.at("count").whole(most) != count)
+    accessor.at("count").fail_here("expected {}, as the positions have", count);
+  const int type = static_cast<int>(accessor.at("componentType").whole(65535));
+  const std::size_t size = components * size_of_component(type);
+  if (size == 0)
+    accessor.at("componentType")
+        .fail_here("{} is none that can be read (floats, bytes and shorts are)", type);
+  const bool normalized = accessor.has("normalized") && accessor.at("normalized").value() == true;
+  const std::size_t view_index = accessor.at("bufferView").whole(most);
+  const auto bytes = view(view_index);
+  std::size_t stride = optional_size(root().at("bufferViews").at(view_index), "byteStride");
+  if (stride == 0) stride = size;
+  const std::size_t offset = optional_size(accessor, "byteOffset");
+  if (stride < size || offset > bytes.size() || count > (bytes.size() - offset) / stride + 1 ||
+      (count > 0 && (count - 1) * stride + size > bytes.size() - offset)) {
+    accessor.fail_here("{} elements of {} bytes, {} apart, from byte {} on leave their view of {} bytes",
+                       count, size, stride, offset, bytes.size());
+  }
+  std::vector<float> values(count * components);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::byte* at = &bytes[offset + i * stride];
+    for (std::size_t c = 0; c < components; ++c)
+      values[i * components + c] = load_component(at + c * (size / components), type, normalized);
+  }
+  if (accessor.has("sparse")) read_sparse(accessor.at("sparse"), components, type, normalized, values);
+  return values;
+}
+
+void GltfDocument::read_sparse(const JsonValue& sparse, std::size_t components, int type, bool normalized,
+                               std::vector<float>& values) {
+  const std::size_t count = sparse.at("count").whole(most);
+  const JsonValue indices = sparse.at("indices"), replaced = sparse.at("values");
+  const int index_type = static_cast<int>(indices.at("componentType").whole(65535));
+  const std::size_t index_size = index_type == uint32   ? 4
+                                 : index_type == uint16 ? 2
+                                 : index_type == uint8  ? 1
+                                                        : 0;
+  if (index_size == 0) indices.at("componentType").fail_here("{} is no type of an index", index_type);
+  const std::size_t component = size_of_component(type), element = components * component;
+  const auto index_bytes = view(indices.at("bufferView").whole(most));
+  const auto value_bytes = view(replaced.at("bufferView").whole(most));
+  const std::size_t index_at = optional_size(indices, "byteOffset"),
+                    value_at = optional_size(replaced, "byteOffset");
+  if (index_at > index_bytes.size() || count > (index_bytes.size() - index_at) / index_size ||
+      value_at > value_bytes.size() || count > (value_bytes.size() - value_at) / element) {
+    sparse.fail_here("{} elements leave their views", count);
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::byte* at = &index_bytes[index_at + k * index_size];
+    const std::size_t i = index_size == 4   ? load_number<std::uint32_t>(at)
+                          : index_size == 2 ? load_number<std::uint16_t>(at)
+                                            : load_number<std::uint8_t>(at);
+    if (i >= values.size() / components)
+      sparse.fail_here("element {} is replaced, of {}", i, values.size() / components);
+    for (std::size_t c = 0; c < components; ++c)
+      values[i * components + c] =
+          load_component(&value_bytes[value_at + k * element + c * component], type, normalized);
+  }
+}
+
+}  // namespace binosplat

@@ -1,0 +1,48 @@
+#pragma once
+// A glTF file's JSON and the numbers in its buffers, whatever container they are in: .glb, or .gltf with
+// buffers in data: URIs or in files beside it.
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/json_file.h"
+
+namespace binosplat {
+
+class GltfDocument {
+ public:
+  /// `bytes` are the file's and outlive this. Throws Error for a container or JSON that is damaged or cut
+  /// short.
+  GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+  const JsonValue& root() const { return *root_; }
+
+  /// The bytes of a buffer view. Throws Error naming the key where it leaves its buffer, or is compressed.
+  std::span<const std::byte> view(std::size_t index);
+
+  /// The numbers of an accessor, `components` each element one after the other, integers brought to 0 to 1 or
+  /// -1 to 1 where it says `normalized`. Throws Error naming the key where it leaves its view, or has another
+  /// number of components or elements than asked for, or a type that is not float, byte or short.
+  std::vector<float> read(std::size_t accessor, std::size_t components, std::size_t count);
+
+  /// The number of elements of an accessor; not checked against the bytes.
+  std::size_t count(std::size_t accessor) const;
+
+ private:
+  void open_binary(std::span<const std::byte> bytes);
+  std::span<const std::byte> buffer(std::size_t index);
+  void read_sparse(const JsonValue& sparse, std::size_t components, int type, bool normalized,
+                   std::vector<float>& values);
+
+  std::filesystem::path path_;
+  nlohmann::json json_;
+  std::unique_ptr<JsonValue> root_;
+  std::span<const std::byte> binary_;                      // of a .glb
+  std::map<std::size_t, std::vector<std::byte>> buffers_;  // decoded or read from files
+};
+
+}  // namespace binosplat
