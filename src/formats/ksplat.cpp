@@ -194,7 +194,7 @@ class KsplatReader {
     // Band after band, and channel after channel within a band.
     std::size_t first = 0;
     for (int band = 1; band <= s.degree; ++band) {
-      const auto width = static_cast<std::size_t>(2 * band + 1);
+      const std::size_t width = 2 * static_cast<std::size_t>(band) + 1;
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t m = 0; m < width; ++m)
           sh[3 + 3 * (first + m) + c] = harmonic(at, 3 * first + c * width + m);

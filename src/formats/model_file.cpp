@@ -95,19 +95,19 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
 
 }  // namespace
 
-Model load_model(const fs::path& named, const ModelOptions& options) {
-  const fs::path path = file_of(named);
-  Model model = load_content(path, options);
+Model load_model(const fs::path& path, const ModelOptions& options) {
+  const fs::path file = file_of(path);
+  Model model = load_content(file, options);
   if (options.appearance && !model.scaffold) {
-    fail("--appearance: {} is no Scaffold-GS model, whose colours have appearances", path.string());
+    fail("--appearance: {} is no Scaffold-GS model, whose colours have appearances", file.string());
   }
-  model.name = path.filename().string();
+  model.name = file.filename().string();
   if (model.count() == 0) {
-    fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", path.string(),
+    fail("{}: all of its {} Gaussians have values that are not finite or zero quaternions", file.string(),
          model.left_out);
   }
   if (model.left_out > 0) {
-    log_warning("{}: {} of {} Gaussians left out (values not finite, or a zero quaternion)", path.string(),
+    log_warning("{}: {} of {} Gaussians left out (values not finite, or a zero quaternion)", file.string(),
                 model.left_out, model.left_out + model.count());
   }
   return model;

@@ -45,7 +45,7 @@ std::array<float, 256> exponential(std::array<float, 256> table) {
 }
 
 std::string file_name(const JsonValue& value) {
-  const std::string name = value.text();
+  std::string name = value.text();
   if (!stays_below(name))
     value.fail_here("a file must lie beside meta.json or below; it is named '{}'", name);
   return name;
@@ -58,9 +58,9 @@ struct SogSource::Textures {
   std::array<std::vector<std::uint8_t>, texture_count> data;
 };
 
-SogSource::SogSource(std::string source, const nlohmann::json& root, ReadFile read)
+SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile read)
     : source_(std::move(source)), read_(std::move(read)) {
-  const JsonValue meta(source_, root);
+  const JsonValue meta(source_, json);
   const std::uint64_t version = meta.has("version") ? meta.at("version").whole(1000) : 1;
   if (version > 2) meta.at("version").fail_here("SOG of version {} is not known; 1 and 2 are", version);
   if (version == 2) {

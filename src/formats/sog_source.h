@@ -30,7 +30,7 @@ class SogSource {
 
   /// Checks meta.json, and by the headers of the pictures that what it promises can be there. `source` names
   /// meta.json or the archive in errors.
-  SogSource(std::string source, const nlohmann::json& meta, ReadFile read);
+  SogSource(std::string source, const nlohmann::json& json, ReadFile read);
 
   std::size_t count() const { return count_; }
   int degree() const { return degree_; }
@@ -47,7 +47,7 @@ class SogSource {
   void read_tables(const JsonValue& meta);
   void read_tables_v1(const JsonValue& meta);
   void read_means(const JsonValue& meta);
-  void read_harmonics(const JsonValue& meta);
+  void read_harmonics(const JsonValue& sh);
   std::string named(const std::string& file) const;
   std::vector<std::uint8_t> texels(const std::string& file) const;
   Textures read_textures() const;

@@ -17,6 +17,6 @@ bool is_transforms(const nlohmann::json& root);
 /// cy are the frame's or the file's; without fl_x, camera_angle_x or x_fov; without w and h, those of the
 /// picture beside. Distortion is not drawn, which is said; fisheye and 360 degree lenses end in an Error, as
 /// does all that is missing or wrong, naming the frame and the key.
-std::vector<Camera> load_transforms(const std::filesystem::path& path, const nlohmann::json& root);
+std::vector<Camera> load_transforms(const std::filesystem::path& path, const nlohmann::json& json);
 
 }  // namespace binosplat

@@ -56,12 +56,17 @@ struct Ring {
   double distance = 0.0;
 
   Ring(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& wanted_up)
-      : core(core_of(model)), up(glm::normalize(wanted_up)) {
+      : core(core_of(model)) {
+    const glm::dvec3 up_there = glm::normalize(wanted_up);
     // Any direction that is not up will do to start the circle; z, unless up is along it, is where COLMAP's
     // first camera looks.
-    const glm::dvec3 start = std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    aside = glm::normalize(glm::cross(start, up));
-    ahead = glm::cross(up, aside);
+    const glm::dvec3 start = std::abs(up_there.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 aside_there = glm::normalize(glm::cross(start, up_there));
+    // The world's directions in the model's frame.
+    const glm::dmat3 into = glm::transpose(world_from_axes(model.axes));
+    up = into * up_there;
+    aside = into * aside_there;
+    ahead = into * glm::cross(up_there, aside_there);
     const double tan_y = std::tan(0.5 * glm::radians(fov_degrees));
     const double half_angle = std::atan(std::min(tan_y, tan_y * width / height));
     distance = core.radius / std::sin(half_angle);
@@ -113,8 +118,8 @@ double clearest_turn(const Model& model, const Ring& ring) {
 
 std::vector<Camera> orbit(const Model& model, int count, int width, int height, double fov_degrees,
                           const glm::dvec3& up) {
+  const Ring ring(model, width, height, fov_degrees, up);
   const glm::dmat3 world = world_from_axes(model.axes);
-  const Ring ring(model, width, height, fov_degrees, glm::transpose(world) * up);
   const double start = clearest_turn(model, ring);
   std::vector<Camera> cameras;
   for (int k = 0; k < count; ++k) {
