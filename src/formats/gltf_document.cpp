@@ -5,7 +5,7 @@
 #include "base/mapped_file.h"
 #include "formats/bytes.h"
 #include "formats/content.h"
-#include "formats/sog_source.h"
+#include "formats/zip_file.h"
 
 namespace binosplat {
 

@@ -35,8 +35,8 @@ TEST(Stability, EveryCombinationIsThereOnce) {
   std::set<std::string> names;
   for (const Variant& variant : all_variants()) names.insert(variant.name());
   EXPECT_EQ(names.size(), all_variants().size());
-  // tau; peripheral by 5 sources; squared by 2, and by 3 with 3 contrasts; two more rules for eyes with `last`
-  // and `both`.
+  // tau; peripheral by 5 sources; squared by 2, and by 3 with 3 contrasts; two more rules for eyes with
+  // `last` and `both`.
   EXPECT_EQ(names.size(), 1u + 5 + (2 + 3 * 3) + 2 * (2 + 2 * 3));
   EXPECT_TRUE(names.count("squared, both, behind, cyclopean"));
 }
