@@ -31,8 +31,8 @@ class Block {
   }
 
   /// The key's values: a list, a single one, or `otherwise`.
-  std::vector<json> values(const std::string& key, json otherwise) const {
-    const json value = object_.contains(key) ? object_.at(key) : std::move(otherwise);
+  std::vector<json> values(const std::string& key, const json& otherwise) const {
+    const json value = object_.contains(key) ? object_.at(key) : otherwise;
     if (!value.is_array()) return {value};
     if (value.empty()) fail("{}: '{}' is an empty list", place_, key);
     return {value.begin(), value.end()};
