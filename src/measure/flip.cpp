@@ -50,14 +50,14 @@ Plane filtered(const Plane& in, const Kernel& along_x, const Kernel& along_y) {
   const int rx = static_cast<int>(along_x.size() / 2), ry = static_cast<int>(along_y.size() / 2);
   fill(rows, [&](int x, int y) {
     double sum = 0.0;
-    for (int i = -rx; i <= rx; ++i)
-      sum += along_x[static_cast<std::size_t>(i + rx)] * in.at(std::clamp(x + i, 0, in.width - 1), y);
+    int at = x - rx;
+    for (const double weight : along_x) sum += weight * in.at(std::clamp(at++, 0, in.width - 1), y);
     return sum;
   });
   fill(out, [&](int x, int y) {
     double sum = 0.0;
-    for (int i = -ry; i <= ry; ++i)
-      sum += along_y[static_cast<std::size_t>(i + ry)] * rows.at(x, std::clamp(y + i, 0, in.height - 1));
+    int at = y - ry;
+    for (const double weight : along_y) sum += weight * rows.at(x, std::clamp(at++, 0, in.height - 1));
     return sum;
   });
   return out;
