@@ -40,7 +40,7 @@ TEST(Threshold, ALossMakesFewerPairs) {
 
 TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--th", "squared"}, "needs --loss or --quality"},
+      {{"--th", "squared"}, "needs --loss, --quality or --calibration"},
       {{"--th", "tau", "--quality", "40"}, "--quality has no effect"},
       {{"--loss", "1", "--quality", "40"}, "--loss with --quality"},
       {{"--quality", "-3"}, "--quality"},
