@@ -30,13 +30,15 @@ TEST(Study, APathIsCarriedAndTold) {
 }
 
 TEST(Study, WhatMakesNoSenseIsNamed) {
+  const test::TempFolder folder;
+  test::write_text(folder / "file", "");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{}, "--stability"},
       {{"--stability", "--path", "x.json"}, "choose --stability, --eyes or --path"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
       {{"--path", "no_such.json"}, "no_such.json"},
-      {{"--stability", "--json", "/no/such/folder/s.json"}, "/no/such"},
+      {{"--stability", "--json", folder / "file/s.json"}, "file"},
   };
   for (const auto& [options, message] : wrong) {
     std::vector<std::string> all = {"study", "demo:room", "--size", "64x36"};
