@@ -38,7 +38,7 @@ std::filesystem::path ProgramCache::default_folder() {
 }
 
 std::string ProgramCache::key(const std::string& source) const {
-  return fmt::format("binosplat program 1\n{}\n{}\n", driver_, source);
+  return fmt::format("binosplat program 2\n{}\n{}\n", driver_, source);
 }
 
 std::filesystem::path ProgramCache::file(const std::string& key) const {
@@ -51,10 +51,14 @@ bool ProgramCache::load(const Functions& gl, std::uint32_t program, const std::s
   std::ifstream in(file(wanted), std::ios::binary);
   const std::string content((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   GLenum format = 0;
-  if (content.size() <= wanted.size() + sizeof(format) || content.compare(0, wanted.size(), wanted) != 0)
-    return false;
-  std::memcpy(&format, content.data() + wanted.size(), sizeof(format));
-  const std::size_t start = wanted.size() + sizeof(format);
+  std::uint64_t sum = 0;
+  const std::size_t head = wanted.size() + sizeof(sum) + sizeof(format);
+  if (content.size() <= head || content.compare(0, wanted.size(), wanted) != 0) return false;
+  std::memcpy(&sum, content.data() + wanted.size(), sizeof(sum));
+  std::memcpy(&format, content.data() + wanted.size() + sizeof(sum), sizeof(format));
+  const std::size_t start = head;
+  // NVIDIA's driver crashes on a damaged binary: it must never see one.
+  if (sum != hash(content.substr(start))) return false;
   gl.ProgramBinary(program, format, content.data() + start, static_cast<GLsizei>(content.size() - start));
   gl.GetError();  // a format that the driver no longer knows is recorded as an error
   GLint good = 0;
@@ -74,6 +78,8 @@ void ProgramCache::store(const Functions& gl, std::uint32_t program, const std::
   try {
     OutputFile out(file(wanted));
     out.write(wanted);
+    const std::uint64_t sum = hash(std::string(binary.begin(), binary.end()));
+    out.write(std::as_bytes(std::span(&sum, 1)));
     out.write(std::as_bytes(std::span(&format, 1)));
     out.write(std::as_bytes(std::span(binary)));
     out.commit();
