@@ -6,11 +6,11 @@
 
 #include "app/bench_plan.h"
 #include "app/command.h"
+#include "app/drawing.h"
 #include "app/photos.h"
 #include "base/log.h"
 #include "base/output_file.h"
 #include "base/progress.h"
-#include "scene/framing.h"
 #include "study/bench.h"
 #include "study/bench_results.h"
 
@@ -59,13 +59,12 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
   const BenchScene& scene = plan.scenes[which.scene];
   const RenderOptions render = case_options(scene, which);
   const CameraList list = scene.list.listed ? scene.list : made_up_cameras(render, model);
-  const double near_plane = render.near_plane.value_or(list.listed ? near_default : near_for(model));
+  const double near_plane = near_plane_of(render, list, model);
   const std::vector<Shot> shots =
       choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
   std::vector<study::BenchView> views;
   for (const Shot& shot : shots) {
-    study::BenchView& view = views.emplace_back(study::BenchView{shot.name, {}, {}});
-    for (const Eye& eye : shot.eyes) view.eyes.push_back(eye.view);
+    study::BenchView& view = views.emplace_back(study::BenchView{shot.name, views_of(shot), {}});
     const bool photos = !render.photos.empty() && which.eyes == 1 && which.size == "own";
     if (photos) view.photo = load_view_photo(*find_view_photo(render.photos, shot), shot.eyes.front().camera);
   }
@@ -92,10 +91,7 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
                ? ""
                : fmt::format("; {} are in {}", of_shard - missing.size(), options.output));
   if (missing.empty()) return;
-  const auto context = gl::Context::open(
-      options.render.backend == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic,
-      options.render.device);
-  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
+  const auto context = open_context(options.render);
 
   Progress progress("measuring", missing.size());
   std::optional<Model> model;
@@ -240,22 +236,12 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(CLI::Range(1.0, 1000.0).description(""))
       ->type_name("N");
-  sub->add_option("--near", o->render.near_plane, "Nothing nearer is drawn, in world units (0.2)")
-      ->check(CLI::PositiveNumber.description(""))
-      ->type_name("DEPTH");
-  sub->add_option("--count", o->render.count, "Gaussians of demo:city (1000000)")->type_name("N");
-  sub->add_option("--seed", o->render.seed, "Which demo:city (1)")->type_name("N");
+  add_measured_options(*sub, o->render);
   sub->add_option("--shard", o->shard, "Measure every Nth point from the Ith on: one job of N")
       ->type_name("I/N");
   sub->add_option("--merge", o->merge, "Join the folders of shards in -o")->type_name("DIR...");
   sub->add_option("--compare", o->compare, "Print what changed beyond noise since an older results.json")
       ->type_name("FILE");
-  sub->add_option("--backend", o->render.backend, "A GPU, else Mesa; or Mesa without a GPU (auto)")
-      ->check(CLI::IsMember(std::vector<std::string>{"auto", "surfaceless"}).description(""))
-      ->type_name("auto|surfaceless");
-  sub->add_option("--device", o->render.device, "Number of the EGL device")
-      ->check(CLI::Range(0, 1000).description(""))
-      ->type_name("N");
   sub->footer(
       "A run that was ended goes on where it was when it is started again with the same options.\n"
       "Examples:\n"

@@ -4,12 +4,12 @@
 #include <memory>
 
 #include "app/command.h"
+#include "app/drawing.h"
 #include "app/open_scene.h"
 #include "app/photos.h"
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "scene/framing.h"
 #include "study/bench.h"
 #include "study/calibrate.h"
 
@@ -82,11 +82,9 @@ ExitCode calibrate(const CalibrateOptions& o) {
   CameraList list = listed_cameras(o.render, scene.cameras);
   const Model model = scene.model();
   if (!list.listed) list = made_up_cameras(o.render, model);
-  const double near_plane = o.render.near_plane.value_or(list.listed ? near_default : near_for(model));
+  const double near_plane = near_plane_of(o.render, list, model);
   const std::vector<study::CalibrationView> views = choose_views(o, list, model, near_plane);
-  const auto context = gl::Context::open(
-      o.render.backend == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic, o.render.device);
-  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
+  const auto context = open_context(o.render);
   const study::CalibrationTarget target =
       o.max_drop ? study::CalibrationTarget{study::CalibrationTarget::Kind::drop, *o.max_drop}
                  : study::CalibrationTarget{study::CalibrationTarget::Kind::quality, *o.quality};
@@ -127,9 +125,6 @@ void add_calibrate(CLI::App& program, Command& command) {
          "--size", [o](const std::string& text) { o->render.size = parse_size("--size", text); },
          "Pixels of a view, instead of the cameras' own")
       ->type_name("WxH");
-  sub->add_option("--near", o->render.near_plane, "Nothing nearer is drawn, in world units (0.2)")
-      ->type_name("DEPTH")
-      ->check(above_zero);
   sub->add_option("--bins", o->table.bins, "Of the light by depth (20)")
       ->type_name("N")
       ->check(CLI::Range(1, 10000).description(""));
@@ -137,14 +132,7 @@ void add_calibrate(CLI::App& program, Command& command) {
                   "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)")
       ->type_name("DEPTH")
       ->check(above_zero);
-  sub->add_option("--count", o->render.count, "Gaussians of demo:city (1000000)")->type_name("N");
-  sub->add_option("--seed", o->render.seed, "Which demo:city (1)")->type_name("N");
-  sub->add_option("--backend", o->render.backend, "A GPU, else Mesa; or Mesa without a GPU (auto)")
-      ->check(CLI::IsMember(std::vector<std::string>{"auto", "surfaceless"}).description(""))
-      ->type_name("auto|surfaceless");
-  sub->add_option("--device", o->render.device, "Number of the EGL device")
-      ->check(CLI::Range(0, 1000).description(""))
-      ->type_name("N");
+  add_measured_options(*sub, o->render);
   sub->footer(
       "Examples:\n"
       "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"

@@ -7,10 +7,12 @@ namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
-std::optional<fs::path> find_view_photo(const std::string& folder, const Shot& shot) {
-  for (const std::string& name : {shot.name, shot.stem + ".jpg", shot.stem + ".png", shot.stem + ".JPG",
-                                  shot.stem + ".jpeg", shot.stem + ".PNG", shot.stem + ".JPEG"}) {
-    if (fs::is_regular_file(fs::path(folder) / name)) return fs::path(folder) / name;
+std::optional<fs::path> find_view_photo(const fs::path& folder, const Shot& shot) {
+  if (fs::is_regular_file(folder / shot.name)) return folder / shot.name;
+  for (const std::string& name : {shot.name, shot.stem}) {
+    for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
+      if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
+    }
   }
   return std::nullopt;
 }
@@ -18,8 +20,8 @@ std::optional<fs::path> find_view_photo(const std::string& folder, const Shot& s
 Image load_view_photo(const fs::path& file, const Camera& camera) {
   Image photo = load_image(file);
   if (photo.channels != 3 || photo.width != camera.width || photo.height != camera.height)
-    fail("photo {} has {} x {} px and {} channels; its view has {} x {} px and 3", file.string(), photo.width,
-         photo.height, photo.channels, camera.width, camera.height);
+    fail("photo {} has {} x {} px and {} channels; its view has {} x {} px and 3: draw it in its own size",
+         file.string(), photo.width, photo.height, photo.channels, camera.width, camera.height);
   return photo;
 }
 

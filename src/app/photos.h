@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "app/shots.h"
 #include "base/image.h"
@@ -11,7 +10,7 @@
 namespace binosplat::app {
 
 /// The file of a view's photo in a folder: by the view's name as it stands, or with a picture's ending.
-std::optional<std::filesystem::path> find_view_photo(const std::string& folder, const Shot& shot);
+std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path& folder, const Shot& shot);
 
 /// Reads it. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);

@@ -7,7 +7,9 @@
 
 #include "app/calibrated.h"
 #include "app/command.h"
+#include "app/drawing.h"
 #include "app/open_scene.h"
+#include "app/photos.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/render_report.h"
@@ -15,8 +17,6 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/cameras_file.h"
-#include "formats/image_file.h"
-#include "gl/context.h"
 #include "measure/depth_table.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
@@ -30,20 +30,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The file of a view's photo, or nothing.
-std::optional<fs::path> find_photo(const fs::path& folder, const Shot& shot) {
-  if (fs::is_regular_file(folder / shot.name)) return folder / shot.name;
-  for (const std::string& name : {shot.name, shot.stem}) {
-    for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
-      if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
-    }
-  }
-  return std::nullopt;
-}
-
 void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
   for (const Shot& shot : shots) {
-    if (find_photo(folder, shot)) return;
+    if (find_view_photo(folder, shot)) return;
   }
   fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, shots[0].stem);
 }
@@ -51,56 +40,14 @@ void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
 // PSNR of the picture as 8 bits would keep it against the photo.
 std::optional<double> photo_psnr(const RenderOptions& options, const Shot& shot, const Picture& picture) {
   if (options.photos.empty()) return std::nullopt;
-  const auto file = find_photo(options.photos, shot);
+  const auto file = find_view_photo(options.photos, shot);
   if (!file) {
     log_info("no photo of {} in {}", shot.name, options.photos);
     return std::nullopt;
   }
-  const Image photo = load_image(*file);
-  if (photo.width != picture.width || photo.height != picture.height) {
-    fail("photo {} has {} x {} px and the view {} x {}: draw it in its own size", file->string(), photo.width,
-         photo.height, picture.width, picture.height);
-  }
+  const Image photo = load_view_photo(*file, shot.eyes.front().camera);
   const Image drawn = composite(picture, options.background.value_or(glm::vec3(0.0f)));
   return measure::psnr(quantised(drawn), quantised(photo));
-}
-
-gl::Backend backend_of(const std::string& name) {
-  if (name == "device") return gl::Backend::device;
-  if (name == "osmesa") return gl::Backend::osmesa;
-  return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
-}
-
-render::FrameSettings settings_of(const RenderOptions& options) {
-  render::FrameSettings settings;
-  settings.tiles = number_of(options.tiles, tiles_choices);
-  settings.th = number_of(threshold_name(options), th_choices);
-  settings.loss = options.loss.value_or(0.0f);
-  settings.transmittance = number_of(options.transmittance, transmittance_choices);
-  settings.contrast = number_of(options.contrast, contrast_choices);
-  settings.th_eyes = number_of(options.th_eyes, th_eyes_choices);
-  settings.quality = options.quality.value_or(0.0f);
-  settings.decode = options.decode.empty() ? DECODE_EYES : number_of(options.decode, decode_choices);
-  settings.tile_size = options.tile;
-  settings.background = options.background.value_or(settings.background);
-  for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
-    if (options.reference_until == render::stage_names[i])
-      settings.reference_until = static_cast<render::Stage>(i);
-  }
-  return settings;
-}
-
-std::unique_ptr<gl::Context> open_context(const RenderOptions& options) {
-  auto context = gl::Context::open(backend_of(options.backend), options.device);
-  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
-  if (!options.shader_dir.empty()) context->set_shader_folder(options.shader_dir);
-  return context;
-}
-
-std::vector<shared::View> views_of(const Shot& shot) {
-  std::vector<shared::View> views;
-  for (const Eye& eye : shot.eyes) views.push_back(eye.view);
-  return views;
 }
 
 // What the model takes on the GPU, and the shot that takes most.
@@ -206,12 +153,13 @@ ExitCode render(RenderOptions options) {
   log_model(options, model);
   if (!list.listed) list = made_up_cameras(options, model);
 
-  const double near_plane = options.near_plane.value_or(list.listed ? near_default : near_for(model));
+  const double near_plane = near_plane_of(options, list, model);
   std::vector<Shot> shots = make_shots(options, list, near_plane, model.axes);
   check_shots(plan, shots);
   if (!options.photos.empty()) check_photos(options.photos, shots);
 
   const auto context = open_context(options);
+  if (!options.shader_dir.empty()) context->set_shader_folder(options.shader_dir);
   RenderReport report{options, model, *context, near_plane, memory_needs(options, model, shots), {}, {}};
   print_needs(report.needs);
   draw_all(*context, plan, std::move(shots), list, report);

@@ -27,6 +27,18 @@ glm::dvec3 parse_three(const std::string& option, const std::string& text) {
   return v;
 }
 
+// "1280x720" as two numbers above zero; `expected` says what they mean.
+glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
+  glm::ivec2 two{0};
+  char cross = 0;
+  std::istringstream in(text);
+  in >> two.x >> cross >> two.y;
+  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || two.x < 1 || two.y < 1) {
+    fail("{} {}: expected {}", option, text, expected);
+  }
+  return two;
+}
+
 Background parse_background(const std::string& text) {
   if (text == "none") return std::nullopt;
   const glm::dvec3 rgb = parse_three("--background", text);
@@ -333,15 +345,16 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
 
 }  // namespace
 
-glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
-  glm::ivec2 two{0};
-  char cross = 0;
-  std::istringstream in(text);
-  in >> two.x >> cross >> two.y;
-  if (!in || cross != 'x' || in.peek() != std::istringstream::traits_type::eof() || two.x < 1 || two.y < 1) {
-    fail("{} {}: expected {}", option, text, expected);
-  }
-  return two;
+void add_measured_options(CLI::App& sub, RenderOptions& o) {
+  sub.add_option("--near", o.near_plane, "Nothing nearer is drawn, in world units (0.2)")
+      ->type_name("DEPTH")
+      ->check(positive);
+  sub.add_option("--count", o.count, "Gaussians of demo:city (1000000)")->type_name("N")->check(whole);
+  sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole);
+  sub.add_option("--backend", o.backend, "A GPU, else Mesa; or Mesa without a GPU (auto)")
+      ->check(one_of<std::string>({"auto", "surfaceless"}))
+      ->type_name("auto|surfaceless");
+  sub.add_option("--device", o.device, "Number of the EGL device")->type_name("N")->check(range(0, 1000));
 }
 
 void add_view_options(CLI::App& sub, RenderOptions& options) {

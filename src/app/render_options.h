@@ -80,15 +80,16 @@ struct RenderOptions {
   std::string json;
 };
 
-/// "1280x720" as two numbers above zero. Throws Error for anything else: `expected` says what they mean.
-glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected);
-
 /// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
 /// "1280x720" as width and height in px. Throws Error, naming the option, for anything else.
 glm::ivec2 parse_size(const std::string& option, const std::string& text);
+
+/// Adds those of scene and context that the sub-commands which measure share: --near, --count, --seed,
+/// --backend and --device.
+void add_measured_options(CLI::App& sub, RenderOptions& options);
 
 /// Adds those that the preview takes, some of which check_view() of app/viewer refuses.
 void add_view_options(CLI::App& sub, RenderOptions& options);

@@ -10,7 +10,6 @@
 #include "formats/cameras_file.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
-#include "stereo/rig.h"
 
 namespace binosplat::app {
 
@@ -83,16 +82,6 @@ std::vector<Choice> chosen(const RenderOptions& options, const CameraList& list)
   return choices;
 }
 
-stereo::RigSettings rig_settings(const RenderOptions& options, double near_plane) {
-  stereo::RigSettings settings;
-  settings.ipd = options.ipd.value_or(settings.ipd);
-  settings.units_per_metre = options.units_per_metre;
-  settings.convergence = options.convergence;
-  settings.cant_degrees = options.cant.value_or(settings.cant_degrees);
-  settings.near_plane = near_plane;
-  return settings;
-}
-
 stereo::EyePair rig_of(const RenderOptions& options, const Choice& choice, double near_plane) {
   if (choice.cameras.size() == 1) {
     return stereo::make_rig(sized(options, choice.cameras[0]), rig_settings(options, near_plane));
@@ -149,6 +138,26 @@ std::string stem_of(std::string name, std::set<std::string>& taken) {
 }
 
 }  // namespace
+
+double near_plane_of(const RenderOptions& options, const CameraList& list, const Model& model) {
+  return options.near_plane.value_or(list.listed ? near_default : near_for(model));
+}
+
+stereo::RigSettings rig_settings(const RenderOptions& options, double near_plane) {
+  stereo::RigSettings settings;
+  settings.ipd = options.ipd.value_or(settings.ipd);
+  settings.units_per_metre = options.units_per_metre;
+  settings.convergence = options.convergence;
+  settings.cant_degrees = options.cant.value_or(settings.cant_degrees);
+  settings.near_plane = near_plane;
+  return settings;
+}
+
+std::vector<shared::View> views_of(const Shot& shot) {
+  std::vector<shared::View> views;
+  for (const Eye& eye : shot.eyes) views.push_back(eye.view);
+  return views;
+}
 
 Camera sized(const RenderOptions& options, const Camera& camera) {
   Camera out = options.preset.empty() ? camera : stereo::apply_preset(camera, options.preset);

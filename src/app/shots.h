@@ -8,6 +8,7 @@
 #include "scene/camera.h"
 #include "scene/model.h"
 #include "shared/types.h"
+#include "stereo/rig.h"
 
 namespace binosplat::app {
 
@@ -41,8 +42,17 @@ CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera
 /// Cameras made up from --eye, --orbit or the model.
 CameraList made_up_cameras(const RenderOptions& options, const Model& model);
 
+/// --near, or what suits the cameras of a file, or those made up for the model; world units.
+double near_plane_of(const RenderOptions& options, const CameraList& list, const Model& model);
+
+/// What the options say of a rig. `near_plane` in world units.
+stereo::RigSettings rig_settings(const RenderOptions& options, double near_plane);
+
 /// A camera with the size and lens that --preset and --size ask for.
 Camera sized(const RenderOptions& options, const Camera& camera);
+
+/// What a frame draws of a shot.
+std::vector<shared::View> views_of(const Shot& shot);
 
 /// The shots that --view, --mono and the rig's options ask for. `near_plane` in world units, `axes` those of
 /// the model. Throws Error for a view that is not there; it names some that are.

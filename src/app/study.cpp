@@ -313,10 +313,7 @@ void add_study(CLI::App& program, Command& command) {
       ->type_name("NAME")
       ->expected(1);
   sub->add_option_function<std::string>(
-         "--size",
-         [&o](const std::string& text) {
-           o.scene.size = parse_two("--size", text, "pixels as WxH, for one 320x240");
-         },
+         "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },
          "Of an eye's picture")
       ->type_name("WxH");
   sub->add_flag("--mono", o.scene.mono, "Along a path: the cameras themselves, no rig");

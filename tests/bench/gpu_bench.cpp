@@ -32,7 +32,7 @@ double ms_since(Clock::time_point start) {
 
 struct Case {
   std::string name;     // scene, and how often it is repeated
-  std::string ply;      // below the folder of scenes; empty: the built-in city
+  std::string model;    // below the folder of scenes; empty: the built-in city
   std::string cameras;  // below the folder of views
   int repeat = 1;       // times along x and z
   double spacing = 0;   // world units
@@ -44,6 +44,8 @@ const std::vector<Case> cases = {
     {"garden", "garden/garden.ply", "garden_bench.json", 1, 0, {"DSC07956", "DSC08060", "DSC08116"}},
     {"fox 8 x 8", "fox/fox.ply", "fox_bench.json", 8, 10, {"0001", "0042"}},
     {"garden 4 x 4", "garden/garden.ply", "garden_bench.json", 4, 20, {"DSC07956", "DSC08060", "DSC08116"}},
+    {"taebak LOD 0", "taebak", "taebak_bench.json", 1, 0, {"air", "walk"}},
+    {"taebak 2 x 2", "taebak", "taebak_bench.json", 2, 60, {"air", "walk"}},
     {"city of 4 million", "", "", 1, 0, {}},
 };
 
@@ -66,7 +68,7 @@ Camera shrunk(const Camera& camera, int shrink) {
 
 Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int shrink) {
   Loaded loaded;
-  if (c.ply.empty()) {
+  if (c.model.empty()) {
     Demo demo = demo_city({.count = 4'000'000});
     loaded.model = std::move(demo.model);
     for (const Camera& head : demo.cameras) {
@@ -76,7 +78,7 @@ Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int sh
     }
     return loaded;
   }
-  loaded.model = load_model(scenes / c.ply);
+  loaded.model = load_model(scenes / c.model);
   if (c.repeat > 1) loaded.model = repeat(std::move(loaded.model), c.repeat, c.repeat, c.spacing);
   const std::vector<Camera> cameras = load_cameras(views / c.cameras);
   for (const std::string& name : c.views) {
@@ -213,6 +215,10 @@ int main(int argc, char** argv) {
     for (const Case& c : cases) {
       if (list) fmt::print("{}\n", c.name);
       if (list || c.name != name) continue;
+      if (!c.model.empty() && !fs::exists(fs::path(scenes) / c.model)) {
+        fmt::print("{} left out: there is no {}\n", c.name, (fs::path(scenes) / c.model).string());
+        return 0;
+      }
       const Json result = run(c, scenes, views, frames, shrink);
       if (!json.empty()) std::ofstream(json, std::ios::app) << result.dump() << "\n";
       return 0;

@@ -1,0 +1,45 @@
+#include "app/drawing.h"
+
+#include <iterator>
+
+#include "base/log.h"
+#include "shared/axes.h"
+
+namespace binosplat::app {
+
+namespace {
+
+gl::Backend backend_of(const std::string& name) {
+  if (name == "device") return gl::Backend::device;
+  if (name == "osmesa") return gl::Backend::osmesa;
+  return name == "surfaceless" ? gl::Backend::surfaceless : gl::Backend::automatic;
+}
+
+}  // namespace
+
+std::unique_ptr<gl::Context> open_context(const RenderOptions& options) {
+  auto context = gl::Context::open(backend_of(options.backend), options.device);
+  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
+  return context;
+}
+
+render::FrameSettings settings_of(const RenderOptions& options) {
+  render::FrameSettings settings;
+  settings.tiles = number_of(options.tiles, tiles_choices);
+  settings.th = number_of(threshold_name(options), th_choices);
+  settings.loss = options.loss.value_or(0.0f);
+  settings.transmittance = number_of(options.transmittance, transmittance_choices);
+  settings.contrast = number_of(options.contrast, contrast_choices);
+  settings.th_eyes = number_of(options.th_eyes, th_eyes_choices);
+  settings.quality = options.quality.value_or(0.0f);
+  settings.decode = options.decode.empty() ? DECODE_EYES : number_of(options.decode, decode_choices);
+  settings.tile_size = options.tile;
+  settings.background = options.background.value_or(settings.background);
+  for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
+    if (options.reference_until == render::stage_names[i])
+      settings.reference_until = static_cast<render::Stage>(i);
+  }
+  return settings;
+}
+
+}  // namespace binosplat::app
