@@ -13,6 +13,7 @@ layout(std430, binding = 2) buffer FrameCounters { Counters counters; };
 uniform uint kind;      // AMOUNT_
 uniform uint capacity;  // things that the buffers hold
 uniform uint groups_max;
+uniform uint digit_bits;  // of the radix sort of these things
 
 void main() {
   uint first = 0u;
@@ -34,6 +35,6 @@ void main() {
     count = 0u;
   }
   amounts[0] = make_amount(first, count, groups_max);
-  // The radix sort's counters: one a digit and block.
-  amounts[1] = make_amount(0u, SORT_DIGITS * blocks_of(count, SORT_BLOCK), groups_max);
+  // The radix sort's counters: one a block and value of a digit.
+  amounts[1] = make_amount(0u, blocks_of(count, SORT_BLOCK) << digit_bits, groups_max);
 }

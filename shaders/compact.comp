@@ -13,6 +13,7 @@ layout(std430, binding = 3) writeonly buffer Keys { uint keys[]; };
 layout(std430, binding = 4) writeonly buffer Values { uint values[]; };    // the slots themselves
 layout(std430, binding = 5) writeonly buffer Indices { uint indices[]; };  // Gaussian of each slot
 uniform uint gaussian_count;
+uniform uint nearest_key;  // less than any key: what is sorted needs fewer bits without it
 
 #define WORDS (THREADS / 32)
 shared uint masks[WORDS];
@@ -37,7 +38,7 @@ void main() {
       all += seen;
     }
     if (key != DEPTH_KEY_NONE) {
-      keys[before + rank] = key;
+      keys[before + rank] = key - nearest_key;
       values[before + rank] = before + rank;
       indices[before + rank] = at;
     }

@@ -1,12 +1,12 @@
 // Stage 1, project, first part: which Gaussians any view of an order group draws, told by their depth. One invocation a
-// Gaussian of the model's page; what does not depend on the view is computed once.
+// Gaussian of the model's page and eye.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "projection.glsl"
 #include "tiles/tiles.glsl"
 
-layout(local_size_x = THREADS) in;
+layout(local_size_x = THREADS, local_size_y = EYES) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "gaussians.glsl"            // bindings 1 and 9
@@ -20,8 +20,8 @@ uniform uint view_end;
 
 // What the next frame is to know of a Gaussian that this view does not draw: all the light again for one out of sight,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
-void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 #if TRANSMITTANCE >= TRANSMITTANCE_LAST
+void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= exact_from) return;  // a probe
   bool left_out = is_hidden(gaussian - page_first, v);
 #if TH != TH_TAU
@@ -32,16 +32,15 @@ void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 #endif
   float aged = remembers == 0u ? 1.0 : min(1.0, float(UPPER_AGEING) * upper[v * gaussian_count + gaussian]);
   upper_next[v * gaussian_count + gaussian] = left_out ? aged : 1.0;
-#endif
 }
+#endif
 
-void main() {
-  uint i = thread_index();
-  if (i >= page_count) return;
+// The Gaussian's key, if any view of this invocation draws it: the same in all views of an order group.
+uint key_of(uint i) {
   Gaussian g = gaussians[i];
   mat3 axes = scaled_axes(g);
   uint key = DEPTH_KEY_NONE;
-  for (uint v = view_begin; v < view_end; ++v) {
+  for (uint v = view_begin + gl_LocalInvocationID.y; v < view_end; v += EYES) {
 #if OFFSETS > 0
     g = gaussians[place_of(i, v)];
     axes = scaled_axes(g);
@@ -50,8 +49,29 @@ void main() {
     bool projected = is_kept(i, v) && project(views[v], g, axes, splat);
     if (projected) splat.colour.w = tile_level(v, page_first + i, g, axes, splat);
     bool drawn = projected && touches_a_tile(splat, views[v]);
-    if (drawn) key = floatBitsToUint(splat.depth);  // the same in all views of an order group
+    if (drawn) key = floatBitsToUint(splat.depth);
+#if TRANSMITTANCE >= TRANSMITTANCE_LAST
     remember(page_first + i, v, projected, drawn, splat);
+#else
+    if (drawn) break;  // no need to ask the other eye
+#endif
   }
-  depth_keys[page_first + i] = key;
+  return key;
+}
+
+#if EYES > 1
+shared uint keys[THREADS];
+#endif
+
+void main() {
+  uint i = thread_index();
+  uint key = i < page_count ? key_of(i) : DEPTH_KEY_NONE;
+#if EYES > 1
+  if (gl_LocalInvocationID.y == 0u) keys[gl_LocalInvocationID.x] = DEPTH_KEY_NONE;
+  barrier();
+  atomicMin(keys[gl_LocalInvocationID.x], key);
+  barrier();
+  key = keys[gl_LocalInvocationID.x];
+#endif
+  if (i < page_count && gl_LocalInvocationID.y == 0u) depth_keys[page_first + i] = key;
 }

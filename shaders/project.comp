@@ -1,12 +1,12 @@
 // Stage 1, project, last part: the splats of the Gaussians that cull.comp found, side by side in index order. One invocation
-// a Gaussian; what does not depend on the view is computed once.
+// a Gaussian and eye.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "projection.glsl"
 #include "tiles/tiles.glsl"
 
-layout(local_size_x = THREADS) in;
+layout(local_size_x = THREADS, local_size_y = EYES) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "gaussians.glsl"            // bindings 1 and 9
@@ -30,7 +30,7 @@ void main() {
   if (i >= page_count) return;
   Gaussian g = gaussians[i];
   mat3 axes = scaled_axes(g);
-  for (uint v = view_begin; v < view_end; ++v) {
+  for (uint v = view_begin + gl_LocalInvocationID.y; v < view_end; v += EYES) {
     View view = views[v];
 #if OFFSETS > 0
     g = gaussians[place_of(i, v)];

@@ -1,5 +1,6 @@
-// Where an invocation stands in a launch that may have been split over y (gl/dispatch.h); groups of THREADS.
+// Where an invocation stands in a launch that may have been split over y (gl/dispatch.h); groups of THREADS
+// along x.
 
 uint group_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 
-uint thread_index() { return group_index() * THREADS + gl_LocalInvocationIndex; }
+uint thread_index() { return group_index() * THREADS + gl_LocalInvocationID.x; }

@@ -36,8 +36,8 @@
 #define SCAN_BLOCK 2048
 #define COMPACT_BLOCK 2048
 #define SORT_BLOCK 4096
-// Values of one digit of the radix sorts.
-#define SORT_DIGITS 256
+// Bits of a radix sort's digit: at most so many, where that saves a pass over 8 (primitives/radix_sort.h).
+#define SORT_BITS_MAX 9
 // Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
 // of lanes together), so a tile's list may have 8 times as many entries before it is cut; and then it is
 // reported.

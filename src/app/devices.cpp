@@ -44,7 +44,7 @@ ordered_json to_json(const gl::Device& device) {
             {"storage_blocks", l.storage_blocks},
             {"program_binaries", l.program_binaries},
             {"timestamp_bits", l.timestamp_bits},
-            {"subgroups", l.subgroups}}},
+            {"subgroups", l.subgroups_of_32}}},
           {"lacks", device.lacks}};
 }
 

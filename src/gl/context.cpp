@@ -94,8 +94,14 @@ void Context::read_limits() {
   for (int i = 0; i < extensions; ++i) {
     const auto* name =
         reinterpret_cast<const char*>(functions_.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-    if (name != nullptr && std::string_view(name) == "GL_KHR_shader_subgroup") limits_.subgroups = true;
+    if (name != nullptr && std::string_view(name) == "GL_KHR_shader_subgroup") {
+      has_subgroups_ =
+          integer(GL_SUBGROUP_SIZE_KHR) == 32 &&
+          (integer(GL_SUBGROUP_SUPPORTED_STAGES_KHR) & GL_COMPUTE_SHADER_BIT) != 0 &&
+          (integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & GL_SUBGROUP_FEATURE_BALLOT_BIT_KHR) != 0;
+    }
   }
+  use_subgroups(true);
   functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
   // llvmpipe states 128 MiB and works right up to 2 GiB, where a read crashes; no driver is trusted beyond
   // that.

@@ -33,7 +33,9 @@ struct Limits {
   std::int64_t shared_bytes = 0;         // of one work group
   std::uint32_t program_binaries = 0;    // formats; 0: programs cannot be kept
   std::uint32_t timestamp_bits = 0;      // 0: stages cannot be timed
-  bool subgroups = false;                // GL_KHR_shader_subgroup
+  /// Of 32 invocations with ballots, as the programs that know subgroups expect them
+  /// (GL_KHR_shader_subgroup).
+  bool subgroups_of_32 = false;
 };
 
 class Context {
@@ -59,6 +61,8 @@ class Context {
   const Limits& limits() const { return limits_; }
   /// Largest group count that a dispatch may use along x; a test may lower it to see dispatches split.
   void limit_groups(std::uint32_t groups) { limits_.groups = groups; }
+  /// Whether programs may use subgroups, if there are any; a test may see what is drawn without them.
+  void use_subgroups(bool use) { limits_.subgroups_of_32 = use && has_subgroups_; }
 
   const std::string& backend() const { return backend_; }    // "EGL device 0", "OSMesa", "caller's"
   const std::string& renderer() const { return renderer_; }  // GL_RENDERER
@@ -97,6 +101,7 @@ class Context {
 
   Functions functions_;
   Limits limits_;
+  bool has_subgroups_ = false;
   std::string backend_, vendor_, renderer_, version_;
   std::filesystem::path shader_folder_;
   std::unique_ptr<ProgramCache> program_cache_;

@@ -28,9 +28,9 @@ shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max) {
   return a;
 }
 
-SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t groups_max) {
+SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t digit_bits, std::uint32_t groups_max) {
   return {make_amount(count, groups_max),
-          make_amount(SORT_DIGITS * blocks_of(count, SORT_BLOCK), groups_max)};
+          make_amount(blocks_of(count, SORT_BLOCK) << digit_bits, groups_max)};
 }
 
 }  // namespace binosplat::primitives

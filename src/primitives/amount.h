@@ -11,11 +11,12 @@ namespace binosplat::primitives {
 /// The Amount of `count` things that begin at 0, as shared/amount.glsl fills it on the GPU.
 shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max);
 
-/// The two Amounts that the radix sort needs: of its keys, and of its counters.
+/// The two Amounts that the radix sort needs: of its keys, and of its counters, one a block and value of a
+/// digit.
 struct SortAmounts {
   shared::Amount keys;
   shared::Amount counters;
 };
-SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t groups_max);
+SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t digit_bits, std::uint32_t groups_max);
 
 }  // namespace binosplat::primitives

@@ -1,6 +1,7 @@
 #include "primitives/radix_sort.h"
 
 #include <cstddef>
+#include <string>
 
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -18,21 +19,31 @@ void PairBuffers::reserve(std::int64_t count) {
 }
 
 void RadixSort::reserve(std::int64_t count) {
-  const std::int64_t counters = SORT_DIGITS * (count / SORT_BLOCK + 1);
+  const std::int64_t counters = (count / SORT_BLOCK + 1) << SORT_BITS_MAX;
   histogram_.reserve(counters * 4);
   scan_.reserve(counters);
+}
+
+std::uint32_t RadixSort::digit_bits(std::uint32_t bits) {
+  const std::uint32_t passes = (bits + SORT_BITS_MAX - 1) / SORT_BITS_MAX;
+  return bits <= 8 * passes ? 8 : 9;
 }
 
 void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs,
                     std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
+  const gl::Defines defines = {{"DIGIT_BITS", std::to_string(digit_bits(bits))}};
+  const gl::Program& count = context.program("primitives/sort_count.comp", defines);
+  const gl::Program& scatter =
+      context.program(context.limits().subgroups_of_32 ? "primitives/sort_scatter_subgroups.comp"
+                                                       : "primitives/sort_scatter.comp",
+                      defines);
   const auto blocks = gl::Work::indirect(amounts, offsetof(shared::Amount, sort_x));
-  for (std::uint32_t shift = 0; shift < bits; shift += 8) {
-    dispatcher.run(context.program("primitives/sort_count.comp"), blocks,
-                   {{"Amounts", amounts}, {"Keys", pairs.keys()}, {"Histogram", histogram_}},
+  for (std::uint32_t shift = 0; shift < bits; shift += digit_bits(bits)) {
+    dispatcher.run(count, blocks, {{"Amounts", amounts}, {"Keys", pairs.keys()}, {"Histogram", histogram_}},
                    {{"shift", shift}});
     scan_.run(dispatcher, amounts, 1, histogram_);
-    dispatcher.run(context.program("primitives/sort_scatter.comp"), blocks,
+    dispatcher.run(scatter, blocks,
                    {{"Amounts", amounts},
                     {"Keys", pairs.keys()},
                     {"Values", pairs.values()},

@@ -1,5 +1,5 @@
 #pragma once
-// Stable radix sort of (key, value) pairs on the GPU, least significant digit first, 8 bits a pass.
+// Stable radix sort of (key, value) pairs on the GPU, least significant digit first, 8 or 9 bits a pass.
 
 #include <utility>
 
@@ -36,8 +36,12 @@ class RadixSort {
   /// Room for `count` pairs.
   void reserve(std::int64_t count);
 
-  /// Sorts the first amounts[0].count pairs by the low `bits` bits of their keys; equal keys keep their
-  /// order. `amounts` holds SortAmounts. Afterwards pairs.keys() and pairs.values() are the sorted ones.
+  /// Bits that each pass of a sort by `bits` bits takes: 8, or 9 where that makes a pass less.
+  static std::uint32_t digit_bits(std::uint32_t bits);
+
+  /// Sorts the first amounts[0].count pairs by the low `bits` bits of their keys, in whole digits; equal keys
+  /// keep their order. `amounts` holds SortAmounts for such digits. Afterwards pairs.keys() and
+  /// pairs.values() are the sorted ones.
   void run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs, std::uint32_t bits);
 
  private:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gl/buffer.h"
@@ -37,6 +38,7 @@ struct ModelBuffers {
 
   std::vector<Page> pages;
   NetworkBuffers networks;
+  std::optional<Bounds> box;  // around all positions; none of a model that is decoded
 
  private:
   void upload(gl::Context& context, const Model& model, std::size_t step);

@@ -36,6 +36,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
     shape_.remembers = remembered;
     shape_.settings.loss = loss_control_.next_loss(settings, cut);
   }
+  if (model_buffers_.box) limit_keys(shape_, *model_buffers_.box);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
   if (settings.order_capacity > 0) slots_ = settings.order_capacity;
   pair_capacity_ =
@@ -96,7 +97,7 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     }
     if (!twin(Stage::order)) {
       dispatcher_.begin_stage("order");
-      order(dispatcher_, group, buffers_);
+      order(dispatcher_, shape_, group, buffers_);
     }
     if (!twin(Stage::pairs)) {
       dispatcher_.begin_stage("pairs");

@@ -25,7 +25,8 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"FrameCounters", buffers.counters}},
                  {{"kind", AMOUNT_PAIRS},
                   {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
-                  {"groups_max", context.limits().groups}});
+                  {"groups_max", context.limits().groups},
+                  {"digit_bits", primitives::RadixSort::digit_bits(shape.list_bits())}});
   dispatcher.run(context.program("pairs.comp", pair_defines(shape)), each(buffers.pair_amounts),
                  {{"OrderAmounts", drawn},
                   {"PairAmounts", buffers.pair_amounts},

@@ -14,11 +14,21 @@ const gl::Buffer& kept_of(const ModelBuffers::Page& page) {
   return page.anchors ? *page.anchors->kept : *page.gaussians;
 }
 
+// An invocation for each eye takes the time of one where a model does not fill the GPU. Where one eye's
+// answer makes the other's unnecessary, one invocation asks both.
+gl::Defines projecting(const FrameShape& shape, OrderGroup views, bool asks_both) {
+  gl::Defines defines = pair_defines(shape);
+  defines.emplace_back("EYES", views.end - views.begin > 1 && !asks_both ? "2" : "1");
+  return defines;
+}
+
 // Depths of what the group draws; nothing is kept of the splats yet, so that what is out of sight costs no
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
-  const gl::Program& program = dispatcher.context().program("cull.comp", pair_defines(shape));
+  const bool first_answer_does = !measures(shape.settings.transmittance);
+  const gl::Program& program =
+      dispatcher.context().program("cull.comp", projecting(shape, views, first_answer_does));
   for (const ModelBuffers::Page& page : model.pages) {
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
                    {{"Views", buffers.views},
@@ -44,7 +54,7 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
   }
 }
 
-void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuffers& drawn,
+void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup group, const DrawnBuffers& drawn,
              FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   const auto blocks = gl::Work::threads(shape.gaussian_count, COMPACT_BLOCK);
@@ -55,7 +65,10 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuf
   dispatcher.run(
       context.program("amount.comp"), gl::Work::of_groups(1),
       {{"Amounts", drawn.amounts}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
-      {{"kind", AMOUNT_ORDER}, {"capacity", shape.slots}, {"groups_max", context.limits().groups}});
+      {{"kind", AMOUNT_ORDER},
+       {"capacity", shape.slots},
+       {"groups_max", context.limits().groups},
+       {"digit_bits", primitives::RadixSort::digit_bits(group.key_bits)}});
   dispatcher.run(context.program("compact.comp"), blocks,
                  {{"Amounts", drawn.amounts},
                   {"DepthKeys", buffers.depth_keys},
@@ -63,7 +76,7 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, const DrawnBuf
                   {"Keys", buffers.order.keys()},
                   {"Values", buffers.order.values()},
                   {"Indices", drawn.indices}},
-                 {{"gaussian_count", shape.gaussian_count}});
+                 {{"gaussian_count", shape.gaussian_count}, {"nearest_key", group.nearest_key}});
 }
 
 }  // namespace
@@ -89,8 +102,8 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   const OrderGroup views = shape.groups[group];
   cull(dispatcher, shape, views, model, buffers);
   const DrawnBuffers& drawn = *buffers.drawn[group];
-  compact(dispatcher, shape, drawn, buffers);
-  gl::Defines defines = pair_defines(shape);
+  compact(dispatcher, shape, views, drawn, buffers);
+  gl::Defines defines = projecting(shape, views, false);
   defines.emplace_back("SH_DEGREE", std::to_string(shape.degree));
   const gl::Program& program = dispatcher.context().program("project.comp", defines);
   for (const ModelBuffers::Page& page : model.pages) {

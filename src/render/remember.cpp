@@ -19,7 +19,8 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
                     {"UpperNext", *buffers.upper_next},
                     {"OrderKeys", buffers.order.keys()},
                     {"FrameCounters", buffers.counters}},
-                   {{"gaussian_count", shape.gaussian_count},
+                   {{"nearest_key", shape.groups[group].nearest_key},
+                    {"gaussian_count", shape.gaussian_count},
                     {"view_begin", shape.groups[group].begin},
                     {"view_end", std::min(shape.groups[group].end, shape.asked)},
                     {"slots", shape.slots}});

@@ -98,6 +98,25 @@ std::uint32_t FrameShape::list_bits() const {
   return static_cast<std::uint32_t>(std::bit_width(lists - 1));
 }
 
+void limit_keys(FrameShape& shape, const Bounds& box) {
+  for (OrderGroup& group : shape.groups) {
+    const shared::View& view = shape.views[group.begin];
+    const glm::dvec3 anchor(view.anchor), forward(view.row_z);
+    const glm::dvec3 low = glm::dvec3(box.low) - anchor, high = glm::dvec3(box.high) - anchor;
+    double deepest = view.row_z.w, reach = std::abs(view.row_z.w);
+    for (int k = 0; k < 3; ++k) {
+      deepest += std::max(forward[k] * low[k], forward[k] * high[k]);
+      reach += std::max(std::abs(low[k]), std::abs(high[k]));
+    }
+    const auto farthest = static_cast<float>(deepest + 1e-5 * reach);  // fp32's rounding may add to a depth
+    const float near_plane = view.anchor.w;
+    group.nearest_key = std::bit_cast<std::uint32_t>(near_plane);
+    group.key_bits = farthest > near_plane ? static_cast<std::uint32_t>(std::bit_width(
+                                                 std::bit_cast<std::uint32_t>(farthest) - group.nearest_key))
+                                           : 1;
+  }
+}
+
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                       const std::optional<Probe>& probe) {
   if (views.empty() || views.size() > MAX_VIEWS)

@@ -16,6 +16,9 @@ namespace binosplat::render {
 struct OrderGroup {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
+  // What depths are sorted by: their bits less those of the near plane, of which so many can be set.
+  std::uint32_t nearest_key = 0;
+  std::uint32_t key_bits = 32;
 };
 
 /// Rows [first_row, first_row + rows) px of one of a frame's views, drawn exactly beside it to see what its
@@ -59,5 +62,8 @@ struct FrameShape {
 /// contradict each other or the views.
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                       const std::optional<Probe>& probe = {});
+
+/// Keys of only so many bits as depths of Gaussians within `box` (world) need, in each order group.
+void limit_keys(FrameShape& shape, const Bounds& box);
 
 }  // namespace binosplat::render

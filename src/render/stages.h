@@ -16,7 +16,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
              const ModelBuffers& model, FrameBuffers& buffers);
 
 /// Their slots front to back, ties by index.
-void order(gl::Dispatcher& dispatcher, std::uint32_t group, FrameBuffers& buffers);
+void order(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);
 
 /// (tile, splat) for every tile that a splat of the group touches, in depth order, appended to what is there.
 void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers);

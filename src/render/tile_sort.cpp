@@ -10,7 +10,8 @@ void tile_sort(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers
                   {"FrameCounters", buffers.counters}},
                  {{"kind", AMOUNT_ALL_PAIRS},
                   {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
-                  {"groups_max", context.limits().groups}});
+                  {"groups_max", context.limits().groups},
+                  {"digit_bits", primitives::RadixSort::digit_bits(shape.list_bits())}});
   // The pairs come in depth order, and the sort is stable.
   buffers.sort.run(dispatcher, buffers.pair_amounts, buffers.pairs, shape.list_bits());
 }

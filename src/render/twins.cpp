@@ -156,7 +156,8 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
   return pairs;
 }
 
-void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t groups_max, FrameBuffers& buffers) {
+void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t digit_bits, std::uint32_t groups_max,
+                  FrameBuffers& buffers) {
   std::vector<std::uint32_t> keys;
   std::vector<std::uint32_t> values;
   for (const auto& [list, splat] : pairs) {
@@ -168,7 +169,7 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t groups_max, Fram
   buffers.sort.reserve(count);
   buffers.pairs.keys().upload(keys);
   buffers.pairs.values().upload(values);
-  buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(count, groups_max)});
+  buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(count, digit_bits, groups_max)});
 }
 
 void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
@@ -187,8 +188,8 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
 }
 
 // The slots as the stage project leaves them, or `sorted` as the stage order does.
-void upload_order(const Slots& slots, const std::vector<ViewResult>& results, bool sorted,
-                  std::uint32_t groups_max, FrameBuffers& buffers) {
+void upload_order(const OrderGroup& group, const Slots& slots, const std::vector<ViewResult>& results,
+                  bool sorted, std::uint32_t groups_max, FrameBuffers& buffers) {
   std::vector<std::uint32_t> values(slots.indices.size());
   std::iota(values.begin(), values.end(), 0u);
   // Of the first view that draws it: of Scaffold-GS an eye may lack what the other has.
@@ -203,11 +204,12 @@ void upload_order(const Slots& slots, const std::vector<ViewResult>& results, bo
   }
   std::vector<std::uint32_t> keys;
   for (const std::uint32_t slot : values)
-    keys.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(depth(slot))));
+    keys.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(depth(slot))) - group.nearest_key);
   buffers.order.keys().upload(keys);
   buffers.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
-  buffers.drawn.front()->amounts.upload(std::vector{primitives::make_sort_amounts(count, groups_max)});
+  buffers.drawn.front()->amounts.upload(std::vector{
+      primitives::make_sort_amounts(count, primitives::RadixSort::digit_bits(group.key_bits), groups_max)});
 }
 
 void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
@@ -252,7 +254,7 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
   for (const OrderGroup& group : shape.groups) slots.push_back(make_slots(shape, group, results));
   upload_projection(shape, slots, results, buffers);
   if (until < Stage::pairs) {
-    upload_order(slots.front(), results, until == Stage::order, groups_max, buffers);
+    upload_order(shape.groups.front(), slots.front(), results, until == Stage::order, groups_max, buffers);
     return pictures;
   }
   std::vector<Pair> pairs = pairs_in_depth_order(shape, slots, results);
@@ -260,7 +262,7 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return a.first < b.first; });
   }
-  upload_pairs(pairs, groups_max, buffers);
+  upload_pairs(pairs, primitives::RadixSort::digit_bits(shape.list_bits()), groups_max, buffers);
   if (until == Stage::ranges) upload_ranges(shape, pairs, buffers);
   buffers.counters.upload(std::vector{shared::Counters{.pairs = static_cast<std::uint32_t>(pairs.size())}});
   return pictures;

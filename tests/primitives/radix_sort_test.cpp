@@ -20,7 +20,7 @@ using Keys = std::vector<std::uint32_t>;
 std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits) {
   gl::Context& context = test::gl_context();
   const auto count = static_cast<std::uint32_t>(keys.size());
-  const SortAmounts sizes = make_sort_amounts(count, context.limits().groups);
+  const SortAmounts sizes = make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups);
   gl::Buffer amounts(context, "amounts");
   amounts.upload(std::vector{sizes});
   PairBuffers pairs(context, "pairs");
@@ -78,10 +78,38 @@ TEST(RadixSort, KeepsTheOrderOfEqualKeys) {
 
 TEST(RadixSort, TakesWholeDigitsOfTheBitsAsked) {
   const Keys keys = random_keys(30000, 0x1FFFFu);
-  for (const std::uint32_t bits : {1u, 8u, 9u, 17u}) {
-    EXPECT_EQ(sort_on_gpu(keys, bits), sort_on_cpu(keys, (bits + 7) / 8 * 8)) << bits;
+  for (const std::uint32_t bits : {1u, 8u, 9u, 16u, 17u}) {
+    const std::uint32_t digit = RadixSort::digit_bits(bits);
+    EXPECT_EQ(sort_on_gpu(keys, bits), sort_on_cpu(keys, (bits + digit - 1) / digit * digit)) << bits;
   }
   EXPECT_EQ(sort_on_gpu(keys, 0), sort_on_cpu(keys, 0));
+}
+
+TEST(RadixSort, TakesWiderDigitsWhereThatSavesAPass) {
+  const auto passes = [](std::uint32_t bits) {
+    const std::uint32_t digit = RadixSort::digit_bits(bits);
+    return (bits + digit - 1) / digit;
+  };
+  EXPECT_EQ(RadixSort::digit_bits(16), 8u);
+  EXPECT_EQ(RadixSort::digit_bits(17), 9u);
+  EXPECT_EQ(passes(17), 2u);
+  EXPECT_EQ(passes(18), 2u);
+  EXPECT_EQ(passes(27), 3u);
+  EXPECT_EQ(passes(32), 4u);
+  const Keys keys = random_keys(70001, ~0u);
+  EXPECT_EQ(sort_on_gpu(keys, 27), sort_on_cpu(keys, 27));
+}
+
+// Where there are no subgroups, which llvmpipe lacks, this says nothing new.
+TEST(RadixSort, IsTheSameWithoutSubgroups) {
+  gl::Context& context = test::gl_context();
+  const Keys keys = random_keys(200003, ~0u);
+  for (const std::uint32_t bits : {17u, 32u}) {
+    const auto with = sort_on_gpu(keys, bits);
+    context.use_subgroups(false);
+    EXPECT_EQ(sort_on_gpu(keys, bits), with);
+    context.use_subgroups(true);
+  }
 }
 
 TEST(RadixSort, WorksWhenADriverAllowsFewGroups) {

@@ -58,6 +58,7 @@ struct StageRun {
       : shape(render::make_shape(views, settings, model)),
         frame(gl_context()),
         model_buffers(gl_context(), model) {
+    if (model_buffers.box) render::limit_keys(shape, *model_buffers.box);
     frame.upload(shape);
     frame.counters.upload(std::vector{shared::Counters{}});
     frame.reserve(shape, 1 << 20);
@@ -75,7 +76,7 @@ struct StageRun {
       indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(
           frame.drawn[group]->amounts.read<shared::Amount>(1).front().count));
       if (stage == render::Stage::project) continue;
-      render::order(dispatcher, group, frame);
+      render::order(dispatcher, shape, group, frame);
       if (stage != render::Stage::order) render::pairs(dispatcher, shape, group, frame);
     }
     if (stage <= render::Stage::pairs) return;

@@ -1,0 +1,103 @@
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#pragma optionNV(unroll all)
+// Radix sort, one pass, second part, where subgroups have 32 invocations: what sort_scatter.comp does. Ranks within a
+// subgroup come from ballots, and a block is sorted in shared memory first, so that neighbours write to neighbours.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "shared/amount.glsl"
+#include "shared/saturate.glsl"
+#include "primitives/scan_block.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 1) readonly buffer Keys { uint keys[]; };
+layout(std430, binding = 2) readonly buffer Values { uint values[]; };
+layout(std430, binding = 3) readonly buffer Histogram { uint histogram[]; };
+layout(std430, binding = 4) writeonly buffer KeysOut { uint keys_out[]; };
+layout(std430, binding = 5) writeonly buffer ValuesOut { uint values_out[]; };
+uniform uint shift;
+
+#define DIGITS (1u << DIGIT_BITS)
+#define DIGITS_EACH (DIGITS / THREADS)
+#define SUBGROUPS (THREADS / 32)
+#define ROUNDS (SORT_BLOCK / THREADS)
+// At first a counter of each subgroup and digit: how many keys so far, then where they begin in the block. Later the
+// block's keys, then its values, in their new order. In one array, for more groups at a time.
+shared uint board[SORT_BLOCK];
+shared uint moves[DIGITS];  // from a place in the block to the place in the buffer, modulo 2^32
+
+uint digit_of(uint key) { return (key >> shift) % DIGITS; }
+
+void main() {
+  uint count = amounts[0].count;
+  uint block = group_index();
+  if (block * SORT_BLOCK >= count) return;
+  uint self = gl_LocalInvocationIndex;
+  uint mine = gl_SubgroupID * DIGITS;
+  uint first = block * SORT_BLOCK + gl_SubgroupID * 32u * ROUNDS + gl_SubgroupInvocationID;
+  for (uint d = self; d < SUBGROUPS * DIGITS; d += THREADS) board[d] = 0u;
+  barrier();
+  uint key[ROUNDS];
+  uint place[ROUNDS];
+  for (uint i = 0u; i < ROUNDS; ++i) key[i] = first + 32u * i < count ? keys[first + 32u * i] : 0u;
+  for (uint i = 0u; i < ROUNDS; ++i) {
+    uint at = first + 32u * i;
+    uint digit = digit_of(key[i]);
+    uint equal = subgroupBallot(at < count).x;
+    for (uint bit = 0u; bit < DIGIT_BITS; ++bit) {
+      bool one = (digit >> bit & 1u) != 0u;
+      uint ones = subgroupBallot(one).x;
+      equal &= one ? ones : ~ones;
+    }
+    // The first of the equals counts for all; its answer comes before any of the next round's, so no barrier is needed.
+    uint before = uint(bitCount(equal & gl_SubgroupLtMask.x));
+    uint seen = 0u;
+    if (at < count && before == 0u) seen = atomicAdd(board[mine + digit], uint(bitCount(equal)));
+    place[i] = before + subgroupShuffle(seen, uint(findLSB(equal)) % 32u);
+  }
+  barrier();
+  uint of_mine = 0u;
+  for (uint k = 0u; k < DIGITS_EACH; ++k) {
+    for (uint s = 0u; s < SUBGROUPS; ++s) of_mine += board[s * DIGITS + self * DIGITS_EACH + k];
+  }
+  uint start = scan_group(of_mine);
+  for (uint k = 0u; k < DIGITS_EACH; ++k) {
+    uint digit = self * DIGITS_EACH + k;
+    moves[digit] = histogram[digit * blocks_of(count, SORT_BLOCK) + block] - start;
+    for (uint s = 0u; s < SUBGROUPS; ++s) {
+      uint of_subgroup = board[s * DIGITS + digit];
+      board[s * DIGITS + digit] = start;
+      start += of_subgroup;
+    }
+  }
+  barrier();
+  for (uint i = 0u; i < ROUNDS; ++i) place[i] += board[mine + digit_of(key[i])];
+  barrier();
+  for (uint i = 0u; i < ROUNDS; ++i) {
+    if (first + 32u * i < count) board[place[i]] = key[i];
+  }
+  barrier();
+  uint here = min(count - block * SORT_BLOCK, uint(SORT_BLOCK));
+  uint to[ROUNDS];
+  uint value[ROUNDS];
+  for (uint i = 0u; i < ROUNDS; ++i) value[i] = first + 32u * i < count ? values[first + 32u * i] : 0u;
+  for (uint i = 0u; i < ROUNDS; ++i) {
+    uint at = i * THREADS + self;
+    if (at >= here) continue;
+    to[i] = at + moves[digit_of(board[at])];
+    keys_out[to[i]] = board[at];
+  }
+  barrier();
+  for (uint i = 0u; i < ROUNDS; ++i) {
+    if (first + 32u * i < count) board[place[i]] = value[i];
+  }
+  barrier();
+  for (uint i = 0u; i < ROUNDS; ++i) {
+    uint at = i * THREADS + self;
+    if (at < here) values_out[to[i]] = board[at];
+  }
+}
