@@ -7,14 +7,15 @@
 #include <memory>
 
 #include "app/command.h"
+#include "app/drawing.h"
 #include "app/open_scene.h"
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "formats/cameras_file.h"
-#include "scene/framing.h"
+#include "scene/axes.h"
 #include "study/carried.h"
 #include "study/eyes.h"
+#include "study/still.h"
 
 namespace binosplat::app {
 
@@ -33,37 +34,25 @@ struct StudyOptions {
   std::string json;
 };
 
+// What is there to study, and the shots of it that the options ask for.
 struct Studied {
   std::shared_ptr<const Model> model;
-  CameraList cameras;
-  double near_plane = near_default;
+  double near_plane = 0.0;
+  std::vector<Shot> shots;
 };
 
 Studied open(const StudyOptions& options) {
+  // A case takes a head along paths of its own, and makes the eyes itself.
+  RenderOptions render = options.scene;
+  render.mono = render.mono || options.stability;
   const Scene scene = open_scene(options.scene);
-  Studied studied;
-  studied.cameras = listed_cameras(options.scene, scene.cameras);
-  studied.model = std::make_shared<const Model>(scene.model());
-  if (!studied.cameras.listed) studied.cameras = made_up_cameras(options.scene, *studied.model);
-  if (!studied.cameras.listed) studied.near_plane = near_for(*studied.model);
+  CameraList list = listed_cameras(render, scene.cameras);
+  Studied studied{std::make_shared<const Model>(scene.model())};
+  if (!list.listed) list = made_up_cameras(render, *studied.model);
+  studied.near_plane = near_plane_of(render, list, *studied.model);
+  studied.shots = make_shots(render, list, studied.near_plane, studied.model->axes);
+  if (options.scene.path.empty() && studied.shots.size() > 1) fail("--view all: a study is of one view");
   return studied;
-}
-
-stereo::RigSettings rig(const StudyOptions& options, double near_plane) {
-  stereo::RigSettings settings;
-  settings.ipd = options.scene.ipd.value_or(settings.ipd);
-  settings.units_per_metre = options.scene.units_per_metre;
-  settings.near_plane = near_plane;
-  return settings;
-}
-
-Camera head_of(const StudyOptions& options, const Studied& studied) {
-  const std::vector<std::string>& names = options.scene.views;
-  if (names.empty()) return sized(options.scene, studied.cameras.cameras.front());
-  for (const Camera& camera : studied.cameras.cameras) {
-    if (camera.name == names.front()) return sized(options.scene, camera);
-  }
-  fail("--view {}: {} has no camera of this name", names.front(), studied.cameras.source);
 }
 
 // JSON has no infinity: null.
@@ -91,14 +80,12 @@ ordered_json to_json(const study::StabilityBounds& b) {
           {"rivalry: disagreement below dB", b.disagreement_db}};
 }
 
-void find_losses(gl::Context& context, const StudyOptions& options, const Studied& studied,
-                 const stereo::EyePair& eyes, std::vector<Variant>& variants) {
+void find_losses(study::Still& still, double target, std::vector<Variant>& variants) {
   Progress progress("losses", variants.size());
   for (std::size_t k = 0; k < variants.size(); ++k) {
     // The eyes' rules are compared at one loss.
-    variants[k].loss = variants[k].th_eyes == TH_EYES_PER_EYE
-                           ? study::loss_at(context, *studied.model, eyes, variants[k], options.target)
-                           : variants[k - 1].loss;
+    variants[k].loss =
+        variants[k].th_eyes == TH_EYES_PER_EYE ? still.loss_at(variants[k], target) : variants[k - 1].loss;
     progress.update(k + 1);
   }
 }
@@ -133,13 +120,17 @@ void check_cases(const std::vector<std::string>& wanted, const std::vector<study
 }
 
 ordered_json stability(gl::Context& context, const StudyOptions& options, const Studied& studied) {
-  const Camera head = head_of(options, studied);
-  const stereo::RigSettings settings = rig(options, studied.near_plane);
+  const Camera head = into_axes(studied.shots.front().eyes.front().camera, studied.model->axes);
+  const stereo::RigSettings settings = rig_settings(options.scene, studied.near_plane);
   auto cases = study::built_in_cases();
   for (auto& one : study::cases_in(studied.model, head, settings)) cases.push_back(std::move(one));
   check_cases(options.cases, cases);
   std::vector<Variant> variants = study::all_variants();
-  find_losses(context, options, studied, stereo::make_rig(head, settings), variants);
+  {
+    const stereo::EyePair eyes = stereo::make_rig(head, settings);
+    study::Still still(context, *studied.model, {eyes.views.begin(), eyes.views.end()});
+    find_losses(still, options.target, variants);
+  }
 
   const study::StabilityBounds bounds;
   ordered_json json = {{"target_db", options.target}, {"bounds", to_json(bounds)}};
@@ -164,22 +155,6 @@ ordered_json stability(gl::Context& context, const StudyOptions& options, const 
   return json;
 }
 
-std::vector<std::vector<shared::View>> path_views(const StudyOptions& options, double near_plane) {
-  const stereo::RigSettings settings = rig(options, near_plane);
-  std::vector<std::vector<shared::View>> frames;
-  for (const Camera& camera : load_cameras(options.scene.path)) {
-    const Camera head = sized(options.scene, camera);
-    if (options.scene.mono) {
-      frames.push_back({make_view(head, near_plane)});
-    } else {
-      const stereo::EyePair eyes = stereo::make_rig(head, settings);
-      frames.push_back({eyes.views[0], eyes.views[1]});
-    }
-  }
-  if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
-  return frames;
-}
-
 Variant variant_of(const StudyOptions& o) {
   return {number_of(o.th, th_choices), number_of(o.transmittance, transmittance_choices),
           number_of(o.contrast, contrast_choices), number_of(o.th_eyes, th_eyes_choices)};
@@ -187,11 +162,14 @@ Variant variant_of(const StudyOptions& o) {
 
 ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   Variant variant = variant_of(options);
-  const auto frames = path_views(options, studied.near_plane);
+  std::vector<std::vector<shared::View>> frames;
+  for (const Shot& shot : studied.shots) frames.push_back(views_of(shot));
+  if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
   const float quality = options.scene.quality.value_or(0.0f);
   if (quality == 0.0f)
-    variant.loss = options.scene.loss.value_or(
-        study::carried_loss(context, *studied.model, frames, variant, options.target));
+    variant.loss = options.scene.loss
+                       ? *options.scene.loss
+                       : study::carried_loss(context, *studied.model, frames, variant, options.target);
   Progress progress("frames", frames.size());
   std::size_t done = 0;
   const auto results =
@@ -223,19 +201,10 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
   return json;
 }
 
-// The pair NAME_left, NAME_right of the cameras, or a rig on the camera.
-stereo::EyePair pair_of(const StudyOptions& options, const Studied& studied) {
-  const std::vector<std::string>& names = options.scene.views;
-  const auto given = names.empty() ? std::nullopt : stereo::find_eyes(studied.cameras.cameras, names.front());
-  if (!given) return stereo::make_rig(head_of(options, studied), rig(options, studied.near_plane));
-  return stereo::rig_from_eyes(sized(options.scene, (*given)[0]), sized(options.scene, (*given)[1]),
-                               studied.near_plane);
-}
-
 ordered_json eyes(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   Progress progress("--th-eyes", std::size(th_eyes_choices));
   std::size_t done = 0;
-  const auto results = study::run_eyes(context, *studied.model, pair_of(options, studied),
+  const auto results = study::run_eyes(context, *studied.model, views_of(studied.shots.front()),
                                        variant_of(options), options.target, [&] { progress.update(++done); });
   fmt::print(
       "| rule | loss | pairs | removed | left dB | right dB | disagreement dB | both eyes dB | `per-eye` at "
@@ -262,10 +231,10 @@ ordered_json eyes(gl::Context& context, const StudyOptions& options, const Studi
 ExitCode study_scene(const StudyOptions& options) {
   const int chosen = int{options.stability} + int{options.eyes} + int{!options.scene.path.empty()};
   if (chosen != 1) fail("study: choose --stability, --eyes or --path FILE");
+  if (options.eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
   if (!options.json.empty()) check_output(options.json);
   const Studied studied = open(options);
-  const auto context = gl::Context::open();
-  log_info("drawing with {}", context->renderer());
+  const auto context = open_context(options.scene);
   const ordered_json json = options.stability ? stability(*context, options, studied)
                             : options.eyes    ? eyes(*context, options, studied)
                                               : carried(*context, options, studied);
@@ -317,6 +286,7 @@ void add_study(CLI::App& program, Command& command) {
          "Of an eye's picture")
       ->type_name("WxH");
   sub->add_flag("--mono", o.scene.mono, "Along a path: the cameras themselves, no rig");
+  add_measured_options(*sub, o.scene);
   sub->add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
   sub->add_option("--units-per-metre", o.scene.units_per_metre, "World units that make a metre (1)")
       ->type_name("U");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/scene.h"
+#include "support/fixtures.h"
 #include "support/program.h"
 
 namespace binosplat {
@@ -29,6 +30,32 @@ TEST(Study, APathIsCarriedAndTold) {
   EXPECT_GT(json.at("frames")[2].at("removed").get<double>(), 0.0);
 }
 
+// What frames of a file of the same 1000 Gaussians come to.
+nlohmann::json carried(const test::TempFolder& folder, const std::string& model) {
+  const test::Outcome outcome = test::run_program(
+      {"study", model, "--path", folder / "path.json", "--loss", "0.05", "--json", folder / "s.json"});
+  EXPECT_TRUE(test::good(outcome));
+  return nlohmann::json::parse(test::read_text(folder / "s.json")).at("frames");
+}
+
+TEST(Study, CamerasEnterTheModelsFrame) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  nlohmann::json path;
+  for (int n = 0; n < 2; ++n) {
+    path.push_back(test::camera_json(fmt::format("frame_{}", n), 0.0));
+    path.back()["position"] = {2.0 + 0.01 * n, 3.0, -10.0};
+  }
+  test::write_text(folder / "path.json", path.dump());
+  const auto ply = carried(folder, fixtures / "ply/inria-train-1000.ply");
+  const auto gltf = carried(folder, fixtures / "gltf/st-train-sh3.glb");  // x left, y up
+  for (std::size_t n = 0; n < 2; ++n) {
+    const double pairs = ply[n].at("pairs").get<double>();
+    EXPECT_GT(pairs, 100.0);
+    EXPECT_NEAR(gltf[n].at("pairs").get<double>(), pairs, 0.01 * pairs);
+  }
+}
+
 TEST(Study, WhatMakesNoSenseIsNamed) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
@@ -37,6 +64,8 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--stability", "--path", "x.json"}, "choose --stability, --eyes or --path"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
+      {{"--eyes", "--view", "all"}, "--view all"},
+      {{"--eyes", "--mono"}, "compares the eyes"},
       {{"--path", "no_such.json"}, "no_such.json"},
       {{"--stability", "--json", folder / "file/s.json"}, "file"},
   };
