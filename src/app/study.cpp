@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "app/command.h"
@@ -15,7 +16,7 @@
 #include "scene/axes.h"
 #include "study/carried.h"
 #include "study/eyes.h"
-#include "study/still.h"
+#include "study/rules.h"
 
 namespace binosplat::app {
 
@@ -28,6 +29,8 @@ struct StudyOptions {
   RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
   bool stability = false;
   bool eyes = false;
+  bool rules = false;
+  int frames = 20;  // timed of each rule in each round
   std::vector<std::string> cases;
   double target = 40.0;  // dB
   std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
@@ -228,15 +231,71 @@ ordered_json eyes(gl::Context& context, const StudyOptions& options, const Studi
   return json;
 }
 
+void print_rules(const std::vector<study::RuleResult>& results) {
+  constexpr const char* shown[] = {"project", "order", "pairs", "tile_sort", "ranges", "blend"};
+  fmt::print(
+      "| rule | loss | dB | disagreement dB | pairs, M | removed | frame ms | {} | rest | of exact | of "
+      "`one` "
+      "| |\n",
+      fmt::join(shown, " | "));
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const study::RuleResult& r : results) {
+    fmt::print("| {} | {:.4g} | {:.2f} | {:.2f} | {:.3f} | {:.1f} % | {:.3f} |", r.variant.name(),
+               r.variant.loss, r.db, r.disagreement_db, 1e-6 * r.pairs, 100.0 * r.removed, r.frame_ms);
+    std::map<std::string, double> ms;
+    for (const gl::StageTime& stage : r.stages) ms[stage.name] = stage.ms;
+    for (const char* name : shown) {
+      fmt::print(" {:.3f} |", ms[name]);
+      ms.erase(name);
+    }
+    double rest = 0.0;
+    for (const auto& [name, stage_ms] : ms) rest += stage_ms;
+    fmt::print(" {:.3f} | {:.3f} | {:.3f} | {} |\n", rest, r.of_exact, r.of_one, r.problem);
+  }
+}
+
+ordered_json rules(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+  const Shot& shot = studied.shots.front();
+  study::Still still(context, *studied.model, views_of(shot));
+  std::vector<Variant> variants = study::rules_of(still.views().size());
+  std::size_t done = 0;
+  {
+    Progress progress("losses", variants.size());
+    study::find_losses(still, variants, options.target, [&] { progress.update(++done); });
+  }
+  Progress progress("timing", study::rule_rounds * variants.size());
+  done = 0;
+  const auto results =
+      study::measure_rules(still, variants, options.target, options.frames, [&] { progress.update(++done); });
+  const shared::View& view = still.views().front();
+  fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.scene, shot.name,
+             still.views().size(), view.width, view.height, options.target);
+  print_rules(results);
+  ordered_json json = {{"renderer", context.renderer()},
+                       {"scene", options.scene.scene},
+                       {"gaussians", studied.model->count()},
+                       {"view", shot.name},
+                       {"eyes", still.views().size()},
+                       {"width", view.width},
+                       {"height", view.height},
+                       {"target_db", options.target},
+                       {"frames", options.frames},
+                       {"rounds", study::rule_rounds}};
+  for (const study::RuleResult& result : results) json["rules"].push_back(to_json(result));
+  return json;
+}
+
 ExitCode study_scene(const StudyOptions& options) {
-  const int chosen = int{options.stability} + int{options.eyes} + int{!options.scene.path.empty()};
-  if (chosen != 1) fail("study: choose --stability, --eyes or --path FILE");
+  const int chosen =
+      int{options.stability} + int{options.eyes} + int{options.rules} + int{!options.scene.path.empty()};
+  if (chosen != 1) fail("study: choose --stability, --eyes, --rules or --path FILE");
   if (options.eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
   if (!options.json.empty()) check_output(options.json);
   const Studied studied = open(options);
   const auto context = open_context(options.scene);
   const ordered_json json = options.stability ? stability(*context, options, studied)
                             : options.eyes    ? eyes(*context, options, studied)
+                            : options.rules   ? rules(*context, options, studied)
                                               : carried(*context, options, studied);
   if (!options.json.empty()) save_json(options.json, json);
   return ExitCode::done;
@@ -253,22 +312,31 @@ void add_study(CLI::App& program, Command& command) {
                 "Every rule, source, contrast and eye rule on every failure case");
   sub->add_flag("--eyes", o.eyes,
                 "One rule with each --th-eyes on a still pair (both eyes' light by default)");
-  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME");
+  auto* rules = sub->add_flag("--rules", o.rules,
+                              "Every rule, source and contrast at one error on a still pair, timed");
+  sub->add_option("--frames", o.frames, "Timed of each rule in each of three rounds (20)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000).description(""))
+      ->needs(rules);
+  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules);
   sub->add_option("--path", o.scene.path, "Carry one rule along the cameras of this file instead")
       ->type_name("FILE");
   sub->add_option("--target", o.target, "dB that losses are chosen for (40)")
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
   sub->add_option("--loss", o.scene.loss, "Of the rule carried, instead")
+      ->excludes(rules)
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""));
   sub->add_option("--quality", o.scene.quality, "Steer the rule carried to so many dB")
+      ->excludes(rules)
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
   const auto choose = [&](const char* name, std::string& into, const auto& choices) {
     std::vector<std::string> names;
     for (const Choice& choice : choices) names.emplace_back(choice.name);
     sub->add_option(name, into, fmt::format("Of the rule carried ({})", into))
+        ->excludes(rules)
         ->check(CLI::IsMember(names).description(""))
         ->type_name(fmt::format("{}", fmt::join(names, "|")));
   };
@@ -285,7 +353,11 @@ void add_study(CLI::App& program, Command& command) {
          "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },
          "Of an eye's picture")
       ->type_name("WxH");
-  sub->add_flag("--mono", o.scene.mono, "Along a path: the cameras themselves, no rig");
+  sub->add_option("--preset", o.scene.preset,
+                  "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees")
+      ->check(CLI::IsMember({"preview", "headset"}).description(""))
+      ->type_name("preview|headset");
+  sub->add_flag("--mono", o.scene.mono, "With --path and --rules: the cameras themselves, no rig");
   add_measured_options(*sub, o.scene);
   sub->add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
   sub->add_option("--units-per-metre", o.scene.units_per_metre, "World units that make a metre (1)")

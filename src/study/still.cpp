@@ -1,7 +1,5 @@
 #include "study/still.h"
 
-#include <limits>
-
 #include "measure/depth_table.h"
 #include "measure/search.h"
 
@@ -28,26 +26,22 @@ render::FrameReport Still::draw(const Variant& variant) {
 }
 
 render::FrameReport Still::settle(const Variant& variant) {
-  frame_.forget();
+  forget();
   render::FrameReport report = draw(variant);
   for (int n = 1; n < frames_to_settle && render::measures(variant.transmittance); ++n)
     report = draw(variant);
   return report;
 }
 
-float Still::loss_at(Variant variant, double target, double start) {
+float Still::loss_at(Variant variant, double target) {
   if (variant.th == TH_TAU) return 0.0f;
   const auto settled = [&](double loss) {
-    if (loss == 0.0) return std::numeric_limits<double>::infinity();  // every rule is exact there
     variant.loss = static_cast<float>(loss);
     settle(variant);
     return psnr();
   };
-  return static_cast<float>(measure::find_loss(settled, target, {.start = start, .tolerance = 0.1}).loss);
-}
-
-float Still::loss_at(const Variant& variant, double target) {
-  return loss_at(variant, target, variant.th == TH_PERIPHERAL ? 1.0 : 0.1);
+  const measure::LossSearch search{.start = variant.th == TH_PERIPHERAL ? 1.0 : 0.1, .tolerance = 0.1};
+  return static_cast<float>(measure::find_loss(settled, target, search).loss);
 }
 
 }  // namespace binosplat::study

@@ -19,19 +19,21 @@ class Still {
   double exact_pairs() const { return exact_pairs_; }
   const render::DepthTable& depth_table() const { return table_; }  // measured in these views
 
+  /// A rule's next frame goes by nothing that earlier ones measured.
+  void forget() { frame_.forget(); }
   /// A rule's next frame.
   render::FrameReport draw(const Variant& variant);
-  /// The same, once what its frames measure has settled from nothing: the third.
+  /// The third frame from nothing.
   render::FrameReport settle(const Variant& variant);
 
-  /// Of the last frame drawn against the exact one, over all views together, dB.
+  /// Of the last frame drawn against the exact one: the mean over all views together, and in dB.
+  double squared_error() { return error_.mean(frame_.colours()); }
   double psnr() { return error_.psnr(frame_.colours()); }
   std::vector<Picture> pictures() { return frame_.read_pictures(); }
 
-  /// The loss at which settled frames come to `target` dB, at most 0.1 dB above; 0 for --th tau. Where none
-  /// does, the nearest that was asked for and errs less. `start` is asked first.
-  float loss_at(Variant variant, double target, double start);
-  float loss_at(const Variant& variant, double target);
+  /// The loss at which settle() comes to `target` dB, at most 0.1 dB above; 0 for --th tau, and where none
+  /// does.
+  float loss_at(Variant variant, double target);
 
  private:
   render::Frame frame_;
