@@ -4,17 +4,19 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "app/command.h"
+#include "app/drawing.h"
 #include "app/open_scene.h"
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "formats/cameras_file.h"
-#include "scene/framing.h"
+#include "scene/axes.h"
 #include "study/carried.h"
 #include "study/eyes.h"
+#include "study/rules.h"
 
 namespace binosplat::app {
 
@@ -27,43 +29,33 @@ struct StudyOptions {
   RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
   bool stability = false;
   bool eyes = false;
+  bool rules = false;
+  int frames = 20;  // timed of each rule in each round
   std::vector<std::string> cases;
   double target = 40.0;  // dB
   std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
   std::string json;
 };
 
+// What is there to study, and the shots of it that the options ask for.
 struct Studied {
   std::shared_ptr<const Model> model;
-  CameraList cameras;
-  double near_plane = near_default;
+  double near_plane = 0.0;
+  std::vector<Shot> shots;
 };
 
 Studied open(const StudyOptions& options) {
+  // A case takes a head along paths of its own, and makes the eyes itself.
+  RenderOptions render = options.scene;
+  render.mono = render.mono || options.stability;
   const Scene scene = open_scene(options.scene);
-  Studied studied;
-  studied.cameras = listed_cameras(options.scene, scene.cameras);
-  studied.model = std::make_shared<const Model>(scene.model());
-  if (!studied.cameras.listed) studied.cameras = made_up_cameras(options.scene, *studied.model);
-  if (!studied.cameras.listed) studied.near_plane = near_for(*studied.model);
+  CameraList list = listed_cameras(render, scene.cameras);
+  Studied studied{std::make_shared<const Model>(scene.model())};
+  if (!list.listed) list = made_up_cameras(render, *studied.model);
+  studied.near_plane = near_plane_of(render, list, *studied.model);
+  studied.shots = make_shots(render, list, studied.near_plane, studied.model->axes);
+  if (options.scene.path.empty() && studied.shots.size() > 1) fail("--view all: a study is of one view");
   return studied;
-}
-
-stereo::RigSettings rig(const StudyOptions& options, double near_plane) {
-  stereo::RigSettings settings;
-  settings.ipd = options.scene.ipd.value_or(settings.ipd);
-  settings.units_per_metre = options.scene.units_per_metre;
-  settings.near_plane = near_plane;
-  return settings;
-}
-
-Camera head_of(const StudyOptions& options, const Studied& studied) {
-  const std::vector<std::string>& names = options.scene.views;
-  if (names.empty()) return sized(options.scene, studied.cameras.cameras.front());
-  for (const Camera& camera : studied.cameras.cameras) {
-    if (camera.name == names.front()) return sized(options.scene, camera);
-  }
-  fail("--view {}: {} has no camera of this name", names.front(), studied.cameras.source);
 }
 
 // JSON has no infinity: null.
@@ -91,14 +83,12 @@ ordered_json to_json(const study::StabilityBounds& b) {
           {"rivalry: disagreement below dB", b.disagreement_db}};
 }
 
-void find_losses(gl::Context& context, const StudyOptions& options, const Studied& studied,
-                 const stereo::EyePair& eyes, std::vector<Variant>& variants) {
+void find_losses(study::Still& still, double target, std::vector<Variant>& variants) {
   Progress progress("losses", variants.size());
   for (std::size_t k = 0; k < variants.size(); ++k) {
     // The eyes' rules are compared at one loss.
-    variants[k].loss = variants[k].th_eyes == TH_EYES_PER_EYE
-                           ? study::loss_at(context, *studied.model, eyes, variants[k], options.target)
-                           : variants[k - 1].loss;
+    variants[k].loss =
+        variants[k].th_eyes == TH_EYES_PER_EYE ? still.loss_at(variants[k], target) : variants[k - 1].loss;
     progress.update(k + 1);
   }
 }
@@ -133,13 +123,17 @@ void check_cases(const std::vector<std::string>& wanted, const std::vector<study
 }
 
 ordered_json stability(gl::Context& context, const StudyOptions& options, const Studied& studied) {
-  const Camera head = head_of(options, studied);
-  const stereo::RigSettings settings = rig(options, studied.near_plane);
+  const Camera head = into_axes(studied.shots.front().eyes.front().camera, studied.model->axes);
+  const stereo::RigSettings settings = rig_settings(options.scene, studied.near_plane);
   auto cases = study::built_in_cases();
   for (auto& one : study::cases_in(studied.model, head, settings)) cases.push_back(std::move(one));
   check_cases(options.cases, cases);
   std::vector<Variant> variants = study::all_variants();
-  find_losses(context, options, studied, stereo::make_rig(head, settings), variants);
+  {
+    const stereo::EyePair eyes = stereo::make_rig(head, settings);
+    study::Still still(context, *studied.model, {eyes.views.begin(), eyes.views.end()});
+    find_losses(still, options.target, variants);
+  }
 
   const study::StabilityBounds bounds;
   ordered_json json = {{"target_db", options.target}, {"bounds", to_json(bounds)}};
@@ -164,22 +158,6 @@ ordered_json stability(gl::Context& context, const StudyOptions& options, const 
   return json;
 }
 
-std::vector<std::vector<shared::View>> path_views(const StudyOptions& options, double near_plane) {
-  const stereo::RigSettings settings = rig(options, near_plane);
-  std::vector<std::vector<shared::View>> frames;
-  for (const Camera& camera : load_cameras(options.scene.path)) {
-    const Camera head = sized(options.scene, camera);
-    if (options.scene.mono) {
-      frames.push_back({make_view(head, near_plane)});
-    } else {
-      const stereo::EyePair eyes = stereo::make_rig(head, settings);
-      frames.push_back({eyes.views[0], eyes.views[1]});
-    }
-  }
-  if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
-  return frames;
-}
-
 Variant variant_of(const StudyOptions& o) {
   return {number_of(o.th, th_choices), number_of(o.transmittance, transmittance_choices),
           number_of(o.contrast, contrast_choices), number_of(o.th_eyes, th_eyes_choices)};
@@ -187,11 +165,14 @@ Variant variant_of(const StudyOptions& o) {
 
 ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   Variant variant = variant_of(options);
-  const auto frames = path_views(options, studied.near_plane);
+  std::vector<std::vector<shared::View>> frames;
+  for (const Shot& shot : studied.shots) frames.push_back(views_of(shot));
+  if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
   const float quality = options.scene.quality.value_or(0.0f);
   if (quality == 0.0f)
-    variant.loss = options.scene.loss.value_or(
-        study::carried_loss(context, *studied.model, frames, variant, options.target));
+    variant.loss = options.scene.loss
+                       ? *options.scene.loss
+                       : study::carried_loss(context, *studied.model, frames, variant, options.target);
   Progress progress("frames", frames.size());
   std::size_t done = 0;
   const auto results =
@@ -223,19 +204,10 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
   return json;
 }
 
-// The pair NAME_left, NAME_right of the cameras, or a rig on the camera.
-stereo::EyePair pair_of(const StudyOptions& options, const Studied& studied) {
-  const std::vector<std::string>& names = options.scene.views;
-  const auto given = names.empty() ? std::nullopt : stereo::find_eyes(studied.cameras.cameras, names.front());
-  if (!given) return stereo::make_rig(head_of(options, studied), rig(options, studied.near_plane));
-  return stereo::rig_from_eyes(sized(options.scene, (*given)[0]), sized(options.scene, (*given)[1]),
-                               studied.near_plane);
-}
-
 ordered_json eyes(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   Progress progress("--th-eyes", std::size(th_eyes_choices));
   std::size_t done = 0;
-  const auto results = study::run_eyes(context, *studied.model, pair_of(options, studied),
+  const auto results = study::run_eyes(context, *studied.model, views_of(studied.shots.front()),
                                        variant_of(options), options.target, [&] { progress.update(++done); });
   fmt::print(
       "| rule | loss | pairs | removed | left dB | right dB | disagreement dB | both eyes dB | `per-eye` at "
@@ -259,15 +231,71 @@ ordered_json eyes(gl::Context& context, const StudyOptions& options, const Studi
   return json;
 }
 
+void print_rules(const std::vector<study::RuleResult>& results) {
+  constexpr const char* shown[] = {"project", "order", "pairs", "tile_sort", "ranges", "blend"};
+  fmt::print(
+      "| rule | loss | dB | disagreement dB | pairs, M | removed | frame ms | {} | rest | of exact | of "
+      "`one` "
+      "| |\n",
+      fmt::join(shown, " | "));
+  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const study::RuleResult& r : results) {
+    fmt::print("| {} | {:.4g} | {:.2f} | {:.2f} | {:.3f} | {:.1f} % | {:.3f} |", r.variant.name(),
+               r.variant.loss, r.db, r.disagreement_db, 1e-6 * r.pairs, 100.0 * r.removed, r.frame_ms);
+    std::map<std::string, double> ms;
+    for (const gl::StageTime& stage : r.stages) ms[stage.name] = stage.ms;
+    for (const char* name : shown) {
+      fmt::print(" {:.3f} |", ms[name]);
+      ms.erase(name);
+    }
+    double rest = 0.0;
+    for (const auto& [name, stage_ms] : ms) rest += stage_ms;
+    fmt::print(" {:.3f} | {:.3f} | {:.3f} | {} |\n", rest, r.of_exact, r.of_one, r.problem);
+  }
+}
+
+ordered_json rules(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+  const Shot& shot = studied.shots.front();
+  study::Still still(context, *studied.model, views_of(shot));
+  std::vector<Variant> variants = study::rules_of(still.views().size());
+  std::size_t done = 0;
+  {
+    Progress progress("losses", variants.size());
+    study::find_losses(still, variants, options.target, [&] { progress.update(++done); });
+  }
+  Progress progress("timing", study::rule_rounds * variants.size());
+  done = 0;
+  const auto results =
+      study::measure_rules(still, variants, options.target, options.frames, [&] { progress.update(++done); });
+  const shared::View& view = still.views().front();
+  fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.scene, shot.name,
+             still.views().size(), view.width, view.height, options.target);
+  print_rules(results);
+  ordered_json json = {{"renderer", context.renderer()},
+                       {"scene", options.scene.scene},
+                       {"gaussians", studied.model->count()},
+                       {"view", shot.name},
+                       {"eyes", still.views().size()},
+                       {"width", view.width},
+                       {"height", view.height},
+                       {"target_db", options.target},
+                       {"frames", options.frames},
+                       {"rounds", study::rule_rounds}};
+  for (const study::RuleResult& result : results) json["rules"].push_back(to_json(result));
+  return json;
+}
+
 ExitCode study_scene(const StudyOptions& options) {
-  const int chosen = int{options.stability} + int{options.eyes} + int{!options.scene.path.empty()};
-  if (chosen != 1) fail("study: choose --stability, --eyes or --path FILE");
+  const int chosen =
+      int{options.stability} + int{options.eyes} + int{options.rules} + int{!options.scene.path.empty()};
+  if (chosen != 1) fail("study: choose --stability, --eyes, --rules or --path FILE");
+  if (options.eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
   if (!options.json.empty()) check_output(options.json);
   const Studied studied = open(options);
-  const auto context = gl::Context::open();
-  log_info("drawing with {}", context->renderer());
+  const auto context = open_context(options.scene);
   const ordered_json json = options.stability ? stability(*context, options, studied)
                             : options.eyes    ? eyes(*context, options, studied)
+                            : options.rules   ? rules(*context, options, studied)
                                               : carried(*context, options, studied);
   if (!options.json.empty()) save_json(options.json, json);
   return ExitCode::done;
@@ -284,22 +312,31 @@ void add_study(CLI::App& program, Command& command) {
                 "Every rule, source, contrast and eye rule on every failure case");
   sub->add_flag("--eyes", o.eyes,
                 "One rule with each --th-eyes on a still pair (both eyes' light by default)");
-  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME");
+  auto* rules = sub->add_flag("--rules", o.rules,
+                              "Every rule, source and contrast at one error on a still pair, timed");
+  sub->add_option("--frames", o.frames, "Timed of each rule in each of three rounds (20)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000).description(""))
+      ->needs(rules);
+  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules);
   sub->add_option("--path", o.scene.path, "Carry one rule along the cameras of this file instead")
       ->type_name("FILE");
   sub->add_option("--target", o.target, "dB that losses are chosen for (40)")
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
   sub->add_option("--loss", o.scene.loss, "Of the rule carried, instead")
+      ->excludes(rules)
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""));
   sub->add_option("--quality", o.scene.quality, "Steer the rule carried to so many dB")
+      ->excludes(rules)
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
   const auto choose = [&](const char* name, std::string& into, const auto& choices) {
     std::vector<std::string> names;
     for (const Choice& choice : choices) names.emplace_back(choice.name);
     sub->add_option(name, into, fmt::format("Of the rule carried ({})", into))
+        ->excludes(rules)
         ->check(CLI::IsMember(names).description(""))
         ->type_name(fmt::format("{}", fmt::join(names, "|")));
   };
@@ -316,7 +353,12 @@ void add_study(CLI::App& program, Command& command) {
          "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },
          "Of an eye's picture")
       ->type_name("WxH");
-  sub->add_flag("--mono", o.scene.mono, "Along a path: the cameras themselves, no rig");
+  sub->add_option("--preset", o.scene.preset,
+                  "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees")
+      ->check(CLI::IsMember({"preview", "headset"}).description(""))
+      ->type_name("preview|headset");
+  sub->add_flag("--mono", o.scene.mono, "With --path and --rules: the cameras themselves, no rig");
+  add_measured_options(*sub, o.scene);
   sub->add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
   sub->add_option("--units-per-metre", o.scene.units_per_metre, "World units that make a metre (1)")
       ->type_name("U");

@@ -2,11 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "shared/limits.h"
 
 namespace binosplat {
+
+namespace {
+
+template <typename T>
+bool same_bits_of(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+}  // namespace
+
+bool same_bits(std::span<const Picture> a, std::span<const Picture> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Picture& p, const Picture& q) {
+    return p.width == q.width && p.height == q.height && same_bits_of(p.colour, q.colour) &&
+           same_bits_of(p.z_sum, q.z_sum);
+  });
+}
 
 Image composite(const Picture& picture, const Background& background) {
   Image image(picture.width, picture.height, background ? 3 : 4);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace binosplat {
@@ -40,6 +41,9 @@ struct Picture {
         colour(static_cast<std::size_t>(w) * h, glm::vec4(0, 0, 0, 1)),
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
+
+/// Whether pictures are the same in number, size and every bit.
+bool same_bits(std::span<const Picture> a, std::span<const Picture> b);
 
 /// RGB behind the scene, display-referred; none: the picture keeps straight alpha.
 using Background = std::optional<glm::vec3>;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <utility>
 
@@ -36,16 +35,6 @@ constexpr double agreement = 0.03;
 constexpr double warm_up_seconds = 3.0;
 
 const glm::vec3 black(0.0f);
-
-bool same_bits(const std::vector<Picture>& a, const std::vector<Picture>& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const bool same =
-        std::memcmp(a[i].colour.data(), b[i].colour.data(), a[i].colour.size() * sizeof(glm::vec4)) == 0 &&
-        std::memcmp(a[i].z_sum.data(), b[i].z_sum.data(), a[i].z_sum.size() * sizeof(float)) == 0;
-    if (!same) return false;
-  }
-  return true;
-}
 
 bool is_finite(const Picture& picture) {
   return std::all_of(picture.colour.begin(), picture.colour.end(), [](const glm::vec4& v) {

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "measure/search.h"
+#include "study/squared_error.h"
 
 namespace binosplat::study {
 
@@ -25,24 +26,25 @@ double psnr_of(double squared_error) {
   return squared_error > 0.0 ? std::min(equal_db, -10.0 * std::log10(squared_error)) : equal_db;
 }
 
+Picture as_picture(const Image& photo) {
+  Picture picture(photo.width, photo.height);
+  for (std::size_t k = 0; k < picture.colour.size(); ++k)
+    picture.colour[k] = {photo.data[3 * k], photo.data[3 * k + 1], photo.data[3 * k + 2], 0.0f};
+  return picture;
+}
+
 }  // namespace
 
 /// What a view should look like, on the GPU, and what its exact picture is worth.
 struct Calibrator::Wanted {
-  explicit Wanted(gl::Context& context)
-      : colours(context, "wanted colours"), sums(context, "squared errors") {}
-
-  gl::Buffer colours;  // vec4 by pixel: the exact frame's C over black, or the photo
-  gl::Buffer sums;     // float by work group
-  std::uint32_t pixels = 0;
-  std::uint32_t levels = 0;    // of squared_error.comp
-  double exact_db = equal_db;  // of the exact picture against the photo
+  SquaredError error;  // against the exact picture, or the photo
   std::uint64_t exact_pairs = 0;
+  double exact_db = equal_db;  // of the exact picture against the photo
 };
 
 Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
                        double near_plane, CalibrationTarget::Kind kind)
-    : context_(context), dispatcher_(context), frame_(context, model), kind_(kind) {
+    : frame_(context, model), kind_(kind) {
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
     const bool drop = kind == CalibrationTarget::Kind::drop;
@@ -52,40 +54,16 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
            view.camera.name);
     names_.push_back(view.camera.name);
     views_.push_back(make_view(view.camera, near_plane));
-    Wanted& wanted = *wanted_.emplace_back(std::make_unique<Wanted>(context));
-    wanted.exact_pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
-    wanted.pixels =
-        static_cast<std::uint32_t>(view.camera.width) * static_cast<std::uint32_t>(view.camera.height);
-    std::vector<glm::vec4> colours;
-    if (drop) {
-      for (std::size_t k = 0; k < wanted.pixels; ++k)
-        colours.emplace_back(view.photo->data[3 * k], view.photo->data[3 * k + 1],
-                             view.photo->data[3 * k + 2], 0.0f);
-      wanted.levels = 255;
-    } else {
-      colours = frame_.read_pictures().front().colour;
-    }
-    wanted.colours.upload(colours);
-    wanted.sums.reserve(static_cast<std::int64_t>(wanted.pixels / THREADS + 1) * 4);
-    wanted.exact_db = psnr_of(squared_error(views_.size() - 1));
+    const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
+    const std::vector<Picture> wanted = drop ? std::vector{as_picture(*view.photo)} : frame_.read_pictures();
+    wanted_.push_back(std::unique_ptr<Wanted>(new Wanted{{context, wanted, drop ? 255u : 0u}, pairs}));
+    wanted_.back()->exact_db = psnr_of(squared_error(views_.size() - 1));
   }
 }
 
 Calibrator::~Calibrator() = default;
 
-double Calibrator::squared_error(std::size_t view) {
-  Wanted& wanted = *wanted_[view];
-  dispatcher_.begin_frame();
-  dispatcher_.begin_stage("squared error");
-  dispatcher_.run(context_.program("squared_error.comp"), gl::Work::threads(wanted.pixels, THREADS),
-                  {{"Colours", frame_.colours()}, {"Wanted", wanted.colours}, {"Sums", wanted.sums}},
-                  {{"pixel_count", wanted.pixels}, {"levels", wanted.levels}});
-  dispatcher_.end_frame();
-  dispatcher_.wait_and_time();
-  double sum = 0.0;
-  for (const float part : wanted.sums.read<float>((wanted.pixels + THREADS - 1) / THREADS)) sum += part;
-  return sum / (3.0 * wanted.pixels);
-}
+double Calibrator::squared_error(std::size_t view) { return wanted_[view]->error.mean(frame_.colours()); }
 
 Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
   Cost cost;

@@ -51,8 +51,6 @@ class Calibrator {
   double squared_error(std::size_t view);  // of the last frame drawn, mean
 
   struct Wanted;
-  gl::Context& context_;
-  gl::Dispatcher dispatcher_;
   render::Frame frame_;
   CalibrationTarget::Kind kind_;
   std::vector<std::string> names_;

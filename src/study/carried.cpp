@@ -1,30 +1,22 @@
 #include "study/carried.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "base/error.h"
 #include "measure/search.h"
 #include "render/frame.h"
+#include "study/squared_error.h"
 
 namespace binosplat::study {
 
 namespace {
 
-bool same_bits(const std::vector<Picture>& a, const std::vector<Picture>& b) {
-  for (std::size_t v = 0; v < a.size(); ++v) {
-    if (std::memcmp(a[v].colour.data(), b[v].colour.data(), a[v].colour.size() * sizeof(glm::vec4)) != 0)
-      return false;
-  }
-  return true;
-}
-
 // `one` with as many pairs as were drawn, from the loss that the last frame needed. Pairs fall slowly with
 // the loss: a secant over logarithms gets there in a few frames.
 class SamePairs {
  public:
-  SamePairs(gl::Context& context, const Model& model, Variant variant)
-      : frame_(context, model), variant_(variant) {
+  SamePairs(render::Frame& frame, Variant variant) : frame_(frame), variant_(variant) {
     variant_.transmittance = TRANSMITTANCE_ONE;
     variant_.contrast = CONTRAST_OFF;
   }
@@ -50,11 +42,10 @@ class SamePairs {
     return static_cast<double>(frame_.draw(views, variant_.settings()).pairs);
   }
 
-  std::vector<Picture> pictures() { return frame_.read_pictures(); }
   void start_at(double loss) { loss_ = loss; }
 
  private:
-  render::Frame frame_;
+  render::Frame& frame_;
   Variant variant_;
   double loss_ = 0.0;
 };
@@ -67,13 +58,14 @@ std::vector<CarriedFrame> run_carried(gl::Context& context, const Model& model,
                                       const std::function<void()>& progress) {
   render::FrameSettings settings = variant.settings();
   settings.quality = quality;
-  render::Frame exact(context, model), carried(context, model);
-  SamePairs one(context, model, variant);
+  // `one` measures nothing and goes by nothing: it takes turns with the exact frames.
+  render::Frame still(context, model), carried(context, model);
+  SamePairs one(still, variant);
   std::vector<CarriedFrame> results;
   for (const std::vector<shared::View>& views : frames) {
     CarriedFrame& result = results.emplace_back();
-    const double exact_pairs = static_cast<double>(exact.draw(views).pairs);
-    const std::vector<Picture> truth = exact.read_pictures();
+    const double exact_pairs = static_cast<double>(still.draw(views).pairs);
+    const std::vector<Picture> truth = still.read_pictures();
     const render::FrameReport report = carried.draw(views, settings);
     const std::vector<Picture> pictures = carried.read_pictures();
     const FrameErrors errors = judge(views, truth, pictures, settings.tile_size);
@@ -86,10 +78,10 @@ std::vector<CarriedFrame> run_carried(gl::Context& context, const Model& model,
       if (results.size() == 1) one.start_at(variant.loss);
       if (result.fell_back) {
         one.draw_at(views, variant.loss);
-        result.equals_one = same_bits(pictures, one.pictures());
+        result.equals_one = same_bits(pictures, still.read_pictures());
       }
       result.one_pairs = one.draw(views, result.pairs);
-      result.one_db = judge(views, truth, one.pictures(), settings.tile_size).psnr;
+      result.one_db = SquaredError(context, truth).psnr(still.colours());
     }
     progress();
   }
@@ -98,17 +90,16 @@ std::vector<CarriedFrame> run_carried(gl::Context& context, const Model& model,
 
 float carried_loss(gl::Context& context, const Model& model,
                    const std::vector<std::vector<shared::View>>& frames, Variant variant, double target) {
-  render::Frame exact(context, model);
-  exact.draw(frames.at(1));
-  const std::vector<Picture> truth = exact.read_pictures();
+  render::Frame frame(context, model);
+  frame.draw(frames.at(1));
+  SquaredError error(context, frame.read_pictures());
   const auto at = [&](double loss) {
-    render::Frame frame(context, model);
+    frame.forget();
     variant.loss = 0.0f;
     frame.draw(frames[0], variant.settings());
     variant.loss = static_cast<float>(loss);
-    const render::FrameSettings settings = variant.settings();
-    frame.draw(frames[1], settings);
-    return judge(frames[1], truth, frame.read_pictures(), settings.tile_size).psnr;
+    frame.draw(frames[1], variant.settings());
+    return error.psnr(frame.colours());
   };
   const double start = variant.th == TH_PERIPHERAL ? 1.5 : variant.contrast == CONTRAST_OFF ? 0.15 : 0.01;
   return static_cast<float>(measure::find_loss(at, target, {.start = start, .tolerance = 0.1}).loss);

@@ -20,7 +20,8 @@ struct EyesResult {
 
 /// The variant with each --th-eyes, at the loss for `target` dB on a still pair once it has settled.
 /// `progress` is called after each.
-std::vector<EyesResult> run_eyes(gl::Context& context, const Model& model, const stereo::EyePair& eyes,
-                                 Variant variant, double target, const std::function<void()>& progress);
+std::vector<EyesResult> run_eyes(gl::Context& context, const Model& model,
+                                 const std::vector<shared::View>& eyes, Variant variant, double target,
+                                 const std::function<void()>& progress);
 
 }  // namespace binosplat::study

@@ -7,7 +7,6 @@
 
 #include "base/statistics.h"
 #include "measure/depth_table.h"
-#include "measure/search.h"
 #include "render/frame.h"
 
 namespace binosplat::study {
@@ -27,9 +26,8 @@ bool same_views(const stereo::EyePair& a, const stereo::EyePair& b) {
 }
 
 // A still camera's exact frame is drawn once.
-Exact exact_frames(gl::Context& context, const StabilityCase& one) {
+Exact exact_frames(render::Frame& frame, const StabilityCase& one) {
   Exact exact;
-  render::Frame frame(context, *one.model);
   for (std::size_t n = 0; n < one.frames.size(); ++n) {
     if (n > 0 && same_views(one.frames[n], one.frames[n - 1])) {
       exact.pairs.push_back(exact.pairs.back());
@@ -89,11 +87,11 @@ StabilityResult summary(const std::vector<FrameErrors>& frames, std::size_t even
   return r;
 }
 
-StabilityResult run_variant(gl::Context& context, const StabilityCase& one, const Exact& exact,
+StabilityResult run_variant(render::Frame& frame, const StabilityCase& one, const Exact& exact,
                             const Variant& variant, const StabilityBounds& bounds) {
   render::FrameSettings settings = variant.settings();
   settings.depth_table = exact.table;
-  render::Frame frame(context, *one.model);
+  frame.forget();
   std::vector<FrameErrors> errors;
   double pairs = 0.0, exact_pairs = 0.0;
   std::size_t at = 0;
@@ -141,28 +139,14 @@ std::vector<Variant> all_variants() {
 std::vector<StabilityResult> run_case(gl::Context& context, const StabilityCase& one,
                                       const std::vector<Variant>& variants, const StabilityBounds& bounds,
                                       const std::function<void()>& progress) {
-  const Exact exact = exact_frames(context, one);
+  render::Frame frame(context, *one.model);
+  const Exact exact = exact_frames(frame, one);
   std::vector<StabilityResult> results;
   for (const Variant& variant : variants) {
-    results.push_back(run_variant(context, one, exact, variant, bounds));
+    results.push_back(run_variant(frame, one, exact, variant, bounds));
     progress();
   }
   return results;
-}
-
-float loss_at(gl::Context& context, const Model& model, const stereo::EyePair& eyes, Variant variant,
-              double target) {
-  if (variant.th == TH_TAU) return 0.0f;
-  constexpr std::size_t frames = 3;
-  const StabilityCase one{"", "", std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model),
-                          std::vector(frames, eyes), 0};
-  const Exact exact = exact_frames(context, one);
-  const auto settled = [&](double loss) {
-    variant.loss = static_cast<float>(loss);
-    return run_variant(context, one, exact, variant, {}).settled_db;
-  };
-  const measure::LossSearch search{.start = variant.th == TH_PERIPHERAL ? 1.0 : 0.1, .tolerance = 0.1};
-  return static_cast<float>(measure::find_loss(settled, target, search).loss);
 }
 
 }  // namespace binosplat::study

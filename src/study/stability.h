@@ -58,9 +58,4 @@ std::vector<StabilityResult> run_case(gl::Context& context, const StabilityCase&
                                       const std::vector<Variant>& variants, const StabilityBounds& bounds,
                                       const std::function<void()>& progress);
 
-/// The loss at which a variant's frames of a still pair come to `target` dB once they have settled: three
-/// frames each. 0 for --th tau.
-float loss_at(gl::Context& context, const Model& model, const stereo::EyePair& eyes, Variant variant,
-              double target);
-
 }  // namespace binosplat::study

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/scene.h"
+#include "support/fixtures.h"
 #include "support/program.h"
 
 namespace binosplat {
@@ -29,14 +32,108 @@ TEST(Study, APathIsCarriedAndTold) {
   EXPECT_GT(json.at("frames")[2].at("removed").get<double>(), 0.0);
 }
 
+// What frames of a file of the same 1000 Gaussians come to.
+nlohmann::json carried(const test::TempFolder& folder, const std::string& model) {
+  const test::Outcome outcome = test::run_program(
+      {"study", model, "--path", folder / "path.json", "--loss", "0.05", "--json", folder / "s.json"});
+  EXPECT_TRUE(test::good(outcome));
+  return nlohmann::json::parse(test::read_text(folder / "s.json")).at("frames");
+}
+
+TEST(Study, CamerasEnterTheModelsFrame) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  nlohmann::json path;
+  for (int n = 0; n < 2; ++n) {
+    path.push_back(test::camera_json(fmt::format("frame_{}", n), 0.0));
+    path.back()["position"] = {2.0 + 0.01 * n, 3.0, -10.0};
+  }
+  test::write_text(folder / "path.json", path.dump());
+  const auto ply = carried(folder, fixtures / "ply/inria-train-1000.ply");
+  const auto gltf = carried(folder, fixtures / "gltf/st-train-sh3.glb");  // x left, y up
+  for (std::size_t n = 0; n < 2; ++n) {
+    const double pairs = ply[n].at("pairs").get<double>();
+    EXPECT_GT(pairs, 100.0);
+    EXPECT_NEAR(gltf[n].at("pairs").get<double>(), pairs, 0.01 * pairs);
+  }
+}
+
+struct RulesCommand : test::SceneTest {
+  RulesCommand() { add_cameras(); }
+
+  std::string printed;
+
+  nlohmann::json rules(std::vector<std::string> more) {
+    more.insert(more.begin(), {"study", model, "--rules", "--frames", "1", "--json", folder / "r.json"});
+    const test::Outcome outcome = test::run_program(more);
+    EXPECT_TRUE(test::good(outcome));
+    printed = outcome.out;
+    return nlohmann::json::parse(test::read_text(folder / "r.json"));
+  }
+};
+
+TEST_F(RulesCommand, PrintsARowForEachRuleAndKeepsAll) {
+  // No loss makes pictures of 1 dB: quickly seen, and no reason to end.
+  const auto json = rules({"--view", "pair", "--target", "1"});
+  const std::string renderer = json.at("renderer");
+  EXPECT_EQ(printed.rfind(renderer + ": " + model + ", pair, 2 x 72 x 48 px, 1 dB\n", 0), 0u) << printed;
+  ASSERT_EQ(json.at("rules").size(), 17u);
+  for (const auto& rule : json.at("rules")) {
+    const std::string name = rule.at("name");
+    SCOPED_TRACE(name);
+    const auto row = printed.find("\n| " + name + " | ");
+    ASSERT_NE(row, std::string::npos) << printed;
+    const std::string cells = printed.substr(row + 1, printed.find('\n', row + 1) - row - 1);
+    EXPECT_EQ(std::count(cells.begin(), cells.end(), '|'), 18);
+    const double ms = rule.at("frame_ms");
+    EXPECT_NE(cells.find(fmt::format(" {:.3f} |", ms)), std::string::npos) << cells;
+    EXPECT_GT(rule.at("stages_ms").at("blend").get<double>(), 0.0);
+    const std::string problem = name == "tau" ? "" : "not within 0.3 dB of 1 dB";
+    EXPECT_EQ(rule.value("problem", ""), problem);
+    EXPECT_NE(cells.find("| " + problem + " |"), std::string::npos) << cells;
+  }
+}
+
+TEST_F(RulesCommand, DrawsTheOneView) {
+  const auto json = rules({"--view", "front", "--mono", "--target", "36"});
+  EXPECT_EQ(json.at("eyes"), 1);
+  ASSERT_EQ(json.at("rules").size(), 9u);
+  EXPECT_TRUE(json.at("rules")[0].at("psnr_db").is_null());
+  EXPECT_EQ(json.at("rules")[0].at("pairs_removed"), 0.0);
+  for (std::size_t k = 1; k < 9; ++k) {
+    const auto& rule = json.at("rules")[k];
+    EXPECT_TRUE(rule.at("disagreement_db").is_null());
+    const bool near = std::abs(rule.at("psnr_db").get<double>() - 36.0) <= 0.3;
+    EXPECT_EQ(near, !rule.contains("problem")) << rule;
+  }
+}
+
+TEST_F(RulesCommand, PutsARigOnACameraWithALensOfAPreset) {
+  const auto exact_pairs = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--view", "front", "--size", "61x53", "--target", "1"});
+    const auto json = rules(more);
+    EXPECT_EQ(json.at("eyes"), 2);
+    EXPECT_EQ(json.at("width"), 61);
+    return json.at("rules")[0].at("pairs").get<double>();
+  };
+  EXPECT_LT(exact_pairs({"--preset", "headset"}), exact_pairs({}));
+}
+
 TEST(Study, WhatMakesNoSenseIsNamed) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
       {{}, "--stability"},
-      {{"--stability", "--path", "x.json"}, "choose --stability, --eyes or --path"},
+      {{"--stability", "--path", "x.json"}, "choose --stability, --eyes, --rules or --path"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
+      {{"--eyes", "--view", "all"}, "--view all"},
+      {{"--eyes", "--mono"}, "compares the eyes"},
+      {{"--rules", "--eyes"}, "choose --stability"},
+      {{"--rules", "--view", "no-such"}, "--view no-such"},
+      {{"--rules", "--th", "squared"}, "--rules"},
+      {{"--rules", "--loss", "0.1"}, "--loss"},
+      {{"--eyes", "--frames", "5"}, "--rules"},
       {{"--path", "no_such.json"}, "no_such.json"},
       {{"--stability", "--json", folder / "file/s.json"}, "file"},
   };

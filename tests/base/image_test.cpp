@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 namespace binosplat {
 namespace {
@@ -45,6 +48,20 @@ TEST(Image, IsQuantisedByRoundingAndClamping) {
   image.data = {0.5f, 0.25f, 1e-5f, 0.0f};
   EXPECT_EQ(quantised(image, 65536).data,
             (std::vector<float>{32768.0f / 65535.0f, 16384.0f / 65535.0f, 1.0f / 65535.0f, 0.0f}));
+}
+
+TEST(Image, SameBitsTellsTheLastBitTheSizeAndTheNumber) {
+  const std::vector<Picture> pictures = {four_pixels(), four_pixels()};
+  EXPECT_TRUE(same_bits(pictures, pictures));
+  EXPECT_FALSE(same_bits(pictures, std::span(pictures).first(1)));
+  const auto changed = [&](const std::function<void(Picture&)>& change) {
+    std::vector<Picture> other = pictures;
+    change(other[1]);
+    return !same_bits(pictures, other);
+  };
+  EXPECT_TRUE(changed([](Picture& p) { p.colour[3].a = -0.0f; }));
+  EXPECT_TRUE(changed([](Picture& p) { p.z_sum[2] = std::nextafter(1.0f, 2.0f); }));
+  EXPECT_TRUE(changed([](Picture& p) { p.width = 4, p.height = 1; }));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -94,23 +93,20 @@ Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int sh
   return loaded;
 }
 
-bool same(const Picture& a, const Picture& b) {
-  return std::memcmp(a.colour.data(), b.colour.data(), a.colour.size() * sizeof(glm::vec4)) == 0 &&
-         std::memcmp(a.z_sum.data(), b.z_sum.data(), a.z_sum.size() * sizeof(float)) == 0;
-}
-
 // Each eye must have the same bits drawn with the other and alone, and must not be empty.
 void check(render::Frame& frame, const Shot& shot) {
   frame.draw(shot.eyes);
   const std::vector<Picture> both = frame.read_pictures();
   for (std::size_t eye = 0; eye < 2; ++eye) {
     frame.draw(std::span(&shot.eyes[eye], 1));
-    if (!same(frame.read_pictures().front(), both[eye]))
+    const std::span picture(&both[eye], 1);
+    if (!same_bits(frame.read_pictures(), picture))
       fail("{}: eye {} differs from itself alone", shot.name, eye);
-    if (same(both[eye], Picture(both[eye].width, both[eye].height)))
+    if (same_bits(picture, std::vector{Picture(both[eye].width, both[eye].height)}))
       fail("{}: eye {} is empty", shot.name, eye);
   }
-  if (same(both[0], both[1])) fail("{}: both eyes are the same picture", shot.name);
+  if (same_bits(std::span(&both[0], 1), std::span(&both[1], 1)))
+    fail("{}: both eyes are the same picture", shot.name);
 }
 
 // Medians of the stages and of the whole frame, with the quartiles.

@@ -10,6 +10,7 @@
 #include "render/frame.h"
 #include "study/carried.h"
 #include "study/eyes.h"
+#include "study/still.h"
 #include "support/gl.h"
 #include "support/models.h"
 
@@ -24,6 +25,11 @@ StabilityCase small_case(std::size_t frames) {
     head.position.x += 0.002;
   }
   return one;
+}
+
+// The first pair of a case.
+Still still_of(const StabilityCase& one) {
+  return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
 StabilityResult run_one(const StabilityCase& one, const Variant& variant,
@@ -110,18 +116,19 @@ TEST(Stability, TheCasesShowSomething) {
 TEST(Stability, TheLossComesToItsTarget) {
   const StabilityCase one = small_case(3);
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_BOTH};
-  variant.loss = loss_at(test::gl_context(), *one.model, one.frames[0], variant, 38.0);
+  variant.loss = still_of(one).loss_at(variant, 38.0);
   StabilityCase still = one;
   still.frames = {one.frames[0], one.frames[0], one.frames[0]};
   const double db = run_one(still, variant).settled_db;
   EXPECT_GE(db, 38.0);
   EXPECT_LT(db, 38.5);
-  EXPECT_EQ(loss_at(test::gl_context(), *one.model, one.frames[0], {.th = TH_TAU}, 38.0), 0.0f);
+  EXPECT_EQ(still_of(one).loss_at({.th = TH_TAU}, 38.0), 0.0f);
 }
 
 TEST(Eyes, RulesAreComparedAtOneErrorAndAtAsManyPairs) {
   const StabilityCase one = small_case(1);
-  const auto results = run_eyes(test::gl_context(), *one.model, one.frames[0],
+  const std::vector<shared::View> eyes(one.frames[0].views.begin(), one.frames[0].views.end());
+  const auto results = run_eyes(test::gl_context(), *one.model, eyes,
                                 {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_BOTH}, 38.0, [] {});
   ASSERT_EQ(results.size(), 3u);
   for (const EyesResult& r : results) {

@@ -8,7 +8,7 @@
 
 #include "base/statistics.h"
 #include "render/frame.h"
-#include "study/stability.h"
+#include "study/still.h"
 #include "support/gl.h"
 
 namespace binosplat::study {
@@ -19,6 +19,11 @@ StabilityCase case_named(const std::string& name) {
     if (one.name == name) return std::move(one);
   }
   throw std::runtime_error("no case " + name);
+}
+
+// The first pair of a case.
+Still still_of(const StabilityCase& one) {
+  return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
 struct Shown {
@@ -49,7 +54,7 @@ TEST(Traps, AFarWallOfTinyGaussiansGoesAtALossThatIsFineElsewhere) {
   // Trap 1. A loss that is chosen on something else takes the wall away by and by; --quality sees it.
   const StabilityCase wall = case_named("far-wall"), clutter = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.loss = loss_at(test::gl_context(), *clutter.model, clutter.frames[0], variant, 34.0);
+  variant.loss = still_of(clutter).loss_at(variant, 34.0);
   const auto open = frames_of(wall, variant.settings(), 8);
   EXPECT_LT(median(open, &Shown::db, 4, 8), 30.0);
   render::FrameSettings steered = variant.settings();
@@ -63,7 +68,7 @@ TEST(Traps, AStillCameraSettlesAndDoesNotDrift) {
   const StabilityCase still = case_named("still");
   for (const int contrast : {CONTRAST_OFF, CONTRAST_FINAL, CONTRAST_BEHIND}) {
     Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = contrast};
-    variant.loss = loss_at(test::gl_context(), *still.model, still.frames[0], variant, 40.0);
+    variant.loss = still_of(still).loss_at(variant, 40.0);
     const auto shown = frames_of(still, variant.settings(), 90);
     const double early = median(shown, &Shown::db, 5, 30), late = median(shown, &Shown::db, 60, 90);
     EXPECT_NEAR(late, early, 0.5) << contrast_choices[contrast].name;

@@ -1,0 +1,186 @@
+#include "study/rules.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/statistics.h"
+#include "measure/search.h"
+#include "stereo/disagreement.h"
+#include "study/settings.h"
+
+namespace binosplat::study {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double near_target_db = 0.3;  // rules nearer than this to the target are compared
+constexpr double tolerance_db = 0.1;
+constexpr int evaluations_max = 20;
+constexpr int warm_up_frames = 5;
+// With a contrast, what frames measure of themselves settles in seven frames. From then on single frames
+// swing (by 0.5 dB and 15 % of the pairs on fox) in a round of twelve, as what was left out ages until it is
+// measured again: the mean over a round is what a rule costs.
+constexpr int settling_frames = 8;
+constexpr int round_frames = 12;
+
+// Times of one rule's frames.
+struct Times {
+  std::vector<double> frame;
+  double pairs = 0.0;                    // sum
+  std::vector<std::string> stage_names;  // in order
+  std::map<std::string, std::vector<double>> stages;
+
+  void add(const render::FrameReport& report) {
+    frame.push_back(report.total_ms);
+    pairs += static_cast<double>(report.pairs);
+    for (const gl::StageTime& stage : report.stages) {
+      if (stages.count(stage.name) == 0) stage_names.push_back(stage.name);
+      stages[stage.name].push_back(stage.ms);
+    }
+  }
+};
+
+std::string problem_of(const RuleResult& result, double target) {
+  if (result.variant.th == TH_TAU) return std::isinf(result.db) ? "" : "differs from the exact frame";
+  if (std::abs(result.db - target) <= near_target_db) return "";
+  return fmt::format("not within {} dB of {:g} dB", near_target_db, target);
+}
+
+void settle(Still& still, const Variant& rule) {
+  still.forget();
+  for (int n = 0; n < settling_frames && render::measures(rule.transmittance); ++n) still.draw(rule);
+}
+
+double db_of(double squared_error) { return -10.0 * std::log10(squared_error); }
+
+// What settled frames cost.
+RuleResult settled(Still& still, const Variant& rule) {
+  RuleResult result{.variant = rule};
+  settle(still, rule);
+  const int frames = render::measures(rule.transmittance) ? round_frames : 1;
+  double sum = 0.0, largest = 0.0;
+  for (int n = 0; n < frames; ++n) {
+    result.pairs += static_cast<double>(still.draw(rule).pairs) / frames;
+    const double error = still.squared_error();
+    sum += error / frames;
+    largest = std::max(largest, error);
+  }
+  result.removed = 1.0 - result.pairs / still.exact_pairs();
+  result.db = db_of(sum);
+  result.worst_db = db_of(largest);
+  return result;
+}
+
+double disagreement_of(Still& still) {
+  const std::vector<shared::View>& views = still.views();
+  if (views.size() != 2) return std::numeric_limits<double>::quiet_NaN();
+  return stereo::disagreement(std::array{views[0], views[1]}, still.exact(), still.pictures()).db;
+}
+
+void take_medians(const Times& times, RuleResult& result) {
+  result.timed_pairs = times.pairs / static_cast<double>(times.frame.size());
+  result.frame_ms = quantile(times.frame, 0.5);
+  result.lower_ms = quantile(times.frame, 0.25);
+  result.upper_ms = quantile(times.frame, 0.75);
+  for (const std::string& name : times.stage_names)
+    result.stages.push_back({name, quantile(times.stages.at(name), 0.5)});
+}
+
+// The frame time of the rule that `is` finds; not a number where there is none.
+template <typename Is>
+double frame_ms_of(const std::vector<RuleResult>& results, const Is& is) {
+  const auto found =
+      std::find_if(results.begin(), results.end(), [&](const RuleResult& r) { return is(r.variant); });
+  return found == results.end() ? std::numeric_limits<double>::quiet_NaN() : found->frame_ms;
+}
+
+}  // namespace
+
+std::vector<Variant> rules_of(std::size_t views) {
+  std::vector<Variant> rules = all_variants();
+  std::erase_if(rules, [&](const Variant& rule) {
+    return rule.th_eyes != TH_EYES_PER_EYE || (views < 2 && rule.transmittance > TRANSMITTANCE_LAST);
+  });
+  return rules;
+}
+
+void find_losses(Still& still, std::vector<Variant>& rules, double target,
+                 const std::function<void()>& progress) {
+  // The loss of the last rule that weighs with the same contrast is near.
+  std::map<std::pair<int, int>, double> starts;
+  for (Variant& rule : rules) {
+    const auto db_at = [&](double loss) {
+      if (loss == 0.0) return std::numeric_limits<double>::infinity();  // every rule is exact there
+      rule.loss = static_cast<float>(loss);
+      return settled(still, rule).db;
+    };
+    if (rule.th != TH_TAU) {
+      const double first = rule.th == TH_PERIPHERAL ? 1.0 : rule.contrast == CONTRAST_OFF ? 0.1 : 0.01;
+      double& start = starts.try_emplace({rule.th, rule.contrast}, first).first->second;
+      const double loss =
+          measure::find_loss(db_at, target,
+                             {.start = start, .tolerance = tolerance_db, .evaluations = evaluations_max})
+              .loss;
+      rule.loss = static_cast<float>(loss);
+      if (loss > 0.0) start = loss;
+    }
+    progress();
+  }
+}
+
+std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& rules, double target,
+                                      int frames, const std::function<void()>& progress) {
+  std::vector<RuleResult> results;
+  for (const Variant& rule : rules) {
+    RuleResult& result = results.emplace_back(settled(still, rule));
+    result.disagreement_db = disagreement_of(still);
+    result.problem = problem_of(result, target);
+  }
+  const auto awake = Clock::now() + std::chrono::seconds(1);  // while pictures were read the GPU slept
+  while (Clock::now() < awake) still.draw(rules.front());
+  std::vector<Times> times(rules.size());
+  for (int round = 0; round < rule_rounds; ++round) {
+    for (std::size_t k = 0; k < rules.size(); ++k) {
+      settle(still, rules[k]);
+      for (int n = 0; n < warm_up_frames; ++n) still.draw(rules[k]);
+      for (int n = 0; n < frames; ++n) times[k].add(still.draw(rules[k]));
+      progress();
+    }
+  }
+  for (std::size_t k = 0; k < rules.size(); ++k) take_medians(times[k], results[k]);
+  const double exact_ms = frame_ms_of(results, [](const Variant& v) { return v.th == TH_TAU; });
+  for (RuleResult& result : results) {
+    result.of_exact = result.frame_ms / exact_ms;
+    result.of_one = result.frame_ms / frame_ms_of(results, [&](const Variant& v) {
+                      return v.th == result.variant.th && v.transmittance == TRANSMITTANCE_ONE;
+                    });
+  }
+  return results;
+}
+
+nlohmann::ordered_json to_json(const RuleResult& r) {
+  nlohmann::ordered_json json = {{"name", r.variant.name()},
+                                 {"settings", to_json(r.variant.settings())},
+                                 {"psnr_db", r.db},
+                                 {"worst_psnr_db", r.worst_db},
+                                 {"disagreement_db", r.disagreement_db},
+                                 {"pairs", r.pairs},
+                                 {"pairs_removed", r.removed},
+                                 {"frame_ms", r.frame_ms},
+                                 {"frame_ms_quartiles", {r.lower_ms, r.upper_ms}},
+                                 {"timed_pairs", r.timed_pairs},
+                                 {"of_exact", r.of_exact},
+                                 {"of_one", r.of_one}};
+  for (const gl::StageTime& stage : r.stages) json["stages_ms"][stage.name] = stage.ms;
+  if (!r.problem.empty()) json["problem"] = r.problem;
+  return json;
+}
+
+}  // namespace binosplat::study

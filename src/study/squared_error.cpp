@@ -1,0 +1,38 @@
+#include "study/squared_error.h"
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "shared/limits.h"
+
+namespace binosplat::study {
+
+SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels)
+    : dispatcher_(context),
+      wanted_(context, "wanted colours"),
+      sums_(context, "squared errors"),
+      levels_(levels) {
+  std::vector<glm::vec4> colours;
+  for (const Picture& picture : wanted)
+    colours.insert(colours.end(), picture.colour.begin(), picture.colour.end());
+  wanted_.upload(colours);
+  pixels_ = static_cast<std::uint32_t>(colours.size());
+  sums_.reserve(static_cast<std::int64_t>(pixels_ / THREADS + 1) * 4);
+}
+
+double SquaredError::mean(const gl::Buffer& colours) {
+  dispatcher_.begin_frame();
+  dispatcher_.begin_stage("squared error");
+  dispatcher_.run(dispatcher_.context().program("squared_error.comp"), gl::Work::threads(pixels_, THREADS),
+                  {{"Colours", colours}, {"Wanted", wanted_}, {"Sums", sums_}},
+                  {{"pixel_count", pixels_}, {"levels", levels_}});
+  dispatcher_.end_frame();
+  dispatcher_.wait_and_time();
+  const auto parts = sums_.read<float>((pixels_ + THREADS - 1) / THREADS);
+  return std::accumulate(parts.begin(), parts.end(), 0.0) / (3.0 * pixels_);
+}
+
+double SquaredError::psnr(const gl::Buffer& colours) { return -10.0 * std::log10(mean(colours)); }
+
+}  // namespace binosplat::study

@@ -1,0 +1,35 @@
+#pragma once
+// How far drawn pixels are from wanted ones: compared on the GPU, so that a search reads sums back, not
+// pictures.
+
+#include <cstdint>
+#include <span>
+
+#include "base/image.h"
+#include "gl/buffer.h"
+#include "gl/dispatch.h"
+
+namespace binosplat::study {
+
+class SquaredError {
+ public:
+  /// What should be drawn, in the order of a frame's views. `levels`: 0 compares values as they are, 255 as 8
+  /// bits would keep them.
+  SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels = 0);
+
+  /// The mean over pixels and channels of all pictures together, over black and clamped to [0, 1]. `colours`
+  /// as render::Frame has them.
+  double mean(const gl::Buffer& colours);
+
+  /// The same in dB; infinite for equal pictures.
+  double psnr(const gl::Buffer& colours);
+
+ private:
+  gl::Dispatcher dispatcher_;
+  gl::Buffer wanted_;  // vec4 by pixel
+  gl::Buffer sums_;    // float by work group
+  std::uint32_t pixels_ = 0;
+  std::uint32_t levels_ = 0;
+};
+
+}  // namespace binosplat::study
