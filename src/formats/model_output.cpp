@@ -7,6 +7,24 @@
 
 namespace binosplat {
 
+namespace {
+
+Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmonic_bits) {
+  switch (format) {
+    case ModelFormat::ply:
+      return write_ply(file, model);
+    case ModelFormat::compressed_ply:
+      return write_compressed_ply(file, model);
+    case ModelFormat::splat:
+      return write_splat(file, model);
+    case ModelFormat::spz:
+      break;
+  }
+  return write_spz(file, model, harmonic_bits);
+}
+
+}  // namespace
+
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   std::string name = path.filename().string();
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -17,7 +35,8 @@ std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
-std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format) {
+std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
+                                     int harmonic_bits) {
   if (model.scaffold) {
     fail(
         "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no file of Gaussians can "
@@ -29,9 +48,7 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
     fail("{}: its axes are {}, and {} has {}", model.name, model.axes,
          model_format_names[static_cast<int>(format)], axes_of(format));
   }
-  constexpr Losses (*writers[])(OutputFile&, const Model&) = {write_ply, write_compressed_ply, write_splat,
-                                                              write_spz};
-  Losses losses = writers[static_cast<int>(format)](file, model);
+  Losses losses = write(file, model, format, harmonic_bits);
   const bool kernel_kept =
       model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model));
   if (!kernel_kept) {

@@ -30,10 +30,11 @@ constexpr std::string_view axes_of(ModelFormat format) { return format == ModelF
 ///    to the bit.
 ///  - compressed ply: PlayCanvas' (formats/compressed_ply.h), in Morton order (formats/morton.h).
 ///  - .splat: antimatter15's (formats/splat.h).
-///  - spz: version 3 within gzip (formats/spz.h), harmonics in 32 steps at degree 1 and 16 above it, as
-///    Niantic's own writer does.
+///  - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, are those of a coefficient of
+///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4.
 /// Progress is shown where it takes long. Throws Error where the disk is full, for a model that the format
 /// cannot hold at all, and for a Scaffold-GS model, whose Gaussians no file has.
-std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format);
+std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
+                                     int harmonic_bits = 8);
 
 }  // namespace binosplat

@@ -34,8 +34,9 @@ std::byte harmonic_byte(double v, int steps) {
   return static_cast<std::byte>(static_cast<int>(nearest_step((v + 1.0) * 128.0 / bucket, most)) * bucket);
 }
 
-/// Steps of the coefficients with this index among the higher ones, all channels counted.
-int steps_of(std::size_t k) { return k < 9 ? 32 : 16; }
+/// Steps of the coefficient with this index among the higher ones, all channels counted: degree 1 has a bit
+/// more than the others.
+int steps_of(std::size_t k, int harmonic_bits) { return 1 << std::min(harmonic_bits + (k < 9 ? 1 : 0), 8); }
 
 /// The three smallest of x, y, z, w: nine bits and a sign each, the first highest.
 std::uint32_t packed_rotation(const glm::vec4& q) {
@@ -48,7 +49,7 @@ std::uint32_t packed_rotation(const glm::vec4& q) {
   return word;
 }
 
-void write_rows(RowWriter& rows, const Model& model, int bits) {
+void write_rows(RowWriter& rows, const Model& model, int bits, int harmonic_bits) {
   const std::size_t n = model.count(), values = model.sh.size() / n;
   const SpzSizes sizes = spz_sizes(version, model.degree);
   const auto as_byte = [](double v) { return static_cast<std::byte>(nearest_step(v, 255)); };
@@ -75,11 +76,11 @@ void write_rows(RowWriter& rows, const Model& model, int bits) {
   if (sizes.harmonics == 0) return;
   rows.write(n, sizes.harmonics, [&](std::size_t i, std::byte* row) {
     for (std::size_t k = 0; k < sizes.harmonics; ++k)
-      row[k] = harmonic_byte(model.sh[i * values + 3 + k], steps_of(k));
+      row[k] = harmonic_byte(model.sh[i * values + 3 + k], steps_of(k, harmonic_bits));
   });
 }
 
-Losses losses_of(const Model& model, int bits) {
+Losses losses_of(const Model& model, int bits, int harmonic_bits) {
   const std::size_t values = model.sh.size() / model.count();
   Losses losses;
   if (bits < fraction_bits_most)
@@ -96,24 +97,28 @@ Losses losses_of(const Model& model, int bits) {
     return std::any_of(sh, sh + 3,
                        [](float v) { return std::abs(spz_colour_scale * v) > 0.5 + 0.5 / 255.0; });
   });
-  count_lost(losses, model, "harmonics beyond -1 to 1, which spz cuts", [&](std::size_t i) {
+  count_lost(losses, model, "harmonics beyond about -1 to 1, which spz cuts", [&](std::size_t i) {
     const float* sh = &model.sh[i * values];
-    return std::any_of(sh + 3, sh + values, [](float v) { return std::abs(v) > 1.0f; });
+    for (std::size_t k = 0; k < values - 3; ++k) {
+      const double half = 1.0 / steps_of(k, harmonic_bits), v = sh[3 + k];
+      if (v < -1.0 - half || v > 1.0 - half) return true;
+    }
+    return false;
   });
   return losses;
 }
 
 }  // namespace
 
-Losses write_spz(OutputFile& file, const Model& model) {
+Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits) {
   const int bits = fraction_bits(model);
   GzipWriter gzip([&](std::span<const std::byte> bytes) { file.write(bytes); });
   gzip.write(spz_header(version, model.count(), model.degree, bits, model.antialiased));
   RowWriter rows([&](std::span<const std::byte> bytes) { gzip.write(bytes); },
                  (model.degree > 0 ? 6 : 5) * model.count());
-  write_rows(rows, model, bits);
+  write_rows(rows, model, bits, harmonic_bits);
   gzip.finish();
-  return losses_of(model, bits);
+  return losses_of(model, bits, harmonic_bits);
 }
 
 }  // namespace binosplat
