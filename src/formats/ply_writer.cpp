@@ -11,10 +11,11 @@ namespace binosplat {
 namespace {
 
 /// The float near `start` that `decode` takes to exactly `wanted`, or the nearest one to `start` if there is
-/// none. `step` is half of what a rounding of `wanted` is worth there; decoding takes a few roundings.
+/// none. `step` is a quarter of what a
+/// rounding of `wanted` is worth there; decoding takes a few roundings.
 template <typename Decode>
 float float_for(float wanted, double start, double step, const Decode& decode) {
-  for (int k = 0; k <= 16; ++k) {
+  for (int k = 0; k <= 32; ++k) {
     const int offset = k % 2 == 0 ? k / 2 : -(k + 1) / 2;
     const float raw = static_cast<float>(start + offset * step);
     if (decode(raw) == wanted) return raw;
@@ -25,14 +26,14 @@ float float_for(float wanted, double start, double step, const Decode& decode) {
 /// The logarithm as which a scale is stored; that of 0 is finite, but becomes 0 again.
 float log_scale(float scale) {
   const double start = std::max(std::log(static_cast<double>(scale)), -110.0);
-  return float_for(scale, start, 0x1p-25, [](float raw) { return std::exp(raw); });
+  return float_for(scale, start, 0x1p-26, [](float raw) { return std::exp(raw); });
 }
 
 /// The same for an opacity: 0 and 1 are stored as -100 and 100.
 float logit(float opacity) {
   const double a = opacity;
   const double start = std::clamp(std::log(a) - std::log1p(-a), -100.0, 100.0);
-  return float_for(opacity, start, 0x1p-25 / std::max(1.0 - a, 0x1p-25),
+  return float_for(opacity, start, 0x1p-26 / std::max(1.0 - a, 0x1p-25),
                    [](float raw) { return 1.0f / (1.0f + std::exp(-raw)); });
 }
 
