@@ -35,6 +35,21 @@ std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   return std::nullopt;
 }
 
+std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
+  const auto higher = 3 * static_cast<std::uint64_t>(sh_count(degree) - 1);
+  switch (format) {
+    case ModelFormat::ply:
+      return count * 4 * (17 + higher);
+    case ModelFormat::compressed_ply:
+      return count * (16 + higher) + (count + 255) / 256 * 72;
+    case ModelFormat::splat:
+      return count * 32;
+    case ModelFormat::spz:
+      break;
+  }
+  return count * (20 + higher);
+}
+
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
                                      int harmonic_bits) {
   if (model.scaffold) {

@@ -190,6 +190,22 @@ TEST(ModelOutputFiles, Errors) {
   EXPECT_TRUE(folder.names().empty());
 }
 
+TEST(ModelOutputFiles, SizesAreKnownBefore) {
+  for (const ModelFormat format : formats) {
+    for (int degree = 0; degree <= 3; ++degree) {
+      const Model model = in_axes_of(hard_model(degree, 1000), format);
+      const std::string bytes = round_trip(model, format).bytes;
+      const std::size_t header = bytes.starts_with("ply") ? bytes.find("end_header\n") + 11 : 0;
+      if (format == ModelFormat::spz) {
+        const auto raw = GzipReader("spz", std::as_bytes(std::span(bytes))).read(std::size_t{1} << 24);
+        EXPECT_EQ(bytes_in(format, 1000, degree), raw.size() - 16);
+      } else {
+        EXPECT_EQ(bytes_in(format, 1000, degree), bytes.size() - header) << name_of(format);
+      }
+    }
+  }
+}
+
 TEST(ModelOutputFiles, NamesTellTheFormat) {
   EXPECT_EQ(model_format_of("a/b.ply"), ModelFormat::ply);
   EXPECT_EQ(model_format_of("b.Compressed.PLY"), ModelFormat::compressed_ply);

@@ -213,7 +213,7 @@ inline std::string difference(const Model& model, const Model& back, ModelFormat
                            : of_compressed(model, i,
                                            std::span(order).subspan(
                                                chunk, std::min<std::size_t>(256, order.size() - chunk)));
-    if (const std::string found = difference(e, model.rotation[i], back, j); !found.empty()) return found;
+    if (std::string found = difference(e, model.rotation[i], back, j); !found.empty()) return found;
   }
   return "";
 }
