@@ -264,7 +264,7 @@ void add_convert(CLI::App& program, Command& command) {
       ->type_name("ply|compressed-ply|splat|spz");
   sub->add_option("--sh-bits", o->harmonic_bits,
                   "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
-                  "costs some 14 dB")
+                  "costs some 15 dB")
       ->check(CLI::Range(1, 8).description(""))
       ->type_name("N");
   sub->add_option("--lod", o->render.lod, "Level of detail of a streamed SOG, 0 the finest")
