@@ -10,6 +10,7 @@
 #include "app/render_report.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
+#include "formats/model_output.h"
 #include "render/shape.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
@@ -69,6 +70,16 @@ void print_bar(const std::string& label, std::size_t count, std::size_t all) {
   fmt::print("  {:<16} {:>10} {:>6.2f} %  {}\n", label, count, 100.0 * share, std::string(length, '#'));
 }
 
+/// What `binosplat convert` would write.
+void print_sizes(const Model& model) {
+  const auto size = [&](ModelFormat format) {
+    return megabytes(static_cast<std::int64_t>(bytes_in(format, model.count(), model.degree)));
+  };
+  fmt::print("{:<14} ply {}, compressed ply {}, .splat {}{}, spz at most {}\n", "as a file",
+             size(ModelFormat::ply), size(ModelFormat::compressed_ply), size(ModelFormat::splat),
+             model.degree > 0 ? " (without harmonics)" : "", size(ModelFormat::spz));
+}
+
 void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
   const std::size_t n = model.count();
   fmt::print("{} ({})\n", model.name, model.format);
@@ -88,6 +99,7 @@ void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds&
     fmt::print("\nopacities, scales and colours are made for each eye\n");
     return;
   }
+  print_sizes(model);
   fmt::print("\nopacity (median {:.3f})\n", s.opacity_median);
   for (std::size_t k = 0; k < s.opacity.size(); ++k)
     print_bar(fmt::format("{:.1f} to {:.1f}", 0.1 * static_cast<double>(k), 0.1 * static_cast<double>(k + 1)),
@@ -127,6 +139,9 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
                        {"core_bounds", to_json(s.core)},
                        {"gpu_bytes", {{"model", needs.model}, {"headset_frame", needs.frame}}}};
   if (model.scaffold) return json;  // the rest is made for each eye
+  for (std::size_t k = 0; k < std::size(model_format_names); ++k)
+    json["file_bytes"][model_format_names[k]] =
+        bytes_in(static_cast<ModelFormat>(k), model.count(), model.degree);
   json.update({{"opacity", {{"median", s.opacity_median}, {"tenths", s.opacity}}},
                {"largest_scale", {{"median", s.scale_median}, {"decades", scale}}},
                {"degrees_in_use", s.degree},

@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   binosplat::app::add_view(program, command);
   binosplat::app::add_compare(program, command);
   binosplat::app::add_info(program, command);
+  binosplat::app::add_convert(program, command);
   binosplat::app::add_devices(program, command);
   binosplat::app::add_study(program, command);
   binosplat::app::add_bench(program, command);

@@ -108,17 +108,7 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
       ->type_name("N")
       ->check(range(0, 100))
       ->group(group);
-  sub.add_option_function<std::string>(
-         "--axes",
-         [&o](const std::string& text) {
-           for (const char c : text) o.axes += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-           world_from_axes(o.axes);
-         },
-         "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
-         "or Back, "
-         "as in rdf, rub (the format's)")
-      ->type_name("XYZ")
-      ->group(group);
+  add_axes_option(sub, o)->group(group);
   auto* antialias =
       sub.add_flag_callback(
              "--antialias", [&o] { o.antialias = true; },
@@ -344,6 +334,21 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
 }
 
 }  // namespace
+
+CLI::Option* add_axes_option(CLI::App& sub, RenderOptions& o) {
+  return sub
+      .add_option_function<std::string>(
+          "--axes",
+          [&o](const std::string& text) {
+            for (const char c : text)
+              o.axes += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+            world_from_axes(o.axes);
+          },
+          "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
+          "or Back, "
+          "as in rdf, rub (the format's)")
+      ->type_name("XYZ");
+}
 
 void add_measured_options(CLI::App& sub, RenderOptions& o) {
   sub.add_option("--near", o.near_plane, "Nothing nearer is drawn, in world units (0.2)")

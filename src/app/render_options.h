@@ -87,6 +87,9 @@ void add_options(CLI::App& sub, RenderOptions& options);
 /// "1280x720" as width and height in px. Throws Error, naming the option, for anything else.
 glm::ivec2 parse_size(const std::string& option, const std::string& text);
 
+/// Adds --axes, which other sub-commands take, too.
+CLI::Option* add_axes_option(CLI::App& sub, RenderOptions& options);
+
 /// Adds those of scene and context that the sub-commands which measure share: --near, --count, --seed,
 /// --backend and --device.
 void add_measured_options(CLI::App& sub, RenderOptions& options);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "formats/bytes.h"
+#include "formats/ply_layout.h"
 
 namespace binosplat {
 
@@ -75,6 +76,7 @@ class CompressedPlyReader {
     model.name = path_.filename().string();
     model.format = "compressed ply";
     model.degree = degree_;
+    model.antialiased = is_antialiased(header_, false);
     model.resize(count_);
     std::vector<std::uint8_t> kept(count_);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count_, 2048), [&](const auto& range) {

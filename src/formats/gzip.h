@@ -1,7 +1,9 @@
 #pragma once
-// gzip, in pieces whose sizes the reader knows beforehand, so that nothing unfolds beyond them.
+// gzip: read in pieces whose sizes the reader knows beforehand, so that nothing unfolds beyond them, and
+// written piece by piece.
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -27,6 +29,27 @@ class GzipReader {
   std::string source_;
   std::unique_ptr<z_stream_s> stream_;
   bool ended_ = false;
+};
+
+class GzipWriter {
+ public:
+  using Sink = std::function<void(std::span<const std::byte>)>;
+
+  /// What is compressed goes to `sink`. The same bytes give the same file: it has no time in it.
+  explicit GzipWriter(Sink sink);
+  ~GzipWriter();
+  GzipWriter(const GzipWriter&) = delete;
+  GzipWriter& operator=(const GzipWriter&) = delete;
+
+  void write(std::span<const std::byte> bytes);
+  void finish();  // writes what is left; nothing may come after
+
+ private:
+  void deflate(std::span<const std::byte> bytes, int flush);
+
+  Sink sink_;
+  std::unique_ptr<z_stream_s> stream_;
+  std::vector<std::byte> out_;
 };
 
 }  // namespace binosplat

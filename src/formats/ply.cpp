@@ -24,9 +24,6 @@ namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
-/// The low-pass that Mip-Splatting trains with.
-constexpr double mip_splatting_kernel_px2 = 0.1;
-
 /// A number as it is stored; every type of ply fits a double exactly.
 template <typename T, typename Bits>
 double load_as(const std::byte* at, bool swapped) {

@@ -37,21 +37,6 @@ void refuse_relatives(const std::filesystem::path& path, const PlyHeader& header
   if (vertices->count == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", name);
 }
 
-/// Whether a model was trained with anti-aliasing: by its filter, or by the last comment that says (Brush's
-/// and Postshot's).
-bool is_antialiased(const PlyHeader& header, bool filter_3d) {
-  bool antialiased = filter_3d;
-  for (std::string comment : header.comments) {
-    std::transform(comment.begin(), comment.end(), comment.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    if (comment.find("splatrendermode:") != std::string::npos)
-      antialiased = comment.find("mip") != std::string::npos;
-    if (comment.find("antialiased ") != std::string::npos)
-      antialiased = comment.find("antialiased 1") != std::string::npos;
-  }
-  return antialiased;
-}
-
 /// The number of f_rest properties of an element, after checking that they run from 0 without a gap.
 std::size_t count_rest(const std::filesystem::path& path, const PlyElement& vertices) {
   const std::size_t count = static_cast<std::size_t>(
@@ -89,6 +74,19 @@ bool has_bytes(const PlyElement& vertices, std::string_view name) {
 }
 
 }  // namespace
+
+bool is_antialiased(const PlyHeader& header, bool unless_said) {
+  bool antialiased = unless_said;
+  for (std::string comment : header.comments) {
+    std::transform(comment.begin(), comment.end(), comment.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    if (comment.find("splatrendermode:") != std::string::npos)
+      antialiased = comment.find("mip") != std::string::npos;
+    if (comment.find("antialiased ") != std::string::npos)
+      antialiased = comment.find("antialiased 1") != std::string::npos;
+  }
+  return antialiased;
+}
 
 PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header) {
   refuse_relatives(path, header);

@@ -24,6 +24,13 @@ struct PlyLayout {
   bool antialiased = false;
 };
 
+/// The low-pass that Mip-Splatting trains with, px^2; a ply with filter_3D is drawn with it.
+constexpr double mip_splatting_kernel_px2 = 0.1;
+
+/// Whether a model was trained with anti-aliasing, by the last comment that says so or not (Brush's and
+/// Postshot's).
+bool is_antialiased(const PlyHeader& header, bool unless_said);
+
 /// Finds the Gaussians in a file by the names of properties. Throws Error naming `path` if there are none or
 /// something is missing, saying what the file looks like instead. `header` must outlive the layout.
 PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header);

@@ -16,9 +16,6 @@ namespace binosplat {
 
 namespace {
 
-/// The scale of colours in bytes; wider than the base colours' own, so that those beyond 0 to 1 fit.
-constexpr double colour_scale = 0.15;
-
 class SpzDecoder {
  public:
   explicit SpzDecoder(const SpzContents& contents)
@@ -37,7 +34,7 @@ class SpzDecoder {
     std::array<float, 3 * sh_count(3)> sh{};
     glm::vec3 scale;
     for (std::size_t c = 0; c < 3; ++c) {
-      sh[c] = static_cast<float>((byte(colours_, 3 * i + c) / 255.0 - 0.5) / colour_scale);
+      sh[c] = static_cast<float>((byte(colours_, 3 * i + c) / 255.0 - 0.5) / spz_colour_scale);
       scale[static_cast<int>(c)] = static_cast<float>(std::exp(byte(scales_, 3 * i + c) / 16.0 - 10.0));
     }
     const std::size_t kept = std::min<std::size_t>(sizes_.harmonics, sh.size() - 3);

@@ -206,6 +206,19 @@ SpzSizes spz_sizes(std::uint32_t version, int degree) {
   return {version == 1 ? 6u : 9u, 1, 3, 3, version < 3 ? 3u : 4u, harmonics};
 }
 
+std::vector<std::byte> spz_header(std::uint32_t version, std::size_t count, int degree, int fraction_bits,
+                                  bool antialiased) {
+  if (count > 0x7fffffff) fail("{} Gaussians are more than an spz file can hold", count);
+  std::vector<std::byte> header(header_bytes);
+  store_number(&header[0], magic);
+  store_number(&header[4], version);
+  store_number(&header[8], static_cast<std::uint32_t>(count));
+  header[12] = static_cast<std::byte>(degree);
+  header[13] = static_cast<std::byte>(fraction_bits);
+  header[14] = static_cast<std::byte>(antialiased ? antialiased_flag : 0);
+  return header;
+}
+
 SpzContents unpack_spz(const std::string& source, std::span<const std::byte> bytes) {
   if (content_of(bytes) == Content::gzip) return unpack_gzip(source, bytes);
   if (bytes.size() >= 8 && load_number<std::uint32_t>(&bytes[4]) == 4) return unpack_4(source, bytes);

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "scene/camera.h"
+#include "scene/model.h"
 
 namespace binosplat {
 
@@ -16,6 +17,10 @@ namespace binosplat {
 /// (forward, back), each pair once, as in "RUB" (OpenGL, spz) and "LUF" (glTF). Returns the signed
 /// permutation whose columns are x, y and z in the world; frames that mirror are allowed. Throws Error.
 glm::dmat3 world_from_axes(std::string_view letters);
+
+/// Changes a model's numbers to those of the frame `letters`, where it looks the same from every camera of
+/// the world; mirrored frames, too. Not for models with a scaffold.
+void bring_into_axes(Model& model, std::string_view letters);
 
 /// A camera of the world as seen in the frame `letters`: it sees the model as the camera sees the world.
 Camera into_axes(Camera camera, std::string_view letters);

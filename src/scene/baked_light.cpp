@@ -6,13 +6,14 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
+#include "scene/harmonics.h"
+
 namespace binosplat::procedural {
 
 namespace {
 
 constexpr int degree = 3;
 constexpr int coefficients = sh_count(degree);
-constexpr double c0 = 0.28209479177387814;
 
 /// Within this distance a surface dims what it faces.
 constexpr double occlusion_reach = 0.7;
@@ -30,27 +31,6 @@ dvec3 developed(const dvec3& light) {
     out[i] = to_display(std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)));
   }
   return out;
-}
-
-/// The SH basis at a unit direction, in the order and with the signs that 3D-GS models use.
-std::array<double, coefficients> basis(const dvec3& d) {
-  const double x = d.x, y = d.y, z = d.z, xx = x * x, yy = y * y, zz = z * z;
-  return {c0,
-          -0.4886025119029199 * y,
-          0.4886025119029199 * z,
-          -0.4886025119029199 * x,
-          1.0925484305920792 * x * y,
-          -1.0925484305920792 * y * z,
-          0.31539156525252005 * (2.0 * zz - xx - yy),
-          -1.0925484305920792 * x * z,
-          0.5462742152960396 * (xx - yy),
-          -0.5900435899266435 * y * (3.0 * xx - yy),
-          2.890611442640554 * x * y * z,
-          -0.4570457994644658 * y * (4.0 * zz - xx - yy),
-          0.3731763325901154 * z * (2.0 * zz - 3.0 * xx - 3.0 * yy),
-          -0.4570457994644658 * x * (4.0 * zz - xx - yy),
-          1.445305721320277 * z * (xx - yy),
-          -0.5900435899266435 * x * (xx - 3.0 * yy)};
 }
 
 /// The share of band l in the lobe max(0, cos)^sharpness about an axis: coefficient (l, m) of the lobe is
@@ -254,7 +234,7 @@ void Baker::add_lobe(const Disc& disc, const dvec3& to_light, const dvec3& light
   const dvec3 rise = developed(diffuse + mirrored) - developed(diffuse);
   const dvec3 from_eye = to_light - 2.0 * facing * disc.axes[2];
   const auto bands = lobe_bands(disc.material.sharpness);
-  const auto at_axis = basis(from_eye);
+  const auto at_axis = sh_basis(from_eye);
   for (int l = 0; l <= degree; ++l) {
     for (int k = l * l; k < (l + 1) * (l + 1); ++k) {
       sh[static_cast<std::size_t>(k)] +=
@@ -267,7 +247,7 @@ std::array<dvec3, coefficients> Baker::seen(const Disc& disc) const {
   const Material& material = disc.material;
   std::array<dvec3, coefficients> sh{};
   if (!material.lit || !inside_room(disc.position)) {
-    sh[0] = (material.colour - 0.5) / c0;
+    sh[0] = (material.colour - 0.5) / sh_c0;
     return sh;
   }
   const dvec3 albedo(to_linear(material.colour.r), to_linear(material.colour.g),
@@ -280,7 +260,7 @@ std::array<dvec3, coefficients> Baker::seen(const Disc& disc) const {
     light = 0.6 * light + 0.4 * received(disc.position - lift * disc.axes[2], turned_over).irradiance;
   }
   const dvec3 diffuse = albedo * (light + material.glow);
-  sh[0] = (developed(diffuse) - 0.5) / c0;
+  sh[0] = (developed(diffuse) - 0.5) / sh_c0;
   if (material.gloss > 0.0) {
     const dvec2 size =
         (light_.opening_high - light_.opening_low) / std::sqrt(static_cast<double>(opening_.size()));

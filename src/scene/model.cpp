@@ -38,10 +38,12 @@ bool place(Model& model, std::size_t i, const glm::vec3& position, const glm::ve
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   // The squares of an fp32 quaternion can overflow fp32.
   const glm::dvec4 q(rotation);
-  const double norm = std::sqrt(glm::dot(q, q));
+  const double square = glm::dot(q, q), norm = std::sqrt(square);
+  // One that is a unit quaternion rounded to fp32 stays as it is: what was written is read as it was.
+  const bool unit = std::abs(square - 1.0) <= 0x1p-23;
   model.position[i] = position;
   model.scale[i] = scale;
-  model.rotation[i] = glm::vec4(q / norm);
+  model.rotation[i] = unit ? rotation : glm::vec4(q / norm);
   model.opacity[i] = opacity;
   std::copy(sh, sh + values, &model.sh[i * values]);
   return finite(position) && finite(scale) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&

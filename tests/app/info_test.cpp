@@ -23,8 +23,10 @@ TEST_F(Info, SaysTheSameInTextAndJson) {
   for (const auto& count : json["opacity"]["tenths"]) tenths += count.get<std::size_t>();
   EXPECT_EQ(tenths, 300u);
   EXPECT_GT(json["gpu_bytes"]["model"], 300 * 48);
-  for (const char* part : {"model.ply (ply)", "Gaussians      300\n", "degree 1",
-                           "x right, y down, z forward", "98 % within", "GPU memory", "never visible"})
+  EXPECT_EQ(json["file_bytes"]["ply"], 300 * 104);
+  for (const char* part :
+       {"model.ply (ply)", "Gaussians      300\n", "degree 1", "x right, y down, z forward", "98 % within",
+        "GPU memory", "as a file      ply 0.0 MB", "never visible"})
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part << " in:\n" << outcome.out;
 }
 

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/gtc/quaternion.hpp>
+
 #include "scene/framing.h"
+#include "scene/harmonics.h"
 #include "support/errors.h"
 #include "support/models.h"
 
@@ -52,6 +55,76 @@ TEST(Axes, FramesAreFoundInTheWorld) {
     EXPECT_LT(glm::length(found.rotation[1] - expected.rotation[1]), 1e-9) << letters;
     turned.axes = "RDF";  // planted fault
     EXPECT_GT(glm::length(frame_model(turned, 640, 480).position - expected.position), 0.01) << letters;
+  }
+}
+
+/// R S S R^T.
+glm::dmat3 covariance(const Model& model, std::size_t i) {
+  const glm::vec4& q = model.rotation[i];
+  const glm::dmat3 r = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
+  const glm::dvec3 s(model.scale[i]);
+  return r * glm::dmat3(s.x * s.x, 0, 0, 0, s.y * s.y, 0, 0, 0, s.z * s.z) * glm::transpose(r);
+}
+
+/// Red towards a direction, without the clamp.
+double red(const Model& model, std::size_t i, const glm::dvec3& direction) {
+  const auto basis = sh_basis(direction);
+  double sum = 0.5;
+  for (std::size_t k = 0; k < 16; ++k) sum += basis[k] * model.sh[i * 48 + 3 * k];
+  return sum;
+}
+
+TEST(Axes, ModelsLookTheSameInEveryFrame) {
+  const Model model = test::random_model(1, 20, 3);
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(0.3, -0.7, 0.5));
+  int frames = 0;
+  const auto same = [&](const Model& turned, std::size_t i) {
+    const glm::dmat3 world = world_from_axes(turned.axes);
+    const glm::dmat3 there = world * covariance(turned, i) * glm::transpose(world);
+    double apart = glm::length(world * glm::dvec3(turned.position[i]) - glm::dvec3(model.position[i])) +
+                   std::abs(red(turned, i, glm::transpose(world) * direction) - red(model, i, direction));
+    for (int c = 0; c < 3; ++c) apart += glm::length(there[c] - covariance(model, i)[c]);
+    return apart < 1e-6;
+  };
+  for (const char x : std::string("RLUDFB")) {
+    for (const char y : std::string("RLUDFB")) {
+      for (const char z : std::string("RLUDFB")) {
+        const std::string to = {x, y, z};
+        Model turned = model;
+        try {
+          bring_into_axes(turned, to);
+        } catch (const Error&) {
+          continue;  // not three axes
+        }
+        ++frames;
+        for (std::size_t i = 0; i < model.count(); ++i) EXPECT_TRUE(same(turned, i)) << to << " " << i;
+        Model faulty = turned;  // as if only places had been turned
+        faulty.sh = model.sh;
+        EXPECT_EQ(same(faulty, 0), to == "RDF") << to;
+        faulty = turned;
+        faulty.rotation = model.rotation;
+        // Mirrored through a point an ellipsoid stays what it is.
+        EXPECT_EQ(same(faulty, 0), to == "RDF" || to == "LUB") << to;
+        bring_into_axes(turned, "RDF");
+        for (std::size_t i = 0; i < model.count(); ++i) EXPECT_TRUE(same(turned, i)) << to << " and back";
+      }
+    }
+  }
+  EXPECT_EQ(frames, 48);
+}
+
+// Flips change signs and nothing else: those that other programs' files show.
+TEST(Axes, FlipsAreExact) {
+  const Model model = test::random_model(2, 5, 3);
+  Model turned = model;
+  bring_into_axes(turned, "RUB");
+  const double signs[] = {1, -1, -1, 1, -1, 1, 1, -1, 1, -1, 1, -1, -1, 1, -1, 1};
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    EXPECT_EQ(turned.position[i], model.position[i] * glm::vec3(1, -1, -1));
+    EXPECT_EQ(turned.scale[i], model.scale[i]);
+    EXPECT_EQ(turned.rotation[i], model.rotation[i] * glm::vec4(1, 1, -1, -1));
+    for (std::size_t k = 0; k < 48; ++k)
+      EXPECT_EQ(turned.sh[48 * i + k], signs[k / 3] * model.sh[48 * i + k]) << k;
   }
 }
 

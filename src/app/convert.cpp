@@ -1,0 +1,298 @@
+// binosplat convert: a model in the format of other programs, and what that costs in dB.
+
+#include "formats/model_output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "app/command.h"
+#include "app/drawing.h"
+#include "app/open_scene.h"
+#include "app/shots.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "formats/model_file.h"
+#include "formats/scaffold_file.h"
+#include "measure/metrics.h"
+#include "render/frame.h"
+#include "scene/axes.h"
+#include "study/bench.h"
+
+namespace binosplat::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConvertOptions {
+  RenderOptions render;  // scene, axes, cameras, views, size, device
+  std::string output;
+  std::string to;  // empty: by the output's ending
+  std::optional<int> harmonic_bits;
+  std::optional<int> report;  // views
+  std::string json;
+};
+
+/// What the views are drawn with, and the pictures of the original.
+struct Views {
+  CameraList list;
+  double near_plane = 0.0;
+  std::vector<std::size_t> chosen;  // of the shots
+  std::unique_ptr<gl::Context> context;
+};
+
+struct ViewCost {
+  std::string name;
+  int width = 0, height = 0;
+  double psnr = 0.0;
+};
+
+struct Converted {
+  ModelFormat format = ModelFormat::ply;
+  std::size_t count = 0;
+  std::optional<std::uintmax_t> bytes_before;  // where the model is one file
+  std::uintmax_t bytes = 0;
+  std::vector<std::string> losses;
+  std::vector<ViewCost> views;
+
+  double bytes_each() const { return static_cast<double>(bytes) / static_cast<double>(count); }
+};
+
+ModelFormat format_of(const ConvertOptions& o) {
+  if (!o.to.empty()) {
+    const auto* named = std::find(std::begin(model_format_names), std::end(model_format_names), o.to);
+    return static_cast<ModelFormat>(named - std::begin(model_format_names));
+  }
+  const auto format = model_format_of(o.output);
+  if (!format) {
+    fail(
+        "-o {}: its ending names no format that can be written: .ply, .compressed.ply, .splat or .spz; or "
+        "say "
+        "--to",
+        o.output);
+  }
+  return *format;
+}
+
+/// The file that is read, where the model is one.
+fs::path input_file(const ConvertOptions& o) {
+  std::error_code ignored;
+  if (!fs::is_directory(o.render.scene, ignored)) return o.render.scene;
+  return find_point_cloud(o.render.scene).value_or("");
+}
+
+void check(const ConvertOptions& o, ModelFormat format) {
+  check_output(o.output);
+  if (o.harmonic_bits && format != ModelFormat::spz)
+    fail("--sh-bits {}: only spz has a choice of them", *o.harmonic_bits);
+  if (!o.json.empty()) check_output(o.json);
+  std::error_code ignored;
+  if (fs::equivalent(input_file(o), o.output, ignored))
+    fail("-o {} is the model itself, which would be lost; name another file", o.output);
+  if (!o.report && (o.render.size || !o.render.cameras.empty() || !o.render.views.empty()))
+    fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
+}
+
+/// Shots of one camera each, the same ones for every model; only its axes differ.
+std::vector<Shot> shots_of(const ConvertOptions& o, const Views& views, const Model& model) {
+  const std::vector<Shot> all = make_shots(o.render, views.list, views.near_plane, model.axes);
+  std::vector<Shot> shots;
+  for (const std::size_t i : views.chosen) shots.push_back(all[i]);
+  return shots;
+}
+
+/// Those that --view names, or so many of the cameras, or of a ring around the model.
+Views find_views(ConvertOptions& o, CameraList list, const Model& model) {
+  const bool named = !o.render.views.empty();
+  o.render.mono = true;
+  if (!list.listed) {
+    log_info("no cameras beside {}: taking {} around the model", o.render.scene, *o.report);
+    o.render.orbit = *o.report;
+    list = made_up_cameras(o.render, model);
+  } else if (!named) {
+    o.render.views = {"all"};
+  }
+  Views views{std::move(list), 0.0, {}, nullptr};
+  views.near_plane = near_plane_of(o.render, views.list, model);
+  const std::size_t all = make_shots(o.render, views.list, views.near_plane, model.axes).size();
+  views.chosen = study::spread_evenly(all, named ? all : static_cast<std::size_t>(*o.report));
+  views.context = open_context(o.render);
+  return views;
+}
+
+/// Pictures of 8 bits.
+std::vector<Image> draw(const ConvertOptions& o, const Views& views, const Model& model, const char* label) {
+  const std::vector<Shot> shots = shots_of(o, views, model);
+  render::Frame frame(*views.context, model);
+  Progress progress(label, shots.size());
+  std::vector<Image> pictures;
+  for (const Shot& shot : shots) {
+    frame.draw(views_of(shot), settings_of(o.render));
+    pictures.push_back(quantised(composite(frame.read_pictures()[0], glm::vec3(0.0f))));
+    progress.update(pictures.size());
+  }
+  return pictures;
+}
+
+std::vector<ViewCost> compare(const ConvertOptions& o, const Views& views, const Model& back,
+                              const std::vector<Image>& originals) {
+  const std::vector<Image> pictures = draw(o, views, back, "drawing what was written");
+  const std::vector<Shot> shots = shots_of(o, views, back);
+  std::vector<ViewCost> costs;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    costs.push_back(
+        {shots[i].name, pictures[i].width, pictures[i].height, measure::psnr(originals[i], pictures[i])});
+  }
+  return costs;
+}
+
+std::vector<std::string> write(const ConvertOptions& o, const Model& model, ModelFormat format) {
+  OutputFile file(o.output);
+  std::vector<std::string> losses;
+  {
+    const Unfinished unfinished(file.path());
+    losses = write_model(file, model, format, o.harmonic_bits.value_or(8));
+  }
+  const Uninterrupted hold;
+  file.commit();
+  return losses;
+}
+
+const ViewCost& worst_of(const std::vector<ViewCost>& views) {
+  return *std::min_element(views.begin(), views.end(),
+                           [](const ViewCost& a, const ViewCost& b) { return a.psnr < b.psnr; });
+}
+
+std::string decibels(double psnr) {
+  return std::isinf(psnr) && psnr > 0.0 ? "equal" : fmt::format("{:.2f} dB", psnr);
+}
+
+void print(const ConvertOptions& o, const Converted& c) {
+  const char* format = model_format_names[static_cast<int>(c.format)];
+  fmt::print("{}: {}, {} Gaussians\n", o.output, format, c.count);
+  fmt::print("{} bytes, {:.2f} a Gaussian", c.bytes, c.bytes_each());
+  if (c.bytes_before) {
+    fmt::print("; {} has {}, {:.2f} times as many", o.render.scene, *c.bytes_before,
+               static_cast<double>(*c.bytes_before) / static_cast<double>(c.bytes));
+  }
+  fmt::print("\n");
+  if (c.views.empty()) return;
+  fmt::print("\nPSNR of 8-bit pictures against the original's\n");
+  for (const ViewCost& view : c.views)
+    fmt::print("  {:<24} {:>5} x {:<5} {:>10}\n", view.name, view.width, view.height, decibels(view.psnr));
+  const ViewCost& worst = worst_of(c.views);
+  fmt::print("worst: {}, {}\n", worst.name, decibels(worst.psnr));
+}
+
+nlohmann::ordered_json to_json(const ConvertOptions& o, const Converted& c) {
+  nlohmann::ordered_json json = {{"version", BINOSPLAT_VERSION},
+                                 {"model", o.render.scene},
+                                 {"output", o.output},
+                                 {"format", model_format_names[static_cast<int>(c.format)]},
+                                 {"gaussians", c.count},
+                                 {"bytes", c.bytes},
+                                 {"bytes_per_gaussian", c.bytes_each()},
+                                 {"losses", c.losses}};
+  if (c.bytes_before) json["model_bytes"] = *c.bytes_before;
+  if (c.views.empty()) return json;
+  const auto psnr = [](const ViewCost& view) {
+    return nlohmann::ordered_json{{"name", view.name},
+                                  {"width", view.width},
+                                  {"height", view.height},
+                                  {"equal", std::isinf(view.psnr) && view.psnr > 0.0},
+                                  {"psnr_db", view.psnr}};  // null where equal: infinite
+  };
+  for (const ViewCost& view : c.views) json["views"].push_back(psnr(view));
+  json["worst"] = psnr(worst_of(c.views));
+  return json;
+}
+
+ExitCode convert(ConvertOptions o) {
+  Converted done;
+  done.format = format_of(o);
+  check(o, done.format);
+  const Scene scene = open_scene(o.render);
+  const CameraList list = o.report ? listed_cameras(o.render, scene.cameras) : CameraList{};
+  Model model = scene.model();
+  if (model.scaffold) {
+    fail(
+        "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no other format can hold it",
+        o.render.scene);
+  }
+  Views views;
+  std::vector<Image> originals;
+  if (o.report) {
+    views = find_views(o, list, model);
+    originals = draw(o, views, model, "drawing the original");
+  }
+
+  const std::string axes = model.axes, wanted(axes_of(done.format));
+  if (axes != wanted)
+    log_info("its axes are turned from {} to {}, the ones of {}", axes, wanted,
+             model_format_names[static_cast<int>(done.format)]);
+  bring_into_axes(model, wanted);
+  done.count = model.count();
+  done.losses = write(o, model, done.format);
+  for (const std::string& loss : done.losses) log_warning("{}", loss);
+  std::error_code ignored;
+  if (fs::is_regular_file(o.render.scene, ignored)) done.bytes_before = fs::file_size(o.render.scene);
+  done.bytes = fs::file_size(o.output);
+  if (o.report) {
+    model = load_model(o.output);
+    done.views = compare(o, views, model, originals);
+  }
+  print(o, done);
+  if (!o.json.empty()) save_json(o.json, to_json(o, done));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("convert", "Write a model in another format, and say what it costs");
+  const auto o = std::make_shared<ConvertOptions>();
+  sub->add_option("MODEL", o->render.scene, "A model file or folder, demo:room or demo:city")->required();
+  sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat or .spz")
+      ->type_name("FILE")
+      ->required();
+  sub->add_option("--to", o->to, "The format, where FILE's ending does not say it")
+      ->check(CLI::IsMember(
+                  std::vector<std::string>(std::begin(model_format_names), std::end(model_format_names)))
+                  .description(""))
+      ->type_name("ply|compressed-ply|splat|spz");
+  sub->add_option("--sh-bits", o->harmonic_bits,
+                  "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
+                  "costs some 15 dB")
+      ->check(CLI::Range(1, 8).description(""))
+      ->type_name("N");
+  sub->add_option("--lod", o->render.lod, "Level of detail of a streamed SOG, 0 the finest")
+      ->check(CLI::Range(0, 100).description(""))
+      ->type_name("N");
+  add_axes_option(*sub, o->render);
+  sub->add_option_function<int>(
+         "--report", [o](const int& views) { o->report = views; },
+         "Draw N views (3) of the original and of what was written, and print\ntheir PSNR")
+      ->expected(0, 1)
+      ->default_str("3")
+      ->check(CLI::Range(1, 10000).description(""))
+      ->type_name("[N]");
+  sub->add_option("--cameras", o->render.cameras, "Of the views, where they are not beside the model")
+      ->type_name("FILE");
+  sub->add_option("--view", o->render.views, "Views by name, instead of N")->type_name("NAME...");
+  sub->add_option_function<std::string>(
+         "--size", [o](const std::string& text) { o->render.size = parse_size("--size", text); },
+         "Pixels of a view, instead of the cameras' own")
+      ->type_name("WxH");
+  sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
+  add_measured_options(*sub, o->render);
+  sub->footer(
+      "What a format cannot keep is said on standard error. Cameras are those beside MODEL, or around it.\n"
+      "Examples:\n"
+      "  binosplat convert garden.ply -o garden.spz --report\n"
+      "  binosplat convert scan.spz --axes rdf -o scan.ply");
+  sub->callback([o, &command] { command = [o] { return convert(*o); }; });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,77 @@
+#include "formats/model_output.h"
+
+#include <cctype>
+
+#include "base/error.h"
+#include "formats/model_writers.h"
+
+namespace binosplat {
+
+namespace {
+
+Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmonic_bits) {
+  switch (format) {
+    case ModelFormat::ply:
+      return write_ply(file, model);
+    case ModelFormat::compressed_ply:
+      return write_compressed_ply(file, model);
+    case ModelFormat::splat:
+      return write_splat(file, model);
+    case ModelFormat::spz:
+      break;
+  }
+  return write_spz(file, model, harmonic_bits);
+}
+
+}  // namespace
+
+std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (name.ends_with(".compressed.ply")) return ModelFormat::compressed_ply;
+  if (name.ends_with(".ply")) return ModelFormat::ply;
+  if (name.ends_with(".splat")) return ModelFormat::splat;
+  if (name.ends_with(".spz")) return ModelFormat::spz;
+  return std::nullopt;
+}
+
+std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
+  const auto higher = 3 * static_cast<std::uint64_t>(sh_count(degree) - 1);
+  switch (format) {
+    case ModelFormat::ply:
+      return count * 4 * (17 + higher);
+    case ModelFormat::compressed_ply:
+      return count * (16 + higher) + (count + 255) / 256 * 72;
+    case ModelFormat::splat:
+      return count * 32;
+    case ModelFormat::spz:
+      break;
+  }
+  return count * (20 + higher);
+}
+
+std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
+                                     int harmonic_bits) {
+  if (model.scaffold) {
+    fail(
+        "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no file of Gaussians can "
+        "hold "
+        "it",
+        model.name);
+  }
+  if (model.axes != axes_of(format)) {
+    fail("{}: its axes are {}, and {} has {}", model.name, model.axes,
+         model_format_names[static_cast<int>(format)], axes_of(format));
+  }
+  Losses losses = write(file, model, format, harmonic_bits);
+  const bool kernel_kept =
+      model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model));
+  if (!kernel_kept) {
+    losses.push_back(
+        fmt::format("{} does not tell the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
+                    model_format_names[static_cast<int>(format)], model.kernel_px2, model.kernel_px2));
+  }
+  return losses;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,58 @@
+#pragma once
+// The writers behind write_model (formats/model_output.h), and what they share.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/error.h"
+#include "formats/model_output.h"
+#include "formats/ply_layout.h"
+
+namespace binosplat {
+
+/// What could not be kept.
+using Losses = std::vector<std::string>;
+
+Losses write_ply(OutputFile& file, const Model& model);
+Losses write_compressed_ply(OutputFile& file, const Model& model);
+Losses write_splat(OutputFile& file, const Model& model);
+Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
+
+/// The nearest whole number from 0 to `most`.
+inline std::uint32_t nearest_step(double v, std::uint32_t most) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(v + 0.5), 0.0, static_cast<double>(most)));
+}
+
+/// A unit quaternion by its three smallest components, the largest made positive, which then follows from
+/// them.
+struct SmallestThree {
+  int largest = 0;       // index of the one left out
+  glm::dvec3 others{0};  // the others in ascending order, each within +-sqrt(1/2)
+};
+template <typename Quaternion>
+SmallestThree smallest_three(const Quaternion& q) {
+  SmallestThree out;
+  for (int c = 1; c < 4; ++c) {
+    if (std::abs(q[c]) > std::abs(q[out.largest])) out.largest = c;
+  }
+  for (int c = 0, k = 0; c < 4; ++c) {
+    if (c != out.largest) out.others[k++] = q[out.largest] < 0 ? -q[c] : q[c];
+  }
+  return out;
+}
+
+/// Adds a line to `losses` if there are Gaussians for which `lost` is true.
+template <typename Lost>
+void count_lost(Losses& losses, const Model& model, const char* what, const Lost& lost) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < model.count(); ++i) count += lost(i) ? 1 : 0;
+  if (count > 0) losses.push_back(fmt::format("{} of {} Gaussians have {}", count, model.count(), what));
+}
+
+/// Whether a ply can tell the low-pass by Mip-Splatting's filter, which is in the scales already.
+inline bool is_mip_splatting(const Model& model) {
+  return model.antialiased && model.kernel_px2 == mip_splatting_kernel_px2;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,15 @@
+#pragma once
+// An order in which neighbours in space are mostly neighbours in the file.
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+/// The indices of the positions along a Morton curve (1966) of 2^21 steps an axis over the box around them;
+/// those of one cell in their old order.
+std::vector<std::uint32_t> morton_order(std::span<const glm::vec3> positions);
+
+}  // namespace binosplat

@@ -1,0 +1,80 @@
+// INRIA's ply, as its trainer writes it.
+
+#include <cmath>
+
+#include "formats/bytes.h"
+#include "formats/model_writers.h"
+#include "formats/row_writer.h"
+
+namespace binosplat {
+
+namespace {
+
+/// The float near `start` that `decode` takes to exactly `wanted`, or the nearest one to `start` if there is
+/// none. `step` is a quarter of what a
+/// rounding of `wanted` is worth there; decoding takes a few roundings.
+template <typename Decode>
+float float_for(float wanted, double start, double step, const Decode& decode) {
+  for (int k = 0; k <= 32; ++k) {
+    const int offset = k % 2 == 0 ? k / 2 : -(k + 1) / 2;
+    const float raw = static_cast<float>(start + offset * step);
+    if (decode(raw) == wanted) return raw;
+  }
+  return static_cast<float>(start);
+}
+
+/// The logarithm as which a scale is stored; that of 0 is finite, but becomes 0 again.
+float log_scale(float scale) {
+  const double start = std::max(std::log(static_cast<double>(scale)), -110.0);
+  return float_for(scale, start, 0x1p-26, [](float raw) { return std::exp(raw); });
+}
+
+/// The same for an opacity: 0 and 1 are stored as -100 and 100.
+float logit(float opacity) {
+  const double a = opacity;
+  const double start = std::clamp(std::log(a) - std::log1p(-a), -100.0, 100.0);
+  return float_for(opacity, start, 0x1p-26 / std::max(1.0 - a, 0x1p-25),
+                   [](float raw) { return 1.0f / (1.0f + std::exp(-raw)); });
+}
+
+}  // namespace
+
+Losses write_ply(OutputFile& file, const Model& model) {
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree)), higher = values / 3 - 1;
+  std::string header =
+      fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", model.count());
+  std::size_t columns = 0;
+  const auto add = [&](const std::string& name) {
+    header += fmt::format("property float {}\n", name);
+    ++columns;
+  };
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) add(name);
+  for (std::size_t k = 0; k < 3 * higher; ++k) add(fmt::format("f_rest_{}", k));
+  for (const char* name : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
+    add(name);
+  if (is_mip_splatting(model)) add("filter_3D");
+  // Not before the elements: INRIA's viewer takes the third line for the count.
+  if (model.antialiased) header += "comment SplatRenderMode: mip\n";
+  file.write(header + "end_header\n");
+
+  RowWriter rows([&](std::span<const std::byte> bytes) { file.write(bytes); }, model.count());
+  rows.write(model.count(), 4 * columns, [&](std::size_t i, std::byte* row) {
+    const auto put = [&](float value) {
+      store_number(row, value);
+      row += 4;
+    };
+    const float* sh = &model.sh[i * values];
+    for (int c = 0; c < 3; ++c) put(model.position[i][c]);
+    for (int c = 0; c < 3; ++c) put(0.0f);  // normals
+    for (std::size_t c = 0; c < 3; ++c) put(sh[c]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 1; k <= higher; ++k) put(sh[3 * k + c]);
+    }
+    put(logit(model.opacity[i]));
+    for (int c = 0; c < 3; ++c) put(log_scale(model.scale[i][c]));
+    for (int c = 0; c < 4; ++c) put(model.rotation[i][c]);
+  });
+  return {};
+}
+
+}  // namespace binosplat

@@ -1,0 +1,47 @@
+#pragma once
+// Rows of one size, made on all cores and written in blocks, so that no file is in memory as a whole.
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/progress.h"
+
+namespace binosplat {
+
+class RowWriter {
+ public:
+  using Sink = std::function<void(std::span<const std::byte>)>;
+
+  /// `all` rows will go to `sink`, over all calls of write().
+  RowWriter(Sink sink, std::uint64_t all) : sink_(std::move(sink)), progress_("writing", all) {}
+
+  /// Writes `count` rows of `bytes` zeros each, after encode(i, row) has put its numbers into row i.
+  template <typename Encode>
+  void write(std::size_t count, std::size_t bytes, const Encode& encode) {
+    constexpr std::size_t most = 65536;
+    for (std::size_t begin = 0; begin < count; begin += most) {
+      const std::size_t rows = std::min(most, count - begin);
+      block_.assign(rows * bytes, std::byte{0});
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows, 1024), [&](const auto& range) {
+        for (std::size_t k = range.begin(); k != range.end(); ++k)
+          encode(begin + k, block_.data() + k * bytes);
+      });
+      sink_(block_);
+      progress_.update(done_ += rows);
+    }
+  }
+
+ private:
+  Sink sink_;
+  Progress progress_;
+  std::uint64_t done_ = 0;
+  std::vector<std::byte> block_;
+};
+
+}  // namespace binosplat

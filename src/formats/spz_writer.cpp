@@ -1,0 +1,124 @@
+// Niantic's spz, version 3: attribute after attribute in whole bytes, within gzip.
+
+#include "formats/bytes.h"
+#include "formats/gzip.h"
+#include "formats/model_writers.h"
+#include "formats/row_writer.h"
+#include "formats/spz_container.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint32_t version = 3;
+constexpr int fraction_bits_most = 12;  // what other writers always use
+constexpr double position_most = (1 << 23) - 1;
+
+/// How many bits of fraction the positions leave room for; they have 24 with the sign.
+int fraction_bits(const Model& model) {
+  double most = 0.0;
+  for (const glm::vec3& p : model.position) {
+    for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(static_cast<double>(p[c])));
+  }
+  int bits = fraction_bits_most;
+  while (bits >= 0 && std::ldexp(most, bits) > position_most) --bits;
+  if (bits < 0)
+    fail("{}: positions reach {:.4g}, and spz has room for {} only", model.name, most, position_most);
+  return bits;
+}
+
+/// A coefficient in `steps` of 256 of its range of -1 to 1, as a multiple of 256 / steps from -128 on.
+std::byte harmonic_byte(double v, int steps) {
+  const int bucket = 256 / steps;
+  const auto most = static_cast<std::uint32_t>(steps - 1);
+  return static_cast<std::byte>(static_cast<int>(nearest_step((v + 1.0) * 128.0 / bucket, most)) * bucket);
+}
+
+/// Steps of the coefficient with this index among the higher ones, all channels counted: degree 1 has a bit
+/// more than the others.
+int steps_of(std::size_t k, int harmonic_bits) { return 1 << std::min(harmonic_bits + (k < 9 ? 1 : 0), 8); }
+
+/// The three smallest of x, y, z, w: nine bits and a sign each, the first highest.
+std::uint32_t packed_rotation(const glm::vec4& q) {
+  const SmallestThree smallest = smallest_three(glm::vec4(q.y, q.z, q.w, q.x));
+  auto word = static_cast<std::uint32_t>(smallest.largest);
+  for (int c = 0; c < 3; ++c) {
+    const double v = smallest.others[c];
+    word = word << 10 | (v < 0.0 ? 512u : 0u) | nearest_step(std::abs(v) / std::sqrt(0.5) * 511.0, 511);
+  }
+  return word;
+}
+
+void write_rows(RowWriter& rows, const Model& model, int bits, int harmonic_bits) {
+  const std::size_t n = model.count(), values = model.sh.size() / n;
+  const SpzSizes sizes = spz_sizes(version, model.degree);
+  const auto as_byte = [](double v) { return static_cast<std::byte>(nearest_step(v, 255)); };
+  rows.write(n, sizes.position, [&](std::size_t i, std::byte* row) {
+    for (int c = 0; c < 3; ++c, row += 3) {
+      const auto fixed = std::lround(std::ldexp(static_cast<double>(model.position[i][c]), bits));
+      const auto word = static_cast<std::uint32_t>(fixed);
+      store_number(row, static_cast<std::uint16_t>(word));
+      row[2] = static_cast<std::byte>(word >> 16);
+    }
+  });
+  rows.write(n, sizes.opacity,
+             [&](std::size_t i, std::byte* row) { row[0] = as_byte(255.0 * model.opacity[i]); });
+  rows.write(n, sizes.colour, [&](std::size_t i, std::byte* row) {
+    for (std::size_t c = 0; c < 3; ++c)
+      row[c] = as_byte(255.0 * (0.5 + spz_colour_scale * model.sh[i * values + c]));
+  });
+  rows.write(n, sizes.scale, [&](std::size_t i, std::byte* row) {
+    for (int c = 0; c < 3; ++c)
+      row[c] = as_byte(16.0 * (std::log(static_cast<double>(model.scale[i][c])) + 10.0));
+  });
+  rows.write(n, sizes.rotation,
+             [&](std::size_t i, std::byte* row) { store_number(row, packed_rotation(model.rotation[i])); });
+  if (sizes.harmonics == 0) return;
+  rows.write(n, sizes.harmonics, [&](std::size_t i, std::byte* row) {
+    for (std::size_t k = 0; k < sizes.harmonics; ++k)
+      row[k] = harmonic_byte(model.sh[i * values + 3 + k], steps_of(k, harmonic_bits));
+  });
+}
+
+Losses losses_of(const Model& model, int bits, int harmonic_bits) {
+  const std::size_t values = model.sh.size() / model.count();
+  Losses losses;
+  if (bits < fraction_bits_most)
+    losses.push_back(fmt::format("the model is so large that spz keeps positions in steps of {:.4g} only",
+                                 std::ldexp(1.0, -bits)));
+  // Up to half a step beyond the last one is rounding.
+  const double thin = std::exp(-10.0 - 0.5 / 16.0), thick = std::exp(255.5 / 16.0 - 10.0);
+  count_lost(losses, model, "scales beyond e^-10 to e^5.94, which spz cuts", [&](std::size_t i) {
+    const glm::vec3& s = model.scale[i];
+    return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;
+  });
+  count_lost(losses, model, "base colours beyond those of spz, which cuts them", [&](std::size_t i) {
+    const float* sh = &model.sh[i * values];
+    return std::any_of(sh, sh + 3,
+                       [](float v) { return std::abs(spz_colour_scale * v) > 0.5 + 0.5 / 255.0; });
+  });
+  count_lost(losses, model, "harmonics beyond about -1 to 1, which spz cuts", [&](std::size_t i) {
+    const float* sh = &model.sh[i * values];
+    for (std::size_t k = 0; k < values - 3; ++k) {
+      const double half = 1.0 / steps_of(k, harmonic_bits), v = sh[3 + k];
+      if (v < -1.0 - half || v > 1.0 - half) return true;
+    }
+    return false;
+  });
+  return losses;
+}
+
+}  // namespace
+
+Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits) {
+  const int bits = fraction_bits(model);
+  GzipWriter gzip([&](std::span<const std::byte> bytes) { file.write(bytes); });
+  gzip.write(spz_header(version, model.count(), model.degree, bits, model.antialiased));
+  RowWriter rows([&](std::span<const std::byte> bytes) { gzip.write(bytes); },
+                 (model.degree > 0 ? 6 : 5) * model.count());
+  write_rows(rows, model, bits, harmonic_bits);
+  gzip.finish();
+  return losses_of(model, bits, harmonic_bits);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,230 @@
+// Writing what other programs wrote, what a format cannot keep, and what cannot be written at all.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "formats/gzip.h"
+#include "scene/scaffold.h"
+#include "support/errors.h"
+#include "support/fixtures.h"
+#include "support/full_disk.h"
+#include "support/round_trip.h"
+
+namespace binosplat {
+namespace {
+
+using test::difference;
+using test::fails_saying;
+using test::formats;
+using test::hard_model;
+using test::in_axes_of;
+using test::name_of;
+using test::round_trip;
+using test::Written;
+
+/// The format that a file has already, if it is one that can be written.
+std::optional<ModelFormat> own_format(const Model& model) {
+  if (model.format == "ply") return ModelFormat::ply;
+  if (model.format == "compressed ply") return ModelFormat::compressed_ply;
+  if (model.format == ".splat") return ModelFormat::splat;
+  if (model.format.starts_with("spz")) return ModelFormat::spz;
+  return std::nullopt;
+}
+
+TEST(ModelOutputFiles, OthersModelsStayWithinTheSteps) {
+  REQUIRE_FIXTURES(folder);
+  int own = 0, exact = 0;
+  const nlohmann::json models = test::load_json(folder / "truth.json")["models"];
+  for (const auto& [name, truth] : models.items()) {
+    const Model read = load_model(folder / name);
+    for (const ModelFormat format : formats) {
+      const Model model = in_axes_of(read, format);
+      const Written written = round_trip(model, format);
+      EXPECT_EQ(difference(model, written.model, format), "") << name << " as " << name_of(format);
+      if (own_format(read) != format) continue;
+      ++own;
+      EXPECT_EQ(written.model.antialiased, model.antialiased) << name;
+      if (format != ModelFormat::ply || model.kernel_px2 != KERNEL_PX2) continue;
+      ++exact;
+      EXPECT_TRUE(test::same_bits(written.model, model)) << name;
+    }
+  }
+  EXPECT_EQ(own, 34);
+  EXPECT_EQ(exact, 13);
+}
+
+// Bytes of an attribute become the same bytes again; of spz the rotation alone may pick another of two nearly
+// equal components as the largest.
+TEST(ModelOutputFiles, SpzGivesTheSameBytes) {
+  REQUIRE_FIXTURES(folder);
+  const auto unpacked = [](const std::string& text) {
+    return GzipReader("spz", std::as_bytes(std::span(text))).read(std::size_t{1} << 24);
+  };
+  const std::string file = test::read_text(folder / "spz/st-train-v3-sh3.spz");
+  const Model model = load_model(folder / "spz/st-train-v3-sh3.spz");
+  const std::vector<std::byte> before = unpacked(file);
+  const std::vector<std::byte> after = unpacked(round_trip(model, ModelFormat::spz).bytes);
+  ASSERT_EQ(before.size(), after.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const std::size_t rotations = 16 + 16 * model.count();
+    const bool rotation = i >= rotations && i < rotations + 4 * model.count();
+    if (before[i] != after[i] && rotation) ++different;
+    EXPECT_TRUE(before[i] == after[i] || rotation) << i;
+  }
+  EXPECT_LT(different, model.count() / 20);
+}
+
+// PlayCanvas' program, where BINOSPLAT_SPLAT_TRANSFORM names it (npm's @playcanvas/splat-transform, 2.7.1),
+// finds in our files what we find in them. It writes a ply, turned as a ply's axes are.
+TEST(ModelOutputFiles, SplatTransformReadsTheSame) {
+  const char* program = std::getenv("BINOSPLAT_SPLAT_TRANSFORM");
+  if (program == nullptr) GTEST_SKIP() << "BINOSPLAT_SPLAT_TRANSFORM does not name the program";
+  for (int degree = 0; degree <= 3; ++degree) {
+    // It clips no logits, of which opacities of 0 and 1 have none.
+    Model original = hard_model(degree, 700);
+    for (float& a : original.opacity) a = std::clamp(a, 0.01f, 0.99f);
+    for (const ModelFormat format : formats) {
+      const test::TempFolder folder;
+      const std::string name = format == ModelFormat::compressed_ply ? "m.compressed.ply"
+                               : format == ModelFormat::ply          ? "m.ply"
+                                                                     : "m." + name_of(format);
+      OutputFile file(folder / name);
+      write_model(file, in_axes_of(original, format), format);
+      file.commit();
+      const std::string command = fmt::format("'{}' '{}' '{}' > '{}' 2>&1", program, (folder / name).string(),
+                                              (folder / "their.ply").string(), (folder / "log").string());
+      ASSERT_EQ(std::system(command.c_str()), 0) << test::read_text(folder / "log");
+      const Model ours = in_axes_of(load_model(folder / name), ModelFormat::ply);
+      const Model theirs = load_model(folder / "their.ply");
+      ASSERT_EQ(ours.count(), theirs.count());
+      ASSERT_EQ(ours.degree, theirs.degree);
+      for (std::size_t i = 0; i < ours.count(); ++i) {
+        test::Expected e = test::exact(ours, i);
+        // Rounding of fp32; .splat's bytes are read as b / 255 * 2 - 1 there.
+        e.position_error = 1e-5 * (1.0 + glm::abs(e.position));
+        e.log_scale_error = glm::dvec3(1e-5);
+        e.rotation_error = format == ModelFormat::splat ? 2e-2 : 2e-5;
+        e.opacity_error = 1e-6;
+        e.sh_error.assign(e.sh.size(), 1e-5);
+        ASSERT_EQ(test::difference(e, ours.rotation[i], theirs, i), "")
+            << name << ", degree " << degree << ", " << i;
+      }
+    }
+  }
+}
+
+TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
+  Model model = hard_model(0, 3);
+  model.antialiased = true;
+  for (const ModelFormat format : formats) {
+    const Written written = round_trip(in_axes_of(model, format), format);
+    EXPECT_EQ(written.model.antialiased, format != ModelFormat::splat);
+    EXPECT_EQ(written.model.kernel_px2, KERNEL_PX2);
+  }
+  EXPECT_EQ(round_trip(model, ModelFormat::splat).losses.back(),
+            ".splat does not tell of anti-aliasing: draw it with --antialias");
+  model.kernel_px2 = 0.1;
+  const Written mip = round_trip(model, ModelFormat::ply);
+  EXPECT_TRUE(test::same_bits(mip.model, model));
+  EXPECT_TRUE(mip.losses.empty());
+  EXPECT_EQ(round_trip(model, ModelFormat::compressed_ply).losses.back(),
+            "compressed-ply does not tell the low-pass of 0.1 px^2: draw it with --kernel-px2 0.1");
+}
+
+TEST(ModelOutputFiles, SaysWhatIsCut) {
+  Model model;
+  model.degree = 1;
+  for (int i = 0; i < 5; ++i) test::add(model, glm::vec3(i), glm::vec3(0.1f), 0.5f);
+  const auto losses = [&](ModelFormat format, int bits = 8) {
+    return round_trip(in_axes_of(model, format), format, bits).losses;
+  };
+  using Texts = std::vector<std::string>;
+  for (const ModelFormat format : formats)
+    EXPECT_EQ(losses(format).size(), format == ModelFormat::splat ? 1u : 0u) << name_of(format);
+  EXPECT_EQ(losses(ModelFormat::splat),
+            Texts{".splat keeps no harmonics: those of degrees 1 to 1 are dropped, and with them what "
+                  "changes with the viewer's place"});
+  model.scale[1].y = 1e-5f;
+  model.sh[1] = 3.5f;
+  model.sh[12 + 9] = 0.97f;
+  EXPECT_EQ(losses(ModelFormat::spz),
+            (Texts{"1 of 5 Gaussians have scales beyond e^-10 to e^5.94, which spz cuts",
+                   "1 of 5 Gaussians have base colours beyond those of spz, which cuts them"}));
+  EXPECT_EQ(losses(ModelFormat::spz, 4).size(), 3u) << "1 - 1/32 is the last that rounds to a step";
+  EXPECT_EQ(losses(ModelFormat::splat).back(),
+            "1 of 5 Gaussians have base colours outside 0 to 1, which .splat cuts");
+  model.scale[1].y = 0.0f;
+  model.sh[12 + 9] = -4.5f;
+  EXPECT_EQ(losses(ModelFormat::compressed_ply),
+            (Texts{"1 of 5 Gaussians have scales beyond e^-20 to e^20, which a compressed ply cuts",
+                   "1 of 5 Gaussians have harmonics beyond -4 to 4, which a compressed ply cuts"}));
+  EXPECT_TRUE(losses(ModelFormat::ply).empty());
+  model.position[0].x = 3000.0f;
+  EXPECT_EQ(losses(ModelFormat::spz).front(),
+            "the model is so large that spz keeps positions in steps of 0.0004883 only");
+}
+
+TEST(ModelOutputFiles, Errors) {
+  const test::TempFolder folder;
+  const auto path = folder / "model.spz";
+  const auto write = [&](const Model& model, ModelFormat format) {
+    OutputFile file(path);
+    write_model(file, model, format);
+    file.commit();
+  };
+  Model model = hard_model(3, 5000);
+  EXPECT_TRUE(fails_saying([&] { write(model, ModelFormat::spz); }, {"its axes are RDF, and spz has RUB"}));
+  Model far = in_axes_of(model, ModelFormat::spz);
+  far.position[3].z = -9e6f;
+  EXPECT_TRUE(fails_saying([&] { write(far, ModelFormat::spz); }, {"reach 9e+06", "8388607"}));
+  for (const ModelFormat format : formats) {
+    const test::FullDisk full(50000);
+    EXPECT_TRUE(
+        fails_saying([&] { write(in_axes_of(model, format), format); }, {"cannot write", "model.spz"}))
+        << name_of(format);
+  }
+  model.scaffold = std::make_shared<Scaffold>();
+  EXPECT_TRUE(fails_saying([&] { write(model, ModelFormat::ply); }, {"Scaffold-GS"}));
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(ModelOutputFiles, SizesAreKnownBefore) {
+  for (const ModelFormat format : formats) {
+    for (int degree = 0; degree <= 3; ++degree) {
+      const Model model = in_axes_of(hard_model(degree, 1000), format);
+      const std::string bytes = round_trip(model, format).bytes;
+      const std::size_t header = bytes.starts_with("ply") ? bytes.find("end_header\n") + 11 : 0;
+      if (format == ModelFormat::spz) {
+        const auto raw = GzipReader("spz", std::as_bytes(std::span(bytes))).read(std::size_t{1} << 24);
+        EXPECT_EQ(bytes_in(format, 1000, degree), raw.size() - 16);
+      } else {
+        EXPECT_EQ(bytes_in(format, 1000, degree), bytes.size() - header) << name_of(format);
+      }
+    }
+  }
+}
+
+TEST(ModelOutputFiles, NamesTellTheFormat) {
+  EXPECT_EQ(model_format_of("a/b.ply"), ModelFormat::ply);
+  EXPECT_EQ(model_format_of("b.Compressed.PLY"), ModelFormat::compressed_ply);
+  EXPECT_EQ(model_format_of("b.splat"), ModelFormat::splat);
+  EXPECT_EQ(model_format_of("b.ply.spz"), ModelFormat::spz);
+  EXPECT_EQ(model_format_of("ply"), std::nullopt);
+  EXPECT_EQ(model_format_of("b.ply.gz"), std::nullopt);
+  EXPECT_STREQ(model_format_names[static_cast<int>(ModelFormat::spz)], "spz");
+}
+
+TEST(Morton, NeighboursStayTogether) {
+  std::vector<glm::vec3> positions;
+  for (const float x : {3.0f, 0.0f, 2.0f, 1.0f}) {
+    for (const float y : {0.0f, 1.0f, 1.0f}) positions.emplace_back(x, y, 7.0f);
+  }
+  // x 0 and 1 with y 0 and 1 make the first block; equal places keep their order.
+  EXPECT_EQ(morton_order(positions), (std::vector<std::uint32_t>{3, 9, 6, 0, 4, 5, 10, 11, 7, 8, 1, 2}));
+  EXPECT_TRUE(morton_order({}).empty());
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,113 @@
+// Models written and read back, against bounds that follow from what a format stores.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "support/ply.h"
+#include "support/round_trip.h"
+
+namespace binosplat {
+namespace {
+
+using test::difference;
+using test::formats;
+using test::hard_model;
+using test::in_axes_of;
+using test::name_of;
+using test::round_trip;
+using test::same_bits;
+using test::Written;
+
+TEST(ModelOutput, PlyGivesTheSameBits) {
+  for (int degree = 0; degree <= 3; ++degree) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{200000}}) {
+      Model model = hard_model(degree, count);
+      const Written written = round_trip(model, ModelFormat::ply);
+      EXPECT_TRUE(same_bits(written.model, model)) << "degree " << degree;
+      EXPECT_TRUE(written.losses.empty());
+      model.sh[model.sh.size() - 1] = std::nextafter(model.sh[model.sh.size() - 1], 9.0f);
+      EXPECT_FALSE(same_bits(written.model, model));
+    }
+  }
+}
+
+// What INRIA's own programs rely on: the names, their order, the count in the third line, zeros for normals.
+TEST(ModelOutput, PlyIsTheTrainersOwn) {
+  const test::PlyFile trained = test::inria_file(3, 10);
+  const test::TempFolder folder;
+  test::write_text(folder / "trained.ply", to_bytes(trained));
+  const std::string bytes = round_trip(load_model(folder / "trained.ply"), ModelFormat::ply).bytes;
+  ASSERT_TRUE(bytes.starts_with(header_of(trained)));
+  for (std::size_t i = 0; i < 10; ++i) {
+    for (std::size_t k = 0; k < 62; ++k) {
+      float value = 0;
+      std::memcpy(&value, &bytes[header_of(trained).size() + 4 * (62 * i + k)], 4);
+      const std::string& name = trained.columns[k];
+      if (name[0] == 'n') {
+        EXPECT_EQ(value, 0.0f);
+      } else if (name.starts_with("rot_")) {
+        const double w = trained.at(i, "rot_0"), x = trained.at(i, "rot_1"), y = trained.at(i, "rot_2"),
+                     z = trained.at(i, "rot_3");
+        EXPECT_NEAR(value, trained.rows[i][k] / std::sqrt(w * w + x * x + y * y + z * z), 1e-6);
+      } else if (name == "opacity" || name.starts_with("scale_")) {
+        EXPECT_NEAR(value, trained.rows[i][k], 2e-6) << name;
+      } else {
+        EXPECT_EQ(value, trained.rows[i][k]) << name;
+      }
+    }
+  }
+}
+
+TEST(ModelOutput, EveryFormatStaysWithinItsSteps) {
+  for (const ModelFormat format : formats) {
+    for (int degree = 0; degree <= 3; ++degree) {
+      for (const std::size_t count : {1u, 255u, 256u, 257u, 3000u}) {
+        const Model model = in_axes_of(hard_model(degree, count), format);
+        const Written written = round_trip(model, format);
+        EXPECT_EQ(difference(model, written.model, format), "")
+            << name_of(format) << ", degree " << degree << ", " << count;
+        EXPECT_EQ(round_trip(model, format).bytes, written.bytes) << name_of(format);
+      }
+    }
+  }
+  for (const int bits : {1, 4, 7}) {
+    const Model model = in_axes_of(hard_model(3, 1000), ModelFormat::spz);
+    EXPECT_EQ(difference(model, round_trip(model, ModelFormat::spz, bits).model, ModelFormat::spz, bits), "");
+    EXPECT_EQ(difference(model, round_trip(model, ModelFormat::spz, bits).model, ModelFormat::spz, bits + 1),
+              "sh");
+  }
+}
+
+TEST(ModelOutput, TheComparisonCatchesFaults) {
+  const auto each = [](auto& list, const auto& spoil) {
+    for (auto& value : list) spoil(value);
+  };
+  using Spoil = std::function<void(Model&)>;
+  const std::pair<std::string, Spoil> faults[] = {
+      {"position", [&](Model& m) { each(m.position, [](glm::vec3& p) { std::swap(p.x, p.y); }); }},
+      {"scale", [&](Model& m) { each(m.scale, [](glm::vec3& s) { std::swap(s.y, s.z); }); }},
+      {"rotation", [&](Model& m) { each(m.rotation, [](glm::vec4& q) {
+                                     q = {q.y, q.z, q.w, q.x};
+                                   }); }},
+      {"rotation", [&](Model& m) { each(m.rotation, [](glm::vec4& q) { q.x = -q.x; }); }},
+      {"opacity", [&](Model& m) { each(m.opacity, [](float& a) { a = 0.5f * a + 0.3f; }); }},
+      {"dc", [&](Model& m) { std::swap(m.sh[0], m.sh[1]); }},
+      {"sh", [&](Model& m) { std::swap(m.sh[3], m.sh[4]); }},    // channels
+      {"sh", [&](Model& m) { std::swap(m.sh[45], m.sh[42]); }},  // coefficients
+      {"axes", [&](Model& m) { m.axes = "LUF"; }},
+      {"count", [&](Model& m) { m.resize(m.count() - 1); }}};
+  for (const ModelFormat format : formats) {
+    const Model model = in_axes_of(hard_model(3, 700, 7), format);
+    const Model back = round_trip(model, format).model;
+    for (const auto& [attribute, spoil] : faults) {
+      if (attribute == "sh" && format == ModelFormat::splat) continue;
+      Model faulty = back;
+      spoil(faulty);
+      EXPECT_EQ(difference(model, faulty, format), attribute) << name_of(format);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

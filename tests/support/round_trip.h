@@ -1,0 +1,232 @@
+#pragma once
+// Models written and read back, and by how much they may differ: bounds that follow from what a format
+// stores.
+
+#include <cmath>
+#include <cstring>
+#include <span>
+
+#include "formats/model_file.h"
+#include "formats/model_output.h"
+#include "formats/morton.h"
+#include "scene/axes.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat::test {
+
+constexpr ModelFormat formats[] = {ModelFormat::ply, ModelFormat::compressed_ply, ModelFormat::splat,
+                                   ModelFormat::spz};
+
+inline std::string name_of(ModelFormat format) { return model_format_names[static_cast<int>(format)]; }
+
+struct Written {
+  Model model;
+  std::vector<std::string> losses;
+  std::string bytes;
+};
+
+/// In the format's axes.
+inline Written round_trip(const Model& model, ModelFormat format, int harmonic_bits = 8) {
+  const TempFolder folder;
+  const auto path = folder / "model";
+  OutputFile file(path);
+  Written out;
+  out.losses = write_model(file, model, format, harmonic_bits);
+  file.commit();
+  out.bytes = read_text(path);
+  out.model = load_model(path);
+  return out;
+}
+
+inline Model in_axes_of(Model model, ModelFormat format) {
+  bring_into_axes(model, axes_of(format));
+  return model;
+}
+
+/// What a trainer may store, and worse: opacities of 0 and 1, scales from nothing to huge, quaternions of any
+/// length with components that tie, coefficients that no format of few bits holds, a position far out.
+inline Model hard_model(int degree, std::size_t count, std::uint32_t seed = 1) {
+  Uniform uniform(seed);
+  Model model;
+  model.degree = degree;
+  const auto pick = [&](std::initializer_list<double> values, double low, double high) {
+    const auto at = static_cast<std::size_t>(uniform(0, 4.0 * static_cast<double>(values.size())));
+    return static_cast<float>(at < values.size() ? values.begin()[at] : uniform(low, high));
+  };
+  std::vector<float> sh(3 * static_cast<std::size_t>(sh_count(degree)));
+  while (model.count() < count) {
+    const auto number = [&] { return pick({0.0, 500.0, -500.0}, -5, 5); };
+    const auto scale = [&] { return pick({-30, -104, -20, -10, 6, 10}, -9, 1); };
+    const auto part = [&] { return pick({0, 1, -1, 0.5, -0.5}, -3, 3); };
+    for (std::size_t k = 0; k < sh.size(); ++k)
+      sh[k] = k < 3 ? pick({0, 1.8, -1.8, 4, -4}, -2, 2) : pick({0, 1, -1, 4, -4, 5}, -1, 1);
+    append_raw(model, {number(), number(), number()}, {scale(), scale(), scale()},
+               {part(), part(), part(), part()}, pick({-100, 100, 17, -17, 0}, -8, 8), sh.data());
+  }
+  model.left_out = 0;
+  return model;
+}
+
+/// The largest errors of one Gaussian, and its values as the format can have them at best.
+struct Expected {
+  glm::dvec3 position{0}, position_error{0};
+  glm::dvec3 log_scale{0}, log_scale_error{0};
+  double rotation_error = 0;  // length of the difference, up to the sign
+  double opacity = 0, opacity_error = 0;
+  std::vector<double> sh, sh_error;
+};
+
+/// Of what fits a float; results are rounded to one, logarithms and exponentials once more.
+constexpr double rounding = 0x1p-22;
+
+inline Expected exact(const Model& model, std::size_t i) {
+  const std::size_t values = model.sh.size() / model.count();
+  Expected e;
+  e.position = model.position[i];
+  e.log_scale = glm::log(glm::dvec3(model.scale[i]));
+  e.opacity = model.opacity[i];
+  e.sh.assign(&model.sh[i * values], &model.sh[i * values] + values);
+  e.sh_error.assign(values, 0.0);
+  return e;
+}
+
+/// Three components within `half` of theirs, and the largest, L >= 1/2, that follows from them: its error is
+/// the sum of |c| half / L <= 3 half, as the |c| sum up to 3/2 at most; sqrt(3 + 9) half together.
+inline double smallest_three_error(double half) { return 3.5 * half; }
+
+inline Expected of_ply(const Model& model, std::size_t i) {
+  Expected e = exact(model, i);
+  // The logarithm, or logit, is rounded to a float: half of 2^-23 of it.
+  e.log_scale_error = glm::abs(e.log_scale) * 0x1p-24 + rounding;
+  e.opacity_error = rounding;
+  e.rotation_error = rounding;  // of those that some readers leave less than a unit long
+  return e;
+}
+
+inline Expected of_splat(const Model& model, std::size_t i) {
+  Expected e = exact(model, i);
+  e.sh.resize(3);
+  for (double& dc : e.sh) dc = std::clamp(dc, -0.5 / binosplat::sh_c0, 0.5 / binosplat::sh_c0);
+  e.sh_error.assign(3, 0.5 / 255 / binosplat::sh_c0 + rounding);
+  e.opacity_error = 0.5 / 255 + rounding;
+  // Four components within half of 1/128: a vector of 1/128, which turns a unit vector by asin(1/128).
+  e.rotation_error = 2 * std::sin(0.5 * std::asin(1.0 / 128)) + rounding;
+  return e;
+}
+
+inline Expected of_spz(const Model& model, std::size_t i, int harmonic_bits) {
+  Expected e = exact(model, i);
+  double most = 0;
+  for (const glm::vec3& p : model.position)
+    most = std::max({most, std::abs(double{p.x}), std::abs(double{p.y}), std::abs(double{p.z})});
+  int bits = 12;
+  while (most * std::exp2(bits) > 8388607) --bits;
+  e.position_error = glm::dvec3(0.5 * std::exp2(-bits)) + glm::abs(e.position) * rounding;
+  e.log_scale = glm::clamp(e.log_scale, -10.0, 255 / 16.0 - 10);
+  e.log_scale_error = glm::dvec3(0.5 / 16 + 16 * rounding);
+  e.opacity_error = 0.5 / 255 + rounding;
+  e.rotation_error = smallest_three_error(0.5 * std::sqrt(0.5) / 511);
+  for (std::size_t k = 0; k < e.sh.size(); ++k) {
+    if (k < 3) {
+      e.sh[k] = std::clamp(e.sh[k], -0.5 / 0.15, 0.5 / 0.15);
+      e.sh_error[k] = 0.5 / 255 / 0.15 + 4 * rounding;
+    } else {
+      const double step = 2 / std::exp2(std::min(8, harmonic_bits + (k < 12 ? 1 : 0)));
+      e.sh[k] = std::clamp(e.sh[k], -1.0, 1.0 - step);
+      e.sh_error[k] = 0.5 * step;
+    }
+  }
+  return e;
+}
+
+/// `chunk` holds the indices of the Gaussians that share bounds with this one.
+inline Expected of_compressed(const Model& model, std::size_t i, std::span<const std::uint32_t> chunk) {
+  constexpr double fine = 1.0 / 2047, coarse = 1.0 / 1023;  // 11, 10 and 11 bits
+  const auto log_scale = [&](std::size_t k) {
+    return glm::clamp(glm::log(glm::dvec3(model.scale[k])), -20.0, 20.0);
+  };
+  glm::dvec3 low[3] = {}, high[3] = {};
+  Expected e = exact(model, i);
+  for (std::size_t k = 0; k < chunk.size(); ++k) {
+    const Expected other = exact(model, chunk[k]);
+    const glm::dvec3 values[] = {other.position, log_scale(chunk[k]),
+                                 glm::dvec3(other.sh[0], other.sh[1], other.sh[2])};
+    for (int a = 0; a < 3; ++a) {
+      low[a] = k == 0 ? values[a] : glm::min(low[a], values[a]);
+      high[a] = k == 0 ? values[a] : glm::max(high[a], values[a]);
+    }
+  }
+  const glm::dvec3 half = 0.5 * glm::dvec3(fine, coarse, fine);
+  e.position_error = (high[0] - low[0]) * half + glm::max(glm::abs(low[0]), glm::abs(high[0])) * rounding;
+  e.log_scale = log_scale(i);
+  e.log_scale_error = (high[1] - low[1]) * half + 20 * rounding;
+  e.opacity_error = 0.5 / 255 + rounding;
+  e.rotation_error = smallest_three_error(0.5 * std::sqrt(2.0) / 1023);
+  for (std::size_t k = 0; k < e.sh.size(); ++k) {
+    if (k < 3) {
+      const int c = static_cast<int>(k);
+      e.sh_error[k] = (high[2][c] - low[2][c]) * 0.5 / 255 + 16 * rounding;
+    } else {
+      // Readers take the middle of a step of 1/32, but -4 and 4 for the first and the last.
+      e.sh[k] = std::clamp(e.sh[k], -4.0, 4.0);
+      e.sh_error[k] = std::abs(e.sh[k]) >= 4 - 1.0 / 32 ? 1.0 / 32 : 1.0 / 64;
+    }
+  }
+  return e;
+}
+
+/// The first attribute of Gaussian `j` of `back` that is farther from what is expected than it may be.
+inline std::string difference(const Expected& e, const glm::vec4& rotation, const Model& back,
+                              std::size_t j) {
+  const auto beyond = [](double a, double b, double error) { return !(a == b || std::abs(a - b) <= error); };
+  for (int c = 0; c < 3; ++c) {
+    if (beyond(back.position[j][c], e.position[c], e.position_error[c])) return "position";
+    if (beyond(std::log(double{back.scale[j][c]}), e.log_scale[c], e.log_scale_error[c])) return "scale";
+  }
+  const double apart = std::min(glm::length(glm::dvec4(rotation) - glm::dvec4(back.rotation[j])),
+                                glm::length(glm::dvec4(rotation) + glm::dvec4(back.rotation[j])));
+  if (beyond(apart, 0, e.rotation_error)) return "rotation";
+  if (beyond(back.opacity[j], e.opacity, e.opacity_error)) return "opacity";
+  const std::size_t values = back.sh.size() / back.count();
+  if (values != e.sh.size()) return "degree";
+  for (std::size_t k = 0; k < values; ++k) {
+    if (beyond(back.sh[j * values + k], e.sh[k], e.sh_error[k])) return k < 3 ? "dc" : "sh";
+  }
+  return "";
+}
+
+/// The same over all Gaussians; `model` is what was written.
+inline std::string difference(const Model& model, const Model& back, ModelFormat format,
+                              int harmonic_bits = 8) {
+  if (back.count() != model.count() || back.left_out != 0) return "count";
+  if (back.axes != model.axes) return "axes";
+  std::vector<std::uint32_t> order(model.count());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
+  if (format == ModelFormat::compressed_ply) order = morton_order(model.position);
+  for (std::size_t j = 0; j < order.size(); ++j) {
+    const std::size_t i = order[j], chunk = j / 256 * 256;
+    const Expected e = format == ModelFormat::ply     ? of_ply(model, i)
+                       : format == ModelFormat::splat ? of_splat(model, i)
+                       : format == ModelFormat::spz
+                           ? of_spz(model, i, harmonic_bits)
+                           : of_compressed(model, i,
+                                           std::span(order).subspan(
+                                               chunk, std::min<std::size_t>(256, order.size() - chunk)));
+    if (std::string found = difference(e, model.rotation[i], back, j); !found.empty()) return found;
+  }
+  return "";
+}
+
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+inline bool same_bits(const Model& a, const Model& b) {
+  return a.degree == b.degree && a.axes == b.axes && a.antialiased == b.antialiased &&
+         a.kernel_px2 == b.kernel_px2 && same_bits(a.position, b.position) && same_bits(a.scale, b.scale) &&
+         same_bits(a.rotation, b.rotation) && same_bits(a.opacity, b.opacity) && same_bits(a.sh, b.sh);
+}
+
+}  // namespace binosplat::test
