@@ -17,7 +17,7 @@ layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
 layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot), bits of floats
 uniform uint remembers;  // whether `colours` still holds this view's last frame
 #if CONTRAST != CONTRAST_OFF
@@ -44,7 +44,7 @@ vec3 last = vec3(0.0);  // the pixel's colour in the last frame, background incl
 // The most that a splat's alpha counts for in any pixel: T, times its contrast (METHOD 5, squared). A maximum in shared
 // memory, and one a tile in the buffer, cost little beside the blend.
 void measure(uint at, float alpha) {
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
   float contrast = 1.0;
 #if CONTRAST != CONTRAST_OFF
   vec3 other = last;
@@ -83,7 +83,7 @@ void blend(uint at) {
 void load(uint at, uint end) {
   uint self = gl_LocalInvocationIndex;
   if (self >= BATCH) return;
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
   batch_measured[self] = 0u;
 #endif
   if (at < end) {
@@ -116,7 +116,7 @@ void main() {
   bool inside = at.x < view.width && at.y < view.height;
   done = !inside;
   uint to = view.pixel_offset + at.y * view.width + at.x;
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST && CONTRAST != CONTRAST_OFF
+#if RECORDS && CONTRAST != CONTRAST_OFF
   if (inside && remembers != 0u) {
     vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
     last = colours[to].rgb + colours[to].a * background;
@@ -141,7 +141,7 @@ void main() {
     }
     cut = cut || (!done && next < size);
     barrier();
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
     uint self = gl_LocalInvocationIndex;
     if (self < size && batch_measured[self] != 0u) atomicMax(measured[values[batch + self]], batch_measured[self]);
 #endif

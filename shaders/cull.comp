@@ -12,7 +12,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
 layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 #endif
 uniform uint view_begin;
@@ -20,7 +20,7 @@ uniform uint view_end;
 
 // What the next frame is to know of a Gaussian that this view does not draw: all the light again for one out of sight,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
 void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
   if (v >= exact_from) return;  // a probe
   bool left_out = is_hidden(gaussian - page_first, v);
@@ -50,7 +50,7 @@ uint key_of(uint i) {
     if (projected) splat.colour.w = tile_level(v, page_first + i, g, axes, splat);
     bool drawn = projected && touches_a_tile(splat, views[v]);
     if (drawn) key = floatBitsToUint(splat.depth);
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
     remember(page_first + i, v, projected, drawn, splat);
 #else
     if (drawn) break;  // no need to ask the other eye

@@ -16,7 +16,7 @@ layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
 layout(std430, binding = 5) writeonly buffer Splats { Splat splats[]; };          // (view, slot)
 layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), bits of floats
 #endif
 uniform uint view_begin;
@@ -43,7 +43,7 @@ void main() {
       tiles = tile_count(splat, view);
     }
     tile_counts[v * slots + slot] = tiles;
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
     measured[v * slots + slot] = 0u;
 #endif
     if (tiles > 0u) {

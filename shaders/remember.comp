@@ -11,7 +11,7 @@ layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 5) readonly buffer OrderKeys { uint order_keys[]; };  // sorted
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 uniform uint nearest_key;  // to be added to an order key: then the bits of a depth
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
 layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };         // Gaussian of each slot
 layout(std430, binding = 2) readonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
 layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // (view, slot)
@@ -26,7 +26,7 @@ void main() {
   uint slot = thread_index();
   if (slot >= amounts[0].count) return;
   if (slot == 0u) counters.median_depth = order_keys[amounts[0].count / 2u] + nearest_key;
-#if TRANSMITTANCE >= TRANSMITTANCE_LAST
+#if RECORDS
   for (uint v = view_begin; v < view_end; ++v) {
     if (tile_counts[v * slots + slot] == 0u) continue;
     float most = uintBitsToFloat(measured[v * slots + slot]);

@@ -26,7 +26,7 @@
 #define MAX_VIEWS 8
 
 // What a frame remembers of a Gaussian (METHOD 5): never less than the floor, or a hidden one would divide by
-// zero; times the ageing a frame, up to 1, while Th leaves it out, so that it comes to be measured again.
+// zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be measured again.
 #define UPPER_FLOOR 0.01
 #define UPPER_AGEING 1.25
 

@@ -30,7 +30,7 @@ struct StudyOptions {
   bool stability = false;
   bool eyes = false;
   bool rules = false;
-  int frames = 20;  // timed of each rule in each round
+  int frames = 96;  // timed of each rule in each round
   std::vector<std::string> cases;
   double target = 40.0;  // dB
   std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
@@ -314,7 +314,7 @@ void add_study(CLI::App& program, Command& command) {
                 "One rule with each --th-eyes on a still pair (both eyes' light by default)");
   auto* rules = sub->add_flag("--rules", o.rules,
                               "Every rule, source and contrast at one error on a still pair, timed");
-  sub->add_option("--frames", o.frames, "Timed of each rule in each of three rounds (20)")
+  sub->add_option("--frames", o.frames, "Timed of each rule in each of three rounds (96)")
       ->type_name("N")
       ->check(CLI::Range(1, 10000).description(""))
       ->needs(rules);

@@ -9,4 +9,8 @@ namespace binosplat {
 /// The values must not be empty.
 double quantile(std::vector<double> values, double share);
 
+/// The arithmetic mean: of frames some of which do more than others, what they cost. The values must not be
+/// empty.
+double mean(const std::vector<double>& values);
+
 }  // namespace binosplat

@@ -17,8 +17,6 @@ namespace binosplat::preview {
 
 namespace {
 
-// Frames until thresholds that go by the frames before have settled (docs/decisions.md).
-constexpr int settling_frames = 4;
 constexpr std::size_t reports_kept = 240;
 
 // Where the densest part of a model lies before a camera: the median view depth of what is ahead.
@@ -81,7 +79,7 @@ Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras,
 
 void Session::change() {
   make_consistent(choices);
-  pending_ = render::measures(choices.settings.transmittance) ? settling_frames : 1;
+  pending_ = render::measures(choices.settings.transmittance) ? render::settling_frames : 1;
 }
 
 void Session::resize(const glm::ivec2& framebuffer) {

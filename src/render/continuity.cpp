@@ -27,13 +27,14 @@ double moved(const shared::View& a, const shared::View& b) {
 
 }  // namespace
 
-bool continues(const FrameShape& before, const FrameShape& now, double median_depth) {
+bool continues(const FrameShape& before, const FrameShape& now, double median_depth, double share) {
   if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
   for (std::size_t v = 0; v < now.asked; ++v) {
     const shared::View& a = before.views[v];
     const shared::View& b = now.views[v];
     if (a.width != b.width || a.height != b.height || a.lens != b.lens) return false;
-    if (turned_degrees(a, b) > turn_max_degrees || moved(a, b) > move_max_of_depth * median_depth)
+    if (turned_degrees(a, b) > share * turn_max_degrees ||
+        moved(a, b) > share * move_max_of_depth * median_depth)
       return false;
   }
   return true;

@@ -28,14 +28,12 @@ Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussi
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
   shape_ = make_shape(views, settings, model_);
-  shape_.remembers = remembers(last_shape_, shape_, last_median_depth_);
   if (settings.quality > 0.0f) {
     const bool cut = !continues(last_shape_, shape_, last_median_depth_);
-    const bool remembered = shape_.remembers;
     shape_ = make_shape(views, settings, model_, loss_control_.next_probe(views, settings));
-    shape_.remembers = remembered;
     shape_.settings.loss = loss_control_.next_loss(settings, cut);
   }
+  decide_measuring();
   if (model_buffers_.box) limit_keys(shape_, *model_buffers_.box);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
   if (settings.order_capacity > 0) slots_ = settings.order_capacity;
@@ -59,7 +57,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
     grow(counters);
   }
   if (counters.loop_cut != 0) {
-    last_shape_ = {};  // what this frame left behind is not to be gone by
+    forget();  // what this frame left behind is not to be gone by
     throw Error(
         ExitCode::out_of_memory,
         fmt::format(
@@ -126,11 +124,30 @@ shared::Counters Frame::draw_once(FrameReport& report) {
   return buffers_.counters.read<shared::Counters>(1).front();
 }
 
+void Frame::decide_measuring() {
+  const FrameSettings& s = shape_.settings;
+  if (!measures(s.transmittance)) return;
+  shape_.remembers = remembers(recorded_shape_, shape_, last_median_depth_);
+  since_cut_ = shape_.remembers ? since_cut_ + 1 : 0;
+  ++since_recorded_;
+  shape_.records = since_cut_ < s.record_every || since_recorded_ >= s.record_every ||
+                   shape_.offset_count > 0 ||
+                   !continues(recorded_shape_, shape_, last_median_depth_, 1.0 / 3.0);
+}
+
 void Frame::keep_measurements(const shared::Counters& counters, FrameReport& report) {
   last_shape_ = shape_;
-  last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
-  if (measures(shape_.settings.transmittance)) std::swap(buffers_.upper, buffers_.upper_next);
+  if (shape_.records || shape_.probe)
+    last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
+  if (shape_.records) {
+    recorded_shape_ = shape_;
+    since_recorded_ = 0;
+    std::swap(buffers_.upper, buffers_.upper_next);
+  } else if (!measures(shape_.settings.transmittance)) {
+    recorded_shape_ = {};
+  }
   model_buffers_.keep_last();
+  report.recorded = shape_.records;
   report.loss = shape_.settings.loss;
   report.remembered = shape_.remembers;
   if (!shape_.probe) return;
@@ -170,7 +187,7 @@ std::vector<Picture> Frame::read_pictures() {
 }
 
 std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
-  if (!measures(shape_.settings.transmittance)) return {};
+  if (!shape_.records) return {};
   const shared::View& view = shape_.views.at(v);
   const DrawnBuffers& drawn = *buffers_.drawn[view.order_group];
   const auto count = drawn.amounts.read<shared::Amount>(1).front().count;

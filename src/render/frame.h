@@ -25,7 +25,8 @@ struct FrameReport {
   double submit_ms = 0;               // CPU time of handing the last drawing to the driver
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   float loss = 0.0f;                  // K or kappa that the frame went by
-  bool remembered = false;            // it went by what the last frame measured
+  bool remembered = false;            // it went by what an earlier frame measured
+  bool recorded = false;              // it measured for later ones
   double quality = 0.0;               // with settings.quality: the PSNR in dB that its probes so far tell of
 };
 
@@ -52,10 +53,9 @@ class Frame {
   std::vector<Picture> read_pictures();
 
   /// The next frame goes by nothing that earlier ones measured, as a first one does.
-  void forget() { last_shape_ = {}; }
+  void forget() { last_shape_ = recorded_shape_ = {}; }
 
-  /// What the last frame measured in its view `v`, in index order; none unless its transmittance is one that
-  /// is measured.
+  /// What the last frame measured in its view `v`, in index order; none unless it did (FrameReport).
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
   /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with
@@ -67,6 +67,7 @@ class Frame {
  private:
   shared::Counters draw_once(FrameReport& report);
   void grow(const shared::Counters& counters);
+  void decide_measuring();
   void keep_measurements(const shared::Counters& counters, FrameReport& report);
 
   gl::Dispatcher dispatcher_;
@@ -74,7 +75,10 @@ class Frame {
   ModelBuffers model_buffers_;
   FrameBuffers buffers_;
   FrameShape shape_;
-  FrameShape last_shape_;  // of the last frame drawn
+  FrameShape last_shape_;      // of the last frame drawn
+  FrameShape recorded_shape_;  // of the last one that measured
+  int since_cut_ = 0;          // frames that remembered
+  int since_recorded_ = 0;     // frames
   LossControl loss_control_;
   double last_median_depth_ = 0;
   std::int64_t slots_ = 0;

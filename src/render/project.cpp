@@ -26,7 +26,7 @@ gl::Defines projecting(const FrameShape& shape, OrderGroup views, bool asks_both
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
-  const bool first_answer_does = !measures(shape.settings.transmittance);
+  const bool first_answer_does = !shape.records;
   const gl::Program& program =
       dispatcher.context().program("cull.comp", projecting(shape, views, first_answer_does));
   for (const ModelBuffers::Page& page : model.pages) {
@@ -87,6 +87,7 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TH", std::to_string(s.th)},
                          {"TH_NAME", th_choices[s.th].name},
                          {"TRANSMITTANCE", std::to_string(s.transmittance)},
+                         {"RECORDS", shape.records ? "1" : "0"},
                          {"TH_EYES", std::to_string(s.th_eyes)},
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},

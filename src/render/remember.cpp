@@ -6,8 +6,8 @@
 namespace binosplat::render {
 
 void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (!measures(shape.settings.transmittance) && !shape.probe) return;
-  const gl::Defines defines = {{"TRANSMITTANCE", std::to_string(shape.settings.transmittance)}};
+  if (!shape.records && !shape.probe) return;
+  const gl::Defines defines = {{"RECORDS", shape.records ? "1" : "0"}};
   for (std::size_t group = 0; group < shape.groups.size(); ++group) {
     const DrawnBuffers& drawn = *buffers.drawn[group];
     dispatcher.run(dispatcher.context().program("remember.comp", defines),

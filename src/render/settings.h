@@ -27,6 +27,9 @@ struct DepthTable {
 /// Whether frames measure what their successors go by.
 constexpr bool measures(int transmittance) { return transmittance >= TRANSMITTANCE_LAST; }
 
+/// Frames after a cut until what they measure of themselves has settled: with a contrast seven, else three.
+constexpr int settling_frames = 8;
+
 struct FrameSettings {
   int tiles = TILES_ELLIPSE;              // TILES_ of shared/axes.h
   int th = TH_TAU;                        // TH_ of shared/axes.h
@@ -34,6 +37,10 @@ struct FrameSettings {
   int contrast = CONTRAST_OFF;            // CONTRAST_; with TH_SQUARED and a measured transmittance only
   int th_eyes = TH_EYES_PER_EYE;          // TH_EYES_; others need views in pairs, the eyes at 2k and 2k + 1
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
+  /// With a measured transmittance: measuring makes a frame slower, and what was measured holds for a while.
+  /// Measured are at least 1 of so many frames, so many after a cut, and whenever the eyes have gone a third
+  /// of the way to a cut (continuity.h). Models of Scaffold-GS measure every frame.
+  int record_every = settling_frames;
   float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
   /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
   /// dB. Each frame draws one strip of a view exactly, too, and the next loss follows from what that shows

@@ -33,6 +33,7 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   if (s.th_eyes != TH_EYES_PER_EYE && views % 2 != 0) {
     fail("--th-eyes {}: only for both eyes together", th_eyes_choices[s.th_eyes].name);
   }
+  if (s.record_every < 1) fail("measuring one of {} frames: expected at least one", s.record_every);
   if (s.contrast != CONTRAST_OFF && !measures(s.transmittance)) {
     fail("--contrast {}: only with a measured --transmittance", contrast_choices[s.contrast].name);
   }

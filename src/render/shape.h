@@ -36,7 +36,8 @@ struct FrameShape {
   double kernel_px2 = KERNEL_PX2;  // of the model
   bool antialiased = false;
   std::uint32_t gaussian_count = 0;
-  bool remembers = false;           // the last frame measured for this one
+  bool remembers = false;           // an earlier frame measured for this one
+  bool records = false;             // this one measures for those to come
   std::uint32_t slots = 0;          // room for the Gaussians that one order group draws
   std::vector<shared::View> views;  // those asked for, then the probe's
   std::uint32_t asked = 0;

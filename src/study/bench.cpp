@@ -27,7 +27,6 @@ constexpr double reference_db = 60.0;  // fp32 against float64: the bar below wh
 // A pair at its very threshold may fall either way, and calibrated losses lie at such thresholds, where the
 // search ends; at most half of what the loss costs may come from that.
 constexpr double share_db = 3.0;
-constexpr int settling_frames = 3;  // after which what a frame remembers has settled (METHOD 8)
 
 // The clock has settled when the medians of two successive windows of frames agree.
 constexpr std::size_t window = 10;
@@ -59,9 +58,9 @@ bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSet
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(warm_up_seconds));
   const Clock::time_point end = Clock::now() + limit;
   double last = 0.0;
-  for (int drawn = 0; drawn < settling_frames || Clock::now() < end;) {
+  for (int drawn = 0; drawn < render::settling_frames || Clock::now() < end;) {
     std::vector<double> times;
-    while (times.size() < window && (drawn < settling_frames || Clock::now() < end)) {
+    while (times.size() < window && (drawn < render::settling_frames || Clock::now() < end)) {
       times.push_back(frame.draw(view.eyes, settings).total_ms);
       ++drawn;
     }
@@ -89,7 +88,7 @@ struct Times {
 };
 
 /// Mean of a number over the views; null where one has none.
-ordered_json mean(const ordered_json& views, const char* key) {
+ordered_json mean_of(const ordered_json& views, const char* key) {
   double sum = 0.0;
   for (const ordered_json& view : views) {
     if (!view.contains(key) || !view[key].is_number()) return nullptr;
@@ -113,13 +112,13 @@ ordered_json number_or_null(double value) {
 
 ordered_json summary_of_quality(const ordered_json& views) {
   const ordered_json& poorest = worst(views, "psnr_db");
-  return {{"psnr_db", mean(views, "psnr_db")},
+  return {{"psnr_db", mean_of(views, "psnr_db")},
           {"worst_psnr_db", poorest["psnr_db"]},
           {"worst_view", poorest["name"]},
-          {"ssim", mean(views, "ssim")},
-          {"flip", mean(views, "flip")},
-          {"signed", mean(views, "signed")},
-          {"disagreement_db", mean(views, "disagreement_db")}};
+          {"ssim", mean_of(views, "ssim")},
+          {"flip", mean_of(views, "flip")},
+          {"signed", mean_of(views, "signed")},
+          {"disagreement_db", mean_of(views, "disagreement_db")}};
 }
 
 }  // namespace
@@ -215,6 +214,10 @@ ordered_json Bench::compare(const BenchView& view, const Exact& exact,
 
 void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
   render::Frame frame(context_, model_);
+  // One frame of several measures for the others and takes longer.
+  const auto typical = [&](const std::vector<double>& values) {
+    return render::measures(settings.transmittance) ? mean(values) : quantile(values, 0.5);
+  };
   Times times;
   std::vector<double> repeats;
   bool settled = true;
@@ -222,24 +225,23 @@ void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
     std::vector<double> of_repeat;
     for (const BenchView& view : views_) {
       if (repeat == 0) settled = warm_up(frame, view, settings) && settled;
-      for (int n = 0; repeat > 0 && n < settling_frames; ++n) frame.draw(view.eyes, settings);
+      for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) frame.draw(view.eyes, settings);
       for (int n = 0; n < effort_.frames; ++n) {
         times.add(frame.draw(view.eyes, settings));
         of_repeat.push_back(times.frame.back());
       }
     }
-    repeats.push_back(quantile(of_repeat, 0.5));
+    repeats.push_back(typical(of_repeat));
   }
   const auto [least, most] = std::minmax_element(repeats.begin(), repeats.end());
-  point["frame_ms"] = quantile(times.frame, 0.5);
+  point["frame_ms"] = typical(times.frame);
   point["p99_ms"] = quantile(times.frame, 0.99);
   point["noise_ms"] = effort_.repeats > 1 ? ordered_json((*most - *least) / 2) : ordered_json();
   point["settled"] = settled;
   point["frames"] = times.frame.size();
   point["submit_ms"] = quantile(times.submit, 0.5);
   point["stages_ms"] = ordered_json::object();
-  for (const std::string& stage : times.stage_names)
-    point["stages_ms"][stage] = quantile(times.stages[stage], 0.5);
+  for (const std::string& stage : times.stage_names) point["stages_ms"][stage] = typical(times.stages[stage]);
 }
 
 void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
@@ -248,7 +250,7 @@ void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
   ordered_json photographed = ordered_json::array();
   for (std::size_t v = 0; v < views_.size(); ++v) {
     render::FrameReport report;
-    for (int n = 0; n <= settling_frames; ++n) report = frame.draw(views_[v].eyes, settings);
+    for (int n = 0; n < render::settling_frames; ++n) report = frame.draw(views_[v].eyes, settings);
     ordered_json view = compare(views_[v], exact()[v], frame.read_pictures());
     view["pairs"] = report.pairs;
     view["visible"] = report.visible;
@@ -256,15 +258,15 @@ void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
     if (views_[v].photo) photographed.push_back(view);
     views.push_back(std::move(view));
   }
-  point["pairs"] = mean(views, "pairs");
-  point["visible"] = mean(views, "visible");
+  point["pairs"] = mean_of(views, "pairs");
+  point["visible"] = mean_of(views, "visible");
   point["exact"] = summary_of_quality(views);
   if (!photographed.empty()) {
     point["photos"] = {{"views", photographed.size()},
-                       {"psnr_db", mean(photographed, "photo_psnr_db")},
-                       {"drop_db", mean(photographed, "drop_db")},
-                       {"ssim", mean(photographed, "photo_ssim")},
-                       {"flip", mean(photographed, "photo_flip")}};
+                       {"psnr_db", mean_of(photographed, "photo_psnr_db")},
+                       {"drop_db", mean_of(photographed, "drop_db")},
+                       {"ssim", mean_of(photographed, "photo_ssim")},
+                       {"flip", mean_of(photographed, "photo_flip")}};
   }
   point["views"] = std::move(views);
 }

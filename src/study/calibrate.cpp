@@ -14,7 +14,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int settling_frames = 4;  // what a frame remembers has settled by then (METHOD 8)
 constexpr double equal_db = 100.0;  // an equal picture's, so that means exist
 constexpr double tolerance_db = 0.01;
 
@@ -73,7 +72,7 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
     // Each view starts like a first frame: what another view measured says nothing here.
     if (render::measures(settings.transmittance)) frame_.forget();
     render::FrameReport report;
-    const int frames = render::measures(settings.transmittance) ? settling_frames : 1;
+    const int frames = render::measures(settings.transmittance) ? render::settling_frames : 1;
     for (int n = 0; n < frames; ++n) report = frame_.draw(std::span(&views_[v], 1), settings);
     const double db = psnr_of(squared_error(v)), value = drop ? wanted_[v]->exact_db - db : db;
     const bool worse = drop ? value > cost.worst_db : value < cost.worst_db;

@@ -26,8 +26,8 @@ constexpr int evaluations_max = 20;
 constexpr int warm_up_frames = 5;
 // With a contrast, what frames measure of themselves settles in seven frames. From then on single frames
 // swing (by 0.5 dB and 15 % of the pairs on fox) in a round of twelve, as what was left out ages until it is
-// measured again: the mean over a round is what a rule costs.
-constexpr int settling_frames = 8;
+// measured again: the mean over a round is what a rule costs. Frames that are not timed all measure: those
+// that do not are the next one's likes.
 constexpr int round_frames = 12;
 
 // Times of one rule's frames.
@@ -55,7 +55,7 @@ std::string problem_of(const RuleResult& result, double target) {
 
 void settle(Still& still, const Variant& rule) {
   still.forget();
-  for (int n = 0; n < settling_frames && render::measures(rule.transmittance); ++n) still.draw(rule);
+  for (int n = 0; n < render::settling_frames && render::measures(rule.transmittance); ++n) still.draw(rule);
 }
 
 double db_of(double squared_error) { return -10.0 * std::log10(squared_error); }
@@ -84,13 +84,13 @@ double disagreement_of(Still& still) {
   return stereo::disagreement(std::array{views[0], views[1]}, still.exact(), still.pictures()).db;
 }
 
-void take_medians(const Times& times, RuleResult& result) {
+void take_means(const Times& times, RuleResult& result) {
   result.timed_pairs = times.pairs / static_cast<double>(times.frame.size());
-  result.frame_ms = quantile(times.frame, 0.5);
+  result.frame_ms = mean(times.frame);
   result.lower_ms = quantile(times.frame, 0.25);
   result.upper_ms = quantile(times.frame, 0.75);
   for (const std::string& name : times.stage_names)
-    result.stages.push_back({name, quantile(times.stages.at(name), 0.5)});
+    result.stages.push_back({name, mean(times.stages.at(name))});
 }
 
 // The frame time of the rule that `is` finds; not a number where there is none.
@@ -149,12 +149,13 @@ std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& 
   for (int round = 0; round < rule_rounds; ++round) {
     for (std::size_t k = 0; k < rules.size(); ++k) {
       settle(still, rules[k]);
-      for (int n = 0; n < warm_up_frames; ++n) still.draw(rules[k]);
-      for (int n = 0; n < frames; ++n) times[k].add(still.draw(rules[k]));
+      const int record_every = rules[k].settings().record_every;
+      for (int n = 0; n < warm_up_frames; ++n) still.draw(rules[k], record_every);
+      for (int n = 0; n < frames; ++n) times[k].add(still.draw(rules[k], record_every));
       progress();
     }
   }
-  for (std::size_t k = 0; k < rules.size(); ++k) take_medians(times[k], results[k]);
+  for (std::size_t k = 0; k < rules.size(); ++k) take_means(times[k], results[k]);
   const double exact_ms = frame_ms_of(results, [](const Variant& v) { return v.th == TH_TAU; });
   for (RuleResult& result : results) {
     result.of_exact = result.frame_ms / exact_ms;

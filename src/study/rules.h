@@ -17,9 +17,9 @@ struct RuleResult {
   double worst_db = 0.0;              // of one of them
   double disagreement_db = 0.0;       // of the last of them; not a number for one eye
   double pairs = 0.0, removed = 0.0;  // their mean, and as a share of the exact frame's
-  double frame_ms = 0.0, lower_ms = 0.0, upper_ms = 0.0;  // median and quartiles
+  double frame_ms = 0.0, lower_ms = 0.0, upper_ms = 0.0;  // mean and quartiles
   double timed_pairs = 0.0;                               // mean of the frames timed
-  std::vector<gl::StageTime> stages;                      // medians
+  std::vector<gl::StageTime> stages;                      // means
   double of_exact = 0.0, of_one = 0.0;  // its frame time in that of tau, and of its threshold with `one`
   std::string problem;                  // why it cannot be compared with the others; empty: it can
 };

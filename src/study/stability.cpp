@@ -91,6 +91,8 @@ StabilityResult run_variant(render::Frame& frame, const StabilityCase& one, cons
                             const Variant& variant, const StabilityBounds& bounds) {
   render::FrameSettings settings = variant.settings();
   settings.depth_table = exact.table;
+  // Of a still camera the frames that do not measure show what the next one shows: nothing new.
+  if (exact.pictures.size() == 1) settings.record_every = 1;
   frame.forget();
   std::vector<FrameErrors> errors;
   double pairs = 0.0, exact_pairs = 0.0;

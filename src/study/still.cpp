@@ -5,11 +5,7 @@
 
 namespace binosplat::study {
 
-namespace {
-
-constexpr int frames_to_settle = 3;
-
-}  // namespace
+namespace {}  // namespace
 
 Still::Still(gl::Context& context, const Model& model, std::vector<shared::View> views)
     : frame_(context, model),
@@ -19,8 +15,9 @@ Still::Still(gl::Context& context, const Model& model, std::vector<shared::View>
       error_(context, exact_),
       table_(measure::measure_depth_table(frame_, views_)) {}
 
-render::FrameReport Still::draw(const Variant& variant) {
+render::FrameReport Still::draw(const Variant& variant, int record_every) {
   render::FrameSettings settings = variant.settings();
+  settings.record_every = record_every;
   settings.depth_table = table_;
   return frame_.draw(views_, settings);
 }
@@ -28,7 +25,7 @@ render::FrameReport Still::draw(const Variant& variant) {
 render::FrameReport Still::settle(const Variant& variant) {
   forget();
   render::FrameReport report = draw(variant);
-  for (int n = 1; n < frames_to_settle && render::measures(variant.transmittance); ++n)
+  for (int n = 1; n < render::settling_frames && render::measures(variant.transmittance); ++n)
     report = draw(variant);
   return report;
 }

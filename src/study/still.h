@@ -21,9 +21,9 @@ class Still {
 
   /// A rule's next frame goes by nothing that earlier ones measured.
   void forget() { frame_.forget(); }
-  /// A rule's next frame.
-  render::FrameReport draw(const Variant& variant);
-  /// The third frame from nothing.
+  /// A rule's next frame, which measures as FrameSettings::record_every says.
+  render::FrameReport draw(const Variant& variant, int record_every = 1);
+  /// The frame, from nothing, after which it has settled.
   render::FrameReport settle(const Variant& variant);
 
   /// Of the last frame drawn against the exact one: the mean over all views together, and in dB.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include "reference/transmittance.h"
 #include "render/continuity.h"
+
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -48,6 +50,7 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
 // What a first frame leaves for the next, by Gaussian.
 std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
   test::StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
+  run.shape.records = true;
   run.run_until(render::Stage::ranges);
   gl::Dispatcher dispatcher(test::gl_context());
   render::blend(dispatcher, run.shape, run.frame);
@@ -78,6 +81,42 @@ TEST(Remember, MeasuresWhatTheReferenceMeasures) {
     for (float& opacity : fainter.opacity) opacity *= 0.98f;
     EXPECT_GT(differing(measured, fainter, front()), 10 * few);
   }
+}
+
+TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
+  const Model model = wall();
+  const FrameSettings settings = {
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 4, .loss = 0.05f};
+  FrameSettings every = settings;
+  every.record_every = 1;
+  render::Frame frame(test::gl_context(), model), measured(test::gl_context(), model);
+  std::string recorded;
+  for (int n = 0; n < 16; ++n) {
+    recorded += frame.draw(std::vector{front()}, settings).recorded ? 'r' : '-';
+    // The frames between show what the next one that measures shows.
+    if (n < 4 || n % 4 == 0) measured.draw(std::vector{front()}, every);
+    EXPECT_TRUE(same_bits(frame.read_pictures().front(), measured.read_pictures().front())) << n;
+  }
+  EXPECT_EQ(recorded, "rrrr---r---r---r");
+  frame.forget();
+  EXPECT_TRUE(frame.draw(std::vector{front()}, settings).recorded);
+  EXPECT_THROW(frame.draw(std::vector{front()}, {.record_every = 0}), Error);
+}
+
+TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
+  const Model model = wall();
+  const FrameSettings settings = {
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 6, .loss = 0.05f};
+  render::Frame frame(test::gl_context(), model);
+  std::string recorded;
+  for (int n = 0; n < 16; ++n) {
+    Camera camera = test::front_camera(96, 80, 90);
+    const double turned = glm::radians(n < 8 ? 0.0 : 2.0 * (n - 7));
+    camera.rotation = glm::dmat3(glm::rotate(glm::dmat4(1.0), turned, glm::dvec3(0, 1, 0)));
+    recorded += frame.draw(std::vector{make_view(camera)}, settings).recorded ? 'r' : '-';
+  }
+  EXPECT_EQ(recorded.substr(0, 8), "rrrrrr--");
+  EXPECT_EQ(recorded.substr(8), "--r--r--");
 }
 
 TEST(Remember, TheFirstFrameAndACutEqualAllLight) {

@@ -125,6 +125,7 @@ TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
 // How many Gaussians have another measurement in the reference than a first frame leaves, by id.
 std::size_t differing(const Model& model, const Model& expected_of, const shared::View& view) {
   test::StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
+  run.shape.records = true;
   run.run_until(Stage::ranges);
   gl::Dispatcher dispatcher(test::gl_context());
   render::blend(dispatcher, run.shape, run.frame);
