@@ -27,11 +27,11 @@ CalibratedSettings::CalibratedSettings(const RenderOptions& options, const Model
   calibration_ = study::load_calibration(options.calibration);
   render::FrameSettings asked;
   asked.th = number_of(threshold_name(options), th_choices);
-  asked.transmittance = number_of(options.transmittance, transmittance_choices);
+  asked.transmittance = number_of(transmittance_name(options), transmittance_choices);
   asked.contrast = number_of(options.contrast, contrast_choices);
   if (!study::calibrated(*calibration_, asked, calibration_->focal))
     fail("--calibration {} has no entry for --th {} --transmittance {} --contrast {}", options.calibration,
-         th_choices[asked.th].name, options.transmittance, options.contrast);
+         th_choices[asked.th].name, transmittance_name(options), options.contrast);
   other_model_ = !study::is_of(*calibration_, model);
   if (other_model_)
     log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly",

@@ -9,7 +9,7 @@ namespace binosplat::app {
 namespace {
 
 void check_threshold(const RenderOptions& o) {
-  const std::string th = threshold_name(o);
+  const std::string th = threshold_name(o), transmittance = transmittance_name(o);
   const int givers = int(o.loss.has_value()) + int(o.quality.has_value()) + int(!o.calibration.empty());
   const char* const giver = o.loss ? "--loss" : o.quality ? "--quality" : "--calibration";
   if (givers > 1) {
@@ -19,11 +19,11 @@ void check_threshold(const RenderOptions& o) {
   if (th != "tau" && givers == 0)
     fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
   if (th == "tau" && givers > 0) fail("{} has no effect with --th tau, which is exact", giver);
-  if (o.contrast != "off" && (th != "squared" || o.transmittance == "one" || o.transmittance == "depth")) {
+  if (o.contrast != "off" && (th != "squared" || transmittance == "one" || transmittance == "depth")) {
     fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
   }
-  if ((o.transmittance == "other-eye" || o.transmittance == "both") && (o.mono || !o.only.empty())) {
-    fail("--transmittance {} needs both eyes: leave --mono and --only out", o.transmittance);
+  if ((transmittance == "other-eye" || transmittance == "both") && (o.mono || !o.only.empty())) {
+    fail("--transmittance {} needs both eyes: leave --mono and --only out", transmittance);
   }
   if (o.th_eyes != "per-eye" && (th == "tau" || o.mono || !o.only.empty())) {
     fail("--th-eyes {} is for thresholds of both eyes: leave --mono and --only out, and give --loss",
@@ -32,7 +32,7 @@ void check_threshold(const RenderOptions& o) {
   if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
     fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
   if (!o.reference_until.empty() &&
-      (o.transmittance != "one" || o.quality || !o.calibration.empty() || o.th_eyes != "per-eye")) {
+      (transmittance != "one" || o.quality || !o.calibration.empty() || o.th_eyes != "per-eye")) {
     fail(
         "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
         "--quality, --calibration and --th-eyes out");
@@ -44,6 +44,11 @@ void check_threshold(const RenderOptions& o) {
 std::string threshold_name(const RenderOptions& o) {
   if (!o.th.empty()) return o.th;
   return o.loss || o.quality || !o.calibration.empty() ? "squared" : "tau";
+}
+
+std::string transmittance_name(const RenderOptions& o) {
+  if (!o.transmittance.empty()) return o.transmittance;
+  return o.quality ? "last" : "one";
 }
 
 void check(const RenderOptions& o) {

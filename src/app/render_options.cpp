@@ -241,8 +241,8 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
   sub.add_option("--calibration", o.calibration, "Take the loss from a file of binosplat calibrate")
       ->type_name("FILE")
       ->group(group);
-  choose(sub, "--transmittance", o.transmittance, "The light that reaches a Gaussian, for --th (one)",
-         transmittance_choices)
+  choose(sub, "--transmittance", o.transmittance,
+         "The light that reaches a Gaussian, for --th (one;\nwith --quality last)", transmittance_choices)
       ->group(group);
   choose(sub, "--contrast", o.contrast, "What that light is weighed with, for --th squared (off)",
          contrast_choices)

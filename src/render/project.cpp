@@ -14,8 +14,10 @@ const gl::Buffer& kept_of(const ModelBuffers::Page& page) {
   return page.anchors ? *page.anchors->kept : *page.gaussians;
 }
 
-// An invocation for each eye takes the time of one where a model does not fill the GPU. Where one eye's
-// answer makes the other's unnecessary, one invocation asks both.
+constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what an H200 has in work
+
+// An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
+// invocation asks both where one eye's answer makes the other's unnecessary.
 gl::Defines projecting(const FrameShape& shape, OrderGroup views, bool asks_both) {
   gl::Defines defines = pair_defines(shape);
   defines.emplace_back("EYES", views.end - views.begin > 1 && !asks_both ? "2" : "1");
@@ -26,9 +28,8 @@ gl::Defines projecting(const FrameShape& shape, OrderGroup views, bool asks_both
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
-  const bool first_answer_does = !shape.records;
-  const gl::Program& program =
-      dispatcher.context().program("cull.comp", projecting(shape, views, first_answer_does));
+  const bool asks_both = !shape.records && shape.gaussian_count >= fills_a_gpu;
+  const gl::Program& program = dispatcher.context().program("cull.comp", projecting(shape, views, asks_both));
   for (const ModelBuffers::Page& page : model.pages) {
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
                    {{"Views", buffers.views},

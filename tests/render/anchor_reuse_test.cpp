@@ -43,6 +43,7 @@ std::vector<shared::View> eyes(double near_plane = near_default) {
 std::size_t reused(const Model& model, const FrameSettings& settings,
                    const std::vector<shared::View>& views = eyes()) {
   test::StageRun run(model, views, settings);
+  run.shape.records = render::measures(settings.transmittance);
   gl::Dispatcher dispatcher(test::gl_context());
   run.run_until(render::Stage::ranges);
   render::blend(dispatcher, run.shape, run.frame);

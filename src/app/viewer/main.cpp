@@ -7,6 +7,7 @@
 #include <new>
 
 #include "app/command.h"
+#include "app/drawing.h"
 #include "app/open_scene.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
@@ -37,17 +38,8 @@ void check_view(const RenderOptions& o) {
 preview::Choices choices_of(const RenderOptions& o) {
   preview::Choices choices;
   choices.layout = o.layout.empty() ? LAYOUT_PARALLEL : number_of(o.layout, layout_choices);
-  choices.settings.tiles = number_of(o.tiles, tiles_choices);
-  choices.settings.th = number_of(threshold_name(o), th_choices);
-  choices.settings.loss = o.loss.value_or(0.0f);
-  choices.settings.transmittance = number_of(o.transmittance, transmittance_choices);
-  choices.settings.contrast = number_of(o.contrast, contrast_choices);
-  choices.settings.th_eyes = number_of(o.th_eyes, th_eyes_choices);
-  choices.settings.tile_size = o.tile;
-  choices.rig.ipd = o.ipd.value_or(choices.rig.ipd);
-  choices.rig.units_per_metre = o.units_per_metre;
-  choices.rig.convergence = o.convergence;
-  choices.rig.cant_degrees = o.cant.value_or(0.0);
+  choices.settings = settings_of(o);
+  choices.rig = rig_settings(o, near_default);  // until the model tells
   choices.background = o.background.value_or(glm::vec3(0.0f));
   return choices;
 }
@@ -61,7 +53,7 @@ preview::Opened open(const std::shared_ptr<RenderOptions>& o) {
   opened.name = o->scene;
   opened.load = [o, scene] { return scene->model(); };
   opened.cameras = [o, list](const Model& model, preview::Choices& choices) {
-    choices.rig.near_plane = o->near_plane.value_or(list->listed ? near_default : near_for(model));
+    choices.rig.near_plane = near_plane_of(*o, *list, model);
     std::vector<Camera> cameras = list->listed ? list->cameras : made_up_cameras(*o, model).cameras;
     if (!o->views.empty()) {
       const auto at = std::find_if(cameras.begin(), cameras.end(),
