@@ -36,7 +36,7 @@ double depth_ahead(const Model& model, const Camera& of_world) {
 
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& ending) {
   for (int n = 1;; ++n) {
-    const auto path = folder / fmt::format("preview_{:03}{}", n, ending);
+    auto path = folder / fmt::format("preview_{:03}{}", n, ending);
     if (!std::filesystem::exists(path)) return path;
   }
 }

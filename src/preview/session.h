@@ -33,7 +33,7 @@ class Session {
   /// Uploads; the context is current here and in every call. `cameras` are where to start and what to step
   /// through, not empty. `folder` is where pictures and paths are saved.
   Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
-          Choices choices, std::filesystem::path folder);
+          Choices wanted, std::filesystem::path folder);
 
   Navigator head;
   Choices choices;

@@ -36,8 +36,11 @@ Picture as_picture(const Image& photo) {
 
 /// What a view should look like, on the GPU, and what its exact picture is worth.
 struct Calibrator::Wanted {
+  Wanted(gl::Context& context, std::span<const Picture> pictures, std::uint32_t levels, std::uint64_t pairs)
+      : error(context, pictures, levels), exact_pairs(pairs) {}
+
   SquaredError error;  // against the exact picture, or the photo
-  std::uint64_t exact_pairs = 0;
+  std::uint64_t exact_pairs;
   double exact_db = equal_db;  // of the exact picture against the photo
 };
 
@@ -55,7 +58,7 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
     views_.push_back(make_view(view.camera, near_plane));
     const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
     const std::vector<Picture> wanted = drop ? std::vector{as_picture(*view.photo)} : frame_.read_pictures();
-    wanted_.push_back(std::unique_ptr<Wanted>(new Wanted{{context, wanted, drop ? 255u : 0u}, pairs}));
+    wanted_.push_back(std::make_unique<Wanted>(context, wanted, drop ? 255u : 0u, pairs));
     wanted_.back()->exact_db = psnr_of(squared_error(views_.size() - 1));
   }
 }
