@@ -16,5 +16,19 @@ uint scan_group(uint value) {
   return at == 0u ? 0u : scan_sums[at - 1u];
 }
 
-// The sum over all invocations; after scan_group.
+// The same for neighbours that each invocation holds, so that the group scans once: each becomes what comes before it,
+// `before` included.
+#define SCAN_EACH (SCAN_BLOCK / THREADS)
+void scan_neighbours(uint before, inout uint mine[SCAN_EACH]) {
+  uint sum = 0u;
+  for (uint i = 0u; i < SCAN_EACH; ++i) sum = saturating_add(sum, mine[i]);
+  before = saturating_add(before, scan_group(sum));
+  for (uint i = 0u; i < SCAN_EACH; ++i) {
+    uint value = mine[i];
+    mine[i] = before;
+    before = saturating_add(before, value);
+  }
+}
+
+// The sum over all invocations; after scan_group or scan_neighbours.
 uint group_total() { return scan_sums[THREADS - 1u]; }

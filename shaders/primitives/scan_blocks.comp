@@ -13,23 +13,16 @@ layout(std430, binding = 2) buffer BlockSums { uint block_sums[]; };
 layout(std430, binding = 3) writeonly buffer Total { uint total[]; };
 uniform uint amount;
 
-#define EACH 8u
-
 void main() {
   uint blocks = blocks_of(amounts[amount].count, SCAN_BLOCK);
   uint before = 0u;
-  for (uint start = 0u; start < blocks; start += THREADS * EACH) {
-    uint first = start + gl_LocalInvocationIndex * EACH;
-    uint mine[EACH];
-    uint sum = 0u;
-    for (uint i = 0u; i < EACH; ++i) {
-      mine[i] = first + i < blocks ? block_sums[first + i] : 0u;
-      sum = saturating_add(sum, mine[i]);
-    }
-    uint mine_before = saturating_add(before, scan_group(sum));
-    for (uint i = 0u; i < EACH; ++i) {
-      if (first + i < blocks) block_sums[first + i] = mine_before;
-      mine_before = saturating_add(mine_before, mine[i]);
+  for (uint start = 0u; start < blocks; start += SCAN_BLOCK) {
+    uint first = start + gl_LocalInvocationIndex * SCAN_EACH;
+    uint mine[SCAN_EACH];
+    for (uint i = 0u; i < SCAN_EACH; ++i) mine[i] = first + i < blocks ? block_sums[first + i] : 0u;
+    scan_neighbours(before, mine);
+    for (uint i = 0u; i < SCAN_EACH; ++i) {
+      if (first + i < blocks) block_sums[first + i] = mine[i];
     }
     before = saturating_add(before, group_total());
     barrier();  // group_total is read before the next round writes it

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "base/error.h"
 #include "primitives/amount.h"
@@ -48,8 +47,7 @@ ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32
     upload(context, *model.scaffold, page_gaussians != 0 ? step : step / MAX_VIEWS);
   } else {
     upload(context, model, step);
-    box = {glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
-    for (const glm::vec3& p : model.position) box = {glm::min(box->low, p), glm::max(box->high, p)};
+    if (model.count() > 0) box = all_bounds(model);
   }
 }
 

@@ -38,7 +38,7 @@ struct ModelBuffers {
 
   std::vector<Page> pages;
   NetworkBuffers networks;
-  std::optional<Bounds> box;  // around all positions; none of a model that is decoded
+  std::optional<Bounds> box;  // around all positions; none of a model that is decoded or empty
 
  private:
   void upload(gl::Context& context, const Model& model, std::size_t step);

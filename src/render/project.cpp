@@ -20,6 +20,7 @@ constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what a
 // invocation asks both where one eye's answer makes the other's unnecessary.
 gl::Defines projecting(const FrameShape& shape, OrderGroup views, bool asks_both) {
   gl::Defines defines = pair_defines(shape);
+  defines.emplace_back("RECORDS", shape.records ? "1" : "0");
   defines.emplace_back("EYES", views.end - views.begin > 1 && !asks_both ? "2" : "1");
   return defines;
 }
@@ -88,7 +89,6 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TH", std::to_string(s.th)},
                          {"TH_NAME", th_choices[s.th].name},
                          {"TRANSMITTANCE", std::to_string(s.transmittance)},
-                         {"RECORDS", shape.records ? "1" : "0"},
                          {"TH_EYES", std::to_string(s.th_eyes)},
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},

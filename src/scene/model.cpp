@@ -97,4 +97,10 @@ Bounds core_bounds(const Model& model) {
   return bounds;
 }
 
+Bounds all_bounds(const Model& model) {
+  Bounds bounds{model.position[0], model.position[0]};
+  for (const glm::vec3& p : model.position) bounds = {glm::min(bounds.low, p), glm::max(bounds.high, p)};
+  return bounds;
+}
+
 }  // namespace binosplat

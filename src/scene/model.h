@@ -70,4 +70,7 @@ struct Bounds {
 };
 Bounds core_bounds(const Model& model);
 
+/// Box around all positions, far outliers included; the model must not be empty.
+Bounds all_bounds(const Model& model);
+
 }  // namespace binosplat

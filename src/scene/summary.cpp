@@ -44,12 +44,11 @@ ModelSummary summarise(const Model& model) {
   if (model.count() == 0) fail("{}: the model has no Gaussians", model.name);
   ModelSummary summary;
   summary.core = core_bounds(model);
-  summary.all = {model.position[0], model.position[0]};
+  summary.all = all_bounds(model);
   const float diagonal = glm::length(summary.core.high - summary.core.low);
   std::vector<double> opacities, scales;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const glm::vec3& p = model.position[i];
-    summary.all = {glm::min(summary.all.low, p), glm::max(summary.all.high, p)};
     const glm::vec3 outside = p - glm::clamp(p, summary.core.low, summary.core.high);
     summary.far += glm::length(outside) > far_in_diagonals * diagonal ? 1 : 0;
     const float opacity = model.opacity[i];

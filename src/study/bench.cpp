@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "base/statistics.h"
@@ -15,6 +14,7 @@
 #include "render/frame.h"
 #include "stereo/disagreement.h"
 #include "study/settings.h"
+#include "study/times.h"
 
 namespace binosplat::study {
 
@@ -70,22 +70,6 @@ bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSet
   }
   return false;
 }
-
-/// Times of many frames.
-struct Times {
-  std::vector<double> frame, submit;
-  std::vector<std::string> stage_names;  // in order
-  std::map<std::string, std::vector<double>> stages;
-
-  void add(const render::FrameReport& report) {
-    frame.push_back(report.total_ms);
-    submit.push_back(report.submit_ms);
-    for (const gl::StageTime& stage : report.stages) {
-      if (stages.count(stage.name) == 0) stage_names.push_back(stage.name);
-      stages[stage.name].push_back(stage.ms);
-    }
-  }
-};
 
 /// Mean of a number over the views; null where one has none.
 ordered_json mean_of(const ordered_json& views, const char* key) {

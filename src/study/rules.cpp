@@ -13,6 +13,7 @@
 #include "measure/search.h"
 #include "stereo/disagreement.h"
 #include "study/settings.h"
+#include "study/times.h"
 
 namespace binosplat::study {
 
@@ -30,32 +31,10 @@ constexpr int warm_up_frames = 5;
 // that do not are the next one's likes.
 constexpr int round_frames = 12;
 
-// Times of one rule's frames.
-struct Times {
-  std::vector<double> frame;
-  double pairs = 0.0;                    // sum
-  std::vector<std::string> stage_names;  // in order
-  std::map<std::string, std::vector<double>> stages;
-
-  void add(const render::FrameReport& report) {
-    frame.push_back(report.total_ms);
-    pairs += static_cast<double>(report.pairs);
-    for (const gl::StageTime& stage : report.stages) {
-      if (stages.count(stage.name) == 0) stage_names.push_back(stage.name);
-      stages[stage.name].push_back(stage.ms);
-    }
-  }
-};
-
 std::string problem_of(const RuleResult& result, double target) {
   if (result.variant.th == TH_TAU) return std::isinf(result.db) ? "" : "differs from the exact frame";
   if (std::abs(result.db - target) <= near_target_db) return "";
   return fmt::format("not within {} dB of {:g} dB", near_target_db, target);
-}
-
-void settle(Still& still, const Variant& rule) {
-  still.forget();
-  for (int n = 0; n < render::settling_frames && render::measures(rule.transmittance); ++n) still.draw(rule);
 }
 
 double db_of(double squared_error) { return -10.0 * std::log10(squared_error); }
@@ -63,7 +42,7 @@ double db_of(double squared_error) { return -10.0 * std::log10(squared_error); }
 // What settled frames cost.
 RuleResult settled(Still& still, const Variant& rule) {
   RuleResult result{.variant = rule};
-  settle(still, rule);
+  still.settle(rule);
   const int frames = render::measures(rule.transmittance) ? round_frames : 1;
   double sum = 0.0, largest = 0.0;
   for (int n = 0; n < frames; ++n) {
@@ -85,7 +64,7 @@ double disagreement_of(Still& still) {
 }
 
 void take_means(const Times& times, RuleResult& result) {
-  result.timed_pairs = times.pairs / static_cast<double>(times.frame.size());
+  result.timed_pairs = mean(times.pairs);
   result.frame_ms = mean(times.frame);
   result.lower_ms = quantile(times.frame, 0.25);
   result.upper_ms = quantile(times.frame, 0.75);
@@ -148,7 +127,7 @@ std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& 
   std::vector<Times> times(rules.size());
   for (int round = 0; round < rule_rounds; ++round) {
     for (std::size_t k = 0; k < rules.size(); ++k) {
-      settle(still, rules[k]);
+      still.settle(rules[k]);
       const int record_every = rules[k].settings().record_every;
       for (int n = 0; n < warm_up_frames; ++n) still.draw(rules[k], record_every);
       for (int n = 0; n < frames; ++n) times[k].add(still.draw(rules[k], record_every));

@@ -10,8 +10,7 @@ namespace {
 
 TEST(OrderKeys, HoldEveryDepthOfTheBoxInAsFewBitsAsTheFarthestNeeds) {
   const Model model = test::random_model(3, 4000, 0);
-  Bounds box{model.position.front(), model.position.front()};
-  for (const glm::vec3& p : model.position) box = {glm::min(box.low, p), glm::max(box.high, p)};
+  const Bounds box = all_bounds(model);
   for (const glm::dvec3& eye : {glm::dvec3(0, 0, -5), glm::dvec3(900, 30, -70), glm::dvec3(0.1, 0.2, 0.3)}) {
     Camera camera = test::front_camera(64, 48, 50);
     camera.position = eye;

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-
 #include <glm/gtc/matrix_transform.hpp>
-#include "reference/transmittance.h"
-#include "render/continuity.h"
 
+#include "render/continuity.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -47,39 +45,16 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
   }
 }
 
-// What a first frame leaves for the next, by Gaussian.
-std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
-  test::StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
-  run.shape.records = true;
-  run.run_until(render::Stage::ranges);
-  gl::Dispatcher dispatcher(test::gl_context());
-  render::blend(dispatcher, run.shape, run.frame);
-  render::remember(dispatcher, run.shape, run.frame);
-  return run.frame.upper_next->read<float>(model.count());
-}
-
-// How many Gaussians have another measurement in the reference than these.
-std::size_t differing(const std::vector<float>& measured, const Model& model, const shared::View& view) {
-  const auto splats = reference::project_all(model, view);
-  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
-  const auto expected =
-      reference::floored(reference::measure_transmittance(splats, lists, view), UPPER_FLOOR);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < measured.size(); ++i)
-    count += std::abs(measured[i] - expected[i]) > 1e-4 ? 1 : 0;
-  return count;
-}
-
 TEST(Remember, MeasuresWhatTheReferenceMeasures) {
   for (const Model& model : {test::random_model(86, 4000, 0), wall()}) {
-    const std::vector<float> measured = measured_on_gpu(model, front());
+    const std::vector<float> measured = test::measured_on_gpu(model, front());
     // A few may lie where fp32 blends a pixel more or less.
     const std::size_t few = model.count() / 500;
-    EXPECT_LE(differing(measured, model, front()), few);
+    EXPECT_LE(test::differing(measured, model, front()), few);
     EXPECT_GT(std::count_if(measured.begin(), measured.end(), [](float m) { return m < 0.5f; }), 100);
     Model fainter = model;  // a transmittance that is a little off is told apart
     for (float& opacity : fainter.opacity) opacity *= 0.98f;
-    EXPECT_GT(differing(measured, fainter, front()), 10 * few);
+    EXPECT_GT(test::differing(measured, fainter, front()), 10 * few);
   }
 }
 

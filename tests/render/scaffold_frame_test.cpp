@@ -9,7 +9,6 @@
 #include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
-#include "reference/transmittance.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -122,33 +121,15 @@ TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
   EXPECT_EQ(frame.draw(views).stages.front().name, "decode");
 }
 
-// How many Gaussians have another measurement in the reference than a first frame leaves, by id.
-std::size_t differing(const Model& model, const Model& expected_of, const shared::View& view) {
-  test::StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
-  run.shape.records = true;
-  run.run_until(Stage::ranges);
-  gl::Dispatcher dispatcher(test::gl_context());
-  render::blend(dispatcher, run.shape, run.frame);
-  render::remember(dispatcher, run.shape, run.frame);
-  const auto measured = run.frame.upper_next->read<float>(model.count());
-  const auto splats = reference::project_all(expected_of, view);
-  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
-  const auto expected =
-      reference::floored(reference::measure_transmittance(splats, lists, view), UPPER_FLOOR);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < measured.size(); ++i)
-    count += std::abs(measured[i] - expected[i]) > 1e-4 ? 1 : 0;
-  return count;
-}
-
 TEST(ScaffoldFrame, WhatIsMeasuredIsKeptById) {
   const Model model = test::scaffold_model(27, four_hundred);
   const shared::View view = eyes()[0];
   const std::size_t few = model.count() / 500;
-  EXPECT_LE(differing(model, model, view), few);
+  const std::vector<float> measured = test::measured_on_gpu(model, view);
+  EXPECT_LE(test::differing(measured, model, view), few);
   Model fainter = stand_in(std::make_shared<Scaffold>(*model.scaffold));
   for (float& bias : fainter.scaffold->opacity.second_bias) bias -= 0.1f;
-  EXPECT_GT(differing(model, fainter, view), 10 * few);
+  EXPECT_GT(test::differing(measured, fainter, view), 10 * few);
 }
 
 TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {

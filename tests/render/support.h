@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <glm/glm.hpp>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "measure/metrics.h"
 #include "primitives/amount.h"
 #include "reference/render.h"
+#include "reference/transmittance.h"
 #include "render/frame.h"
 #include "render/stages.h"
 #include "scene/camera.h"
@@ -109,5 +111,29 @@ struct StageRun {
   render::ModelBuffers model_buffers;
   std::vector<std::vector<std::uint32_t>> indices;  // Gaussian by slot, for each order group
 };
+
+/// What a first frame leaves for the next, by Gaussian (Scaffold-GS: by id).
+inline std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
+  StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
+  run.shape.records = true;
+  run.run_until(render::Stage::ranges);
+  gl::Dispatcher dispatcher(gl_context());
+  render::blend(dispatcher, run.shape, run.frame);
+  render::remember(dispatcher, run.shape, run.frame);
+  return run.frame.upper_next->read<float>(model.count());
+}
+
+/// How many Gaussians have another measurement in the reference than these.
+inline std::size_t differing(const std::vector<float>& measured, const Model& model,
+                             const shared::View& view) {
+  const auto splats = reference::project_all(model, view);
+  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+  const auto expected =
+      reference::floored(reference::measure_transmittance(splats, lists, view), UPPER_FLOOR);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    count += std::abs(measured[i] - expected[i]) > 1e-4 ? 1 : 0;
+  return count;
+}
 
 }  // namespace binosplat::test
