@@ -10,7 +10,6 @@
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "study/bench.h"
 #include "study/calibrate.h"
 
 namespace binosplat::app {
@@ -32,29 +31,6 @@ void check(const CalibrateOptions& o) {
   if (o.max_drop.has_value() != !o.render.photos.empty())
     fail("--max-drop and --photos go together: a drop in dB is against photos");
   if (o.render.size && o.max_drop) fail("--size with --photos: a drop is measured in the photos' own size");
-}
-
-/// The views: those named, or so many of the cameras (that have a photo), evenly spread.
-std::vector<study::CalibrationView> choose_views(const CalibrateOptions& o, const CameraList& list,
-                                                 const Model& model, double near_plane) {
-  RenderOptions render = o.render;
-  render.mono = true;
-  if (render.views.empty() && list.listed) render.views = {"all"};
-  std::vector<Shot> shots = make_shots(render, list, near_plane, model.axes);
-  if (!render.photos.empty() && o.render.views.empty())
-    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(render.photos, shot); });
-  if (shots.empty()) fail("--photos {}: there is no photo of any view", render.photos);
-  const std::size_t wanted = o.render.views.empty() ? static_cast<std::size_t>(o.views) : shots.size();
-  std::vector<study::CalibrationView> views;
-  for (const std::size_t i : study::spread_evenly(shots.size(), wanted)) {
-    study::CalibrationView& view =
-        views.emplace_back(study::CalibrationView{shots[i].eyes.front().camera, {}});
-    if (render.photos.empty()) continue;
-    const auto file = find_view_photo(render.photos, shots[i]);
-    if (!file) fail("--photos {}: there is no photo of view {}", render.photos, shots[i].name);
-    view.photo = load_view_photo(*file, view.camera);
-  }
-  return views;
 }
 
 void print(const study::Calibration& c, const CalibrateOptions& o) {
@@ -83,7 +59,8 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const Model model = scene.model();
   if (!list.listed) list = made_up_cameras(o.render, model);
   const double near_plane = near_plane_of(o.render, list, model);
-  const std::vector<study::CalibrationView> views = choose_views(o, list, model, near_plane);
+  const std::vector<study::CalibrationView> views =
+      photographed_views(o.render, list, model, near_plane, static_cast<std::size_t>(o.views));
   const auto context = open_context(o.render);
   const study::CalibrationTarget target =
       o.max_drop ? study::CalibrationTarget{study::CalibrationTarget::Kind::drop, *o.max_drop}

@@ -1,7 +1,10 @@
 #include "app/photos.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "formats/image_file.h"
+#include "study/bench.h"
 
 namespace binosplat::app {
 
@@ -23,6 +26,34 @@ Image load_view_photo(const fs::path& file, const Camera& camera) {
     fail("photo {} has {} x {} px and {} channels; its view has {} x {} px and 3: draw it in its own size",
          file.string(), photo.width, photo.height, photo.channels, camera.width, camera.height);
   return photo;
+}
+
+std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,
+                                                       const Model& model, double near_plane,
+                                                       std::size_t wanted,
+                                                       std::span<const std::string> without) {
+  RenderOptions render = options;
+  render.mono = true;
+  if (render.views.empty() && list.listed) render.views = {"all"};
+  std::vector<Shot> shots = make_shots(render, list, near_plane, model.axes);
+  std::erase_if(shots, [&](const Shot& shot) {
+    return std::find(without.begin(), without.end(), shot.name) != without.end();
+  });
+  if (!render.photos.empty() && options.views.empty())
+    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(render.photos, shot); });
+  if (shots.empty() && !render.photos.empty() && without.empty())
+    fail("--photos {}: there is no photo of any view", render.photos);
+  if (!options.views.empty()) wanted = shots.size();
+  std::vector<study::CalibrationView> views;
+  for (const std::size_t i : study::spread_evenly(shots.size(), wanted)) {
+    study::CalibrationView& view =
+        views.emplace_back(study::CalibrationView{shots[i].eyes.front().camera, {}});
+    if (render.photos.empty()) continue;
+    const auto file = find_view_photo(render.photos, shots[i]);
+    if (!file) fail("--photos {}: there is no photo of view {}", render.photos, shots[i].name);
+    view.photo = load_view_photo(*file, view.camera);
+  }
+  return views;
 }
 
 }  // namespace binosplat::app

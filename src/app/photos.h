@@ -3,9 +3,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "app/shots.h"
 #include "base/image.h"
+#include "study/calibrate.h"
 
 namespace binosplat::app {
 
@@ -14,5 +17,12 @@ std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path
 
 /// Reads it. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
+
+/// The cameras, without a rig, that --view names, or else `wanted` of all, evenly spread, but for those
+/// called as one of `without`; with --photos each has its photo, and of all only those count that have one.
+std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,
+                                                       const Model& model, double near_plane,
+                                                       std::size_t wanted,
+                                                       std::span<const std::string> without = {});
 
 }  // namespace binosplat::app

@@ -1,4 +1,5 @@
-// binosplat study: where thresholds fail, and what a memory of the last frame is worth along a path.
+// binosplat study: the paper's analyses; where thresholds fail; and what a memory of the last frame is worth
+// along a path.
 
 #include <fmt/ranges.h>
 
@@ -7,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "app/analyses.h"
 #include "app/command.h"
 #include "app/drawing.h"
 #include "app/open_scene.h"
@@ -30,7 +32,9 @@ struct StudyOptions {
   bool stability = false;
   bool eyes = false;
   bool rules = false;
-  int frames = 96;  // timed of each rule in each round
+  std::optional<int> frames;  // timed of each rule in each round
+  std::vector<std::string> test;
+  std::string output = "out/study";
   std::vector<std::string> cases;
   double target = 40.0;  // dB
   std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
@@ -255,6 +259,7 @@ void print_rules(const std::vector<study::RuleResult>& results) {
 }
 
 ordered_json rules(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+  const int frames = options.frames.value_or(96);
   const Shot& shot = studied.shots.front();
   study::Still still(context, *studied.model, views_of(shot));
   std::vector<Variant> variants = study::rules_of(still.views().size());
@@ -266,7 +271,7 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
   Progress progress("timing", study::rule_rounds * variants.size());
   done = 0;
   const auto results =
-      study::measure_rules(still, variants, options.target, options.frames, [&] { progress.update(++done); });
+      study::measure_rules(still, variants, options.target, frames, [&] { progress.update(++done); });
   const shared::View& view = still.views().front();
   fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.scene, shot.name,
              still.views().size(), view.width, view.height, options.target);
@@ -279,7 +284,7 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
                        {"width", view.width},
                        {"height", view.height},
                        {"target_db", options.target},
-                       {"frames", options.frames},
+                       {"frames", frames},
                        {"rounds", study::rule_rounds}};
   for (const study::RuleResult& result : results) json["rules"].push_back(to_json(result));
   return json;
@@ -288,7 +293,15 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
 ExitCode study_scene(const StudyOptions& options) {
   const int chosen =
       int{options.stability} + int{options.eyes} + int{options.rules} + int{!options.scene.path.empty()};
-  if (chosen != 1) fail("study: choose --stability, --eyes, --rules or --path FILE");
+  if (chosen > 1) fail("study: --stability, --eyes, --rules and --path FILE are studies of their own");
+  if (chosen == 0) {
+    if (!options.json.empty() || options.scene.loss || options.scene.quality || !options.cases.empty())
+      fail("study: --json, --loss, --quality and --case go with --stability, --eyes, --rules or --path FILE");
+    return analyse_scene({options.scene, options.test, options.frames.value_or(24), options.output});
+  }
+  if (!options.test.empty() || !options.scene.photos.empty())
+    fail("study: --test and --photos are for the analyses, without --stability, --eyes, --rules and --path");
+  if (options.scene.views.size() > 1) fail("--view: this study is of one view");
   if (options.eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
   if (!options.json.empty()) check_output(options.json);
   const Studied studied = open(options);
@@ -304,7 +317,7 @@ ExitCode study_scene(const StudyOptions& options) {
 }  // namespace
 
 void add_study(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("study", "Where thresholds fail on a scene, and what they gain");
+  CLI::App* sub = program.add_subcommand("study", "What thresholds gain on a scene, and where they fail");
   const auto options = std::make_shared<StudyOptions>();
   StudyOptions& o = *options;
   sub->add_option("SCENE", o.scene.scene, "A model, or demo:room or demo:city")->required();
@@ -314,10 +327,9 @@ void add_study(CLI::App& program, Command& command) {
                 "One rule with each --th-eyes on a still pair (both eyes' light by default)");
   auto* rules = sub->add_flag("--rules", o.rules,
                               "Every rule, source and contrast at one error on a still pair, timed");
-  sub->add_option("--frames", o.frames, "Timed of each rule in each of three rounds (96)")
+  sub->add_option("--frames", o.frames, "Timed of each setting in each of three rounds (24; --rules 96)")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000).description(""))
-      ->needs(rules);
+      ->check(CLI::Range(1, 10000).description(""));
   sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules);
   sub->add_option("--path", o.scene.path, "Carry one rule along the cameras of this file instead")
       ->type_name("FILE");
@@ -346,9 +358,16 @@ void add_study(CLI::App& program, Command& command) {
   choose("--th-eyes", o.th_eyes, th_eyes_choices);
   sub->add_option("--cameras", o.scene.cameras, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o.scene.views, "The camera to study from; default: the first")
-      ->type_name("NAME")
-      ->expected(1);
+  sub->add_option("--view", o.scene.views,
+                  "The camera to study from; default: the first. Without --stability, --eyes, --rules and\n"
+                  "--path: those to calibrate on; default: 16 others than the test's, evenly spread")
+      ->type_name("NAME...");
+  sub->add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
+  sub->add_option("--photos", o.scene.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB")
+      ->type_name("DIR")
+      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+  sub->add_option("-o,--output", o.output, "Folder for report.html and study.json (out/study)")
+      ->type_name("DIR");
   sub->add_option_function<std::string>(
          "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },
          "Of an eye's picture")
@@ -363,6 +382,12 @@ void add_study(CLI::App& program, Command& command) {
   sub->add_option("--units-per-metre", o.scene.units_per_metre, "World units that make a metre (1)")
       ->type_name("U");
   sub->add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
+  sub->footer(
+      "By itself it repeats AdaGScale's analyses on the scene, as a page with plots.\n"
+      "Examples:\n"
+      "  binosplat study garden.ply --photos images -o out/garden\n"
+      "  binosplat study garden.ply --rules --preset headset\n"
+      "  binosplat study garden.ply --stability --size 320x320");
   sub->callback([options, &command] { command = [options] { return study_scene(*options); }; });
 }
 

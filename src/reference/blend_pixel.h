@@ -1,5 +1,5 @@
 #pragma once
-// One pixel of the blend, METHOD.md section 3 to the letter. For blend.cpp and trace.cpp only.
+// One pixel of the blend, METHOD.md section 3 to the letter. For this room only.
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +31,13 @@ inline double alpha_at(const Splat& splat, int x, int y) {
   return std::min(ALPHA_MAX, splat.opacity * std::exp(-0.5 * q));
 }
 
+/// Blends one splat behind what there is.
+inline void add(PixelSum& sum, const Splat& splat, double alpha) {
+  sum.colour += alpha * sum.transmittance * splat.colour;
+  sum.z_sum += alpha * sum.transmittance * splat.depth;
+  sum.transmittance *= 1 - alpha;
+}
+
 /// Blends the list at pixel (x, y). For each Gaussian, before it is added,
 /// visit(index, alpha, sum so far, verdict) is called.
 template <typename Visit>
@@ -47,9 +54,7 @@ PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint
     const bool stop = sum.transmittance * (1 - alpha) < TRANSMITTANCE_MIN;
     visit(i, alpha, sum, stop ? Verdict::stopped : Verdict::blended);
     if (stop && !faults.stop_late) break;
-    sum.colour += alpha * sum.transmittance * splat.colour;
-    sum.z_sum += alpha * sum.transmittance * splat.depth;
-    sum.transmittance *= 1 - alpha;
+    add(sum, splat, alpha);
     if (stop) break;
   }
   return sum;

@@ -41,11 +41,10 @@ double transmittance_by_contrast(const Blended& blended, const glm::dvec3& colou
   fail("contrast {}: expected one of shared/axes.h", contrast);
 }
 
-}  // namespace
-
-std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
-                                          const shared::View& view, int contrast,
-                                          const glm::dvec3& background) {
+/// The largest value(what a pixel blends, the pixel in the end) of each Gaussian.
+template <typename Value>
+std::vector<double> largest_by_gaussian(const std::vector<Splat>& splats, const TileLists& lists,
+                                        const shared::View& view, const Value& value) {
   // Each tile measures for its own pairs; the largest of a Gaussian's pairs is taken afterwards.
   std::vector<double> of_pairs(lists.pairs(), 0.0);
   tbb::parallel_for(std::size_t{0}, lists.begin.size() - 1, [&](std::size_t t) {
@@ -63,11 +62,9 @@ std::vector<double> measure_transmittance(const std::vector<Splat>& splats, cons
                           if (verdict == Verdict::blended) way.push_back({place, i, alpha, before});
                           ++place;
                         });
-        const glm::dvec3 final_colour = sum.colour + sum.transmittance * background;
         for (const Blended& blended : way) {
           double& largest = of_pairs[lists.begin[t] + blended.place];
-          largest = std::max(largest, transmittance_by_contrast(blended, splats[blended.gaussian].colour,
-                                                                final_colour, contrast));
+          largest = std::max(largest, value(blended, sum));
         }
       }
     }
@@ -78,6 +75,24 @@ std::vector<double> measure_transmittance(const std::vector<Splat>& splats, cons
     largest = std::max(largest, of_pairs[pair]);
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
+                                          const shared::View& view, int contrast,
+                                          const glm::dvec3& background) {
+  return largest_by_gaussian(splats, lists, view, [&](const Blended& blended, const PixelSum& sum) {
+    return transmittance_by_contrast(blended, splats[blended.gaussian].colour,
+                                     sum.colour + sum.transmittance * background, contrast);
+  });
+}
+
+std::vector<double> measure_contributions(const std::vector<Splat>& splats, const TileLists& lists,
+                                          const shared::View& view) {
+  return largest_by_gaussian(splats, lists, view, [](const Blended& blended, const PixelSum&) {
+    return blended.alpha * blended.before.transmittance;
+  });
 }
 
 std::vector<double> floored(std::vector<double> measured, double floor) {

@@ -9,7 +9,7 @@
 
 namespace binosplat::reference {
 
-/// What measure_transmittance() says of a Gaussian in no tile's list: outside the view or left out by Th.
+/// What is said of a Gaussian in no tile's list: outside the view or left out by Th.
 constexpr double not_seen = -1.0;
 
 /// For each Gaussian the largest T in front of it, times contrast, over the pixels that blend it: max(T), or
@@ -21,6 +21,11 @@ constexpr double not_seen = -1.0;
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view, int contrast = CONTRAST_OFF,
                                           const glm::dvec3& background = glm::dvec3(0.0));
+
+/// For each Gaussian the largest alpha T over the pixels that blend it, what it contributes to the one that
+/// shows it best. 0 and not_seen as above.
+std::vector<double> measure_contributions(const std::vector<Splat>& splats, const TileLists& lists,
+                                          const shared::View& view);
 
 /// A measurement as set_thresholds() takes it: at least `floor`, and 1 where the Gaussian was not seen.
 std::vector<double> floored(std::vector<double> measured, double floor);

@@ -15,7 +15,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double equal_db = 100.0;  // an equal picture's, so that means exist
-constexpr double tolerance_db = 0.01;
+// A search ends so near to its target: a drop is asked for in tenths of a dB, a quality in whole ones.
+constexpr double drop_tolerance_db = 0.01, quality_tolerance_db = 0.05;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -91,6 +92,12 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
   return cost;
 }
 
+double Calibrator::exact_photo_db() const {
+  double sum = 0.0;
+  for (const auto& wanted : wanted_) sum += wanted->exact_db;
+  return sum / static_cast<double>(wanted_.size());
+}
+
 render::DepthTable Calibrator::depth_table(const measure::DepthTableSettings& settings) {
   return measure::measure_depth_table(frame_, views_, settings);
 }
@@ -104,7 +111,7 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
   };
   measure::LossSearch search;
   search.start = settings.loss;
-  search.tolerance = tolerance_db;
+  search.tolerance = sign < 0 ? drop_tolerance_db : quality_tolerance_db;
   const measure::FoundLoss found = measure::find_loss(value, sign * target_db, search);
   settings.loss = static_cast<float>(found.loss);
   const Cost reached = cost(settings);

@@ -41,6 +41,11 @@ class Calibrator {
   /// What settings cost; frames that go by measurements are drawn until those have settled.
   Cost cost(const render::FrameSettings& settings);
 
+  const std::vector<shared::View>& views() const { return views_; }
+
+  /// PSNR of the exact pictures against the photos, mean over the views; 100 without photos.
+  double exact_photo_db() const;
+
   render::DepthTable depth_table(const measure::DepthTableSettings& settings = {});
 
   /// The largest loss that costs no more than the target: the mean over the views. The settings' own loss is

@@ -119,21 +119,49 @@ TEST_F(RulesCommand, PutsARigOnACameraWithALensOfAPreset) {
   EXPECT_LT(exact_pairs({"--preset", "headset"}), exact_pairs({}));
 }
 
+struct AnalysesCommand : test::SceneTest {
+  AnalysesCommand() { add_cameras(); }
+};
+
+TEST_F(AnalysesCommand, LeavesAPageAndItsNumbers) {
+  const test::Outcome outcome = test::run_program(
+      {"study", model, "--view", "front", "--test", "side", "--size", "36x24", "--frames", "1", "-o", out});
+  ASSERT_TRUE(test::good(outcome));
+  const auto json = nlohmann::json::parse(test::read_text(out + "/study.json"));
+  EXPECT_EQ(json.at("target"), "quality");
+  EXPECT_EQ(json.at("width"), 36);
+  EXPECT_EQ(json.at("views").at("calibration"), nlohmann::json({"front"}));
+  EXPECT_EQ(json.at("views").at("test"), nlohmann::json({"side"}));
+  EXPECT_EQ(json.at("targets").size(), 5 * 8u);
+  EXPECT_EQ(json.at("systems").size(), 6u);
+  EXPECT_NE(test::read_text(out + "/report.html").find("Pairs removed (table IV)"), std::string::npos);
+  EXPECT_NE(outcome.out.find("Where the time goes"), std::string::npos) << outcome.out;
+}
+
+TEST_F(AnalysesCommand, DropsNeedPhotosOfTheirViews) {
+  std::filesystem::create_directory(folder / "photos");
+  const test::Outcome outcome = test::run_program({"study", model, "--photos", folder / "photos", "-o", out});
+  EXPECT_TRUE(test::ended(outcome, 2, "there is no photo of any view"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
 TEST(Study, WhatMakesNoSenseIsNamed) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{}, "--stability"},
-      {{"--stability", "--path", "x.json"}, "choose --stability, --eyes, --rules or --path"},
+      {{"--json", folder / "s.json"}, "--json, --loss, --quality and --case go with --stability"},
+      {{"--stability", "--path", "x.json"}, "are studies of their own"},
+      {{"--stability", "--photos", folder / "."}, "--test and --photos are for the analyses"},
+      {{"--test", "no-such"}, "--view no-such"},
+      {{"-o", folder / "file"}, "file"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
       {{"--eyes", "--view", "all"}, "--view all"},
       {{"--eyes", "--mono"}, "compares the eyes"},
-      {{"--rules", "--eyes"}, "choose --stability"},
+      {{"--rules", "--eyes"}, "are studies of their own"},
       {{"--rules", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--th", "squared"}, "--rules"},
       {{"--rules", "--loss", "0.1"}, "--loss"},
-      {{"--eyes", "--frames", "5"}, "--rules"},
       {{"--path", "no_such.json"}, "no_such.json"},
       {{"--stability", "--json", folder / "file/s.json"}, "file"},
   };

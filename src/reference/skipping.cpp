@@ -1,0 +1,97 @@
+#include "reference/skipping.h"
+
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "reference/blend_pixel.h"
+
+namespace binosplat::reference {
+
+namespace {
+
+// Scores are counted by their logarithm, 70 bins an octave (1 %) down to 2^-40.
+constexpr int bins_an_octave = 70, octaves = 40, bins = bins_an_octave * octaves;
+using Histogram = std::array<std::uint64_t, bins>;
+
+int bin_of(double score) {
+  // What should be one score may differ by rounding: it must not lie at an edge, as powers of two would.
+  const double octave = std::log2(std::max(score, 1e-300)) + octaves - 0.25 / bins_an_octave;
+  return std::clamp(static_cast<int>(octave * bins_an_octave), 0, bins - 1);
+}
+
+struct Fragment {
+  std::uint32_t gaussian;
+  double alpha;
+  int bin;
+};
+
+/// Calls visit(pixel, its fragments front to back) for every pixel, tiles in parallel.
+template <typename Visit>
+void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
+                    std::span<const double> upper, const Visit& visit) {
+  tbb::parallel_for(std::size_t{0}, lists.begin.size() - 1, [&](std::size_t t) {
+    const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
+               ty = static_cast<std::uint32_t>(t / lists.tiles_x);
+    const auto list = lists.tile(tx, ty);
+    const std::uint32_t right = std::min((tx + 1) * lists.tile_size, view.width),
+                        bottom = std::min((ty + 1) * lists.tile_size, view.height);
+    std::vector<Fragment> fragments;
+    for (std::uint32_t y = ty * lists.tile_size; y < bottom; ++y) {
+      for (std::uint32_t x = tx * lists.tile_size; x < right; ++x) {
+        fragments.clear();
+        blend_pixel(splats, list, static_cast<int>(x), static_cast<int>(y), {},
+                    [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
+                      if (verdict != Verdict::blended) return;
+                      const double light = upper.empty() ? before.transmittance : upper[i];
+                      fragments.push_back({i, alpha, bin_of(alpha * light)});
+                    });
+        visit(std::size_t{y} * view.width + x, fragments);
+      }
+    }
+  });
+}
+
+}  // namespace
+
+std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
+                                 const shared::View& view, std::span<const double> upper,
+                                 std::span<const double> shares) {
+  tbb::combinable<Histogram> of_threads([] { return Histogram{}; });
+  for_each_pixel(splats, lists, view, upper, [&](std::size_t, const std::vector<Fragment>& fragments) {
+    Histogram& counts = of_threads.local();
+    for (const Fragment& fragment : fragments) ++counts[static_cast<std::size_t>(fragment.bin)];
+  });
+  std::array<std::uint64_t, bins + 1> below{};  // fragments in the bins below
+  of_threads.combine_each([&](const Histogram& counts) {
+    for (std::size_t b = 0; b < bins; ++b) below[b + 1] += counts[b];
+  });
+  for (std::size_t b = 0; b < bins; ++b) below[b + 1] += below[b];
+
+  const double all = static_cast<double>(std::max<std::uint64_t>(below[bins], 1));
+  std::vector<Skipped> results;
+  std::vector<int> kept_from;  // the lowest bin that is not skipped
+  for (const double share : shares) {
+    const auto end = std::upper_bound(below.begin(), below.end(), share * all,
+                                      [](double most, std::uint64_t count) { return most < double(count); });
+    kept_from.push_back(static_cast<int>(end - below.begin()) - 1);
+    results.push_back({static_cast<double>(below[static_cast<std::size_t>(kept_from.back())]) / all,
+                       Picture(static_cast<int>(view.width), static_cast<int>(view.height))});
+  }
+  for_each_pixel(splats, lists, view, upper, [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      PixelSum sum;
+      for (const Fragment& fragment : fragments) {
+        if (fragment.bin >= kept_from[k]) add(sum, splats[fragment.gaussian], fragment.alpha);
+      }
+      results[k].picture.colour[pixel] = glm::vec4(glm::dvec4(sum.colour, sum.transmittance));
+      results[k].picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
+    }
+  });
+  return results;
+}
+
+}  // namespace binosplat::reference

@@ -1,0 +1,135 @@
+#include "study/contributions.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "base/statistics.h"
+#include "measure/metrics.h"
+#include "reference/render.h"
+#include "reference/skipping.h"
+#include "study/bench_results.h"
+
+namespace binosplat::study {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array shares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+constexpr std::array known = {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha"};
+constexpr std::size_t depth_bins = 40;
+
+/// A Gaussian that a pixel of a view blends.
+struct Shown {
+  double depth;         // world units
+  double contribution;  // the largest alpha T
+  double light;         // max(T)
+};
+
+double upper_at(const render::DepthTable& table, double depth) {
+  const auto bins = static_cast<double>(table.upper.size());
+  const double bin = depth / static_cast<double>(table.far) * bins;
+  if (!(bin >= 0.0) || bin >= bins) return 1.0;
+  const float upper = table.upper[static_cast<std::size_t>(bin)];
+  return upper > 0.0f ? static_cast<double>(upper) : 1.0;
+}
+
+/// What each of `known` takes for the light that reaches the Gaussians; empty for what each pixel truly sees.
+std::array<std::vector<double>, known.size()> lights(const std::vector<reference::Splat>& splats,
+                                                     const std::vector<double>& largest,
+                                                     const render::DepthTable& table) {
+  std::array<std::vector<double>, known.size()> upper;
+  upper[1] = largest;
+  for (const reference::Splat& splat : splats) upper[2].push_back(upper_at(table, splat.depth));
+  upper[3].assign(splats.size(), 1.0);
+  return upper;
+}
+
+ordered_json spread(const std::vector<double>& values) {
+  if (values.empty()) return {{"median", nullptr}, {"p90", nullptr}, {"largest", nullptr}};
+  return {
+      {"median", quantile(values, 0.5)}, {"p90", quantile(values, 0.9)}, {"largest", quantile(values, 1.0)}};
+}
+
+ordered_json by_depth(const std::vector<Shown>& shown, const render::DepthTable& table) {
+  ordered_json bins = ordered_json::array();
+  if (shown.empty()) return bins;
+  std::vector<double> depths;
+  for (const Shown& one : shown) depths.push_back(one.depth);
+  const double far = quantile(depths, 0.95), width = far / depth_bins;
+  std::array<std::vector<double>, depth_bins> contribution, light;
+  for (const Shown& one : shown) {
+    if (one.depth > far) continue;
+    const auto b = std::min<std::size_t>(static_cast<std::size_t>(one.depth / width), depth_bins - 1);
+    contribution[b].push_back(one.contribution);
+    light[b].push_back(one.light);
+  }
+  for (std::size_t b = 0; b < depth_bins; ++b) {
+    const double from = width * static_cast<double>(b);
+    bins.push_back({{"from", from},
+                    {"to", from + width},
+                    {"gaussians", contribution[b].size()},
+                    {"contribution", spread(contribution[b])},
+                    {"light", spread(light[b])},
+                    {"upper", upper_at(table, from + 0.5 * width)}});
+  }
+  return bins;
+}
+
+double capped(double db) { return std::min(db, equal_db); }
+
+Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0f)); }
+
+}  // namespace
+
+ordered_json contributions(const Model& model, std::span<const ContributionView> views,
+                           const render::DepthTable& table, const std::function<void()>& progress) {
+  struct Sum {
+    double share = 0, psnr = 0, drop = 0;
+  };
+  std::array<std::array<Sum, shares.size()>, known.size()> sums;
+  std::vector<Shown> shown;
+  const auto count = static_cast<double>(views.size());
+  const bool photos =
+      std::all_of(views.begin(), views.end(), [](const ContributionView& v) { return v.photo; });
+  for (const ContributionView& one : views) {
+    const auto splats = reference::project_all(model, one.view);
+    const auto lists = reference::make_lists(splats, reference::depth_order(splats), one.view, TILES_ELLIPSE);
+    const auto light = reference::measure_transmittance(splats, lists, one.view);
+    const auto contribution = reference::measure_contributions(splats, lists, one.view);
+    for (std::size_t i = 0; i < splats.size(); ++i) {
+      if (light[i] > 0.0) shown.push_back({splats[i].depth, contribution[i], light[i]});
+    }
+    const Image exact = on_black(reference::blend(splats, lists, one.view));
+    const auto upper = lights(splats, light, table);
+    for (std::size_t by = 0; by < known.size(); ++by) {
+      const auto skipped = reference::skip_lowest(splats, lists, one.view, upper[by], shares);
+      for (std::size_t k = 0; k < shares.size(); ++k) {
+        const Image image = on_black(skipped[k].picture);
+        Sum& sum = sums[by][k];
+        sum.share += skipped[k].share / count;
+        sum.psnr += capped(measure::psnr(image, exact)) / count;
+        if (photos)
+          sum.drop += (measure::psnr(quantised(exact), quantised(*one.photo)) -
+                       measure::psnr(quantised(image), quantised(*one.photo))) /
+                      count;
+      }
+    }
+    progress();
+  }
+  ordered_json json = {{"skipping", ordered_json::array()}};
+  for (std::size_t by = 0; by < known.size(); ++by) {
+    ordered_json curve = {{"by", known[by]}, {"points", ordered_json::array()}};
+    for (const Sum& sum : sums[by]) {
+      ordered_json point = {{"share", sum.share}, {"psnr_db", sum.psnr}};
+      if (photos) point["drop_db"] = sum.drop;
+      curve["points"].push_back(std::move(point));
+    }
+    json["skipping"].push_back(std::move(curve));
+  }
+  json["by_depth"] = by_depth(shown, table);
+  return json;
+}
+
+}  // namespace binosplat::study

@@ -1,0 +1,101 @@
+#include "reference/skipping.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "reference/splats.h"
+#include "reference/transmittance.h"
+
+namespace binosplat::reference {
+namespace {
+
+constexpr std::array opacities = {0.3, 0.9, 0.2, 0.8};
+constexpr std::array lights = {1.0, 0.7, 0.07, 0.056};  // T in front of each
+const std::array<glm::dvec3, 4> colours = {glm::dvec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}};
+
+/// Four walls, one behind the other, each of one alpha everywhere.
+std::vector<Splat> walls() {
+  std::vector<Splat> splats;
+  for (std::size_t i = 0; i < 4; ++i) {
+    splats.push_back(make_splat({8, 8}, {1e12, 0, 1e12}, opacities[i]));
+    splats.back().depth = 1.0 + static_cast<double>(i);
+    splats.back().colour = colours[i];
+  }
+  return splats;
+}
+
+glm::dvec3 blended(std::initializer_list<std::size_t> kept) {
+  glm::dvec3 sum(0.0);
+  double t = 1.0;
+  for (const std::size_t i : kept) {
+    sum += t * opacities[i] * colours[i];
+    t *= 1.0 - opacities[i];
+  }
+  return sum;
+}
+
+struct Skipping : testing::Test {
+  shared::View view = view_of(20, 18);
+  std::vector<Splat> splats = walls();
+  TileLists lists = make_lists(splats, depth_order(splats), view, TILES_ELLIPSE);
+
+  void expect(std::span<const double> upper, double share, double skipped, const glm::dvec3& colour) {
+    const auto results = skip_lowest(splats, lists, view, upper, std::array{share});
+    ASSERT_EQ(results.size(), 1u);
+    EXPECT_DOUBLE_EQ(results[0].share, skipped);
+    for (const glm::vec4& pixel : results[0].picture.colour)
+      EXPECT_NEAR(glm::distance(glm::dvec3(pixel), colour), 0.0, 1e-6);
+  }
+};
+
+TEST_F(Skipping, LeavesOutTheLowestByHand) {
+  // alpha T: 0.3, 0.63, 0.014, 0.0448.
+  expect({}, 0.0, 0.0, blended({0, 1, 2, 3}));
+  expect({}, 0.25, 0.25, blended({0, 1, 3}));
+  expect({}, 0.5, 0.5, blended({0, 1}));
+  expect({}, 0.74, 0.5, blended({0, 1}));
+  expect({}, 0.75, 0.75, blended({1}));
+  expect({}, 1.0, 1.0, blended({}));
+  // By alpha the first goes before the last, which is hidden.
+  const std::vector<double> ones(4, 1.0);
+  expect(ones, 0.5, 0.5, blended({1, 3}));
+  expect(lights, 0.5, 0.5, blended({0, 1}));
+  // A table that knows nothing of the last.
+  expect(std::array{1.0, 1.0, 0.1, 1.0}, 0.5, 0.5, blended({1, 3}));
+}
+
+TEST_F(Skipping, ContributionsAndLightAreThoseOfTheWalls) {
+  const auto light = measure_transmittance(splats, lists, view);
+  const auto contribution = measure_contributions(splats, lists, view);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(light[i], lights[i], 1e-9);
+    EXPECT_NEAR(contribution[i], opacities[i] * lights[i], 1e-9);
+  }
+}
+
+TEST(SkippingMany, KnowingMoreCostsLess) {
+  std::vector<Splat> splats = random_splats(5, 300, 64, 48);
+  const shared::View view = view_of(64, 48);
+  const TileLists lists = make_lists(splats, depth_order(splats), view, TILES_ELLIPSE);
+  const Picture exact = blend(splats, lists, view);
+  const auto light = measure_transmittance(splats, lists, view);
+  const std::vector<double> ones(splats.size(), 1.0);
+  const auto error = [&](std::span<const double> upper) {
+    const auto results = skip_lowest(splats, lists, view, upper, std::array{0.0, 0.5});
+    EXPECT_TRUE(equal_bits(results[0].picture, exact)) << "nothing skipped";
+    EXPECT_NEAR(results[1].share, 0.5, 0.02);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < exact.colour.size(); ++k) {
+      const glm::dvec3 d = glm::dvec3(results[1].picture.colour[k]) - glm::dvec3(exact.colour[k]);
+      sum += glm::dot(d, d);
+    }
+    return sum;
+  };
+  const double by_truth = error({}), by_light = error(light), by_alpha = error(ones);
+  EXPECT_LT(by_truth, by_light);
+  EXPECT_LT(by_light, by_alpha);
+}
+
+}  // namespace
+}  // namespace binosplat::reference

@@ -1,0 +1,312 @@
+// AdaGScale's analyses on scenes whose every number is known.
+
+#include "study/analyses.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "study/chromium.h"
+#include "study/contributions.h"
+#include "support/gl.h"
+#include "support/models.h"
+#include "support/scenes.h"
+
+namespace binosplat::study {
+namespace {
+
+using nlohmann::ordered_json;
+
+void expect_near(const ordered_json& got, double wanted, const std::string& what) {
+  ASSERT_TRUE(got.is_number()) << what << ": " << got;
+  EXPECT_NEAR(got.get<double>(), wanted, 0.01 * std::abs(wanted)) << what;
+}
+
+/// Walls of one alpha everywhere, at depths 1 to 4.
+constexpr double wall_alpha[] = {0.3, 0.9, 0.2, 0.8};
+constexpr double wall_light[] = {1.0, 0.7, 0.07, 0.056};
+
+ordered_json of_walls() {
+  Model model;
+  model.name = "walls";
+  for (int i = 0; i < 4; ++i)
+    test::add(model, {0, 0, 1 + i}, glm::vec3(1e4f, 1e4f, 1e-3f), static_cast<float>(wall_alpha[i]));
+  const ContributionView view{"front", make_view(test::front_camera(32, 24, 32.0)), {}};
+  const render::DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
+  int views = 0;
+  const ordered_json json = contributions(model, std::span(&view, 1), table, [&] { ++views; });
+  EXPECT_EQ(views, 1);
+  return json;
+}
+
+TEST(Contributions, ByDepthAreThoseOfTheWalls) {
+  const ordered_json json = of_walls();
+  std::size_t walls = 0;
+  for (const ordered_json& bin : json["by_depth"]) {
+    if (bin["gaussians"] == 0) {
+      EXPECT_TRUE(bin["light"]["largest"].is_null());
+      continue;
+    }
+    ASSERT_EQ(bin["gaussians"], 1);
+    const std::size_t i = walls;
+    for (const char* which : {"median", "p90", "largest"}) {
+      expect_near(bin["light"][which], wall_light[i], which);
+      expect_near(bin["contribution"][which], wall_alpha[i] * wall_light[i], which);
+    }
+    ++walls;
+  }
+  EXPECT_EQ(walls, 4u);
+}
+
+TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
+  // White walls over black: the picture is 1 - T. Skipped are by alpha T the third, the last, the first; by
+  // alpha the third, the first, the last.
+  const ordered_json json = of_walls();
+  const auto rest = [](std::initializer_list<int> kept) {
+    double t = 1.0;
+    for (const int i : kept) t *= 1.0 - wall_alpha[i];
+    return t;
+  };
+  const auto db = [&](double t) { return -20.0 * std::log10(t - rest({0, 1, 2, 3})); };
+  const struct {
+    std::size_t curve;
+    double quarter, half, most;
+  } wanted[] = {{0, db(rest({0, 1, 3})), db(rest({0, 1})), db(rest({1}))},
+                {1, db(rest({0, 1, 3})), db(rest({0, 1})), db(rest({1}))},
+                {2, db(rest({0, 1, 3})), db(rest({1, 3})), db(rest({1}))},
+                {3, db(rest({0, 1, 3})), db(rest({1, 3})), db(rest({1}))}};
+  for (const auto& w : wanted) {
+    const ordered_json& curve = json["skipping"][w.curve];
+    const std::string by = curve["by"];
+    expect_near(curve["points"][2]["share"], 0.25, by);  // of up to 30 %
+    expect_near(curve["points"][2]["psnr_db"], w.quarter, by + ", one");
+    expect_near(curve["points"][4]["psnr_db"], w.half, by + ", two");
+    expect_near(curve["points"][7]["psnr_db"], w.most, by + ", three");
+    EXPECT_EQ(curve["points"][0]["psnr_db"], 100.0) << by << ": nothing is skipped yet";
+  }
+  EXPECT_GT(std::abs(db(rest({0, 1})) - db(rest({1, 3}))), 1.0) << "the rules could be mistaken";
+}
+
+/// Spots, each alone in a tile: what a loss leaves out and what that costs follows from their sizes.
+struct Spots : testing::Test {
+  static constexpr int columns = 6, rows = 2, tile = 16;
+  static constexpr double focal = 100.0, depth = 10.0;
+  struct Spot {
+    double variance;  // px^2, low-pass included
+    double opacity;
+    bool left;
+  };
+  std::vector<Spot> spots;
+  Model model;
+  std::vector<CalibrationView> whole, left;
+
+  Spots() {
+    model.name = "spots";
+    Camera camera = test::front_camera(columns * tile, rows * tile, focal);
+    camera.name = "whole";
+    whole.push_back({camera, {}});
+    for (int n = 0; n < columns * rows; ++n) {
+      const double variance = 1.5 + 0.06 * n, opacity = 0.1 + 0.07 * n;
+      const double x = (n % columns + 0.5) * tile - 0.5 * camera.width;
+      const double y = (n / columns + 0.5) * tile - 0.5 * camera.height;
+      const auto scale = static_cast<float>(std::sqrt(variance - 0.3) * depth / focal);
+      test::add(model, glm::vec3(x, y, focal) * static_cast<float>(depth / focal),
+                glm::vec3(scale, scale, 1e-6f), static_cast<float>(opacity));
+      spots.push_back({variance, opacity, n % columns < columns / 2});
+    }
+    camera.name = "left";
+    camera.width /= 2;  // the principal point stays: what the left half of the picture shows
+    left.push_back({camera, {}});
+  }
+
+  static double error(const Spot& spot) {
+    return spot.opacity * spot.opacity * M_PI * spot.variance;  // the integral of alpha^2 over the pixels
+  }
+
+  /// What the first `count` of a rule's victims cost: dB of the whole picture, and of the left half.
+  struct Known {
+    double whole_db, left_db, removed_left;
+  };
+  Known known(std::vector<Spot> order, double target) const {
+    double all = 0.0, of_left = 0.0, removed = 0.0;
+    Known k{100.0, 100.0, 0.0};
+    const double pixels = columns * rows * tile * tile;
+    for (const Spot& spot : order) {
+      all += error(spot);
+      const double db = -10.0 * std::log10(all / pixels);
+      if (db < target) break;
+      of_left += spot.left ? error(spot) : 0.0;
+      removed += spot.left ? 2.0 / (columns * rows) : 0.0;
+      k = {db, of_left > 0.0 ? -10.0 * std::log10(of_left / (0.5 * pixels)) : 100.0, removed};
+    }
+    return k;
+  }
+};
+
+TEST_F(Spots, LossesCostWhatTheSpotsAreWorth) {
+  const std::vector<double> targets = {30.0, 23.0};
+  AnalysisSettings settings{.scene = "spots", .kind = CalibrationTarget::Kind::quality, .targets = targets};
+  settings.frames = 1;
+  std::map<std::string, std::size_t> told;
+  const ordered_json json = analyse(test::gl_context(), model, whole, left, settings,
+                                    [&](const std::string& what, std::size_t done, std::size_t of) {
+                                      EXPECT_LE(done, of);
+                                      told[what] = done;
+                                    });
+  EXPECT_EQ(json["views"]["test"], ordered_json({"left"}));
+  EXPECT_EQ(told["losses"], 2 * calibrated_settings().size());
+
+  const auto ordered = [&](auto worth) {
+    std::vector<Spot> order = spots;
+    std::sort(order.begin(), order.end(), [&](const Spot& a, const Spot& b) { return worth(a) < worth(b); });
+    return order;
+  };
+  // Left out whole where Th > sigma (METHOD 5).
+  const auto peripheral =
+      ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
+  const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });
+  std::size_t checked = 0;
+  for (const ordered_json& entry : json["targets"]) {
+    const ordered_json& rule = entry["settings"];
+    if (rule.value("contrast", "off") != "off") continue;
+    const Known k = known(rule["th"] == "peripheral" ? peripheral : squared, entry["target_db"]);
+    const std::string what = entry["name"].get<std::string>() + " at " + entry["target_db"].dump();
+    expect_near(entry["reached_db"], k.whole_db, what + ", calibration view");
+    expect_near(entry["mean_db"], k.left_db, what + ", test view");
+    EXPECT_NEAR(entry["pairs_removed"].get<double>(), k.removed_left, 1e-9) << what;
+    EXPECT_EQ(entry["worst_view"], "left");
+    EXPECT_GT(k.removed_left, 0.0) << "of nothing this could not fail";
+    ++checked;
+  }
+  EXPECT_EQ(checked, 2 * 6u);
+
+  for (const ordered_json& system : json["systems"]) {
+    double sum = 0.0;
+    for (const auto& [stage, ms] : system["stages_ms"].items()) sum += ms.get<double>();
+    expect_near(system["frame_ms"], sum, system["name"]);
+    if (system["settings"]["th"] != "tau") continue;
+    EXPECT_EQ(system["pairs"], columns * rows / 2) << system["name"];
+  }
+  EXPECT_EQ(json["systems"].size(), 6u);
+  EXPECT_EQ(json["systems"].back()["name"], "binosplat, 23 dB");
+
+  const Page page = analysis_page(json);
+  EXPECT_EQ(page.data, json);
+  for (const Section& section : page.sections) {
+    EXPECT_EQ(section.problem, "") << section.id;
+    EXPECT_EQ(section.sentence.find("nan"), std::string::npos) << section.sentence;
+  }
+}
+
+/// Results of a run as analyse() leaves them, small.
+ordered_json sample() {
+  const auto cost = [](double db, double removed) {
+    return ordered_json{{"mean_db", db},
+                        {"worst_db", 1.25 * db},
+                        {"worst_view", "b"},
+                        {"pairs_removed", removed},
+                        {"frame_ms", 4.0 * (1 - removed)},
+                        {"pairs", 100},
+                        {"stages_ms", {{"project", 1.0}, {"blend", 3.0 - 4.0 * removed}}}};
+  };
+  ordered_json json = {{"format", "binosplat study"},
+                       {"version", 1},
+                       {"device", "llvmpipe"},
+                       {"scene", "fox"},
+                       {"gaussians", 5},
+                       {"target", "drop"},
+                       {"views", {{"calibration", {"a"}}, {"test", {"b", "c"}}}},
+                       {"width", 30},
+                       {"height", 20},
+                       {"photo_db", {{"calibration", 31.5}, {"test", 30.25}}},
+                       {"depth_table", {{"far", 2.0}, {"upper", {1.0, 0.5}}}}};
+  for (const char* by : {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha"}) {
+    ordered_json curve = {{"by", by}, {"points", ordered_json::array()}};
+    for (int n = 1; n < 10; ++n)
+      curve["points"].push_back({{"share", 0.1 * n}, {"psnr_db", 80.0 - 5 * n}, {"drop_db", 0.01 * n}});
+    json["contributions"]["skipping"].push_back(curve);
+  }
+  const auto spread = [](ordered_json value) {
+    return ordered_json{{"median", value}, {"p90", value}, {"largest", value}};
+  };
+  json["contributions"]["by_depth"] = {{{"from", 0.0},
+                                        {"to", 1.0},
+                                        {"gaussians", 0},
+                                        {"contribution", spread(nullptr)},
+                                        {"light", spread(nullptr)},
+                                        {"upper", 1.0}},
+                                       {{"from", 1.0},
+                                        {"to", 2.0},
+                                        {"gaussians", 7},
+                                        {"contribution", spread(0.25)},
+                                        {"light", spread(0.75)},
+                                        {"upper", 0.5}}};
+  json["systems"] = ordered_json::array();
+  for (const auto& [name, tiles] :
+       {std::pair{"3D-GS", "aabb"}, std::pair{"FlashGS, AdR-Gaussian", "ellipse"}}) {
+    json["systems"].push_back(cost(0.0, 0.0));
+    json["systems"].back()["name"] = name;
+    json["systems"].back()["settings"] = {{"tiles", tiles}, {"th", "tau"}};
+  }
+  json["targets"] = ordered_json::array();
+  for (const double target : {0.1, 0.2}) {
+    json["targets"].push_back(cost(target + 0.03125, 2 * target));
+    json["targets"].back().update({{"target_db", target},
+                                   {"reached_db", target},
+                                   {"name", "squared, last"},
+                                   {"settings", {{"tiles", "ellipse"}, {"th", "squared"}, {"loss", 0.5}}}});
+  }
+  return json;
+}
+
+TEST(AnalysisPage, SaysWhatItShows) {
+  const Page page = analysis_page(sample());
+  std::vector<std::string> ids;
+  for (const Section& section : page.sections) ids.push_back(section.id);
+  EXPECT_EQ(ids, (std::vector<std::string>{"scene", "systems", "skipping", "contributions", "light",
+                                           "real-drops", "removed", "speed"}));
+  EXPECT_NE(page.sections[4].sentence.find("In 1 of 1 bins"), std::string::npos) << page.sections[4].sentence;
+  EXPECT_NE(page.sections[5].sentence.find("at most 0.031 dB more than the target"), std::string::npos)
+      << page.sections[5].sentence;
+  EXPECT_NE(page.sections[6].sentence.find("“squared, last”: 40.0 % at 0.2 dB"), std::string::npos)
+      << page.sections[6].sentence;
+  EXPECT_NE(page.sections[7].sentence.find("1.67 times as fast"), std::string::npos)
+      << page.sections[7].sentence;
+  EXPECT_EQ(page.sections[5].table->rows[1],
+            ordered_json({"squared, last", 0.2, 0.2, 0.23125, 1.25 * 0.23125, "b", 0.5}));
+  // The paper's own figures are told beside, for a drop alone.
+  EXPECT_EQ(page.sections[6].plot->series.back().points.size(), 5u);
+  ordered_json quality = sample();
+  quality["target"] = "quality";
+  EXPECT_EQ(analysis_page(quality).sections[6].plot->series.size(), 1u);
+}
+
+TEST(AnalysisPage, EmptyResultsAreShownAsSuch) {
+  ordered_json json = sample();
+  json["contributions"]["by_depth"] = ordered_json::array();
+  const Page page = analysis_page(json);
+  EXPECT_EQ(page.sections[3].problem, "No pixel blends anything.");
+  EXPECT_EQ(page.sections[4].problem, "No pixel blends anything.");
+}
+
+// Long: the whole page in a browser, its tables against the JSON.
+TEST(AnalysisPage, InChromiumHasTheJsonsNumbers) {
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
+  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
+  const test::TempFolder folder;
+  save_page(folder / "report.html", analysis_page(sample()));
+  const test::Chromium chromium;
+  for (const int width : {400, 1280}) {
+    EXPECT_EQ(chromium.ask(folder / "report.html", width, width == 400,
+                           "return [...document.querySelectorAll('#real-drops tbody tr')].map((row) =>"
+                           "[1, 2, 3, 4, 6].map((i) => row.cells[i].dataset.value).join(' ')).join(';');"),
+              "0.1 0.1 0.13125 0.1640625 0.5;0.2 0.2 0.23125 0.2890625 0.5");
+    EXPECT_EQ(chromium.ask(folder / "report.html", width, false,
+                           "return (document.documentElement.scrollWidth <= window.innerWidth) + ' ' +"
+                           "document.querySelectorAll('figure svg').length;"),
+              "true 7");
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::study
