@@ -48,6 +48,11 @@
 #define LAYOUT_HALF_COLOUR 9
 #define LAYOUT_GREY 10
 
+// What a GPU does at best (shaders/floors.comp).
+#define FLOOR_BYTES 0
+#define FLOOR_ALPHAS 1
+#define FLOOR_FMAS 2
+
 #ifdef __cplusplus
 #include <algorithm>
 #include <iterator>

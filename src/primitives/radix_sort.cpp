@@ -25,9 +25,10 @@ void RadixSort::reserve(std::int64_t count) {
 }
 
 std::uint32_t RadixSort::digit_bits(std::uint32_t bits) {
-  const std::uint32_t passes = (bits + SORT_BITS_MAX - 1) / SORT_BITS_MAX;
-  return bits <= 8 * passes ? 8 : 9;
+  return bits <= 8 * passes(bits) ? 8 : 9;
 }
+
+std::uint32_t RadixSort::passes(std::uint32_t bits) { return (bits + SORT_BITS_MAX - 1) / SORT_BITS_MAX; }
 
 void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs,
                     std::uint32_t bits) {

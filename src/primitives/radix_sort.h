@@ -36,8 +36,10 @@ class RadixSort {
   /// Room for `count` pairs.
   void reserve(std::int64_t count);
 
-  /// Bits that each pass of a sort by `bits` bits takes: 8, or 9 where that makes a pass less.
+  /// Bits that each pass of a sort by `bits` bits takes: 8, or 9 where that makes a pass less; and the
+  /// passes.
   static std::uint32_t digit_bits(std::uint32_t bits);
+  static std::uint32_t passes(std::uint32_t bits);
 
   /// Sorts the first amounts[0].count pairs by the low `bits` bits of their keys, in whole digits; equal keys
   /// keep their order. `amounts` holds SortAmounts for such digits. Afterwards pairs.keys() and

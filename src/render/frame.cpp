@@ -69,6 +69,8 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   report.visible = counters.visible;
   report.pairs = counters.pairs;
   report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
+  report.order_passes = primitives::RadixSort::passes(shape_.groups.front().key_bits);
+  report.tile_sort_passes = primitives::RadixSort::passes(shape_.list_bits());
   report.gpu_bytes = dispatcher_.context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
   return report;

@@ -19,6 +19,8 @@ struct FrameReport {
       0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes, else 2)
   std::uint64_t pairs = 0;  // Gaussian-tile pairs over all views, a probe's included
   std::uint32_t order_groups = 0;
+  std::uint32_t order_passes = 0;      // of the radix sort by depth, of an order group
+  std::uint32_t tile_sort_passes = 0;  // of that by tile
   int redrawn = 0;                    // times that buffers had to grow
   std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
   double total_ms = 0;                // their sum

@@ -3,8 +3,10 @@
 
 const symbols = ["circle", "diamond", "square", "triangle", "plus", "star", "times", "wye"];
 const dashes = ["none", "7 3", "2 3", "9 3 2 3", "4 2", "12 3", "1 4", "6 2 1 2 1 2"];
+// From the ninth on colours come again, with other symbols and dashes.
 const seriesStyle = (i) => ({
-  colour: `var(--series-${(i % 8) + 1})`, symbol: symbols[i % 8], dash: dashes[i % 8]
+  colour: `var(--series-${(i % 8) + 1})`, symbol: symbols[(i + 3 * Math.floor(i / 8)) % 8],
+  dash: dashes[(i + Math.floor(i / 8)) % 8]
 });
 
 function element(name, attributes = {}, ...children) {

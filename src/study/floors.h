@@ -1,0 +1,37 @@
+#pragma once
+// How near a frame's stages are to what the GPU could do at best: what each must read, write and compute at
+// least, over rates that small programs reach on the same GPU.
+
+#include <nlohmann/json.hpp>
+
+#include "gl/context.h"
+#include "render/frame.h"
+
+namespace binosplat::study {
+
+/// Rates of a GPU, each of the best of some runs.
+struct Peaks {
+  double bytes = 0.0;   // per second, read and written, of a copy from buffer to buffer
+  double alphas = 0.0;  // per second, evaluated and blended, four pixels an invocation
+  double fmas = 0.0;    // fp32 multiply-adds per second
+};
+
+Peaks measure_peaks(gl::Context& context);
+
+/// What a frame had to do.
+struct FrameWork {
+  std::uint64_t gaussians = 0;  // of the model
+  int degree = 0;               // of its SH
+  std::uint64_t views = 0;
+  std::uint64_t pixels = 0;  // of all views, as the following
+  std::uint64_t tiles = 0;
+  std::uint64_t alphas = 0;    // evaluated by pixels that still took light
+  render::FrameReport report;  // Gaussians in view, pairs, passes of the sorts, and what the stages took
+};
+
+/// By stage in order: stage, ms, bytes (that it must read and write at least), operations (alphas of `blend`,
+/// multiply-adds of `project`, else none), floor_ms (the longer of the two at the GPU's rates) and share, of
+/// the time, that the floor is. Stages without a floor (decode, probe) have null for all but stage and ms.
+nlohmann::ordered_json profile(const FrameWork& work, const Peaks& peaks);
+
+}  // namespace binosplat::study
