@@ -48,6 +48,17 @@
 #define LAYOUT_HALF_COLOUR 9
 #define LAYOUT_GREY 10
 
+// --show: what of a frame is shown. Those from SHOW_ALPHAS on are what the blend comes by.
+#define SHOW_PICTURE 0
+#define SHOW_SPLIT 1
+#define SHOW_DIFFERENCE 2
+#define SHOW_DISAGREEMENT 3
+#define SHOW_DEPTH 4
+#define SHOW_ALPHAS 5
+#define SHOW_VISIBLE 6
+#define SHOW_PAIRS 7
+#define SHOW_LIGHT 8
+
 #ifdef __cplusplus
 #include <algorithm>
 #include <iterator>
@@ -112,6 +123,18 @@ inline constexpr Choice layout_choices[] = {
     {"anaglyph", "for red-cyan glasses, by Dubois's least squares"},
     {"half-colour", "for red-cyan glasses: grey in the left eye, colour in the right"},
     {"grey", "for red-cyan glasses: grey in both eyes"},
+};
+
+inline constexpr Choice show_choices[] = {
+    {"picture", "the picture"},
+    {"split", "the picture on the left, the exact one on the right"},
+    {"difference", "from the exact picture, of the channel that differs most, in 255ths"},
+    {"disagreement", "the difference that the eyes do not share, in 255ths"},
+    {"depth", "view depth, world units"},
+    {"alphas", "alphas that a pixel evaluates until it ends"},
+    {"visible", "those of them that it blends"},
+    {"pairs", "Gaussians in the list of the pixel's tile"},
+    {"light", "max(T), the most light that reaches a Gaussian: the mean of those seen"},
 };
 
 /// The number of the choice of that name; the number of choices if there is none.

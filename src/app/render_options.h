@@ -70,7 +70,8 @@ struct RenderOptions {
 
   // Outputs.
   std::string output;
-  std::string layout;         // empty: by what -o names
+  std::string layout;  // empty: by what -o names
+  std::string show = "picture";
   std::optional<double> fps;  // of a video; none: by the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;

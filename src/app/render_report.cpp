@@ -106,6 +106,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
+  if (drawn.most_shown) json["show"] = {{"what", options.show}, {"most", *drawn.most_shown}};
   json["outputs"] = drawn.files;
   return json;
 }
@@ -212,6 +213,9 @@ void print(const RenderReport& report) {
       line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
+    if (drawn.most_shown)
+      fmt::print("  colours: {}: 0 (dark blue) to {} and more (yellow)\n", report.options.show,
+                 *drawn.most_shown);
     if (drawn.comfort) print_comfort(drawn);
   }
   warn_of_discomfort(report.drawn);
