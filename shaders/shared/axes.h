@@ -38,15 +38,16 @@
 // --layout: how both eyes are shown. Those from LAYOUT_ANAGLYPH on mix their colours.
 #define LAYOUT_SEPARATE 0
 #define LAYOUT_MULTI_VIEW 1
-#define LAYOUT_PARALLEL 2
-#define LAYOUT_CROSS_EYED 3
-#define LAYOUT_HALF_WIDTH 4
-#define LAYOUT_OVER_UNDER 5
-#define LAYOUT_ROWS 6
-#define LAYOUT_COLUMNS 7
-#define LAYOUT_ANAGLYPH 8
-#define LAYOUT_HALF_COLOUR 9
-#define LAYOUT_GREY 10
+#define LAYOUT_QUAD_BUFFER 2
+#define LAYOUT_PARALLEL 3
+#define LAYOUT_CROSS_EYED 4
+#define LAYOUT_HALF_WIDTH 5
+#define LAYOUT_OVER_UNDER 6
+#define LAYOUT_ROWS 7
+#define LAYOUT_COLUMNS 8
+#define LAYOUT_ANAGLYPH 9
+#define LAYOUT_HALF_COLOUR 10
+#define LAYOUT_GREY 11
 
 // --show: what of a frame is shown. Those from SHOW_ALPHAS on are what the blend comes by.
 #define SHOW_PICTURE 0
@@ -114,6 +115,7 @@ inline constexpr Choice decode_choices[] = {
 inline constexpr Choice layout_choices[] = {
     {"separate", "a file for each eye"},
     {"multi-view", "both eyes as the views of one OpenEXR file"},
+    {"quad-buffer", "a framebuffer for each eye: `view`, where the driver has stereo windows"},
     {"parallel", "side by side, the left eye's picture on the left"},
     {"cross-eyed", "side by side, swapped: for eyes that cross"},
     {"half-width", "parallel, each squeezed to half its width: 3D televisions"},

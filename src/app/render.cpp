@@ -150,7 +150,10 @@ ExitCode render(RenderOptions options) {
   check(options);
   const OutputPlan plan = plan_outputs(options);
   const Scene scene = open_scene(options);
-  CameraList list = listed_cameras(options, scene.cameras);
+  options.saved = find_saved(options);
+  const auto saved = saved_camera(options);
+  if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
+  CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
   options.photos = photos_folder(options, list);
   const Model model = scene.model();
   log_model(options, model);

@@ -52,6 +52,10 @@ std::string transmittance_name(const RenderOptions& o) {
   return o.quality ? "last" : "one";
 }
 
+double units_per_metre(const RenderOptions& o) {
+  return o.units_per_metre.value_or(o.saved ? o.saved->units_per_metre : 1.0);
+}
+
 void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);

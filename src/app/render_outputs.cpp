@@ -27,7 +27,7 @@ Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
                  {"binosplatScene", options.scene},
                  {"binosplatView", shot.name},
-                 {"binosplatUnitsPerMetre", fmt::format("{}", options.units_per_metre)}};
+                 {"binosplatUnitsPerMetre", fmt::format("{}", units_per_metre(options))}};
   if (!side.empty()) notes["binosplatEye"] = side;
   if (most_shown) notes["binosplatShow"] = fmt::format("{}, 0 to {}", options.show, *most_shown);
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
@@ -48,6 +48,8 @@ int plan_layout(const RenderOptions& options, bool picture_file, bool exr_file) 
     return picture_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
   int layout = 0;
   while (options.layout != layout_choices[layout].name) ++layout;
+  if (layout == LAYOUT_QUAD_BUFFER)
+    fail("--layout quad-buffer is for `binosplat view`: a file has no buffers");
   if (layout == LAYOUT_SEPARATE && (picture_file || exr_file))
     fail("--layout separate writes a file for each eye: -o {} must be a folder", options.output);
   if (layout == LAYOUT_MULTI_VIEW && picture_file)

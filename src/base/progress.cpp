@@ -4,11 +4,29 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <mutex>
 #include <utility>
 
 #include "base/log.h"
 
 namespace binosplat {
+
+namespace {
+
+std::mutex latest_mutex;
+std::string latest;
+
+void say(const std::string& text) {
+  const std::lock_guard lock(latest_mutex);
+  latest = text;
+}
+
+}  // namespace
+
+std::string latest_progress() {
+  const std::lock_guard lock(latest_mutex);
+  return latest;
+}
 
 Progress::Progress(std::string label, std::uint64_t total)
     : label_(std::move(label)),
@@ -17,6 +35,7 @@ Progress::Progress(std::string label, std::uint64_t total)
       next_(Clock::now() + std::chrono::seconds(1)) {}
 
 Progress::~Progress() {
+  if (shown_) say("");
   if (shown_ && terminal_) std::fputs("\r\033[K", stderr);
 }
 
@@ -25,11 +44,13 @@ void Progress::update(std::uint64_t done) {
   if (now < next_) return;
   const int percent =
       total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
+  const std::string text = fmt::format("{} {} %", label_, percent);
+  say(text);
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{} {} %", label_, percent);
+    fmt::print(stderr, "\r\033[K{}", text);
     std::fflush(stderr);
   } else {
-    log_info("{} {} %", label_, percent);
+    log_info("{}", text);
   }
   shown_ = true;
   next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000));

@@ -28,4 +28,8 @@ class Progress {
   Clock::time_point next_;
 };
 
+/// What work that is under way in any thread said last, as "reading garden.ply 43 %"; empty while there is
+/// none that takes longer than a second.
+std::string latest_progress();
+
 }  // namespace binosplat
