@@ -32,7 +32,8 @@ Progress::Progress(std::string label, std::uint64_t total)
     : label_(std::move(label)),
       total_(total),
       terminal_(isatty(STDERR_FILENO) != 0),
-      next_(Clock::now() + std::chrono::seconds(1)) {}
+      next_(Clock::now() + std::chrono::seconds(1)),
+      next_line_(next_) {}
 
 Progress::~Progress() {
   if (shown_) say("");
@@ -46,14 +47,15 @@ void Progress::update(std::uint64_t done) {
       total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
   const std::string text = fmt::format("{} {} %", label_, percent);
   say(text);
+  shown_ = true;
+  next_ = now + std::chrono::milliseconds(100);
   if (terminal_) {
     fmt::print(stderr, "\r\033[K{}", text);
     std::fflush(stderr);
-  } else {
+  } else if (now >= next_line_) {
     log_info("{}", text);
+    next_line_ = now + std::chrono::seconds(5);
   }
-  shown_ = true;
-  next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000));
 }
 
 }  // namespace binosplat

@@ -201,10 +201,10 @@ void Panel::draw(Session& session) {
   ImGui::End();
 }
 
-void draw_loading(const std::string& scene, double seconds) {
+void draw_loading(const std::string& scene, bool read, double seconds) {
   ImGui::SetNextWindowPos({10, 10});
   ImGui::Begin("loading", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar);
-  ImGui::Text("reading %s, %.0f s", scene.c_str(), seconds);
+  ImGui::Text("%s %s, %.0f s", read ? "to the GPU:" : "reading", scene.c_str(), seconds);
   if (const std::string progress = latest_progress(); !progress.empty()) ImGui::Text("%s", progress.c_str());
   ImGui::End();
 }

@@ -27,8 +27,9 @@ struct Panel {
   bool draw_show(Choices& choices);
 };
 
-/// While a model is read: its name, how far that is (base/progress.h), and how long it has taken, in s.
-void draw_loading(const std::string& scene, double seconds);
+/// While a model is read, and then handed to the GPU: its name, how far that is (base/progress.h), and how
+/// long it has taken, in s.
+void draw_loading(const std::string& scene, bool read, double seconds);
 
 /// What could not be done while there is no panel to tell it.
 void draw_message(const std::string& message);

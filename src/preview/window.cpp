@@ -77,6 +77,7 @@ class Window {
 
   void load(Opened scene) {
     next_ = std::move(scene);
+    read_ = false;
     loading_since_ = glfwGetTime();
     loading_ = std::async(std::launch::async, next_.load);
   }
@@ -162,6 +163,11 @@ class Window {
 
   void take_loaded() {
     if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    if (!read_) {  // first say so: the driver takes the model in one go
+      read_ = true;
+      ui_frames_ = 1;
+      return;
+    }
     try {
       Model model = loading_.get();
       Choices choices = session_ ? session_->choices : choices_;
@@ -210,7 +216,7 @@ class Window {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     if (session_) panel_.draw(*session_);
-    if (loading_.valid()) draw_loading(next_.name, glfwGetTime() - loading_since_);
+    if (loading_.valid()) draw_loading(next_.name, read_, glfwGetTime() - loading_since_);
     ImGui::Render();
     context_->gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     context_->gl().ClearColor(0.0f, 0.0f, 0.0f, 1.0f);
@@ -360,6 +366,7 @@ class Window {
   std::unique_ptr<Session> session_;
   Panel panel_;
   Opened scene_, next_;  // what is shown, and what is being read
+  bool read_ = false;    // that is done, and to be handed to the GPU
   bool again_ = false;   // that is the same one
   std::future<Model> loading_;
   double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0;
