@@ -1,5 +1,7 @@
 // Stage 6: the picture (METHOD 3). One work group a tile, one invocation a pixel; the tile's splats pass front to back
 // through shared memory.
+//
+// With SHOW, one of SHOW_ALPHAS to SHOW_LIGHT, it leaves the pictures as they are and tells what it comes by instead.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -7,6 +9,9 @@
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 
+#ifndef SHOW
+#define SHOW SHOW_PICTURE
+#endif
 #define PIXELS (TILE_SIZE * TILE_SIZE)
 #define BATCH (PIXELS < 256 ? PIXELS : 256)  // splats in shared memory at a time: 12 KiB at most
 
@@ -24,6 +29,14 @@ uniform uint remembers;  // whether `colours` still holds this view's last frame
 uniform uint background_r, background_g, background_b;  // bits of floats
 #endif
 shared uint batch_measured[BATCH];
+#endif
+#if SHOW != SHOW_PICTURE
+layout(std430, binding = 8) writeonly buffer Shown { float shown[]; };  // below 0: nothing to tell
+float told = 0.0;
+#endif
+#if SHOW == SHOW_LIGHT
+layout(std430, binding = 7) readonly buffer Measured { uint measured[]; };  // by a blend with RECORDS before this one
+shared float batch_light[BATCH];
 #endif
 uniform uint view_count;
 uniform uint tile_count;
@@ -73,6 +86,11 @@ void blend(uint at) {
   }
   measure(at, alpha);
   precise float weight = alpha * transmittance;
+#if SHOW == SHOW_VISIBLE
+  told += 1.0;
+#elif SHOW == SHOW_LIGHT
+  told += weight * batch_light[at];
+#endif
   precise vec3 sum = colour + weight * batch_colour[at].rgb;
   precise float z = z_sum + weight * geometry.z;
   colour = sum;
@@ -91,6 +109,9 @@ void load(uint at, uint end) {
     batch_geometry[self] = vec4(splat.mean, splat.depth, splat.opacity);
     batch_conic[self] = splat.conic;
     batch_colour[self] = splat.colour;
+#if SHOW == SHOW_LIGHT
+    batch_light[self] = uintBitsToFloat(measured[values[at]]);
+#endif
   } else {
     batch_geometry[self] = vec4(0.0);  // no opacity: leaves no mark
     batch_conic[self] = vec4(0.0);
@@ -137,7 +158,12 @@ void main() {
     uint size = min(end - batch, uint(BATCH));
     uint next = 0u;
     for (; next < size && !done; next += BLEND_UNROLL) {
-      for (uint i = 0u; i < BLEND_UNROLL; ++i) blend(next + i);
+      for (uint i = 0u; i < BLEND_UNROLL; ++i) {
+#if SHOW == SHOW_ALPHAS
+        if (!done && next + i < size) told += 1.0;
+#endif
+        blend(next + i);
+      }
     }
     cut = cut || (!done && next < size);
     barrier();
@@ -147,8 +173,17 @@ void main() {
 #endif
   }
   if (cut || (!done && batch < end)) atomicAdd(counters.loop_cut, 1u);
+#if SHOW == SHOW_PAIRS
+  told = float(end - ranges[2u * list]);
+#elif SHOW == SHOW_LIGHT
+  told = transmittance < 1.0 ? told / (1.0 - transmittance) : -1.0;
+#endif
   if (inside) {
+#if SHOW != SHOW_PICTURE
+    shown[to] = told;
+#else
     colours[to] = vec4(colour, transmittance);
     z_sums[to] = z_sum;
+#endif
   }
 }

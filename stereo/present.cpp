@@ -37,10 +37,9 @@ void Presenter::bind(const Target& target) {
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
 }
 
-void Presenter::draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
-                     const Background& background) {
+void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first,
+                     int layout, const Target& target, const Background& background) {
   const std::size_t second = layout == LAYOUT_SEPARATE ? first : first + 1;
-  const auto& views = frame.views();
   if (second >= views.size()) fail("view {} of a frame of {} views", second, views.size());
   const shared::View &left = views[first], &right = views[second];
   if (left.width != right.width || left.height != right.height) {
@@ -48,6 +47,8 @@ void Presenter::draw(const render::Frame& frame, std::size_t first, int layout, 
          left.width, left.height, right.width, right.height);
   }
   if (layout == LAYOUT_MULTI_VIEW) fail("layout multi-view is for OpenEXR files");
+  if (layout == LAYOUT_QUAD_BUFFER)
+    fail("layout quad-buffer is two framebuffers: draw each view by itself (separate) into its own");
   if (mixes_colours(layout) && !background) {
     fail("layout {} mixes both eyes' colours and leaves no alpha: give a background",
          layout_choices[layout].name);
@@ -59,7 +60,7 @@ void Presenter::draw(const render::Frame& frame, std::size_t first, int layout, 
   bind(target);
   dispatcher_.context().gl().ViewportIndexedf(0, static_cast<float>(target.x), static_cast<float>(target.y),
                                               static_cast<float>(size.x), static_cast<float>(size.y));
-  dispatcher_.fill(dispatcher_.context().program("present.frag"), {{"Colours", frame.colours()}},
+  dispatcher_.fill(dispatcher_.context().program("present.frag"), {{"Colours", colours}},
                    {{"kind", static_cast<std::uint32_t>(layout)},
                     {"first", left.pixel_offset},
                     {"second", right.pixel_offset},

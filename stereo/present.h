@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "base/image.h"
 #include "gl/dispatch.h"
@@ -39,7 +40,14 @@ class Presenter {
   /// (gl/state.h). Throws Error(bad_input) for views that are not there or differ in size, a texture that
   /// cannot be drawn into, and what layout_size() and lay_out() refuse.
   void draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
-            const Background& background = glm::vec3(0.0f));
+            const Background& background = glm::vec3(0.0f)) {
+    draw(frame.colours(), frame.views(), first, layout, target, background);
+  }
+
+  /// The same of other pictures that lie in a buffer as a frame's do: vec4 (C, T) by pixel, a view's from its
+  /// pixel_offset on.
+  void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
+            const Target& target, const Background& background);
 
  private:
   void bind(const Target& target);

@@ -38,15 +38,27 @@
 // --layout: how both eyes are shown. Those from LAYOUT_ANAGLYPH on mix their colours.
 #define LAYOUT_SEPARATE 0
 #define LAYOUT_MULTI_VIEW 1
-#define LAYOUT_PARALLEL 2
-#define LAYOUT_CROSS_EYED 3
-#define LAYOUT_HALF_WIDTH 4
-#define LAYOUT_OVER_UNDER 5
-#define LAYOUT_ROWS 6
-#define LAYOUT_COLUMNS 7
-#define LAYOUT_ANAGLYPH 8
-#define LAYOUT_HALF_COLOUR 9
-#define LAYOUT_GREY 10
+#define LAYOUT_QUAD_BUFFER 2
+#define LAYOUT_PARALLEL 3
+#define LAYOUT_CROSS_EYED 4
+#define LAYOUT_HALF_WIDTH 5
+#define LAYOUT_OVER_UNDER 6
+#define LAYOUT_ROWS 7
+#define LAYOUT_COLUMNS 8
+#define LAYOUT_ANAGLYPH 9
+#define LAYOUT_HALF_COLOUR 10
+#define LAYOUT_GREY 11
+
+// --show: what of a frame is shown. Those from SHOW_ALPHAS on are what the blend comes by.
+#define SHOW_PICTURE 0
+#define SHOW_SPLIT 1
+#define SHOW_DIFFERENCE 2
+#define SHOW_DISAGREEMENT 3
+#define SHOW_DEPTH 4
+#define SHOW_ALPHAS 5
+#define SHOW_VISIBLE 6
+#define SHOW_PAIRS 7
+#define SHOW_LIGHT 8
 
 // What a GPU does at best (shaders/floors.comp).
 #define FLOOR_BYTES 0
@@ -108,6 +120,7 @@ inline constexpr Choice decode_choices[] = {
 inline constexpr Choice layout_choices[] = {
     {"separate", "a file for each eye"},
     {"multi-view", "both eyes as the views of one OpenEXR file"},
+    {"quad-buffer", "a framebuffer for each eye: `view`, where the driver has stereo windows"},
     {"parallel", "side by side, the left eye's picture on the left"},
     {"cross-eyed", "side by side, swapped: for eyes that cross"},
     {"half-width", "parallel, each squeezed to half its width: 3D televisions"},
@@ -117,6 +130,18 @@ inline constexpr Choice layout_choices[] = {
     {"anaglyph", "for red-cyan glasses, by Dubois's least squares"},
     {"half-colour", "for red-cyan glasses: grey in the left eye, colour in the right"},
     {"grey", "for red-cyan glasses: grey in both eyes"},
+};
+
+inline constexpr Choice show_choices[] = {
+    {"picture", "the picture"},
+    {"split", "the picture on the left, the exact one on the right"},
+    {"difference", "from the exact picture, of the channel that differs most, in 255ths"},
+    {"disagreement", "the difference that the eyes do not share, in 255ths"},
+    {"depth", "view depth, world units"},
+    {"alphas", "alphas that a pixel evaluates until it ends"},
+    {"visible", "those of them that it blends"},
+    {"pairs", "Gaussians in the list of the pixel's tile"},
+    {"light", "max(T), the most light that reaches a Gaussian: the mean of those seen"},
 };
 
 /// The number of the choice of that name; the number of choices if there is none.

@@ -96,6 +96,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
   render::Frame frame(context, report.model);
+  stereo::Show show(context, report.model);
   const CalibratedSettings calibrated(options, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && options.calibration.empty())
     settings.depth_table = depth_table(frame, options, list, report.near_plane, report.model.axes);
@@ -115,9 +116,11 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     }
     const std::vector<Picture> pictures = frame.read_pictures();
     drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
-    if (video) video->add(frame_of(options, plan, pictures));
-    drawn.files =
-        video ? std::vector{plan.video.string()} : write_outputs(options, plan, drawn.shot, pictures);
+    const stereo::Shown shown =
+        show.make(number_of(options.show, show_choices), frame, views, pictures, of_shot, options.background);
+    drawn.most_shown = shown.most;
+    if (video) video->add(frame_of(options, plan, shown.pictures));
+    drawn.files = video ? std::vector{plan.video.string()} : write_outputs(options, plan, drawn.shot, shown);
     drawn.photo_psnr = photo_psnr(options, drawn.shot, pictures[0]);
   }
   if (video) video->finish();
@@ -147,7 +150,10 @@ ExitCode render(RenderOptions options) {
   check(options);
   const OutputPlan plan = plan_outputs(options);
   const Scene scene = open_scene(options);
-  CameraList list = listed_cameras(options, scene.cameras);
+  options.saved = find_saved(options);
+  const auto saved = saved_camera(options);
+  if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
+  CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
   options.photos = photos_folder(options, list);
   const Model model = scene.model();
   log_model(options, model);

@@ -3,6 +3,7 @@
 #include "app/render_options.h"
 #include "base/error.h"
 #include "scene/demo_city.h"
+#include "shared/axes.h"
 
 namespace binosplat::app {
 
@@ -51,6 +52,10 @@ std::string transmittance_name(const RenderOptions& o) {
   return o.quality ? "last" : "one";
 }
 
+double units_per_metre(const RenderOptions& o) {
+  return o.units_per_metre.value_or(o.saved ? o.saved->units_per_metre : 1.0);
+}
+
 void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
@@ -81,6 +86,10 @@ void check(const RenderOptions& o) {
   if (o.mono && (o.ipd || o.convergence || o.cant)) {
     fail("--mono has no rig: leave --ipd, --convergence and --cant out");
   }
+  if (o.show == "disagreement" && (o.mono || !o.only.empty()))
+    fail("--show disagreement is between both eyes: leave --mono and --only out");
+  if (o.reference_until == "blend" && number_of(o.show, show_choices) >= SHOW_ALPHAS)
+    fail("--show {}: the GPU's blend tells it, which --reference-until blend leaves out", o.show);
   if (!o.photos.empty() && !o.mono)
     fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
   if (o.device >= 0 && (o.backend == "surfaceless" || o.backend == "osmesa"))

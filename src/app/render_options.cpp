@@ -291,6 +291,10 @@ void add_look(CLI::App& sub, RenderOptions& o) {
          "How both eyes are shown (a folder: separate; FILE.png and videos:\nparallel; FILE.exr: multi-view)",
          layout_choices)
       ->group(group);
+  choose(sub, "--show", o.show,
+         "What is shown in place of the picture; numbers as colours from 0\n(dark) to yellow (picture)",
+         show_choices)
+      ->group(group);
   sub.add_option_function<std::string>(
          "--background", [&o](const std::string& text) { o.background = parse_background(text); },
          "Colour behind the model, 0 to 1, or none: keep alpha (0,0,0)")

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "formats/pose_file.h"
 #include "shared/limits.h"
 
 namespace binosplat::app {
@@ -49,7 +50,10 @@ struct RenderOptions {
   std::optional<double> ipd;          // m
   std::optional<double> convergence;  // m
   std::optional<double> cant;         // degrees
-  double units_per_metre = 1.0;
+  std::optional<double> units_per_metre;
+
+  /// What `binosplat view` saved beside the model (find_saved): goes for what nothing above says.
+  std::optional<SavedPose> saved;
 
   // The frame and where it is drawn.
   std::string tiles = "ellipse";
@@ -70,7 +74,8 @@ struct RenderOptions {
 
   // Outputs.
   std::string output;
-  std::string layout;         // empty: by what -o names
+  std::string layout;  // empty: by what -o names
+  std::string show = "picture";
   std::optional<double> fps;  // of a video; none: by the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
@@ -104,6 +109,9 @@ std::string threshold_name(const RenderOptions& options);
 /// What --transmittance is: `last` where the loss is found for a quality, which costs least
 /// (docs/stability.md); a loss that is given belongs to `one` unless said otherwise.
 std::string transmittance_name(const RenderOptions& options);
+
+/// What --units-per-metre is: as given, as saved, or 1.
+double units_per_metre(const RenderOptions& options);
 
 /// Throws Error for options that contradict each other.
 void check(const RenderOptions& options);

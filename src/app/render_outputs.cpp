@@ -22,12 +22,14 @@ std::string lower_extension(const fs::path& path) {
 }
 
 // What a picture's file says of how it was drawn: a stereo picture is right only at its scale.
-Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string& side) {
+Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string& side,
+               const std::optional<double>& most_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
                  {"binosplatScene", options.scene},
                  {"binosplatView", shot.name},
-                 {"binosplatUnitsPerMetre", fmt::format("{}", options.units_per_metre)}};
+                 {"binosplatUnitsPerMetre", fmt::format("{}", units_per_metre(options))}};
   if (!side.empty()) notes["binosplatEye"] = side;
+  if (most_shown) notes["binosplatShow"] = fmt::format("{}, 0 to {}", options.show, *most_shown);
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
   return notes;
 }
@@ -46,6 +48,8 @@ int plan_layout(const RenderOptions& options, bool picture_file, bool exr_file) 
     return picture_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
   int layout = 0;
   while (options.layout != layout_choices[layout].name) ++layout;
+  if (layout == LAYOUT_QUAD_BUFFER)
+    fail("--layout quad-buffer is for `binosplat view`: a file has no buffers");
   if (layout == LAYOUT_SEPARATE && (picture_file || exr_file))
     fail("--layout separate writes a file for each eye: -o {} must be a folder", options.output);
   if (layout == LAYOUT_MULTI_VIEW && picture_file)
@@ -143,6 +147,8 @@ OutputPlan plan_outputs(const RenderOptions& options) {
   }
   if (options.bits && !plan.png)
     fail("--bits is for PNG: this writes OpenEXR to {}, whose depth --exr sets", output.string());
+  if (plan.exr && options.show != show_choices[SHOW_PICTURE].name)
+    fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR", options.show);
   if (!options.exr_encoding.empty() && !plan.exr)
     fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
   if (!options.json.empty()) check_output(options.json);
@@ -189,18 +195,19 @@ Image frame_of(const RenderOptions& options, const OutputPlan& plan, const std::
 }
 
 std::vector<std::string> write_outputs(const RenderOptions& options, const OutputPlan& plan, const Shot& shot,
-                                       const std::vector<Picture>& pictures) {
+                                       const stereo::Shown& shown) {
+  const std::vector<Picture>& pictures = shown.pictures;
   std::vector<std::string> written;
   const fs::path base = plan.folder.empty() ? plan.file : plan.folder / shot.stem;
   if (plan.layout == LAYOUT_SEPARATE) {
     for (std::size_t k = 0; k < shot.eyes.size(); ++k) {
       const std::string& side = shot.eyes[k].side;
       const fs::path path = plan.folder.empty() || side.empty() ? base : fs::path(base.string() + "_" + side);
-      write(options, plan, path, pictures[k], notes_of(options, shot, side), written);
+      write(options, plan, path, pictures[k], notes_of(options, shot, side, shown.most), written);
     }
     return written;
   }
-  Notes notes = notes_of(options, shot, "left, right");
+  Notes notes = notes_of(options, shot, "left, right", shown.most);
   notes["binosplatLayout"] = layout_choices[plan.layout].name;
   if (plan.layout == LAYOUT_MULTI_VIEW) {
     const Uninterrupted hold;

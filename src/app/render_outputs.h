@@ -11,6 +11,7 @@
 #include "app/video.h"
 #include "base/image.h"
 #include "shared/axes.h"
+#include "stereo/show.h"
 
 namespace binosplat::app {
 
@@ -41,8 +42,8 @@ std::unique_ptr<Video> open_video(const RenderOptions& options, const OutputPlan
 /// A shot's pictures as a frame of the video.
 Image frame_of(const RenderOptions& options, const OutputPlan& plan, const std::vector<Picture>& pictures);
 
-/// Writes the pictures of a shot's eyes, in their order, and returns the files' names.
+/// Writes what is shown of a shot's eyes, in their order, and returns the files' names.
 std::vector<std::string> write_outputs(const RenderOptions& options, const OutputPlan& plan, const Shot& shot,
-                                       const std::vector<Picture>& pictures);
+                                       const stereo::Shown& shown);
 
 }  // namespace binosplat::app

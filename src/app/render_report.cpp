@@ -91,7 +91,7 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
 }
 
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
-  ordered_json json = {{"name", drawn.shot.name}, {"units_per_metre", options.units_per_metre}};
+  ordered_json json = {{"name", drawn.shot.name}, {"units_per_metre", units_per_metre(options)}};
   if (drawn.shot.ipd) json["ipd_metres"] = *drawn.shot.ipd;
   if (options.convergence) json["convergence_metres"] = *options.convergence;
   if (options.cant) json["cant_degrees"] = *options.cant;
@@ -106,6 +106,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
+  if (drawn.most_shown) json["show"] = {{"what", options.show}, {"most", *drawn.most_shown}};
   json["outputs"] = drawn.files;
   return json;
 }
@@ -157,7 +158,7 @@ std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot
   // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
   const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
   const auto focus = canted || options.preset == "headset"
-                         ? std::optional(headset_focus_metres * options.units_per_metre)
+                         ? std::optional(headset_focus_metres * units_per_metre(options))
                          : stereo::screen_distance(eyes);
   const auto range = stereo::disparity_range(eyes, left, focus);
   if (!range) return std::nullopt;
@@ -165,8 +166,8 @@ std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot
   const bool own_rig = !shot.given_eyes && !canted && options.preset != "headset";
   if (own_rig && !stereo::comfortable(*range)) {
     comfort.better = stereo::comfortable_rig(*range, eyes);
-    comfort.better->convergence /= options.units_per_metre;
-    if (comfort.better->ipd) *comfort.better->ipd /= options.units_per_metre;
+    comfort.better->convergence /= units_per_metre(options);
+    if (comfort.better->ipd) *comfort.better->ipd /= units_per_metre(options);
   }
   return comfort;
 }
@@ -212,6 +213,9 @@ void print(const RenderReport& report) {
       line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
+    if (drawn.most_shown)
+      fmt::print("  colours: {}: 0 (dark blue) to {} and more (yellow)\n", report.options.show,
+                 *drawn.most_shown);
     if (drawn.comfort) print_comfort(drawn);
   }
   warn_of_discomfort(report.drawn);

@@ -49,6 +49,7 @@ struct Drawn {
   Shot shot;
   render::FrameReport report;
   std::vector<std::string> files;
+  std::optional<double> most_shown;  // with --show: the number of the brightest colour
   std::optional<double> photo_psnr;  // dB
   std::optional<Comfort> comfort;
 };

@@ -119,7 +119,7 @@ void add_eyes(const RenderOptions& options, const Choice& choice, double near_pl
   shot.given_eyes = choice.cameras.size() == 2;
   const double apart = glm::length(pair.cameras[1].position - pair.cameras[0].position);
   shot.ipd =
-      choice.cameras.size() == 1 ? rig_settings(options, near_plane).ipd : apart / options.units_per_metre;
+      choice.cameras.size() == 1 ? rig_settings(options, near_plane).ipd : apart / units_per_metre(options);
 }
 
 // A view's name as a file's: trainers' names may have folders, and the endings of the photos.
@@ -140,13 +140,14 @@ std::string stem_of(std::string name, std::set<std::string>& taken) {
 }  // namespace
 
 double near_plane_of(const RenderOptions& options, const CameraList& list, const Model& model) {
-  return options.near_plane.value_or(list.listed ? near_default : near_for(model));
+  if (options.near_plane) return *options.near_plane;
+  return list.near_plane.value_or(list.listed ? near_default : near_for(model));
 }
 
 stereo::RigSettings rig_settings(const RenderOptions& options, double near_plane) {
   stereo::RigSettings settings;
-  settings.ipd = options.ipd.value_or(settings.ipd);
-  settings.units_per_metre = options.units_per_metre;
+  settings.ipd = options.ipd.value_or(options.saved ? options.saved->ipd : settings.ipd);
+  settings.units_per_metre = units_per_metre(options);
   settings.convergence = options.convergence;
   settings.cant_degrees = options.cant.value_or(settings.cant_degrees);
   settings.near_plane = near_plane;
@@ -162,6 +163,27 @@ std::vector<shared::View> views_of(const Shot& shot) {
 Camera sized(const RenderOptions& options, const Camera& camera) {
   Camera out = options.preset.empty() ? camera : stereo::apply_preset(camera, options.preset);
   return options.size ? resized(out, options.size->x, options.size->y) : out;
+}
+
+glm::dvec3 up_of(const RenderOptions& options) {
+  return options.up.value_or(options.saved ? options.saved->up : default_up);
+}
+
+std::optional<SavedPose> find_saved(const RenderOptions& options) {
+  if (options.scene.rfind("demo:", 0) == 0) return std::nullopt;
+  const auto saved = find_pose(options.scene);
+  if (saved)
+    log_info("{}: {} world units a metre, eyes {} m apart, unless options say otherwise",
+             pose_path(options.scene).string(), saved->units_per_metre, saved->ipd);
+  return saved;
+}
+
+std::optional<CameraList> saved_camera(const RenderOptions& options) {
+  const RenderOptions& o = options;
+  const bool chosen = !o.cameras.empty() || !o.views.empty() || !o.path.empty() || !o.photos.empty() ||
+                      o.eye || o.orbit || o.up || o.fov;
+  if (!o.saved || chosen) return std::nullopt;
+  return CameraList{pose_path(o.scene).string(), {o.saved->camera}, true, o.saved->near_plane};
 }
 
 CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera>& built_in) {
@@ -187,7 +209,7 @@ CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera
 
 CameraList made_up_cameras(const RenderOptions& options, const Model& model) {
   const double fov = options.fov.value_or(default_fov_degrees);
-  const glm::dvec3 up = options.up.value_or(default_up);
+  const glm::dvec3 up = up_of(options);
   if (options.eye) {
     return {"--eye", {look_at(*options.eye, *options.at, up, fov, made_up_width, made_up_height)}};
   }

@@ -33,11 +33,21 @@ struct CameraList {
   std::string source;
   std::vector<Camera> cameras;
   bool listed = false;  // in a file or by the built-in scene: --view chooses; made-up ones are all drawn
+  std::optional<double> near_plane;  // world units, where it is known
 };
 
 /// The cameras that --cameras, a file beside the model, or the built-in scene (`built_in`) gives; empty if
 /// none does or the options make up their own. Quick: comes before the model is read.
 CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera>& built_in);
+
+/// What lies beside the model, if anything does; says so.
+std::optional<SavedPose> find_saved(const RenderOptions& options);
+
+/// The pose that options.saved holds, where no option chooses cameras or asks for those of photos.
+std::optional<CameraList> saved_camera(const RenderOptions& options);
+
+/// --up, or what was saved.
+glm::dvec3 up_of(const RenderOptions& options);
 
 /// Cameras made up from --eye, --orbit or the model.
 CameraList made_up_cameras(const RenderOptions& options, const Model& model);

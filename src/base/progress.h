@@ -26,6 +26,11 @@ class Progress {
   bool terminal_;
   bool shown_ = false;
   Clock::time_point next_;
+  Clock::time_point next_line_;  // of a log
 };
+
+/// What work that is under way in any thread said last, as "reading garden.ply 43 %"; empty while there is
+/// none that takes longer than a second.
+std::string latest_progress();
 
 }  // namespace binosplat

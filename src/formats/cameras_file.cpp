@@ -157,6 +157,17 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
   return cameras;
 }
 
+nlohmann::ordered_json camera_json(const Camera& camera) {
+  nlohmann::ordered_json rotation = nlohmann::json::array();
+  for (int row = 0; row < 3; ++row)
+    rotation.push_back({camera.rotation[0][row], camera.rotation[1][row], camera.rotation[2][row]});
+  return {{"img_name", camera.name}, {"width", camera.width},
+          {"height", camera.height}, {"position", {camera.position.x, camera.position.y, camera.position.z}},
+          {"rotation", rotation},    {"fx", camera.fx},
+          {"fy", camera.fy},         {"cx", camera.cx},
+          {"cy", camera.cy},         {"time", camera.time.value_or(0.0)}};
+}
+
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model) {
   namespace fs = std::filesystem;
   std::error_code ignored;

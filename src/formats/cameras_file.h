@@ -8,6 +8,7 @@
 // Other keys are ignored.
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,9 @@ namespace binosplat {
 /// kept to the digit. Names that occur twice are kept with a warning. Throws Error naming the file, the
 /// camera's number in the list and its key; for broken JSON the line and byte.
 std::vector<Camera> load_cameras(const std::filesystem::path& path);
+
+/// A camera as an object of such a list, with its principal point, and its time (0 where it has none).
+nlohmann::ordered_json camera_json(const Camera& camera);
 
 /// The cameras that belong to a model, a file or its folder: cameras.json, transforms.json or a COLMAP
 /// reconstruction in that folder or, for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and

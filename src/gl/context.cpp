@@ -154,9 +154,21 @@ std::vector<GLenum> Context::take_errors() const {
   return errors;
 }
 
+void Context::check_alive() const {
+  const GLenum status = functions_.GetGraphicsResetStatus();
+  if (status == GL_NO_ERROR) return;
+  const char* const whose = status == GL_GUILTY_CONTEXT_RESET     ? "by what this program drew"
+                            : status == GL_INNOCENT_CONTEXT_RESET ? "by another program"
+                                                                  : "for a reason that it does not know";
+  throw Error(ExitCode::no_gl,
+              fmt::format("{} was reset, the driver says {}: all that was on it is lost; start again",
+                          renderer_, whose));
+}
+
 void Context::check(const std::string& what) const {
   const GLenum error = functions_.GetError();
   if (error == GL_NO_ERROR) return;
+  check_alive();
   if (error == GL_OUT_OF_MEMORY) {
     throw Error(
         ExitCode::out_of_memory,

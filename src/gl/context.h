@@ -85,8 +85,12 @@ class Context {
   /// context until then.
   std::vector<GLenum> take_errors() const;
 
-  /// Throws std::runtime_error naming `what` if GL has recorded an error, Error(out_of_memory) for
-  /// GL_OUT_OF_MEMORY.
+  /// Throws Error(no_gl) if the GPU was reset, after which nothing that was on it can be used. Drivers tell
+  /// it contexts that asked to be told, as the preview's does.
+  void check_alive() const;
+
+  /// Throws as check_alive() does, std::runtime_error naming `what` if GL has recorded an error,
+  /// Error(out_of_memory) for GL_OUT_OF_MEMORY.
   void check(const std::string& what) const;
 
  protected:

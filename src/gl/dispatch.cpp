@@ -93,6 +93,7 @@ std::vector<StageTime> Dispatcher::wait_and_time() {
   while (state == GL_TIMEOUT_EXPIRED)
     state = gl.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, one_second);
   gl.DeleteSync(fence);
+  context_.check_alive();
   if (state == GL_WAIT_FAILED) throw std::runtime_error("the GPU was lost while drawing a frame");
 
   std::vector<std::uint64_t> at(marks_.size());

@@ -42,6 +42,7 @@ namespace binosplat::gl {
   X(DispatchCompute, DISPATCHCOMPUTE)                           \
   X(DispatchComputeIndirect, DISPATCHCOMPUTEINDIRECT)           \
   X(DrawArrays, DRAWARRAYS)                                     \
+  X(DrawBuffer, DRAWBUFFER)                                     \
   X(Enable, ENABLE)                                             \
   X(Enablei, ENABLEI)                                           \
   X(FenceSync, FENCESYNC)                                       \
@@ -49,6 +50,7 @@ namespace binosplat::gl {
   X(GetBooleani_v, GETBOOLEANI_V)                               \
   X(GetError, GETERROR)                                         \
   X(GetFloati_v, GETFLOATI_V)                                   \
+  X(GetGraphicsResetStatus, GETGRAPHICSRESETSTATUS)             \
   X(GetInteger64i_v, GETINTEGER64I_V)                           \
   X(GetInteger64v, GETINTEGER64V)                               \
   X(GetIntegeri_v, GETINTEGERI_V)                               \

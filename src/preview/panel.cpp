@@ -1,11 +1,13 @@
 #include "preview/panel.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/progress.h"
 #include "base/statistics.h"
 
 namespace binosplat::preview {
@@ -16,13 +18,14 @@ constexpr std::array<ImU32, 6> stage_colours = {IM_COL32(86, 156, 214, 255),  IM
                                                 IM_COL32(220, 205, 121, 255), IM_COL32(206, 145, 120, 255),
                                                 IM_COL32(197, 134, 192, 255), IM_COL32(156, 205, 90, 255)};
 
-// A choice of shared/axes.h, from `first` on and without `left_out`.
+// A choice of shared/axes.h, without those that are left out.
 template <std::size_t n>
-bool combo(const char* label, int& value, const Choice (&choices)[n], int left_out = -1) {
+bool combo(const char* label, int& value, const Choice (&choices)[n],
+           std::initializer_list<int> left_out = {}) {
   bool changed = false;
   if (!ImGui::BeginCombo(label, choices[value].name)) return false;
   for (int k = 0; k < static_cast<int>(n); ++k) {
-    if (k == left_out) continue;
+    if (std::find(left_out.begin(), left_out.end(), k) != left_out.end()) continue;
     if (ImGui::Selectable(choices[k].name, k == value)) {
       value = k;
       changed = true;
@@ -38,6 +41,11 @@ bool draw_rig(stereo::RigSettings& rig) {
   float ipd = static_cast<float>(1000.0 * rig.ipd);
   if (ImGui::SliderFloat("ipd, mm", &ipd, 0.0f, 200.0f, "%.1f")) {
     rig.ipd = std::max(0.0f, ipd) / 1000.0;
+    changed = true;
+  }
+  float units = static_cast<float>(rig.units_per_metre);
+  if (ImGui::SliderFloat("units a metre", &units, 0.01f, 100.0f, "%.3f", ImGuiSliderFlags_Logarithmic)) {
+    rig.units_per_metre = std::max(0.0001f, units);
     changed = true;
   }
   bool converges = rig.convergence.has_value();
@@ -57,7 +65,7 @@ bool draw_rig(stereo::RigSettings& rig) {
 }
 
 bool draw_thresholds(render::FrameSettings& s) {
-  bool changed = combo("tiles", s.tiles, tiles_choices, TILES_ALL);
+  bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
   if (combo("th", s.th, th_choices)) {
     changed = true;
     if (s.th != TH_TAU && s.loss == 0.0f) s.loss = 0.15f;
@@ -66,7 +74,7 @@ bool draw_thresholds(render::FrameSettings& s) {
   changed |= ImGui::SliderFloat("loss", &s.loss, 0.001f, 10.0f, "%.3f", ImGuiSliderFlags_Logarithmic);
   s.loss = std::max(0.0f, s.loss);
   // The depth table needs cameras to be measured from: `binosplat render` has it.
-  changed |= combo("transmittance", s.transmittance, transmittance_choices, TRANSMITTANCE_DEPTH);
+  changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
   if (s.th == TH_SQUARED && render::measures(s.transmittance))
     changed |= combo("contrast", s.contrast, contrast_choices);
   changed |= combo("th-eyes", s.th_eyes, th_eyes_choices);
@@ -109,40 +117,104 @@ void draw_times(const std::deque<render::FrameReport>& reports) {
                      static_cast<double>(last.gpu_bytes) * 1e-6);
 }
 
+// What the colours of a map mean, at the lower right.
+void draw_legend(int show, double most) {
+  constexpr float width = 256.0f, height = 12.0f;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x - 10, size.y - 10}, ImGuiCond_Always, {1, 1});
+  ImGui::Begin("legend", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration);
+  ImGui::Text("%s: %s", show_choices[show].name, show_choices[show].help);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  for (float x = 0; x < width; ++x) {
+    const glm::vec3 colour = stereo::map_colour(x / (width - 1.0f));
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x + x, at.y}, {at.x + x + 1.0f, at.y + height},
+                                              ImColor(colour.r, colour.g, colour.b));
+  }
+  ImGui::Dummy({width, height});
+  ImGui::Text("0");
+  const std::string end = fmt::format("{} and more", most);
+  ImGui::SameLine(width - ImGui::CalcTextSize(end.c_str()).x);
+  ImGui::TextUnformatted(end.c_str());
+  ImGui::End();
+}
+
 }  // namespace
 
+void Panel::next_layout(int& layout, int by) const {
+  const int count = static_cast<int>(std::size(layout_choices));
+  do layout = (layout + by + count) % count;
+  while (layout == LAYOUT_MULTI_VIEW || (layout == LAYOUT_QUAD_BUFFER && !stereo_window));
+}
+
+// What is shown of the frame; true if that changes.
+bool Panel::draw_show(Choices& c) {
+  bool changed = combo("show", c.show, show_choices);
+  if (c.show == SHOW_SPLIT) {
+    float split = static_cast<float>(c.split);
+    changed |= ImGui::SliderFloat("split", &split, 0.0f, 1.0f, "drawn < %.2f > exact");
+    c.split = std::clamp(split, 0.0f, 1.0f);
+  }
+  return changed;
+}
+
+void Panel::draw_controls(Session& session) {
+  Choices& c = session.choices;
+  bool changed = stereo_window
+                     ? combo("layout", c.layout, layout_choices, {LAYOUT_MULTI_VIEW})
+                     : combo("layout", c.layout, layout_choices, {LAYOUT_MULTI_VIEW, LAYOUT_QUAD_BUFFER});
+  changed |= draw_rig(c.rig);
+  changed |= draw_thresholds(c.settings);
+  if (draw_show(c)) session.change_show();
+  changed |= ImGui::ColorEdit3("background", &c.background.x);
+  ImGui::Checkbox("walk (G)", &walking);
+  ImGui::SameLine();
+  if (ImGui::Button("this is up")) session.set_up();
+  ImGui::SameLine();
+  if (ImGui::Button("save pose")) save_pose();
+  if (changed) {
+    session.change();
+    psnr.reset();
+  }
+}
+
 void Panel::draw(Session& session) {
-  if (!open) return;
+  if (session.most_shown()) draw_legend(session.choices.show, *session.most_shown());
+  if (!open) {
+    if (!session.trouble().empty()) draw_message(session.trouble());
+    return;
+  }
   ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSize({370, 470}, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize({370, 560}, ImGuiCond_FirstUseEver);
   if (ImGui::Begin("binosplat", &open)) {
-    Choices& c = session.choices;
-    bool changed = combo("layout", c.layout, layout_choices, LAYOUT_MULTI_VIEW);
-    changed |= draw_rig(c.rig);
-    changed |= draw_thresholds(c.settings);
-    changed |= ImGui::ColorEdit3("background", &c.background.x);
-    ImGui::Checkbox("walk (G)", &walking);
-    if (changed) {
-      session.change();
-      psnr.reset();
-    }
+    draw_controls(session);
     draw_times(session.reports());
     if (ImGui::Button("PSNR against exact")) psnr = session.psnr_against_exact();
-    ImGui::SameLine();
+    if (psnr) ImGui::SameLine();
     if (psnr) ImGui::Text(std::isinf(*psnr) ? "equal" : "%.2f dB", *psnr);
     ImGui::TextWrapped("%s  %s", session.camera_name().c_str(), message.c_str());
     if (!session.trouble().empty()) ImGui::TextColored({1, 0.4f, 0.3f, 1}, "%s", session.trouble().c_str());
     ImGui::TextDisabled(
         "drag: orbit, right: look, middle: move, wheel: nearer\nWASD QE: go, double click: focus\n"
-        "N P: cameras, L T H: layout, tiles, th\nF12 F11: PNG, EXR, K: key of a path, F1: this");
+        "N P: cameras, L T H V: layout, tiles, th, show\nF12 F11: PNG, EXR, K: key of a path, F9: save pose\n"
+        "F5: read the model again, F1: this");
   }
   ImGui::End();
 }
 
-void draw_loading(const std::string& scene, double seconds) {
+void draw_loading(const std::string& scene, bool read, double seconds) {
   ImGui::SetNextWindowPos({10, 10});
   ImGui::Begin("loading", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar);
-  ImGui::Text("reading %s, %.0f s", scene.c_str(), seconds);
+  ImGui::Text("%s %s, %.0f s", read ? "to the GPU:" : "reading", scene.c_str(), seconds);
+  if (const std::string progress = latest_progress(); !progress.empty()) ImGui::Text("%s", progress.c_str());
+  ImGui::End();
+}
+
+void draw_message(const std::string& message) {
+  ImGui::SetNextWindowPos({10, 10});
+  ImGui::Begin("message", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar);
+  ImGui::PushTextWrapPos(0.9f * ImGui::GetIO().DisplaySize.x);
+  ImGui::TextUnformatted(message.c_str());
+  ImGui::PopTextWrapPos();
   ImGui::End();
 }
 

@@ -6,8 +6,10 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "formats/cameras_file.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
+#include "formats/pose_file.h"
 #include "measure/metrics.h"
 #include "scene/axes.h"
 #include "shared/layout.h"
@@ -41,18 +43,6 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
   }
 }
 
-// As INRIA's cameras.json, with the principal point and the time.
-nlohmann::ordered_json to_json(const Camera& camera) {
-  nlohmann::ordered_json rotation = nlohmann::json::array();
-  for (int row = 0; row < 3; ++row)
-    rotation.push_back({camera.rotation[0][row], camera.rotation[1][row], camera.rotation[2][row]});
-  return {{"img_name", camera.name}, {"width", camera.width},
-          {"height", camera.height}, {"position", {camera.position.x, camera.position.y, camera.position.z}},
-          {"rotation", rotation},    {"fx", camera.fx},
-          {"fy", camera.fy},         {"cx", camera.cx},
-          {"cy", camera.cy},         {"time", camera.time.value_or(0.0)}};
-}
-
 }  // namespace
 
 void make_consistent(Choices& choices) {
@@ -70,12 +60,15 @@ Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras,
                  Choices wanted, std::filesystem::path folder)
     : head(cameras.at(0), up, depth_ahead(model, cameras[0])),
       choices(std::move(wanted)),
+      context_(context),
       model_(std::move(model)),
       cameras_(std::move(cameras)),
       up_(up),
       folder_(std::move(folder)),
       frame_(context, model_),
-      presenter_(context) {}
+      presenter_(context),
+      show_(context, model_),
+      shown_colours_(context, "pixels to show") {}
 
 void Session::change() {
   make_consistent(choices);
@@ -109,9 +102,33 @@ glm::ivec2 Session::eye_size() const {
   }
 }
 
-std::vector<shared::View> Session::views() {
+Camera Session::head_camera() const {
   const glm::ivec2 size = eye_size();
-  const Camera camera = resized(head.camera(), size.x, size.y);
+  return resized(head.camera(), size.x, size.y);
+}
+
+void Session::set_up() {
+  up_ = -head.camera().rotation[1];
+  head = Navigator(head.camera(), up_, head.distance());
+}
+
+// Maps come by way of the CPU, as files do: slower than pictures, for as long as they are looked at.
+void Session::make_shown(std::span<const shared::View> views) {
+  shown_ = {};
+  if (choices.show == SHOW_PICTURE) {
+    show_.release();
+    return;
+  }
+  shown_ = show_.make(choices.show, frame_, views, frame_.read_pictures(), choices.settings,
+                      choices.background, choices.split);
+  std::vector<glm::vec4> colours;
+  for (const Picture& picture : shown_.pictures)
+    colours.insert(colours.end(), picture.colour.begin(), picture.colour.end());
+  shown_colours_.upload(colours);
+}
+
+std::vector<shared::View> Session::views() {
+  const Camera camera = head_camera();
   eyes_ = stereo::make_rig(camera, choices.rig).cameras;
   const auto drawn = stereo::make_rig(into_axes(camera, model_.axes), choices.rig).views;
   return {drawn.begin(), drawn.end()};
@@ -122,10 +139,13 @@ bool Session::draw() {
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
   --pending_;
   try {
-    reports_.push_back(frame_.draw(views(), choices.settings));
+    const std::vector<shared::View> asked = views();
+    reports_.push_back(frame_.draw(asked, choices.settings));
     shown_layout_ = choices.layout;
+    make_shown(asked);
     trouble_.clear();
   } catch (const Error& error) {
+    if (error.code() == ExitCode::no_gl) throw;
     trouble_ = error.what();
     pending_ = 0;
     return true;
@@ -142,7 +162,16 @@ void Session::present() {
       stereo::layout_size(shown_layout_, {static_cast<int>(eye.width), static_cast<int>(eye.height)});
   stereo::Target target;
   target.y = std::max(0, framebuffer_.y - size.y);
-  presenter_.draw(frame_, 0, shown_layout_, target, choices.background);
+  const gl::Buffer& colours = shown_.pictures.empty() ? frame_.colours() : shown_colours_;
+  const auto draw = [&](std::size_t first, int layout) {
+    presenter_.draw(colours, frame_.views(), first, layout, target, choices.background);
+  };
+  if (shown_layout_ != LAYOUT_QUAD_BUFFER) return draw(0, shown_layout_);
+  context_.gl().DrawBuffer(GL_BACK_LEFT);
+  draw(0, LAYOUT_SEPARATE);
+  context_.gl().DrawBuffer(GL_BACK_RIGHT);
+  draw(1, LAYOUT_SEPARATE);
+  context_.gl().DrawBuffer(GL_BACK);  // both
 }
 
 void Session::focus(const glm::ivec2& pixel) {
@@ -166,22 +195,22 @@ std::string Session::save_picture(bool exr) {
   if (exr) {
     save_exr(path, pictures[0], pictures[1], {.half = false, .background = choices.background});
   } else {
-    const Picture shown = shown_layout_ == LAYOUT_SEPARATE
-                              ? pictures[0]
-                              : stereo::lay_out(shown_layout_, pictures[0], pictures[1], choices.background);
-    save_png(path, composite(shown, choices.background));
+    const std::vector<Picture>& eyes = shown_.pictures.empty() ? pictures : shown_.pictures;
+    const int layout = shown_layout_ == LAYOUT_QUAD_BUFFER ? LAYOUT_PARALLEL : shown_layout_;
+    const Picture both =
+        layout == LAYOUT_SEPARATE ? eyes[0] : stereo::lay_out(layout, eyes[0], eyes[1], choices.background);
+    save_png(path, composite(both, choices.background));
   }
   return path.string();
 }
 
 std::string Session::save_camera(double seconds) {
-  const glm::ivec2 size = eye_size();
-  Camera camera = resized(head.camera(), size.x, size.y);
+  Camera camera = head_camera();
   camera.name = fmt::format("key_{:03}", path_.size());
   camera.time = path_.empty() ? 0.0 : std::max(seconds, *path_.back().time + 1e-3);
   path_.push_back(camera);
   nlohmann::ordered_json list = nlohmann::json::array();
-  for (const Camera& key : path_) list.push_back(to_json(key));
+  for (const Camera& key : path_) list.push_back(camera_json(key));
   const auto path = folder_ / "cameras.json";
   OutputFile file(path);
   file.write(list.dump(2) + "\n");
@@ -189,19 +218,21 @@ std::string Session::save_camera(double seconds) {
   return path.string();
 }
 
+void Session::save_pose(const std::filesystem::path& path) const {
+  SavedPose pose{head_camera(), up_, choices.rig.units_per_metre, choices.rig.ipd, choices.rig.near_plane};
+  pose.camera.name = "saved";
+  binosplat::save_pose(path, pose);
+}
+
 double Session::psnr_against_exact() {
   const std::vector<Picture> shown = frame_.read_pictures();
-  render::FrameSettings exact;
-  exact.tile_size = choices.settings.tile_size;
-  frame_.draw(views(), exact);
-  const std::vector<Picture> right = frame_.read_pictures();
+  const std::vector<Picture> right = show_.exact(views(), choices.settings);
   double error = 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
     const double psnr =
         measure::psnr(composite(shown[k], choices.background), composite(right[k], choices.background));
     error += 0.5 * std::pow(10.0, -0.1 * psnr);
   }
-  change();
   return -10.0 * std::log10(error);
 }
 

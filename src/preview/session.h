@@ -13,12 +13,15 @@
 #include "scene/model.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
+#include "stereo/show.h"
 
 namespace binosplat::preview {
 
 /// What the user may change while looking.
 struct Choices {
   int layout = LAYOUT_PARALLEL;  // LAYOUT_SEPARATE: the left eye alone
+  int show = SHOW_PICTURE;
+  double split = 0.5;  // with SHOW_SPLIT: the share of a picture's width that is shown as drawn
   render::FrameSettings settings;
   stereo::RigSettings rig;
   glm::vec3 background{0.0f};
@@ -41,6 +44,10 @@ class Session {
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
   /// settled.
   void change();
+  /// What is shown of it changes, not what is drawn.
+  void change_show() { pending_ = std::max(pending_, 1); }
+  /// What points upwards in the picture now is up in the world.
+  void set_up();
   /// The size of the framebuffer in px; an eye's follows from the layout.
   void resize(const glm::ivec2& framebuffer);
   /// Goes on to the next camera, or back.
@@ -50,7 +57,7 @@ class Session {
   /// Draws a frame if anything changed; false if nothing did, or there is nothing to draw into. What goes
   /// wrong is told by trouble(), and the last picture stays.
   bool draw();
-  /// The last frame drawn into the framebuffer that is bound as the window's.
+  /// The last frame drawn into the window's framebuffer, or into the two of a stereo window.
   void present();
 
   /// Turns to what lies at a pixel of the framebuffer, counted from its top left.
@@ -60,19 +67,26 @@ class Session {
   /// Adds the head to a path that `render --path` replays, and writes it: cameras.json with times in s from
   /// the first on. Returns its name.
   std::string save_camera(double seconds);
-  /// PSNR of what is shown against the exact frame, dB, over both eyes.
+  /// Writes head, up, scale and the eyes' distance to where they are found again (formats/pose_file.h).
+  void save_pose(const std::filesystem::path& path) const;
+  /// PSNR of what is drawn against the exact frame, dB, over both eyes.
   double psnr_against_exact();
 
   /// Of the last frames drawn, newest last.
   const std::deque<render::FrameReport>& reports() const { return reports_; }
+  /// Of a map: the number of the brightest colour (stereo/show.h).
+  std::optional<double> most_shown() const { return shown_.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
   const Model& model() const { return model_; }
 
  private:
   glm::ivec2 eye_size() const;
+  Camera head_camera() const;
   std::vector<shared::View> views();
+  void make_shown(std::span<const shared::View> views);
 
+  gl::Context& context_;
   Model model_;
   std::vector<Camera> cameras_;
   std::size_t camera_ = 0;
@@ -80,6 +94,9 @@ class Session {
   std::filesystem::path folder_;
   render::Frame frame_;
   stereo::Presenter presenter_;
+  stereo::Show show_;
+  stereo::Shown shown_;       // in place of the frame's own pictures; none: those
+  gl::Buffer shown_colours_;  // as the frame's colours
   glm::ivec2 framebuffer_{0};
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn

@@ -57,6 +57,7 @@ class Window {
       context_->set_shader_folder(settings_.shader_folder);
       shaders_changed_ = newest(settings_.shader_folder);
     }
+    panel_.save_pose = [this] { save(GLFW_KEY_F9); };
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     ImGui_ImplGlfw_InitForOpenGL(window_, true);
@@ -75,9 +76,10 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   void load(Opened scene) {
-    scene_ = std::move(scene);
+    next_ = std::move(scene);
+    read_ = false;
     loading_since_ = glfwGetTime();
-    loading_ = std::async(std::launch::async, scene_.load);
+    loading_ = std::async(std::launch::async, next_.load);
   }
 
   void run() {
@@ -90,6 +92,12 @@ class Window {
         if (draw()) ui_frames_ = std::max(ui_frames_, 1);
       }
       if (ui_frames_ > 0) show();
+      context_->check_alive();
+    }
+    if (loading_.valid()) {
+      // Nobody waits for a model that is not looked at, and nothing but memory was taken for it.
+      log_info("left while {} was being read", next_.name);
+      std::quick_exit(0);
     }
     log_info("{} frames were drawn, {} shown", session_ ? session_->frames_drawn() : 0, shown_);
   }
@@ -100,7 +108,16 @@ class Window {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_FALSE);
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
+    panel_.stereo_window = choices_.layout == LAYOUT_QUAD_BUFFER;
+    glfwWindowHint(GLFW_STEREO, panel_.stereo_window ? GLFW_TRUE : GLFW_FALSE);
     window_ = glfwCreateWindow(settings_.size.x, settings_.size.y, "binosplat", nullptr, nullptr);
+    if (window_ == nullptr && panel_.stereo_window) {
+      throw Error(ExitCode::no_gl,
+                  fmt::format("--layout quad-buffer: this driver has no stereo windows ({}): choose another "
+                              "--layout",
+                              glfw_said));
+    }
     if (window_ == nullptr) {
       throw Error(ExitCode::no_gl,
                   fmt::format("this display has no OpenGL 4.5 ({}): {}", glfw_said, instead));
@@ -146,18 +163,31 @@ class Window {
 
   void take_loaded() {
     if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    if (!read_) {  // first say so: the driver takes the model in one go
+      read_ = true;
+      ui_frames_ = 1;
+      return;
+    }
     try {
       Model model = loading_.get();
       Choices choices = session_ ? session_->choices : choices_;
-      auto cameras = scene_.cameras(model, choices);
+      auto cameras = next_.cameras(model, choices);
+      std::optional<Navigator> head;
+      if (session_ && again_) {
+        head = session_->head;
+        choices = session_->choices;
+      }
       session_.reset();  // its memory first
-      log_info("{}: {} Gaussians", scene_.name, model.count());
-      session_ = std::make_unique<Session>(*context_, std::move(model), std::move(cameras), settings_.up,
+      log_info("{}: {} Gaussians", next_.name, model.count());
+      scene_ = std::move(next_);
+      session_ = std::make_unique<Session>(*context_, std::move(model), std::move(cameras), scene_.up,
                                            choices, settings_.folder);
+      if (head) session_->head = *head;
       glfwSetWindowTitle(window_, ("binosplat - " + scene_.name).c_str());
+      panel_.message = scene_.name;
     } catch (const Error& error) {
       if (!session_) throw;
-      panel_.message = error.what();
+      tell(error.what());
     }
     ui_frames_ = 3;
   }
@@ -186,7 +216,7 @@ class Window {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     if (session_) panel_.draw(*session_);
-    if (loading_.valid()) draw_loading(scene_.name, glfwGetTime() - loading_since_);
+    if (loading_.valid()) draw_loading(next_.name, read_, glfwGetTime() - loading_since_);
     ImGui::Render();
     context_->gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     context_->gl().ClearColor(0.0f, 0.0f, 0.0f, 1.0f);
@@ -256,12 +286,26 @@ class Window {
 
   void drop(const char* file) {
     ui_frames_ = 3;
-    if (loading_.valid()) return;
+    if (loading_.valid()) return tell(fmt::format("{} is still being read", next_.name));
     try {
       load(open_(file));
+      again_ = false;
     } catch (const Error& error) {
-      panel_.message = error.what();
+      tell(error.what());
     }
+  }
+
+  // The same model as its file is now.
+  void read_again() {
+    if (loading_.valid()) return;
+    load(scene_);
+    again_ = true;
+  }
+
+  // What could not be done.
+  void tell(const std::string& message) {
+    panel_.message = message;
+    log_warning("{}", message);
   }
 
   // The next of a list's choices, without one of them.
@@ -279,7 +323,12 @@ class Window {
     if (key == GLFW_KEY_G) panel_.walking = !panel_.walking;
     if (key == GLFW_KEY_N) session_->step_camera(1);
     if (key == GLFW_KEY_P) session_->step_camera(-1);
-    if (key == GLFW_KEY_L) next(c.layout, static_cast<int>(std::size(layout_choices)), LAYOUT_MULTI_VIEW, by);
+    if (key == GLFW_KEY_F5) read_again();
+    if (key == GLFW_KEY_L) panel_.next_layout(c.layout, by);
+    if (key == GLFW_KEY_V) {
+      next(c.show, static_cast<int>(std::size(show_choices)), -1, by);
+      session_->change_show();
+    }
     if (key == GLFW_KEY_T) next(c.settings.tiles, static_cast<int>(std::size(tiles_choices)), TILES_ALL, by);
     if (key == GLFW_KEY_H) {
       next(c.settings.th, static_cast<int>(std::size(th_choices)), -1, by);
@@ -290,17 +339,23 @@ class Window {
   }
 
   void save(int key) {
-    if (key != GLFW_KEY_F12 && key != GLFW_KEY_F11 && key != GLFW_KEY_K) return;
+    if (key != GLFW_KEY_F12 && key != GLFW_KEY_F11 && key != GLFW_KEY_K && key != GLFW_KEY_F9) return;
     try {
       draw();  // what has changed since the last frame, the size among it
-      const std::string file = key == GLFW_KEY_K ? session_->save_camera(glfwGetTime())
-                                                 : session_->save_picture(key == GLFW_KEY_F11);
+      const std::string file = key == GLFW_KEY_F9  ? save_pose()
+                               : key == GLFW_KEY_K ? session_->save_camera(glfwGetTime())
+                                                   : session_->save_picture(key == GLFW_KEY_F11);
       panel_.message = file;
       log_info("saved {}", file);
     } catch (const Error& error) {
-      panel_.message = error.what();
-      log_warning("{}", error.what());
+      tell(error.what());
     }
+  }
+
+  std::string save_pose() const {
+    if (scene_.pose_file.empty()) fail("{} is built in: there is no file to save a pose beside", scene_.name);
+    session_->save_pose(scene_.pose_file);
+    return scene_.pose_file.string();
   }
 
   Choices choices_;
@@ -310,7 +365,9 @@ class Window {
   std::unique_ptr<gl::Context> context_;
   std::unique_ptr<Session> session_;
   Panel panel_;
-  Opened scene_;
+  Opened scene_, next_;  // what is shown, and what is being read
+  bool read_ = false;    // that is done, and to be handed to the GPU
+  bool again_ = false;   // that is the same one
   std::future<Model> loading_;
   double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0;
   glm::dvec2 cursor_{0.0};

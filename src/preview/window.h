@@ -13,6 +13,8 @@ namespace binosplat::preview {
 /// A scene to open: read in a thread of its own, then shown.
 struct Opened {
   std::string name;
+  glm::dvec3 up{0.0, -1.0, 0.0};    // the world's
+  std::filesystem::path pose_file;  // where its pose is saved; empty: nowhere
   std::function<Model()> load;
   /// Where to start and what to step through, for the model; not empty. Sets what of the choices follows from
   /// the model, such as the near plane.
@@ -20,16 +22,16 @@ struct Opened {
 };
 
 struct WindowSettings {
-  glm::ivec2 size{1280, 720};     // px
-  glm::dvec3 up{0.0, -1.0, 0.0};  // the world's
-  std::filesystem::path folder;   // for pictures and paths
+  glm::ivec2 size{1280, 720};    // px
+  std::filesystem::path folder;  // for pictures and paths
   std::filesystem::path
       shader_folder;  // empty: the embedded shaders; else they are read again when they change
 };
 
 /// Shows a scene until the window is closed; files dropped on it are opened with `open`, whose Errors are
-/// shown. Throws Error(no_gl) where there is no display, or none with OpenGL 4.5, and what reading the first
-/// scene throws.
+/// shown. With LAYOUT_QUAD_BUFFER the window is a stereo one. Throws Error(no_gl) where there is no display,
+/// none with OpenGL 4.5 or no stereo window, and when the GPU is lost; and what reading the first scene
+/// throws.
 void run(Opened scene, const Choices& choices, const WindowSettings& settings,
          const std::function<Opened(const std::string& file)>& open);
 

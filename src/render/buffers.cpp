@@ -142,6 +142,8 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       ranges(context, "tile ranges"),
       colours(context, "pixels"),
       z_sums(context, "depth of pixels"),
+      shown(context, "what the blend comes by"),
+      shown_light(context, "transmittance to show"),
       scan(context),
       sort(context),
       context_(context) {}

@@ -102,6 +102,10 @@ struct FrameBuffers {
   gl::Buffer colours;  // vec4 by pixel: C, T
   gl::Buffer z_sums;   // float by pixel
 
+  // Of show().
+  gl::Buffer shown;        // float by pixel
+  gl::Buffer shown_light;  // uint (view, slot), bits of the largest T
+
   primitives::Scan scan;
   primitives::RadixSort sort;
 

@@ -188,6 +188,19 @@ std::vector<Picture> Frame::read_pictures() {
   return pictures;
 }
 
+std::vector<Image> Frame::read_shown(int what) {
+  if (!reference_pictures_.empty())
+    fail("--show {}: the GPU does not walk the lists of --reference-until blend", show_choices[what].name);
+  show(dispatcher_, shape_, buffers_, what);
+  const auto shown = buffers_.shown.read<float>(static_cast<std::size_t>(shape_.pixel_count));
+  std::vector<Image> images;
+  for (const shared::View& view : std::span(shape_.views).first(shape_.asked)) {
+    Image& image = images.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height), 1);
+    std::copy_n(shown.begin() + view.pixel_offset, image.data.size(), image.data.begin());
+  }
+  return images;
+}
+
 std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
   if (!shape_.records) return {};
   const shared::View& view = shape_.views.at(v);

@@ -60,6 +60,11 @@ class Frame {
   /// What the last frame measured in its view `v`, in index order; none unless it did (FrameReport).
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
+  /// What the last frame's blend came by in each pixel, one image of one channel a view: SHOW_ALPHAS to
+  /// SHOW_LIGHT of shared/axes.h; below 0 where there is nothing to tell. Walks the frame's lists again.
+  /// Throws Error after a frame with --reference-until blend, whose lists never get to the GPU.
+  std::vector<Image> read_shown(int what);
+
   /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with
   /// --reference-until blend, whose pictures never get there.
   const gl::Buffer& colours() const { return buffers_.colours; }

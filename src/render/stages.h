@@ -30,6 +30,10 @@ void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& b
 /// The pictures; and, for a transmittance that is measured, the most that each splat counted for.
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
+/// What the blend of the same lists comes by in each pixel, into `shown`: SHOW_ALPHAS to SHOW_LIGHT of
+/// shared/axes.h. The pictures stay.
+void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what);
+
 /// Keeps what was measured for the next frame, and tells the median depth. Nothing to do where nothing is
 /// measured.
 void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);

@@ -69,6 +69,7 @@ TEST_F(Layout, WhatDoesNotGoTogetherIsRefused) {
       refused({"--layout", "half-colour", "--background", "none"}, "--background none is not for it"));
   EXPECT_TRUE(refused({"--layout", "half-width", "--size", "75x48"}, "even width"));
   EXPECT_TRUE(refused({"--layout", "sideways"}, "sideways"));
+  EXPECT_TRUE(refused({"--layout", "quad-buffer"}, "binosplat view"));
   const nlohmann::json small = [] {
     nlohmann::json camera = test::camera_json("odd_right", 0.1);
     camera["width"] = 70;

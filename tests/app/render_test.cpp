@@ -72,6 +72,35 @@ TEST_F(Render, ViewsAreChosenByName) {
   EXPECT_TRUE(same("two/pair_right.png", "all/pair_right.png"));
 }
 
+TEST_F(Render, APoseSavedBesideTheModelIsUsed) {
+  add_cameras();
+  nlohmann::json pose = test::camera_json("saved", 0.5);
+  pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 2.0}, {"ipd_metres", 0.1}, {"near", 0.1}});
+  write_text(folder / "model.binosplat.json", nlohmann::json::array({pose}).dump());
+  const auto drawn = [&](const std::string& png, std::vector<std::string> more) {
+    more.insert(more.end(), {"-o", folder / png, "--json", folder / "r.json"});
+    const Outcome outcome = render(more);
+    EXPECT_TRUE(good(outcome));
+    return outcome.err.find("pose saved there") != std::string::npos;
+  };
+  EXPECT_TRUE(drawn("saved.png", {}));
+  EXPECT_EQ(json("r.json")["views"][0]["ipd_metres"], 0.1);
+  EXPECT_EQ(json("r.json")["settings"]["near"], 0.1);
+  EXPECT_FALSE(
+      drawn("said.png", {"--view", "side", "--units-per-metre", "2", "--ipd", "0.1", "--near", "0.1"}));
+  EXPECT_TRUE(alike("saved.png", "said.png", 120.0));
+  // Scale and ipd belong to the model, whatever camera is chosen; options go before what is saved.
+  EXPECT_FALSE(drawn("view.png", {"--view", "side", "--near", "0.1"}));
+  EXPECT_TRUE(alike("saved.png", "view.png", 120.0));
+  EXPECT_FALSE(drawn("other.png", {"--view", "side", "--units-per-metre", "1"}));
+  EXPECT_FALSE(alike("saved.png", "other.png", 60.0));
+  EXPECT_FALSE(drawn("pair.png", {"--view", "pair"}));
+  EXPECT_FALSE(drawn("mono.png", {"--mono", "--eye", "0,0,0", "--at", "0,0,1"}));
+
+  write_text(folder / "model.binosplat.json", "[]");
+  EXPECT_TRUE(test::ended(render({"-o", out}), 2, "model.binosplat.json"));
+}
+
 TEST_F(Render, EachEyeIsTheSameAlone) {
   add_cameras();
   for (const std::vector<std::string>& rig : {std::vector<std::string>{"--ipd", "0.3", "--convergence", "4"},

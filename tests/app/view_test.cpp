@@ -43,6 +43,7 @@ TEST(View, BadOptionsEndBeforeAnyWindow) {
   };
   EXPECT_TRUE(refused({"--mono"}, "binosplat render"));
   EXPECT_TRUE(refused({"--layout", "multi-view"}, "multi-view"));
+  EXPECT_TRUE(refused({"--show", "colour"}, "--show"));
   EXPECT_TRUE(refused({"--th", "squared"}, "--loss"));
   EXPECT_TRUE(refused({"--no-such-option"}, "--no-such-option"));
 }
@@ -179,6 +180,115 @@ TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
   ASSERT_TRUE(says(program, "saved", 2));
   EXPECT_NE(test::read_text(fs::path(out) / "preview_001.exr").find("right.Z"), std::string::npos);
   EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
+  Program program = view({"--loss", "0.5"});
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 1));
+  const std::vector<std::string> names = {"split", "difference", "disagreement", "depth", "alphas"};
+  std::string before = "picture";
+  for (int n = 1; n <= static_cast<int>(names.size()); ++n) {
+    const std::string& name = names[static_cast<std::size_t>(n - 1)];
+    key("v");
+    key("F12");
+    ASSERT_TRUE(says(program, "saved", n + 1));
+    const auto written = [&](const std::string& show) {
+      return rendered("key_000", "300x400", {"--layout", "parallel", "--loss", "0.5", "--show", show});
+    };
+    EXPECT_TRUE(same(picture(n), written(name))) << name;
+    EXPECT_FALSE(same(picture(n), written(before))) << name << " is shown as " << before;
+    before = name;
+  }
+  EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
+  std::vector<std::string> scale = {"--units-per-metre", "2", "--ipd", "0.1"};
+  Program program = view(scale);
+  ASSERT_TRUE(says(program, "Gaussians"));
+  hands("search --name binosplat windowfocus --sync keydown w sleep 0.5 keyup w");
+  key("F9");
+  ASSERT_TRUE(says(program, "saved", 1));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 2));
+  EXPECT_EQ(leave(program).code, 0);
+
+  const Outcome outcome = render({"-o", folder / "again.png"});
+  ASSERT_TRUE(good(outcome));
+  EXPECT_NE(outcome.err.find("model.binosplat.json"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("pose saved there"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(same(picture(1), load_image(folder / "again.png")));
+  ASSERT_TRUE(good(render({"-o", folder / "other.png", "--units-per-metre", "1"})));
+  EXPECT_FALSE(same(picture(1), load_image(folder / "other.png"))) << "the saved scale changes nothing";
+
+  Program again = view();
+  ASSERT_TRUE(says(again, "Gaussians"));
+  key("F12");
+  ASSERT_TRUE(says(again, "saved"));
+  EXPECT_EQ(leave(again).code, 0);
+  EXPECT_TRUE(same(picture(1), picture(2)));
+}
+
+TEST_F(ViewOnADisplay, AFailedLoadIsToldAndTheOldSceneStays) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 1));
+  fs::rename(model, folder / "whole.ply");
+  test::write_text(model, "ply\nformat ascii 1.0\n");
+  key("F5");
+  ASSERT_TRUE(says(program, "warning"));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 2));
+  EXPECT_TRUE(same(picture(1), picture(2)));
+
+  fs::rename(folder / "whole.ply", model);
+  key("F5");
+  ASSERT_TRUE(says(program, "Gaussians", 2));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 3));
+  EXPECT_TRUE(same(picture(1), picture(3)));
+  EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, NobodyWaitsForABigModel) {
+  Program program({"view", "demo:city", "--count", "20000000", "-o", out},
+                  {.variables = {{"DISPLAY", display}}});
+  ASSERT_TRUE(says(program, "drawing with"));
+  const auto start = std::chrono::steady_clock::now();
+  const Outcome outcome = leave(program);
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_NE(outcome.err.find("left while demo:city was being read"), std::string::npos) << outcome.err;
+}
+
+TEST_F(ViewOnADisplay, WhatADisplayLacksIsTold) {
+  const auto ends = [&](const std::string& name, const std::string& value, const std::string& layout,
+                        const std::string& said) {
+    const Outcome outcome = test::run_program({"view", model, "-o", out, "--layout", layout},
+                                              {.variables = {{"DISPLAY", display}, {name, value}}});
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    return ended(outcome, 3, said);
+  };
+  EXPECT_TRUE(ends("MESA_GL_VERSION_OVERRIDE", "3.3", "parallel", "`binosplat render`"));
+  EXPECT_TRUE(ends("A", "b", "quad-buffer", "no stereo windows"));
+}
+
+TEST_F(ViewOnADisplay, ALostGpuEndsIt) {
+  // Says that the GPU was reset once a picture has been saved; see lost_context.c.
+  const std::string flag = folder / "lost";
+  Program program({"view", model, "-o", out}, {.variables = {{"DISPLAY", display},
+                                                             {"LD_PRELOAD", BINOSPLAT_LOST_CONTEXT},
+                                                             {"LOST_CONTEXT", flag},
+                                                             {"ASAN_OPTIONS", "verify_asan_link_order=0"}}});
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved"));
+  test::write_text(flag, "");
+  hands("search --name binosplat windowfocus --sync key t");
+  EXPECT_TRUE(ended(program.wait(), 3, "was reset"));
 }
 
 TEST_F(ViewOnADisplay, AtRestNothingIsDrawn) {

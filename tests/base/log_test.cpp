@@ -25,11 +25,19 @@ TEST(Log, KeepsControlCharactersFromTheTerminal) {
 
 TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
   testing::internal::CaptureStderr();
-  Progress progress("reading x.ply", 200);
-  progress.update(1);
-  std::this_thread::sleep_for(std::chrono::milliseconds(1010));
-  progress.update(50);
-  progress.update(51);
+  {
+    Progress progress("reading x.ply", 200);
+    progress.update(1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1010));
+    EXPECT_EQ(latest_progress(), "");
+    progress.update(50);
+    progress.update(51);
+    EXPECT_EQ(latest_progress(), "reading x.ply 25 %");
+    std::this_thread::sleep_for(std::chrono::milliseconds(110));
+    progress.update(100);
+    EXPECT_EQ(latest_progress(), "reading x.ply 50 %");
+  }
+  EXPECT_EQ(latest_progress(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: reading x.ply 25 %\n");
 }
 

@@ -192,5 +192,34 @@ TEST_F(Embed, TheCallersErrorsAreTheCallers) {
   EXPECT_EQ(caller.gl.GetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
+/// A driver whose GPU is reset when the test says so.
+struct LostGpu {
+  static inline gl::GetProcAddress driver = nullptr;
+  static inline GLenum status = GL_NO_ERROR;
+  static GLenum reset_status() { return status; }
+  static void (*get_proc_address(const char* name))() {
+    if (std::strcmp(name, "glGetGraphicsResetStatus") == 0) return reinterpret_cast<void (*)()>(reset_status);
+    return driver(name);
+  }
+};
+
+TEST_F(Embed, ALostGpuIsSaid) {
+  const Model model = ball({0, 0, 1});
+  LostGpu::driver = caller.get_proc_address();
+  EmbeddedRenderer renderer(LostGpu::get_proc_address, model);
+  const EyePair pair = eyes_from_xr(quest_eyes(), stage, sizes);
+  EXPECT_NO_THROW(renderer.draw(pair.views, targets));
+  LostGpu::status = GL_INNOCENT_CONTEXT_RESET;
+  try {
+    renderer.draw(pair.views, targets);
+    ADD_FAILURE() << "a frame of a lost GPU was handed out";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::no_gl);
+    EXPECT_NE(std::string(error.what()).find("was reset, the driver says by another program"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace binosplat::stereo

@@ -143,6 +143,7 @@ TEST_F(Present, WhatCannotBeIsRefused) {
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = depth}, blue, "cannot be drawn into"));
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = 4711}, blue, "texture 4711"));
   EXPECT_TRUE(fails(0, LAYOUT_GREY, {.texture = plain}, std::nullopt, "give a background"));
+  EXPECT_TRUE(fails(0, LAYOUT_QUAD_BUFFER, {.texture = plain}, blue, "each view by itself"));
   EXPECT_TRUE(fails(0, LAYOUT_MULTI_VIEW, {.texture = plain}, blue, "for OpenEXR"));
   EXPECT_TRUE(caller.context->take_errors().empty()) << "an error of binosplat's was left to the caller";
 }

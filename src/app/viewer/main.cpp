@@ -14,7 +14,6 @@
 #include "app/shots.h"
 #include "base/log.h"
 #include "preview/window.h"
-#include "scene/framing.h"
 
 namespace binosplat::app {
 
@@ -41,6 +40,7 @@ preview::Choices choices_of(const RenderOptions& o) {
   choices.settings = settings_of(o);
   choices.rig = rig_settings(o, near_default);  // until the model tells
   choices.background = o.background.value_or(glm::vec3(0.0f));
+  choices.show = number_of(o.show, show_choices);
   return choices;
 }
 
@@ -49,11 +49,18 @@ preview::Choices choices_of(const RenderOptions& o) {
 preview::Opened open(const std::shared_ptr<RenderOptions>& o) {
   const auto scene = std::make_shared<Scene>(open_scene(*o));
   const auto list = std::make_shared<CameraList>(listed_cameras(*o, scene->cameras));
+  const auto saved = saved_camera(*o);
   preview::Opened opened;
   opened.name = o->scene;
+  opened.up = up_of(*o);
+  if (o->scene.rfind("demo:", 0) != 0) opened.pose_file = pose_path(o->scene);
   opened.load = [o, scene] { return scene->model(); };
-  opened.cameras = [o, list](const Model& model, preview::Choices& choices) {
-    choices.rig.near_plane = near_plane_of(*o, *list, model);
+  opened.cameras = [o, list, saved](const Model& model, preview::Choices& choices) {
+    const double near_plane = near_plane_of(*o, saved ? *saved : *list, model);
+    const stereo::RigSettings rig = rig_settings(*o, near_plane);
+    choices.rig.ipd = rig.ipd;
+    choices.rig.units_per_metre = rig.units_per_metre;
+    choices.rig.near_plane = near_plane;
     std::vector<Camera> cameras = list->listed ? list->cameras : made_up_cameras(*o, model).cameras;
     if (!o->views.empty()) {
       const auto at = std::find_if(cameras.begin(), cameras.end(),
@@ -61,6 +68,7 @@ preview::Opened open(const std::shared_ptr<RenderOptions>& o) {
       if (at == cameras.end()) fail("--view {}: {} has no camera of this name", o->views[0], list->source);
       std::rotate(cameras.begin(), at, cameras.end());
     }
+    if (saved) cameras.insert(cameras.begin(), saved->cameras[0]);
     return cameras;
   };
   return opened;
@@ -73,13 +81,14 @@ void view(const std::shared_ptr<RenderOptions>& options) {
   check_output(folder / "picture");
   preview::WindowSettings settings;
   if (options->size) settings.size = *options->size;
-  settings.up = options->up.value_or(default_up);
   settings.folder = folder;
   settings.shader_folder = options->shader_dir;
+  options->saved = find_saved(*options);
   preview::run(open(options), choices_of(*options), settings, [options](const std::string& file) {
     const auto other = std::make_shared<RenderOptions>();
     other->scene = file;
     other->units_per_metre = options->units_per_metre;
+    other->saved = find_saved(*other);
     return open(other);
   });
 }

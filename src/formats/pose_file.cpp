@@ -1,0 +1,59 @@
+#include "formats/pose_file.h"
+
+#include "base/mapped_file.h"
+#include "base/output_file.h"
+#include "formats/cameras_file.h"
+#include "formats/content.h"
+#include "formats/json_file.h"
+
+namespace binosplat {
+
+namespace {
+
+double above_zero(const JsonValue& value) {
+  const double number = value.number();
+  if (!(number > 0.0)) value.fail_here("expected a number above zero");
+  return number;
+}
+
+}  // namespace
+
+std::filesystem::path pose_path(const std::filesystem::path& model) {
+  std::filesystem::path path = model.has_filename() ? model : model.parent_path();
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(path, ignored)) path.replace_extension();
+  return path += ".binosplat.json";
+}
+
+std::optional<SavedPose> find_pose(const std::filesystem::path& model) {
+  const std::filesystem::path path = pose_path(model);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+  SavedPose pose;
+  pose.camera = load_cameras(path).front();
+  const MappedFile file(path);
+  const nlohmann::json root = parse_json(path.string(), as_text(file.bytes()));
+  const JsonValue saved = JsonValue(path.string(), root).at(std::size_t{0});
+  const JsonValue up = saved.at("up").list_of(3);
+  for (int k = 0; k < 3; ++k) pose.up[k] = up.at(static_cast<std::size_t>(k)).number();
+  if (!(glm::length(pose.up) > 0.0)) up.fail_here("expected a direction");
+  pose.units_per_metre = above_zero(saved.at("units_per_metre"));
+  pose.ipd = saved.at("ipd_metres").number();
+  if (!(pose.ipd >= 0.0)) saved.at("ipd_metres").fail_here("expected zero or more");
+  pose.near_plane = above_zero(saved.at("near"));
+  return pose;
+}
+
+void save_pose(const std::filesystem::path& path, const SavedPose& pose) {
+  nlohmann::ordered_json saved = camera_json(pose.camera);
+  saved.erase("time");
+  saved["up"] = {pose.up.x, pose.up.y, pose.up.z};
+  saved["units_per_metre"] = pose.units_per_metre;
+  saved["ipd_metres"] = pose.ipd;
+  saved["near"] = pose.near_plane;
+  OutputFile file(path);
+  file.write(nlohmann::ordered_json::array({saved}).dump(2) + "\n");
+  file.commit();
+}
+
+}  // namespace binosplat

@@ -1,0 +1,58 @@
+#pragma once
+// What of a frame may be shown in place of its pictures (SHOW_ of shared/axes.h), in colours that
+// colour-blind eyes tell apart. Files and the preview show the same.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/frame.h"
+
+namespace binosplat::stereo {
+
+/// Which of them are the eyes' only together, and which are numbers, shown as colours.
+constexpr bool needs_both_eyes(int show) { return show == SHOW_DISAGREEMENT; }
+constexpr bool is_map(int show) { return show >= SHOW_DIFFERENCE; }
+
+/// The colour of a number from 0 to 1, others as the nearer end: viridis, from dark blue over green to
+/// yellow, whose lightness alone tells.
+glm::vec3 map_colour(float number);
+
+struct Shown {
+  std::vector<Picture> pictures;  // one a view; maps have no depth, and T is 1 where there is no number
+  std::optional<double> most;     // of a map: the number of the brightest colour; the darkest is 0
+};
+
+/// Makes them of the last frame that was drawn, whatever it went by.
+class Show {
+ public:
+  /// The model must outlive it. Context as for render::Frame.
+  Show(gl::Context& context, const Model& model) : context_(context), model_(model) {}
+
+  /// `pictures` are the frame's own, `views` what it was asked to draw, left eye first. All views go by one
+  /// range, which ends at the first of 1, 2, 5, 10 and so on that 99 of 100 pixels do not exceed, of a
+  /// depth 80. SHOW_SPLIT shows the share `split` of each picture's width as it is, and the rest exactly.
+  /// Throws Error as render::Frame does.
+  Shown make(int what, render::Frame& frame, std::span<const shared::View> views,
+             std::span<const Picture> pictures, const render::FrameSettings& settings,
+             const Background& background, double split = 0.5);
+
+  /// The exact pictures of these views. They are drawn by a frame of their own, with the model a second time
+  /// on the GPU, so that what the other one remembers stays.
+  std::vector<Picture> exact(std::span<const shared::View> views, const render::FrameSettings& settings);
+
+  /// Gives the memory of that frame back.
+  void release() { exact_.reset(); }
+
+ private:
+  std::vector<Image> map(int what, render::Frame& frame, std::span<const shared::View> views,
+                         std::span<const Picture> pictures, const render::FrameSettings& settings,
+                         const Background& background);
+
+  gl::Context& context_;
+  const Model& model_;
+  std::unique_ptr<render::Frame> exact_;
+};
+
+}  // namespace binosplat::stereo

@@ -1,0 +1,103 @@
+// What the blend comes by (Frame::read_shown) against the reference's count of the same lists.
+
+#include "base/error.h"
+#include "reference/blend_pixel.h"
+#include "render/support.h"
+
+namespace binosplat {
+namespace {
+
+constexpr int width = 96, height = 80;
+
+/// Layers dense enough that some pixels end early.
+Model layers() {
+  Model model = test::random_model(61, 1500, 0);
+  for (int i = 0; i < 40; ++i)
+    test::add(model, {0, 0.2, 0.8 + 0.001 * i}, glm::vec3(0.08f), 0.6f, glm::vec3(0.5f));
+  return model;
+}
+
+struct ShowTest : testing::Test {
+  const Model model = layers();
+  shared::View view = make_view(test::front_camera(width, height, 60));
+  std::vector<reference::Splat> splats;
+  reference::TileLists lists;
+  std::vector<double> light;
+  render::Frame frame{test::gl_context(), model};
+
+  ShowTest() {
+    splats = reference::project_all(model, view);
+    lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+    light = reference::measure_transmittance(splats, lists, view);
+  }
+
+  double expected(int what, int x, int y) const {
+    const auto list = lists.at_pixel(x, y);
+    if (what == SHOW_PAIRS) return static_cast<double>(list.size());
+    const reference::PixelTrace trace = reference::trace(splats, list, x, y);
+    if (what == SHOW_ALPHAS) return static_cast<double>(trace.walked);
+    if (what == SHOW_VISIBLE) return static_cast<double>(trace.visible);
+    double sum = 0.0;
+    const auto blended = reference::blend_pixel(
+        splats, list, x, y, {}, [&](std::uint32_t i, double alpha, const auto& before, auto verdict) {
+          if (verdict == reference::Verdict::blended) sum += alpha * before.transmittance * light[i];
+        });
+    return blended.transmittance < 1.0 ? sum / (1.0 - blended.transmittance) : -1.0;
+  }
+
+  /// The share of pixels that are told something else than the reference has for `what`.
+  double differing(const Image& told, int what) const {
+    int count = 0;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x)
+        count += std::abs(told.at(x, y, 0) - expected(what, x, y)) > 1e-3 ? 1 : 0;
+    }
+    return count / double{width * height};
+  }
+};
+
+TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
+  frame.draw(std::vector{view}, {.reference_until = render::Stage::ranges});
+  for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what) {
+    const Image told = frame.read_shown(what).at(0);
+    // Rounding turns an alpha at tau or an early stop in a few pixels.
+    EXPECT_LE(differing(told, what), 0.002) << show_choices[what].name;
+    for (int other = SHOW_ALPHAS; other <= SHOW_LIGHT; ++other) {
+      if (other == what) continue;
+      EXPECT_GT(differing(told, other), 0.05) << show_choices[other].name << " goes unnoticed";
+    }
+  }
+}
+
+TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
+  const std::vector views = {view};
+  const render::FrameSettings settings = {
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_BEHIND, .loss = 0.1f};
+  render::Frame other(test::gl_context(), model);
+  for (int n = 0; n < 3; ++n) {
+    frame.draw(views, settings);
+    other.draw(views, settings);
+    for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what) frame.read_shown(what);
+  }
+  EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], other.read_pictures()[0]));
+}
+
+TEST_F(ShowTest, OfPairsAndOtherTiles) {
+  const shared::View right = make_view(test::front_camera(33, 50, 40));
+  for (const int tile : {8, 32}) {
+    frame.draw(std::vector{view, right}, {.tile_size = tile});
+    const auto told = frame.read_shown(SHOW_VISIBLE);
+    ASSERT_EQ(told.size(), 2u);
+    EXPECT_LE(differing(told[0], SHOW_VISIBLE), 0.002) << tile;
+    EXPECT_EQ(told[1].width, 33);
+    EXPECT_EQ(told[1].height, 50);
+  }
+}
+
+TEST_F(ShowTest, TheReferencesOwnBlendHasNone) {
+  frame.draw(std::vector{view}, {.reference_until = render::Stage::blend});
+  EXPECT_THROW(frame.read_shown(SHOW_ALPHAS), Error);
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,165 @@
+// What is shown in place of pictures: its colours, its range, and the exact pictures that it is measured by.
+
+#include "stereo/show.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stereo/disagreement.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+#include "support/gl.h"
+#include "support/models.h"
+
+namespace binosplat::stereo {
+namespace {
+
+constexpr int width = 64, height = 40;
+
+struct ShowTest : testing::Test {
+  const Model model = test::random_model(9, 400, 0, 0.6);
+  const EyePair pair = make_rig(test::front_camera(width, height, 55.0), {.ipd = 0.2, .convergence = 2.0});
+  const render::FrameSettings coarse = {.th = TH_SQUARED, .loss = 3.0f};
+  render::Frame frame{test::gl_context(), model};
+  Show show{test::gl_context(), model};
+  std::vector<Picture> pictures, exact;
+
+  ShowTest() {
+    frame.draw(pair.views);
+    exact = frame.read_pictures();
+    frame.draw(pair.views, coarse);
+    pictures = frame.read_pictures();
+  }
+
+  Shown made(int what, double split = 0.5) {
+    return show.make(what, frame, pair.views, pictures, coarse, glm::vec3(0.0f), split);
+  }
+  /// What a number is shown as.
+  static glm::vec3 colour(double number, double most) {
+    return map_colour(static_cast<float>(number / most));
+  }
+};
+
+TEST(MapColour, GrowsLighterAllTheWayAndIsViridis) {
+  const auto lightness = [](const glm::vec3& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; };
+  for (int k = 0; k < 255; ++k) {
+    EXPECT_LT(lightness(map_colour(static_cast<float>(k) / 255.0f)),
+              lightness(map_colour(static_cast<float>(k + 1) / 255.0f)));
+  }
+  // matplotlib's own numbers.
+  EXPECT_LT(glm::length(map_colour(0.0f) - glm::vec3(0.267f, 0.005f, 0.329f)), 0.02f);
+  EXPECT_LT(glm::length(map_colour(0.5f) - glm::vec3(0.128f, 0.567f, 0.551f)), 0.02f);
+  EXPECT_LT(glm::length(map_colour(1.0f) - glm::vec3(0.993f, 0.906f, 0.144f)), 0.02f);
+  EXPECT_EQ(map_colour(7.0f), map_colour(1.0f));
+}
+
+TEST_F(ShowTest, ThePictureItself) {
+  EXPECT_TRUE(same_bits(made(SHOW_PICTURE).pictures, pictures));
+  EXPECT_FALSE(made(SHOW_PICTURE).most);
+}
+
+TEST_F(ShowTest, ASplitIsAsDrawnOnTheLeftAndExactOnTheRight) {
+  EXPECT_TRUE(same_bits(made(SHOW_SPLIT, 1.0).pictures, pictures));
+  EXPECT_TRUE(same_bits(made(SHOW_SPLIT, 0.0).pictures, exact));
+  EXPECT_FALSE(same_bits(pictures, exact)) << "this loss changes nothing";
+  const std::vector<Picture> middle = made(SHOW_SPLIT, 0.25).pictures;
+  for (std::size_t v = 0; v < 2; ++v) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const auto k = static_cast<std::size_t>(y * width + x);
+        ASSERT_EQ(middle[v].colour[k], (x < 16 ? pictures : exact)[v].colour[k]) << x << " " << y;
+      }
+    }
+  }
+}
+
+TEST_F(ShowTest, MapsAreTheColoursOfTheirNumbers) {
+  const auto matches = [&](int what, const std::vector<Image>& numbers) {
+    const Shown shown = made(what);
+    int off = 0;
+    for (std::size_t v = 0; v < 2; ++v) {
+      for (std::size_t k = 0; k < numbers[v].data.size(); ++k) {
+        const float number = numbers[v].data[k];
+        const glm::vec4 expected =
+            number < 0.0f ? glm::vec4(0, 0, 0, 1) : glm::vec4(colour(number, *shown.most), 0.0f);
+        off += glm::length(shown.pictures[v].colour[k] - expected) > 1e-3f ? 1 : 0;
+      }
+    }
+    return off == 0;
+  };
+  std::vector<Image> depth, difference, swapped;
+  for (std::size_t v = 0; v < 2; ++v) {
+    depth.push_back(depth_map(pictures[v]));
+    for (float& z : depth[v].data) z = std::isfinite(z) ? z : -1.0f;
+    Image& error = difference.emplace_back(width, height, 1);
+    for (std::size_t k = 0; k < error.data.size(); ++k) {
+      for (int c = 0; c < 3; ++c) {
+        error.data[k] =
+            std::max(error.data[k], 255.0f * std::abs(pictures[v].colour[k][c] - exact[v].colour[k][c]));
+      }
+    }
+  }
+  EXPECT_TRUE(matches(SHOW_DEPTH, depth));
+  EXPECT_TRUE(matches(SHOW_DIFFERENCE, difference));
+  EXPECT_TRUE(matches(SHOW_PAIRS, frame.read_shown(SHOW_PAIRS)));
+  std::swap(depth[0], depth[1]);
+  EXPECT_FALSE(matches(SHOW_DEPTH, depth)) << "swapped eyes go unnoticed";
+  EXPECT_FALSE(matches(SHOW_DEPTH, difference)) << "other numbers go unnoticed";
+}
+
+TEST_F(ShowTest, DisagreementIsOfEachEye) {
+  const Shown shown = made(SHOW_DISAGREEMENT);
+  const auto expected = [&](std::size_t eye) {
+    const std::array from = {exact[eye], exact[1 - eye]}, to = {pictures[eye], pictures[1 - eye]};
+    return disagreement({pair.views[eye], pair.views[1 - eye]}, from, to).picture;
+  };
+  for (std::size_t v = 0; v < 2; ++v) {
+    int off = 0, other = 0;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const auto worst = [&](const Image& e) {
+          return 255.0 * std::max({e.at(x, y, 0), e.at(x, y, 1), e.at(x, y, 2)});
+        };
+        const glm::vec3 seen(shown.pictures[v].colour[static_cast<std::size_t>(y * width + x)]);
+        off += glm::length(seen - colour(worst(expected(v)), *shown.most)) > 1e-3f ? 1 : 0;
+        other += glm::length(seen - colour(worst(expected(1 - v)), *shown.most)) > 1e-3f ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(off, 0);
+    EXPECT_GT(other, 20) << "the other eye's goes unnoticed";
+  }
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        show.make(SHOW_DISAGREEMENT, frame, std::span(pair.views).first(1), std::span(pictures).first(1),
+                  coarse, glm::vec3(0.0f));
+      },
+      {"both eyes"}));
+}
+
+TEST_F(ShowTest, TheRangeIsARoundNumber) {
+  const double most = *made(SHOW_VISIBLE).most;
+  const double digit = most / std::pow(10.0, std::floor(std::log10(most) + 1e-9));
+  EXPECT_TRUE(std::abs(digit - 1) < 1e-9 || std::abs(digit - 2) < 1e-9 || std::abs(digit - 5) < 1e-9) << most;
+  pictures = exact;
+  frame.draw(pair.views);
+  EXPECT_EQ(made(SHOW_DIFFERENCE).most, 0.0) << "an exact picture differs from itself";
+}
+
+TEST_F(ShowTest, WhatTheFrameRemembersStays) {
+  const render::FrameSettings last = {
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_FINAL, .loss = 0.2f};
+  render::Frame other(test::gl_context(), model);
+  render::FrameReport report;
+  for (int n = 0; n < 3; ++n) {
+    report = frame.draw(pair.views, last);
+    other.draw(pair.views, last);
+    pictures = frame.read_pictures();
+    made(SHOW_DIFFERENCE);
+  }
+  EXPECT_TRUE(report.remembered);
+  EXPECT_TRUE(same_bits(pictures, other.read_pictures()));
+}
+
+}  // namespace
+}  // namespace binosplat::stereo
