@@ -55,7 +55,7 @@ std::vector<Shot> choose_shots(const BenchPlan& plan, const BenchCase& which, co
 
 /// The views of a case, and a small one to compare with the reference.
 study::Bench open_case(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
-                       const BenchCase& which, const Model& model) {
+                       const BenchCase& which, const Model& model, const std::optional<study::Peaks>& peaks) {
   const BenchScene& scene = plan.scenes[which.scene];
   const RenderOptions render = case_options(scene, which);
   const CameraList list = scene.list.listed ? scene.list : made_up_cameras(render, model);
@@ -76,7 +76,7 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
           model,
           std::move(views),
           make_view(resized(camera, width, height), near_plane),
-          {plan.axes.frames, plan.axes.repeats, options.ppd}};
+          {plan.axes.frames, plan.axes.repeats, options.ppd, peaks}};
 }
 
 void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
@@ -93,6 +93,13 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   if (missing.empty()) return;
   const auto context = open_context(options.render);
 
+  std::optional<study::Peaks> peaks;
+  if (options.profile) {
+    peaks = study::measure_peaks(*context);
+    log_info("at best {:.4g} TB/s, {:.4g} T alphas/s, {:.4g} T multiply-adds/s", 1e-12 * peaks->bytes,
+             1e-12 * peaks->alphas, 1e-12 * peaks->fmas);
+  }
+
   Progress progress("measuring", missing.size());
   std::optional<Model> model;
   std::optional<std::size_t> loaded;
@@ -107,10 +114,23 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
         model = plan.scenes[which.scene].scene.model();
         loaded = which.scene;
       }
-      if (!bench) bench.emplace(open_case(*context, options, plan, which, *model));
+      if (!bench) bench.emplace(open_case(*context, options, plan, which, *model, peaks));
       folder.save(missing[done], bench->measure(plan.axes.settings[s]));
       progress.update(++done);
     }
+  }
+}
+
+void print_profile(const ordered_json& stages) {
+  for (const ordered_json& stage : stages) {
+    if (!stage["share"].is_number()) continue;
+    fmt::print("      {:<30}{:>11.3f}  {:.1f} MB{}; floor {:.3f} ms, {:.0f} %\n",
+               stage["stage"].get<std::string>(), stage["ms"].get<double>(),
+               1e-6 * stage["bytes"].get<double>(),
+               stage["operations"].is_number()
+                   ? fmt::format(", {:.1f} million operations", 1e-6 * stage["operations"].get<double>())
+                   : "",
+               stage["floor_ms"].get<double>(), 100.0 * stage["share"].get<double>());
   }
 }
 
@@ -139,6 +159,7 @@ void print(const ordered_json& results) {
     fmt::print("{:<36}{:>11.3f}{:>9}{:>9}{:>9}{:>12.0f}\n", setting, p["frame_ms"].get<double>(),
                number(exact["psnr_db"], 2, "equal"), number(exact["ssim"], 4, "-"),
                number(exact["flip"], 4, "-"), p["pairs"].get<double>());
+    if (p.contains("profile")) print_profile(p["profile"]);
   }
 }
 
@@ -236,6 +257,8 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(CLI::Range(1.0, 1000.0).description(""))
       ->type_name("N");
+  sub->add_flag("--profile", o->profile,
+                "Set each stage beside what it must move and compute at least, at this GPU's best rates");
   add_measured_options(*sub, o->render);
   sub->add_option("--shard", o->shard, "Measure every Nth point from the Ith on: one job of N")
       ->type_name("I/N");

@@ -110,7 +110,8 @@ BenchPlan make_plan(const BenchOptions& options) {
   plan.json = {{"format", "binosplat bench plan"},  {"version", 1},
                {"program", BINOSPLAT_VERSION},      {"axes_name", plan.axes.name},
                {"axes", study::to_json(plan.axes)}, {"ppd", options.ppd},
-               {"scenes", ordered_json::array()},   {"points", ordered_json::array()}};
+               {"profile", options.profile},        {"scenes", ordered_json::array()},
+               {"points", ordered_json::array()}};
   std::set<std::string> names;
   plan.scenes.reserve(options.scenes.size());  // a scene keeps a reference to its options
   for (const std::string& file : options.scenes) {

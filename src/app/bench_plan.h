@@ -23,6 +23,7 @@ struct BenchOptions {
   std::string compare;             // results.json of an older run
   std::string calibration;         // a file whose settings are measured, too
   double ppd = 67.0;
+  bool profile = false;
   RenderOptions render;  // cameras, photos, views, the built-in scenes' options and the device
 };
 

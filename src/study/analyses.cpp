@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "base/statistics.h"
 #include "study/bench.h"
 #include "study/contributions.h"
 #include "study/settings.h"
@@ -38,11 +37,11 @@ ordered_json cost_json(const Calibrator::Cost& cost, const std::vector<Calibrati
           {"pairs_removed", cost.pairs_removed}};
 }
 
-void add_times(const Times& times, ordered_json& into) {
-  into["frame_ms"] = mean(times.frame);
-  into["pairs"] = mean(times.pairs);
+void add_times(const Typical& times, ordered_json& into) {
+  into["frame_ms"] = times.frame_ms;
+  into["pairs"] = times.pairs;
   into["stages_ms"] = ordered_json::object();
-  for (const std::string& stage : times.stage_names) into["stages_ms"][stage] = mean(times.stages.at(stage));
+  for (const gl::StageTime& stage : times.stages) into["stages_ms"][stage.name] = stage.ms;
 }
 
 ordered_json names_of(const std::vector<CalibrationView>& views) {
@@ -133,7 +132,7 @@ ordered_json analyse(gl::Context& context, const Model& model,
   }
 
   done = 0;
-  const std::vector<Times> times = time_in_turns(context, model, tester.views(), all, settings.frames, [&] {
+  const std::vector<Typical> times = time_in_turns(context, model, tester.views(), all, settings.frames, [&] {
     progress("timing", ++done, turn_rounds * all.size());
   });
   const std::size_t exact = json["systems"].size();

@@ -12,8 +12,8 @@
 // contributions: contributions.h. A system has its name, settings and what it costs and takes on the test
 // views: mean_db, worst_db, worst_view (the drop against the photos, or PSNR against exact), pairs_removed (a
 // share; below 0: more pairs), frame_ms, stages_ms and pairs. An entry of targets has target_db, settings
-// (with the loss that was found), name, reached_db (on the calibration views) and the same. Times are means
-// over frames and views.
+// (with the loss that was found), name, reached_db (on the calibration views) and the same. Times are medians
+// of a view's frames, in the mean over views.
 
 #include <functional>
 #include <nlohmann/json.hpp>

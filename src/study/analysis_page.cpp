@@ -55,7 +55,7 @@ Section scene(const ordered_json& results) {
 }
 
 Section systems(const ordered_json& results) {
-  Plot plot{{"system", "", false, true}, {"GPU time, mean", "ms"}, {}, true};
+  Plot plot{{"system", "", false, true}, {"GPU time", "ms"}, {}, true};
   Table table{{"system", "frame ms", "times 3D-GS", "pairs",
                is_drop(results) ? "drop dB" : "PSNR against exact dB", "worst dB", "in view"},
               {}};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "base/statistics.h"
@@ -79,6 +80,32 @@ ordered_json mean_of(const ordered_json& views, const char* key) {
     sum += view[key].get<double>();
   }
   return sum / static_cast<double>(views.size());
+}
+
+/// Mean over the pixels of all eyes.
+double mean_of(const std::vector<Image>& images) {
+  double sum = 0.0, pixels = 0.0;
+  for (const Image& image : images) {
+    for (const float value : image.data) sum += static_cast<double>(value);
+    pixels += static_cast<double>(image.data.size());
+  }
+  return sum / pixels;
+}
+
+/// Adds what a frame, one of `frames`, had to do.
+void add_work(const render::Frame& frame, const render::FrameReport& report, std::size_t frames,
+              FrameWork& work) {
+  const double weight = 1.0 / static_cast<double>(frames);
+  const double views_of_group = static_cast<double>(frame.views().size()) / report.order_groups;
+  work.in_view += weight * static_cast<double>(report.visible);
+  work.splats += weight * static_cast<double>(report.visible) * views_of_group;
+  work.pairs += weight * static_cast<double>(report.pairs);
+  work.order_passes += weight * report.order_passes;
+  work.tile_sort_passes += weight * report.tile_sort_passes;
+  for (const shared::View& view : frame.views()) {
+    work.tiles += weight * view.tiles_x * view.tiles_y;
+    work.pixels += weight * view.width * view.height;
+  }
 }
 
 /// The view with the smallest number; those without one (infinite) only where none has one.
@@ -198,52 +225,70 @@ ordered_json Bench::compare(const BenchView& view, const Exact& exact,
 
 void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
   render::Frame frame(context_, model_);
-  // One frame of several measures for the others and takes longer.
-  const auto typical = [&](const std::vector<double>& values) {
-    return render::measures(settings.transmittance) ? mean(values) : quantile(values, 0.5);
-  };
-  Times times;
-  std::vector<double> repeats;
+  Times all;
+  render::FrameReport report;
+  std::vector<double> repeats;  // means over the views
+  std::map<std::string, double> stages;
+  const auto views = static_cast<double>(views_.size());
   bool settled = true;
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
-    std::vector<double> of_repeat;
+    double of_repeat = 0.0;
     for (const BenchView& view : views_) {
       if (repeat == 0) settled = warm_up(frame, view, settings) && settled;
       for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) frame.draw(view.eyes, settings);
+      Run run;
       for (int n = 0; n < effort_.frames; ++n) {
-        times.add(frame.draw(view.eyes, settings));
-        of_repeat.push_back(times.frame.back());
+        report = frame.draw(view.eyes, settings);
+        run.add(report);
+        all.add(report);
       }
+      of_repeat += run.frame_ms() / views;
+      for (const std::string& stage : run.stage_names())
+        stages[stage] += run.stage_ms(stage) / views / effort_.repeats;
     }
-    repeats.push_back(typical(of_repeat));
+    repeats.push_back(of_repeat);
   }
   const auto [least, most] = std::minmax_element(repeats.begin(), repeats.end());
-  point["frame_ms"] = typical(times.frame);
-  point["p99_ms"] = quantile(times.frame, 0.99);
+  point["frame_ms"] = mean(repeats);
+  point["p99_ms"] = quantile(all.frame, 0.99);
   point["noise_ms"] = effort_.repeats > 1 ? ordered_json((*most - *least) / 2) : ordered_json();
   point["settled"] = settled;
-  point["frames"] = times.frame.size();
-  point["submit_ms"] = quantile(times.submit, 0.5);
+  point["frames"] = all.frame.size();
+  point["gpu_bytes"] = report.gpu_bytes;
+  point["submit_ms"] = quantile(all.submit, 0.5);
   point["stages_ms"] = ordered_json::object();
-  for (const std::string& stage : times.stage_names) point["stages_ms"][stage] = typical(times.stages[stage]);
+  for (const std::string& stage : all.stage_names) point["stages_ms"][stage] = stages[stage];
 }
 
 void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
   render::Frame frame(context_, model_);
   ordered_json views = ordered_json::array();
   ordered_json photographed = ordered_json::array();
+  FrameWork work;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     render::FrameReport report;
     for (int n = 0; n < render::settling_frames; ++n) report = frame.draw(views_[v].eyes, settings);
     ordered_json view = compare(views_[v], exact()[v], frame.read_pictures());
     view["pairs"] = report.pairs;
     view["visible"] = report.visible;
-    point["gpu_bytes"] = report.gpu_bytes;
+    add_work(frame, report, views_.size(), work);
+    view["alphas"] = mean_of(frame.read_shown(SHOW_ALPHAS));
+    view["alphas_visible"] = mean_of(frame.read_shown(SHOW_VISIBLE));
     if (views_[v].photo) photographed.push_back(view);
     views.push_back(std::move(view));
   }
   point["pairs"] = mean_of(views, "pairs");
   point["visible"] = mean_of(views, "visible");
+  point["alphas"] = mean_of(views, "alphas");
+  point["alphas_visible"] = mean_of(views, "alphas_visible");
+  if (effort_.peaks) {
+    work.gaussians = static_cast<double>(model_.count());
+    work.degree = model_.degree;
+    work.alphas = point["alphas"].get<double>() * work.pixels;
+    for (const auto& [stage, ms] : point["stages_ms"].items())
+      work.stages.push_back({stage, ms.get<double>()});
+    point["profile"] = profile(work, *effort_.peaks);
+  }
   point["exact"] = summary_of_quality(views);
   if (!photographed.empty()) {
     point["photos"] = {{"views", photographed.size()},

@@ -13,6 +13,7 @@
 #include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
+#include "study/floors.h"
 
 namespace binosplat::study {
 
@@ -27,6 +28,7 @@ struct BenchEffort {
   int frames = 30;                               // timed, a view and repeat
   int repeats = 3;                               // each a pass over all views; their spread is the noise
   double ppd = measure::flip_pixels_per_degree;  // for FLIP
+  std::optional<Peaks> peaks;                    // of the GPU: points get a profile
 };
 
 /// The points that share a model, its views and their size. What is exact is drawn once, at first use.

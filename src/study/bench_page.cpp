@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "study/bench_results.h"
@@ -89,7 +90,7 @@ std::string sentence_of(const Chart& chart) {
 
 Section accuracy(const Chart& chart) {
   Plot plot;
-  plot.x = {"frame time, median", "ms"};
+  plot.x = {"frame time", "ms"};
   plot.y = {"PSNR against exact, equal pictures at 100", "dB"};
   for (const std::string& family : chart.families) plot.series.push_back({family, {}, false, false, true});
   for (const ordered_json* point : chart.measured) {
@@ -107,7 +108,7 @@ Section accuracy(const Chart& chart) {
 }
 
 Section stages(const Chart& chart) {
-  Plot plot{{"setting", "", false, true}, {"GPU time, median", "ms"}, {}, true};
+  Plot plot{{"setting", "", false, true}, {"GPU time", "ms"}, {}, true};
   std::string slowest;
   double most = 0.0, sum = 0.0;
   for (const ordered_json* point : chart.measured) {
@@ -131,20 +132,21 @@ Section stages(const Chart& chart) {
 }
 
 Section numbers(const Chart& chart) {
-  Table table{{"setting", "front", "frame ms", "p99 ms", "noise ms", "submit ms", "pairs", "GPU MB",
-               "PSNR dB", "worst view dB", "SSIM", "FLIP", "signed"},
+  Table table{{"setting", "front", "frame ms", "p99 ms", "noise ms", "submit ms", "pairs", "alphas a pixel",
+               "visible", "GPU MB", "PSNR dB", "worst view dB", "SSIM", "FLIP", "signed"},
               {}};
   if (chart.pair) table.columns.emplace_back("disagreement dB");
   if (chart.photos)
     table.columns.insert(table.columns.end(), {"photo PSNR dB", "drop dB", "photo SSIM", "photo FLIP"});
   for (const ordered_json* p : chart.measured) {
     const ordered_json& exact = (*p)["exact"];
-    ordered_json row = {(*p)["name"],     chart.front.count(p) != 0 ? "yes" : "",
-                        (*p)["frame_ms"], (*p)["p99_ms"],
-                        (*p)["noise_ms"], (*p)["submit_ms"],
-                        (*p)["pairs"],    (*p)["gpu_bytes"].get<double>() / 1e6,
-                        exact["psnr_db"], exact["worst_psnr_db"],
-                        exact["ssim"],    exact["flip"],
+    ordered_json row = {(*p)["name"],           chart.front.count(p) != 0 ? "yes" : "",
+                        (*p)["frame_ms"],       (*p)["p99_ms"],
+                        (*p)["noise_ms"],       (*p)["submit_ms"],
+                        (*p)["pairs"],          (*p)["alphas"],
+                        (*p)["alphas_visible"], (*p)["gpu_bytes"].get<double>() / 1e6,
+                        exact["psnr_db"],       exact["worst_psnr_db"],
+                        exact["ssim"],          exact["flip"],
                         exact["signed"]};
     if (chart.pair) row.push_back(exact["disagreement_db"]);
     for (const char* key : {"psnr_db", "drop_db", "ssim", "flip"}) {
@@ -155,11 +157,41 @@ Section numbers(const Chart& chart) {
   const auto unsettled = std::count_if(chart.measured.begin(), chart.measured.end(),
                                        [](const ordered_json* p) { return !(*p)["settled"].get<bool>(); });
   std::string sentence =
-      "Means over the views; an equal picture has no PSNR. Noise is half the spread of the repeats' medians.";
+      "Means over the views of the medians of their frames; an equal picture has no PSNR. Noise is half the "
+      "spread of the repeats.";
   if (unsettled > 0)
     sentence += fmt::format(" At {} of {} settings the GPU's clock had not settled when timing began.",
                             unsettled, chart.measured.size());
   return {chart.id + "-numbers", chart.title + ": the numbers", sentence, {}, table, ""};
+}
+
+/// The stages of the points on the front and of the exact picture beside what the GPU could do at best.
+std::optional<Section> floors(const Chart& chart) {
+  Table table{{"setting", "stage", "ms", "MB", "million operations", "floor ms", "share %"}, {}};
+  std::string widest;
+  double gap = 0.0;
+  const auto scaled = [](const ordered_json& value, double by) {
+    return value.is_number() ? ordered_json(by * value.get<double>()) : ordered_json();
+  };
+  for (const ordered_json* p : chart.measured) {
+    if (!p->contains("profile") || (chart.front.count(p) == 0 && p != exact_of(chart))) continue;
+    for (const ordered_json& stage : (*p)["profile"]) {
+      table.rows.push_back({(*p)["name"], stage["stage"], stage["ms"], scaled(stage["bytes"], 1e-6),
+                            scaled(stage["operations"], 1e-6), stage["floor_ms"],
+                            scaled(stage["share"], 100.0)});
+      if (p != exact_of(chart) || !stage["floor_ms"].is_number()) continue;
+      const double over = stage["ms"].get<double>() - stage["floor_ms"].get<double>();
+      if (over <= gap) continue;
+      gap = over;
+      widest = text(stage["stage"]);
+    }
+  }
+  if (table.rows.empty()) return {};
+  std::string sentence =
+      "What each stage must move and compute at least, over the rates that small programs reach on this GPU";
+  if (!widest.empty())
+    sentence += fmt::format(": the exact picture's {} has most to gain, {:.3g} ms", widest, gap);
+  return Section{chart.id + "-floors", chart.title + ": floors", sentence + ".", {}, table, ""};
 }
 
 Section missing(const Chart& chart) {
@@ -199,6 +231,7 @@ Page bench_page(const ordered_json& results) {
     if (!chart.measured.empty()) {
       page.sections.push_back(stages(chart));
       page.sections.push_back(numbers(chart));
+      if (auto section = floors(chart)) page.sections.push_back(std::move(*section));
     }
     if (!chart.others.empty()) page.sections.push_back(missing(chart));
   }

@@ -5,10 +5,12 @@
 //
 // A point has the names of its chart (scene, eyes, size) and of its settings (settings, name), what Bench
 // measured of it, or a "problem"; a point of the plan that is not measured yet has neither. Bench's numbers:
-// frame_ms (median), p99_ms, noise_ms (half the spread of the repeats' medians), settled (the clock did),
-// frames, submit_ms (CPU), stages_ms; pairs, visible and gpu_bytes of a frame; exact and photos: psnr_db,
-// ssim and flip as means over the views, signed (mean of picture minus exact: below 0 is darker), drop_db (dB
-// lost against the photo); views: the same by view. psnr_db is null where a view is equal.
+// frame_ms (the views' medians, in the mean), p99_ms, noise_ms (half the spread of the repeats), settled (the
+// clock did), frames, submit_ms (CPU), stages_ms; pairs, visible and gpu_bytes of a frame; alphas and
+// alphas_visible, evaluated and blended a pixel; profile (floors.h), where that was asked for; exact and
+// photos: psnr_db, ssim and flip as means over the views, signed (mean of picture minus exact: below 0 is
+// darker), drop_db (dB lost against the photo); views: the same by view. psnr_db is null where a view is
+// equal.
 
 #include <nlohmann/json.hpp>
 #include <string>

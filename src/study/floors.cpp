@@ -4,9 +4,10 @@
 #include <limits>
 #include <map>
 
-#include "scene/harmonics.h"
+#include "scene/model.h"
 #include "shared/axes.h"
 #include "shared/limits.h"
+#include "shared/types.h"
 
 namespace binosplat::study {
 
@@ -54,7 +55,7 @@ struct Least {
 
 /// Bytes of a pass over so many pairs of key and value: one reading of the keys to count, one of both to
 /// move, one writing.
-double sort_bytes(double pairs, std::uint32_t passes) { return pairs * passes * (4 + 8 + 8); }
+double sort_bytes(double pairs, double passes) { return pairs * passes * (4 + 8 + 8); }
 
 }  // namespace
 
@@ -84,25 +85,22 @@ Peaks measure_peaks(gl::Context& context) {
 }
 
 ordered_json profile(const FrameWork& work, const Peaks& peaks) {
-  const auto gaussians = static_cast<double>(work.gaussians), pairs = static_cast<double>(work.report.pairs),
-             in_view = static_cast<double>(work.report.visible);
-  const double splats = in_view * static_cast<double>(work.views) / std::max(1u, work.report.order_groups);
   const double harmonics = 3.0 * sh_count(work.degree);
   std::map<std::string, Least> least;
   // Every Gaussian once, and its key; of what is in view the harmonics, and its splats with their counts.
-  least["project"] = {gaussians * (sizeof(shared::Gaussian) + 4) + in_view * 4 * harmonics +
-                          splats * (sizeof(shared::Splat) + 4),
-                      (gaussians + splats) * projection_fmas + splats * (basis_fmas + harmonics)};
+  least["project"] = {
+      work.gaussians * (sizeof(shared::Gaussian) + 4) + work.in_view * 4 * harmonics +
+          work.splats * (sizeof(shared::Splat) + 4),
+      (work.gaussians + work.splats) * projection_fmas + work.splats * (basis_fmas + harmonics)};
   least["project"].seconds = least["project"].operations / peaks.fmas;
-  least["order"] = {sort_bytes(in_view, work.report.order_passes)};
-  least["pairs"] = {splats * (sizeof(shared::Splat) + 4) + pairs * 8};
-  least["tile_sort"] = {sort_bytes(pairs, work.report.tile_sort_passes)};
-  least["ranges"] = {pairs * 4 + static_cast<double>(work.tiles) * 8};
-  least["blend"] = {pairs * (sizeof(shared::Splat) + 4) + static_cast<double>(work.pixels) * 20,
-                    static_cast<double>(work.alphas)};
+  least["order"] = {sort_bytes(work.in_view, work.order_passes)};
+  least["pairs"] = {work.splats * (sizeof(shared::Splat) + 4) + work.pairs * 8};
+  least["tile_sort"] = {sort_bytes(work.pairs, work.tile_sort_passes)};
+  least["ranges"] = {work.pairs * 4 + work.tiles * 8};
+  least["blend"] = {work.pairs * (sizeof(shared::Splat) + 4) + work.pixels * 20, work.alphas};
   least["blend"].seconds = least["blend"].operations / peaks.alphas;
   ordered_json stages = ordered_json::array();
-  for (const gl::StageTime& stage : work.report.stages) {
+  for (const gl::StageTime& stage : work.stages) {
     ordered_json& json = stages.emplace_back(ordered_json{{"stage", stage.name}, {"ms", stage.ms}});
     const auto found = least.find(stage.name);
     if (found == least.end()) {

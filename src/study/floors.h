@@ -3,9 +3,9 @@
 // least, over rates that small programs reach on the same GPU.
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
-#include "gl/context.h"
-#include "render/frame.h"
+#include "gl/dispatch.h"
 
 namespace binosplat::study {
 
@@ -18,15 +18,19 @@ struct Peaks {
 
 Peaks measure_peaks(gl::Context& context);
 
-/// What a frame had to do.
+/// What a frame had to do, or the mean of some.
 struct FrameWork {
-  std::uint64_t gaussians = 0;  // of the model
-  int degree = 0;               // of its SH
-  std::uint64_t views = 0;
-  std::uint64_t pixels = 0;  // of all views, as the following
-  std::uint64_t tiles = 0;
-  std::uint64_t alphas = 0;    // evaluated by pixels that still took light
-  render::FrameReport report;  // Gaussians in view, pairs, passes of the sorts, and what the stages took
+  double gaussians = 0.0;  // of the model
+  int degree = 0;          // of its SH
+  double in_view = 0.0;    // Gaussians, summed over the order groups
+  double splats = 0.0;     // of those, one a view
+  double pairs = 0.0;
+  double tiles = 0.0;   // of all views
+  double pixels = 0.0;  // likewise
+  double alphas = 0.0;  // evaluated by pixels that still took light
+  double order_passes = 0.0;
+  double tile_sort_passes = 0.0;
+  std::vector<gl::StageTime> stages;
 };
 
 /// By stage in order: stage, ms, bytes (that it must read and write at least), operations (alphas of `blend`,

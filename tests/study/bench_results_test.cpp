@@ -27,6 +27,8 @@ ordered_json point(const std::string& name, double ms, ordered_json db, int eyes
           {"submit_ms", 0.25},
           {"stages_ms", {{"project", 0.25 * ms}, {"blend", 0.75 * ms}}},
           {"gpu_bytes", 123456789},
+          {"alphas", 50.5},
+          {"alphas_visible", 30.25},
           {"pairs", 1000 * ms},
           {"visible", 500.5},
           {"exact",
@@ -89,7 +91,8 @@ TEST(BenchResults, CsvHasALineAPoint) {
         << all[i + 1];
   }
   EXPECT_NE(all[2].find("\"fox\",1,\"own\",\"squared, 0.1\""), std::string::npos) << all[2];
-  EXPECT_NE(all[2].find(",4.0,6.0,0.04,true,0.25,4000.0,500.5,123456789,45.5,"), std::string::npos) << all[2];
+  EXPECT_NE(all[2].find(",4.0,6.0,0.04,true,0.25,4000.0,500.5,123456789,50.5,30.25,45.5,"), std::string::npos)
+      << all[2];
   EXPECT_EQ(all[2].substr(all[2].size() - 5), ",true");
   EXPECT_EQ(all[4].substr(all[4].size() - 6), ",false");
   EXPECT_NE(all[6].find("two frames differ"), std::string::npos);
@@ -144,6 +147,35 @@ TEST(BenchResults, PageSaysWhatItShows) {
       std::string::npos);
 }
 
+TEST(BenchResults, PageSetsStagesBesideTheirFloors) {
+  ordered_json json = results();
+  json["points"][0]["profile"] = {{{"stage", "project"},
+                                   {"ms", 2.0},
+                                   {"bytes", 3e6},
+                                   {"operations", nullptr},
+                                   {"floor_ms", 0.5},
+                                   {"share", 0.25}},
+                                  {{"stage", "blend"},
+                                   {"ms", 6.0},
+                                   {"bytes", 4e6},
+                                   {"operations", 5e6},
+                                   {"floor_ms", 1.5},
+                                   {"share", 0.25}},
+                                  {{"stage", "probe"},
+                                   {"ms", 9.0},
+                                   {"bytes", nullptr},
+                                   {"operations", nullptr},
+                                   {"floor_ms", nullptr},
+                                   {"share", nullptr}}};
+  const Page page = bench_page(json);
+  ASSERT_EQ(page.sections[3].id, "chart-1-floors");
+  EXPECT_NE(page.sections[3].sentence.find("the exact picture's blend has most to gain, 4.5 ms"),
+            std::string::npos)
+      << page.sections[3].sentence;
+  ASSERT_EQ(page.sections[3].table->rows.size(), 3u);
+  EXPECT_EQ(page.sections[3].table->rows[1], ordered_json({"ellipse", "blend", 6.0, 4.0, 5.0, 1.5, 25.0}));
+}
+
 // Long: the whole page in a browser, its table against the JSON.
 TEST(BenchResults, PageInChromiumHasTheJsonsNumbers) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
@@ -154,7 +186,7 @@ TEST(BenchResults, PageInChromiumHasTheJsonsNumbers) {
   const std::string cells =
       chromium.ask(folder / "report.html", 400, false,
                    "return [...document.querySelectorAll('#chart-1-numbers tbody tr')].map((row) =>"
-                   "[1, 2, 8, 10].map((i) => row.cells[i + (i > 1 ? 0 : 1)].dataset.value"
+                   "[1, 2, 10, 12].map((i) => row.cells[i + (i > 1 ? 0 : 1)].dataset.value"
                    " ?? row.cells[i].textContent).join(' ')).join(';');");
   EXPECT_EQ(cells, "3 3 38.25 0.987654321;4 4 45.5 0.987654321;5 5 41 0.987654321;8 8 – 0.987654321");
   EXPECT_EQ(chromium.ask(folder / "report.html", 400, true,
