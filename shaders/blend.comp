@@ -17,13 +17,15 @@ layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
+#if RECORDS || WEIGHS
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot): bits of floats, or two words of a sum
+shared uint batch_measured[BATCH];
+#endif
 #if RECORDS
-layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot), bits of floats
 uniform uint remembers;  // whether `colours` still holds this view's last frame
 #if CONTRAST != CONTRAST_OFF
 uniform uint background_r, background_g, background_b;  // bits of floats
 #endif
-shared uint batch_measured[BATCH];
 #endif
 uniform uint view_count;
 uniform uint tile_count;
@@ -42,9 +44,12 @@ bool done = false;
 vec3 last = vec3(0.0);  // the pixel's colour in the last frame, background included
 
 // The most that a splat's alpha counts for in any pixel: T, times its contrast (METHOD 5, squared). A maximum in shared
-// memory, and one a tile in the buffer, cost little beside the blend.
+// memory, and one a tile in the buffer, cost little beside the blend. Or what it counts for in all pixels together, as a
+// whole number, so that the order of the additions does not matter.
 void measure(uint at, float alpha) {
-#if RECORDS
+#if WEIGHS
+  atomicAdd(batch_measured[at], uint(alpha * transmittance * float(WEIGHT_SCALE) + 0.5));
+#elif RECORDS
   float contrast = 1.0;
 #if CONTRAST != CONTRAST_OFF
   vec3 other = last;
@@ -58,6 +63,16 @@ void measure(uint at, float alpha) {
   atomicMax(batch_measured[at], floatBitsToUint(transmittance * contrast));
 #endif
 }
+
+// What a tile measured of a splat, to the buffer.
+#if WEIGHS
+void pass_on(uint splat, uint sum) {
+  uint before = atomicAdd(measured[2u * splat], sum);
+  if (before + sum < before) atomicAdd(measured[2u * splat + 1u], 1u);
+}
+#elif RECORDS
+void pass_on(uint splat, uint most) { atomicMax(measured[splat], most); }
+#endif
 
 void blend(uint at) {
   vec4 geometry = batch_geometry[at];
@@ -83,7 +98,7 @@ void blend(uint at) {
 void load(uint at, uint end) {
   uint self = gl_LocalInvocationIndex;
   if (self >= BATCH) return;
-#if RECORDS
+#if RECORDS || WEIGHS
   batch_measured[self] = 0u;
 #endif
   if (at < end) {
@@ -141,9 +156,9 @@ void main() {
     }
     cut = cut || (!done && next < size);
     barrier();
-#if RECORDS
+#if RECORDS || WEIGHS
     uint self = gl_LocalInvocationIndex;
-    if (self < size && batch_measured[self] != 0u) atomicMax(measured[values[batch + self]], batch_measured[self]);
+    if (self < size && batch_measured[self] != 0u) pass_on(values[batch + self], batch_measured[self]);
 #endif
   }
   if (cut || (!done && batch < end)) atomicAdd(counters.loop_cut, 1u);

@@ -9,6 +9,7 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
   // The tile test is no part of this program: with every test the same lists give the same bits.
   const gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
                                {"RECORDS", shape.records ? "1" : "0"},
+                               {"WEIGHS", shape.settings.weigh ? "1" : "0"},
                                {"CONTRAST", std::to_string(shape.settings.contrast)}};
   dispatcher.run(dispatcher.context().program("blend.comp", defines), gl::Work::of_groups(shape.tile_count),
                  {{"Views", buffers.views},

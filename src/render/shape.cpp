@@ -37,6 +37,9 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   if (s.contrast != CONTRAST_OFF && !measures(s.transmittance)) {
     fail("--contrast {}: only with a measured --transmittance", contrast_choices[s.contrast].name);
   }
+  if (s.weigh && measures(s.transmittance)) {
+    fail("--transmittance {}: not in a frame that weighs", transmittance_choices[s.transmittance].name);
+  }
   if (s.decode != DECODE_EYES && views % 2 != 0) {
     fail("--decode {}: only for both eyes together", decode_choices[s.decode].name);
   }
