@@ -1,0 +1,180 @@
+#include "study/trim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "base/log.h"
+#include "measure/search.h"
+#include "scene/reduce.h"
+#include "study/weights.h"
+
+namespace binosplat::study {
+
+namespace {
+
+constexpr int drawings = 3;                                            // of a view whose time is told
+constexpr double after_bits = 1.0 / 3.0, after_harmonics = 2.0 / 3.0;  // shares of the bound
+
+class Trimmer {
+ public:
+  Trimmer(gl::Context& context, const Model& model, const TrimViews& views, const CalibrationTarget& target,
+          const TrimWriter& write)
+      : views_(views),
+        target_(target),
+        write_(write),
+        model_(model),
+        judge_(context, model, views.held_back, views.near_plane, target.kind) {
+    if (!views.test.empty()) {
+      test_ = std::make_unique<Calibrator>(context, model, views.test, views.near_plane, target.kind);
+    }
+    tell("as it was", model, 0);
+    weights_ = weigh(context, model, views.weighed, views.near_plane);
+  }
+
+  Trimmed run(ModelFormat format) {
+    found_.unseen = weights_.unseen();
+    const std::string name = model_format_names[static_cast<int>(format)];
+    const bool packs = format == ModelFormat::spz;
+    if (!holds(cost(model_, 8), 1.0)) {
+      found_.fits = false;
+      tell_written("as " + name);
+    } else {
+      const bool has_harmonics = model_.degree > 0 && format != ModelFormat::splat;
+      if (packs && has_harmonics) lower_bits();
+      tell_written(packs ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
+                         : "as " + name);
+      if (has_harmonics) lower_harmonics(packs);
+      drop_gaussians();
+    }
+    found_.model = std::move(model_);
+    return std::move(found_);
+  }
+
+ private:
+  double cost(const Model& model, int bits) { return judge_.cost(write_(model, bits).model).mean_db; }
+
+  /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
+  double bound(double share) const {
+    return target_.kind == CalibrationTarget::Kind::drop ? share * target_.db
+                                                         : target_.db - 10.0 * std::log10(share);
+  }
+  double sign() const { return target_.kind == CalibrationTarget::Kind::drop ? -1.0 : 1.0; }
+  bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
+
+  /// The largest amount that holds a share of the bound; `less(amount)` has that much less of the model, and
+  /// is the model for 0, which must hold.
+  double largest(const std::function<Model(double)>& less, double share, measure::LossSearch search) {
+    const bool drop = target_.kind == CalibrationTarget::Kind::drop;
+    search.tolerance = drop ? 0.03 * target_.db : 0.1;
+    const auto value = [&](double amount) { return sign() * cost(less(amount), found_.harmonic_bits); };
+    return measure::find_loss(value, sign() * bound(share), search).loss;
+  }
+
+  void lower_bits() {
+    while (found_.harmonic_bits > 1 && holds(cost(model_, found_.harmonic_bits - 1), after_bits))
+      --found_.harmonic_bits;
+    found_.less = found_.harmonic_bits < 8;
+  }
+
+  void lower_harmonics(bool packs) {
+    const int before = model_.degree;
+    for (int degree = 0; degree < before; ++degree) {
+      Model lower = with_degree(model_, degree);
+      if (!holds(cost(lower, found_.harmonic_bits), after_harmonics)) continue;
+      model_ = std::move(lower);
+      break;
+    }
+    if (model_.degree < before) take(fmt::format("degree {} instead of {}", model_.degree, before));
+    if (packs && model_.degree > 0 && holds(cost(model_, found_.harmonic_bits), after_harmonics))
+      lower_degrees();
+  }
+
+  /// The degree each Gaussian needs where its colour may change by so much (Weights::change).
+  std::vector<std::uint8_t> degrees(double change) const {
+    std::vector<std::uint8_t> of(model_.count());
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      while (of[i] < model_.degree && weights_.change[i][of[i]] > change) ++of[i];
+    }
+    return of;
+  }
+
+  void lower_degrees() {
+    std::vector<double> changes;
+    for (const auto& change : weights_.change) {
+      const double of_base = change[0];
+      if (of_base > 0.0) changes.push_back(of_base);
+    }
+    if (changes.empty()) return;
+    const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+    std::nth_element(changes.begin(), middle, changes.end());
+    const auto less = [&](double change) {
+      return change > 0.0 ? with_degrees(model_, degrees(change)) : model_;
+    };
+    const double change = largest(less, after_harmonics, {.start = std::clamp(*middle, 1e-9, 1e9)});
+    if (change == 0.0) return;
+    const std::vector<std::uint8_t> of = degrees(change);
+    const auto lowered = std::count_if(of.begin(), of.end(), [&](int d) { return d < model_.degree; });
+    const double share = 100.0 * static_cast<double>(lowered) / static_cast<double>(of.size());
+    model_ = with_degrees(model_, of);
+    take(fmt::format("lower degrees for {:.0f} %", share));
+  }
+
+  void drop_gaussians() {
+    const std::size_t count = model_.count();
+    if (count < 2) return;
+    std::vector<std::uint32_t> by_weight(count);
+    std::iota(by_weight.begin(), by_weight.end(), 0u);
+    std::stable_sort(by_weight.begin(), by_weight.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return weights_.weight[a] < weights_.weight[b];
+    });
+    const auto without = [&](double amount) {
+      std::vector<std::uint8_t> kept(count, 1);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_weight[k]] = 0;
+      return with_gaussians(model_, kept);
+    };
+    const auto most = static_cast<double>(count - 1);
+    const double start = std::clamp(static_cast<double>(found_.unseen), 1.0, most);
+    const double dropped = largest(without, 1.0, {.start = start, .smallest = 1.0, .largest = most});
+    if (dropped == 0.0) return;
+    model_ = without(dropped);
+    take("fewer Gaussians");
+  }
+
+  void take(const std::string& name) {
+    found_.less = true;
+    tell_written(name);
+  }
+
+  void tell_written(const std::string& name) {
+    const WrittenModel written = write_(model_, found_.harmonic_bits);
+    tell(name, written.model, written.bytes);
+  }
+
+  void tell(const std::string& name, const Model& model, std::uintmax_t bytes) {
+    TrimStep& step = found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}});
+    step.held_back = judge_.cost(model, drawings);
+    if (test_) step.test = test_->cost(model);
+    log_info("{}: {} Gaussians, {:.3f} dB", name, step.gaussians, step.held_back.mean_db);
+  }
+
+  const TrimViews& views_;
+  const CalibrationTarget& target_;
+  const TrimWriter& write_;
+  Model model_;  // as trimmed so far
+  Calibrator judge_;
+  std::unique_ptr<Calibrator> test_;
+  Weights weights_;
+  Trimmed found_;
+};
+
+}  // namespace
+
+Trimmed trim(gl::Context& context, const Model& model, const TrimViews& views,
+             const CalibrationTarget& target, ModelFormat format, const TrimWriter& write) {
+  return Trimmer(context, model, views, target, write).run(format);
+}
+
+}  // namespace binosplat::study
