@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <numeric>
 
 #include "base/log.h"
+#include "base/statistics.h"
 #include "measure/search.h"
 #include "scene/reduce.h"
 #include "study/weights.h"
@@ -15,8 +15,8 @@ namespace binosplat::study {
 
 namespace {
 
-constexpr int drawings = 3;                                            // of a view whose time is told
-constexpr double after_bits = 1.0 / 3.0, after_harmonics = 2.0 / 3.0;  // shares of the bound
+constexpr int drawings = 3;                                 // of a view whose time is told
+constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
 
 class Trimmer {
  public:
@@ -25,6 +25,7 @@ class Trimmer {
       : views_(views),
         target_(target),
         write_(write),
+        original_(model),
         model_(model),
         judge_(context, model, views.held_back, views.near_plane, target.kind) {
     if (!views.test.empty()) {
@@ -79,47 +80,57 @@ class Trimmer {
     found_.less = found_.harmonic_bits < 8;
   }
 
+  /// Harmonics of so many degrees, base colours brought to the mean of what the weighed views see.
+  Model lowered(const std::vector<std::uint8_t>& degrees) const {
+    Model model = with_degrees(original_, degrees);
+    const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+      if (degrees[i] >= original_.degree) continue;
+      const glm::vec3 shift = weights_.shift(i, degrees[i]);
+      for (int c = 0; c < 3; ++c)
+        model.sh[i * values + static_cast<std::size_t>(c)] += shift[c] / static_cast<float>(sh_c0);
+    }
+    return model;
+  }
+
   void lower_harmonics(bool packs) {
-    const int before = model_.degree;
-    for (int degree = 0; degree < before; ++degree) {
-      Model lower = with_degree(model_, degree);
+    const std::size_t count = original_.count();
+    for (int degree = 0; degree < original_.degree; ++degree) {
+      Model lower = lowered(std::vector<std::uint8_t>(count, static_cast<std::uint8_t>(degree)));
       if (!holds(cost(lower, found_.harmonic_bits), after_harmonics)) continue;
       model_ = std::move(lower);
+      take(fmt::format("degree {} instead of {}", degree, original_.degree));
       break;
     }
-    if (model_.degree < before) take(fmt::format("degree {} instead of {}", model_.degree, before));
     if (packs && model_.degree > 0 && holds(cost(model_, found_.harmonic_bits), after_harmonics))
       lower_degrees();
   }
 
   /// The degree each Gaussian needs where its colour may change by so much (Weights::change).
   std::vector<std::uint8_t> degrees(double change) const {
-    std::vector<std::uint8_t> of(model_.count());
+    std::vector<std::uint8_t> of(original_.count());
     for (std::size_t i = 0; i < of.size(); ++i) {
-      while (of[i] < model_.degree && weights_.change[i][of[i]] > change) ++of[i];
+      while (of[i] < model_.degree && weights_.change(i, of[i]) > change) ++of[i];
     }
     return of;
   }
 
+  /// Zeros are packed well: a degree for each Gaussian.
   void lower_degrees() {
     std::vector<double> changes;
-    for (const auto& change : weights_.change) {
-      const double of_base = change[0];
-      if (of_base > 0.0) changes.push_back(of_base);
+    for (std::size_t i = 0; i < original_.count(); ++i) {
+      if (weights_.change(i, 0) > 0.0) changes.push_back(weights_.change(i, 0));
     }
     if (changes.empty()) return;
-    const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-    std::nth_element(changes.begin(), middle, changes.end());
-    const auto less = [&](double change) {
-      return change > 0.0 ? with_degrees(model_, degrees(change)) : model_;
-    };
-    const double change = largest(less, after_harmonics, {.start = std::clamp(*middle, 1e-9, 1e9)});
+    const double start = std::clamp(quantile(std::move(changes), 0.5), 1e-9, 1e9);
+    const auto less = [&](double change) { return change > 0.0 ? lowered(degrees(change)) : model_; };
+    const double change = largest(less, after_harmonics, {.start = start});
     if (change == 0.0) return;
     const std::vector<std::uint8_t> of = degrees(change);
-    const auto lowered = std::count_if(of.begin(), of.end(), [&](int d) { return d < model_.degree; });
-    const double share = 100.0 * static_cast<double>(lowered) / static_cast<double>(of.size());
-    model_ = with_degrees(model_, of);
-    take(fmt::format("lower degrees for {:.0f} %", share));
+    const auto lower = std::count_if(of.begin(), of.end(), [&](int d) { return d < model_.degree; });
+    model_ = lowered(of);
+    take(fmt::format("lower degrees for {:.0f} %",
+                     100.0 * static_cast<double>(lower) / static_cast<double>(of.size())));
   }
 
   void drop_gaussians() {
@@ -163,6 +174,7 @@ class Trimmer {
   const TrimViews& views_;
   const CalibrationTarget& target_;
   const TrimWriter& write_;
+  const Model& original_;
   Model model_;  // as trimmed so far
   Calibrator judge_;
   std::unique_ptr<Calibrator> test_;

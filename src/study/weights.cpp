@@ -13,9 +13,9 @@ namespace binosplat::study {
 
 namespace {
 
-/// Adds what lowering each degree of Gaussian i changes towards a unit direction.
-void add_change(std::array<double, 3>& change, const Model& model, std::size_t i, const glm::dvec3& towards,
-                double weight) {
+/// Adds what ending with each degree takes from the colour of Gaussian i towards a unit direction.
+void add_lost(std::array<Weights::Lowered, 3>& lowered, const Model& model, std::size_t i,
+              const glm::dvec3& towards, double weight) {
   const std::array<double, 16> basis = sh_basis(towards);
   const auto count = static_cast<std::size_t>(sh_count(model.degree));
   const float* sh = &model.sh[3 * count * i];
@@ -27,8 +27,9 @@ void add_change(std::array<double, 3>& change, const Model& model, std::size_t i
   }
   const auto last = static_cast<std::size_t>(model.degree);
   for (std::size_t degree = 0; degree < last; ++degree) {
-    const glm::dvec3 d = colour[degree] - colour[last];
-    change[degree] += weight * glm::dot(d, d) / 3.0;
+    const glm::dvec3 lost = colour[last] - colour[degree];
+    lowered[degree].lost += weight * lost;
+    lowered[degree].square += weight * glm::dot(lost, lost) / 3.0;
   }
 }
 
@@ -38,10 +39,20 @@ std::size_t Weights::unseen() const {
   return static_cast<std::size_t>(std::count(weight.begin(), weight.end(), 0.0));
 }
 
+glm::vec3 Weights::shift(std::size_t i, std::size_t degree) const {
+  return weight[i] > 0.0 ? glm::vec3(lowered[i][degree].lost / weight[i]) : glm::vec3(0.0f);
+}
+
+double Weights::change(std::size_t i, std::size_t degree) const {
+  if (weight[i] == 0.0) return 0.0;
+  const auto& [lost, square] = lowered[i][degree];
+  return std::max(0.0, square - glm::dot(lost, lost) / (3.0 * weight[i]));
+}
+
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras,
               double near_plane) {
   Weights weights{cameras.size(), std::vector<double>(model.count()),
-                  std::vector<std::array<double, 3>>(model.count())};
+                  std::vector<std::array<Weights::Lowered, 3>>(model.count())};
   render::Frame frame(context, model);
   Progress progress("weighing the Gaussians in every view", cameras.size());
   std::size_t done = 0;
@@ -56,7 +67,7 @@ Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera
       weights.weight[i] += weight;
       if (model.degree == 0 || model.scaffold) return;
       const glm::dvec3 towards = glm::normalize(glm::dvec3(model.position[i]) - camera.position);
-      add_change(weights.change[i], model, i, towards, weight);
+      add_lost(weights.lowered[i], model, i, towards, weight);
     });
     progress.update(++done);
   }

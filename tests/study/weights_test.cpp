@@ -31,26 +31,37 @@ TEST(StudyWeights, AddUpOverViewsWhateverTheAxes) {
   for (std::size_t i = 0; i < model.count(); ++i) {
     EXPECT_EQ(both.weight[i], one.weight[i] + other.weight[i]);
     EXPECT_NEAR(there.weight[i], both.weight[i], 1e-3 + 1e-3 * both.weight[i]);
-    EXPECT_GE(both.change[i][0], 0.0);
+    EXPECT_LE(both.change(i, 0), both.lowered[i][0].square);
     sum += both.weight[i];
   }
   EXPECT_LE(sum, 2.0 * 64 * 48);
   EXPECT_GT(sum, 64 * 48);
 }
 
-// One Gaussian straight ahead, whose harmonics along z are known.
-TEST(StudyWeights, ChangeIsThatOfTheColourTowardsTheView) {
+// One Gaussian straight ahead, whose harmonics along z are known; then from behind, too.
+TEST(StudyWeights, ChangeIsWhatABaseColourCannotMakeUpFor) {
   Model model;
   model.degree = 2;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.5f, glm::vec3(0.5f));
   model.sh[3 * 2] = 0.4f;                                          // red of the degree that z has
   for (std::size_t c = 0; c < 3; ++c) model.sh[3 * 6 + c] = 0.2f;  // all of 2 zz - xx - yy
-  const Weights weights = weigh(test::gl_context(), model, {cameras()[0]}, near_default);
-  const double w = weights.weight[0], red = 0.4 * 0.4886025119, grey = 0.2 * 2 * 0.31539156525;
+  std::vector<Camera> around(2, cameras()[0]);
+  const Weights one = weigh(test::gl_context(), model, {around[0]}, near_default);
+  const double w = one.weight[0], red = 0.4 * 0.4886025119, grey = 0.2 * 2 * 0.31539156525;
   EXPECT_GT(w, 1.0);
-  EXPECT_NEAR(weights.change[0][0], w * ((red + grey) * (red + grey) + 2 * grey * grey) / 3, 1e-5 * w);
-  EXPECT_NEAR(weights.change[0][1], w * grey * grey, 1e-5 * w);
-  EXPECT_EQ(weights.change[0][2], 0.0);
+  EXPECT_NEAR(one.lowered[0][0].square, w * ((red + grey) * (red + grey) + 2 * grey * grey) / 3, 1e-5 * w);
+  EXPECT_NEAR(one.lowered[0][1].square, w * grey * grey, 1e-5 * w);
+  EXPECT_EQ(one.lowered[0][2].square, 0.0);
+  EXPECT_NEAR(one.shift(0, 0).r, red + grey, 1e-6);
+  EXPECT_NEAR(one.shift(0, 0).g, grey, 1e-6);
+  EXPECT_NEAR(one.change(0, 0), 0.0, 1e-9) << "from one side the base colour can be what is seen";
+  around[1].position = {0, 0, 6};
+  around[1].rotation = glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, -1);
+  const Weights both = weigh(test::gl_context(), model, around, near_default);
+  EXPECT_NEAR(both.weight[0], 2 * w, 1e-3);
+  EXPECT_NEAR(both.shift(0, 0).r, grey, 1e-4);
+  EXPECT_NEAR(both.change(0, 0), 2 * w * red * red / 3, 1e-3 * w);
+  EXPECT_NEAR(both.change(0, 1), 0.0, 1e-9);
 }
 
 // Cameras are of the world: a model in other axes is seen as it would be in the world's.
