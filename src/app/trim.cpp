@@ -222,6 +222,7 @@ ExitCode trim(const TrimOptions& o) {
   study::Trimmed found = study::trim(*context, model, views, target, format, trial_writer(o, format));
   if (const fs::path file = model_file(o.render.scene); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
+  if (original && found.steps.back().bytes >= found.steps.front().bytes) found.less = false;
   print(o, found, names, model.count());
   if (!found.fits && !original) {
     fail(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
 
@@ -45,8 +46,9 @@ class Trimmer {
     } else {
       const bool has_harmonics = model_.degree > 0 && format != ModelFormat::splat;
       if (packs && has_harmonics) lower_bits();
-      tell_written(packs ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
-                         : "as " + name);
+      tell_written(packs && has_harmonics
+                       ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
+                       : "as " + name);
       if (has_harmonics) lower_harmonics(packs);
       drop_gaussians();
     }
@@ -65,12 +67,11 @@ class Trimmer {
   double sign() const { return target_.kind == CalibrationTarget::Kind::drop ? -1.0 : 1.0; }
   bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
 
-  /// The largest amount that holds a share of the bound; `less(amount)` has that much less of the model, and
-  /// is the model for 0, which must hold.
-  double largest(const std::function<Model(double)>& less, double share, measure::LossSearch search) {
-    const bool drop = target_.kind == CalibrationTarget::Kind::drop;
-    search.tolerance = drop ? 0.03 * target_.db : 0.1;
-    const auto value = [&](double amount) { return sign() * cost(less(amount), found_.harmonic_bits); };
+  /// The largest amount that holds a share of the bound, at which the model's cost is `db(amount)`; 0 must
+  /// hold.
+  double largest(const std::function<double(double)>& db, double share, measure::LossSearch search) {
+    search.tolerance = target_.kind == CalibrationTarget::Kind::drop ? 0.03 * target_.db : 0.1;
+    const auto value = [&](double amount) { return sign() * db(amount); };
     return measure::find_loss(value, sign() * bound(share), search).loss;
   }
 
@@ -123,8 +124,10 @@ class Trimmer {
     }
     if (changes.empty()) return;
     const double start = std::clamp(quantile(std::move(changes), 0.5), 1e-9, 1e9);
-    const auto less = [&](double change) { return change > 0.0 ? lowered(degrees(change)) : model_; };
-    const double change = largest(less, after_harmonics, {.start = start});
+    const auto db = [&](double change) {
+      return cost(change > 0.0 ? lowered(degrees(change)) : model_, found_.harmonic_bits);
+    };
+    const double change = largest(db, after_harmonics, {.start = start});
     if (change == 0.0) return;
     const std::vector<std::uint8_t> of = degrees(change);
     const auto lower = std::count_if(of.begin(), of.end(), [&](int d) { return d < model_.degree; });
@@ -146,9 +149,15 @@ class Trimmer {
       for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_weight[k]] = 0;
       return with_gaussians(model_, kept);
     };
+    std::map<std::size_t, double> known;  // amounts that come to the same number
+    const auto db = [&](double amount) {
+      const auto [at, is_new] = known.try_emplace(static_cast<std::size_t>(amount));
+      if (is_new) at->second = cost(without(amount), found_.harmonic_bits);
+      return at->second;
+    };
     const auto most = static_cast<double>(count - 1);
     const double start = std::clamp(static_cast<double>(found_.unseen), 1.0, most);
-    const double dropped = largest(without, 1.0, {.start = start, .smallest = 1.0, .largest = most});
+    const double dropped = largest(db, 1.0, {.start = start, .smallest = 1.0, .largest = most});
     if (dropped == 0.0) return;
     model_ = without(dropped);
     take("fewer Gaussians");

@@ -213,6 +213,54 @@ TEST_F(TrimTest, InfoSaysHowMuchTheViewsShow) {
   EXPECT_EQ(run_program({"info", model}).out.find("never touch"), std::string::npos);
 }
 
+// A picture of half the size, each pixel the mean of four.
+Image halved(const Image& image) {
+  Image half(image.width / 2, image.height / 2, image.channels);
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      for (int c = 0; c < half.channels; ++c) {
+        const auto at = [&](int dx, int dy) {
+          return image.data[static_cast<std::size_t>(((2 * y + dy) * image.width + 2 * x + dx) * 3 + c)];
+        };
+        half.data[static_cast<std::size_t>((y * half.width + x) * 3 + c)] =
+            0.25f * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1));
+      }
+    }
+  }
+  return half;
+}
+
+// Measured: see docs/trimming.md. Half the size of the photos, two views held back.
+TEST(TrimScenes, FoxAtHalfADecibelIsLessThanHalf) {
+  REQUIRE_SCENE("fox", scene);
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "some minutes: set BINOSPLAT_LONG=1";
+  const test::TempFolder folder;
+  json cameras = test::load_json(scene / "cameras.json");
+  for (json& camera : cameras) {
+    for (const char* size : {"width", "height"}) camera[size] = camera[size].get<int>() / 2;
+    for (const char* focal : {"fx", "fy"}) camera[focal] = camera[focal].get<double>() / 2;
+  }
+  test::write_text(folder / "cameras.json", cameras.dump());
+  std::filesystem::create_directories(folder / "photos");
+  for (const auto& photo : std::filesystem::directory_iterator(scene / "photos")) {
+    save_png((folder / "photos" / photo.path().filename()).replace_extension(".png"),
+             halved(load_image(photo.path())));
+  }
+  for (const char* to : {"fox.ply", "fox.spz"}) {
+    const Outcome outcome = run_program({"trim", scene / "fox.ply", "--cameras", folder / "cameras.json",
+                                         "--photos", folder / "photos", "--max-drop", "0.5", "--views", "2",
+                                         "-o", folder / to, "--json", folder / "r.json"});
+    ASSERT_TRUE(good(outcome));
+    const json report = test::load_json(folder / "r.json");
+    const json first = report["steps"].front(), last = report["steps"].back();
+    EXPECT_LE(last["held_back"]["mean_db"], 0.5);
+    EXPECT_LT(last["gaussians"], first["gaussians"]);
+    EXPECT_LT(last["held_back"]["pairs"], first["held_back"]["pairs"]);
+    EXPECT_LE(2 * std::filesystem::file_size(folder / to), std::filesystem::file_size(scene / "fox.ply"))
+        << outcome.out;
+  }
+}
+
 TEST(TrimScaffold, IsRefused) {
   const test::TempFolder folder;
   std::filesystem::create_directories(folder / "model");
