@@ -150,6 +150,9 @@ void print(const TrimOptions& o, const study::Trimmed& found, const Names& names
                decibels(kind, s.held_back.mean_db), decibels(kind, s.held_back.worst_db),
                names.test.empty() ? "" : decibels(kind, s.test.mean_db));
   }
+  const Calibrator::Cost& last = found.steps.back().held_back;
+  fmt::print("worst of those held back: {}, {} dB\n", names.held_back[last.worst_view],
+             decibels(kind, last.worst_db));
 }
 
 ordered_json to_json(const Calibrator::Cost& cost, const std::vector<std::string>& names) {
