@@ -23,8 +23,7 @@ class Trimmer {
  public:
   Trimmer(gl::Context& context, const Model& model, const TrimViews& views, const CalibrationTarget& target,
           const TrimWriter& write)
-      : views_(views),
-        target_(target),
+      : target_(target),
         write_(write),
         original_(model),
         model_(model),
@@ -180,7 +179,6 @@ class Trimmer {
     log_info("{}: {} Gaussians, {:.3f} dB", name, step.gaussians, step.held_back.mean_db);
   }
 
-  const TrimViews& views_;
   const CalibrationTarget& target_;
   const TrimWriter& write_;
   const Model& original_;

@@ -39,14 +39,15 @@ std::size_t Weights::unseen() const {
   return static_cast<std::size_t>(std::count(weight.begin(), weight.end(), 0.0));
 }
 
-glm::vec3 Weights::shift(std::size_t i, std::size_t degree) const {
-  return weight[i] > 0.0 ? glm::vec3(lowered[i][degree].lost / weight[i]) : glm::vec3(0.0f);
+glm::vec3 Weights::shift(std::size_t gaussian, std::size_t degree) const {
+  const double sum = weight[gaussian];
+  return sum > 0.0 ? glm::vec3(lowered[gaussian][degree].lost / sum) : glm::vec3(0.0f);
 }
 
-double Weights::change(std::size_t i, std::size_t degree) const {
-  if (weight[i] == 0.0) return 0.0;
-  const auto& [lost, square] = lowered[i][degree];
-  return std::max(0.0, square - glm::dot(lost, lost) / (3.0 * weight[i]));
+double Weights::change(std::size_t gaussian, std::size_t degree) const {
+  if (weight[gaussian] == 0.0) return 0.0;
+  const auto& [lost, square] = lowered[gaussian][degree];
+  return std::max(0.0, square - glm::dot(lost, lost) / (3.0 * weight[gaussian]));
 }
 
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras,
