@@ -22,13 +22,15 @@ layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
+#if RECORDS || WEIGHS
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot): bits of floats, or two words of a sum
+shared uint batch_measured[BATCH];
+#endif
 #if RECORDS
-layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot), bits of floats
 uniform uint remembers;  // whether `colours` still holds this view's last frame
 #if CONTRAST != CONTRAST_OFF
 uniform uint background_r, background_g, background_b;  // bits of floats
 #endif
-shared uint batch_measured[BATCH];
 #endif
 #if SHOW != SHOW_PICTURE
 layout(std430, binding = 8) writeonly buffer Shown { float shown[]; };  // below 0: nothing to tell
@@ -55,9 +57,12 @@ bool done = false;
 vec3 last = vec3(0.0);  // the pixel's colour in the last frame, background included
 
 // The most that a splat's alpha counts for in any pixel: T, times its contrast (METHOD 5, squared). A maximum in shared
-// memory, and one a tile in the buffer, cost little beside the blend.
+// memory, and one a tile in the buffer, cost little beside the blend. Or what it counts for in all pixels together, as a
+// whole number, so that the order of the additions does not matter.
 void measure(uint at, float alpha) {
-#if RECORDS
+#if WEIGHS
+  atomicAdd(batch_measured[at], uint(alpha * transmittance * float(WEIGHT_SCALE) + 0.5));
+#elif RECORDS
   float contrast = 1.0;
 #if CONTRAST != CONTRAST_OFF
   vec3 other = last;
@@ -71,6 +76,16 @@ void measure(uint at, float alpha) {
   atomicMax(batch_measured[at], floatBitsToUint(transmittance * contrast));
 #endif
 }
+
+// What a tile measured of a splat, to the buffer.
+#if WEIGHS
+void pass_on(uint splat, uint sum) {
+  uint before = atomicAdd(measured[2u * splat], sum);
+  if (before + sum < before) atomicAdd(measured[2u * splat + 1u], 1u);
+}
+#elif RECORDS
+void pass_on(uint splat, uint most) { atomicMax(measured[splat], most); }
+#endif
 
 void blend(uint at) {
   vec4 geometry = batch_geometry[at];
@@ -101,7 +116,7 @@ void blend(uint at) {
 void load(uint at, uint end) {
   uint self = gl_LocalInvocationIndex;
   if (self >= BATCH) return;
-#if RECORDS
+#if RECORDS || WEIGHS
   batch_measured[self] = 0u;
 #endif
   if (at < end) {
@@ -167,9 +182,9 @@ void main() {
     }
     cut = cut || (!done && next < size);
     barrier();
-#if RECORDS
+#if RECORDS || WEIGHS
     uint self = gl_LocalInvocationIndex;
-    if (self < size && batch_measured[self] != 0u) atomicMax(measured[values[batch + self]], batch_measured[self]);
+    if (self < size && batch_measured[self] != 0u) pass_on(values[batch + self], batch_measured[self]);
 #endif
   }
   if (cut || (!done && batch < end)) atomicAdd(counters.loop_cut, 1u);

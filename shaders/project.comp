@@ -16,8 +16,8 @@ layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
 layout(std430, binding = 5) writeonly buffer Splats { Splat splats[]; };          // (view, slot)
 layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
-#if RECORDS
-layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), bits of floats
+#if RECORDS || WEIGHS
+layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), of one word or two
 #endif
 uniform uint view_begin;
 uniform uint view_end;
@@ -43,7 +43,10 @@ void main() {
       tiles = tile_count(splat, view);
     }
     tile_counts[v * slots + slot] = tiles;
-#if RECORDS
+#if WEIGHS
+    measured[2u * (v * slots + slot)] = 0u;
+    measured[2u * (v * slots + slot) + 1u] = 0u;
+#elif RECORDS
     measured[v * slots + slot] = 0u;
 #endif
     if (tiles > 0u) {

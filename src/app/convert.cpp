@@ -9,12 +9,12 @@
 
 #include "app/command.h"
 #include "app/drawing.h"
+#include "app/model_files.h"
 #include "app/open_scene.h"
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/model_file.h"
-#include "formats/scaffold_file.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
 #include "scene/axes.h"
@@ -65,32 +65,14 @@ ModelFormat format_of(const ConvertOptions& o) {
     const auto* named = std::find(std::begin(model_format_names), std::end(model_format_names), o.to);
     return static_cast<ModelFormat>(named - std::begin(model_format_names));
   }
-  const auto format = model_format_of(o.output);
-  if (!format) {
-    fail(
-        "-o {}: its ending names no format that can be written: .ply, .compressed.ply, .splat or .spz; or "
-        "say "
-        "--to",
-        o.output);
-  }
-  return *format;
-}
-
-/// The file that is read, where the model is one.
-fs::path input_file(const ConvertOptions& o) {
-  std::error_code ignored;
-  if (!fs::is_directory(o.render.scene, ignored)) return o.render.scene;
-  return find_point_cloud(o.render.scene).value_or("");
+  return output_format(o.output, "; or say --to");
 }
 
 void check(const ConvertOptions& o, ModelFormat format) {
-  check_output(o.output);
+  check_model_output(o.output, o.render.scene);
   if (o.harmonic_bits && format != ModelFormat::spz)
     fail("--sh-bits {}: only spz has a choice of them", *o.harmonic_bits);
   if (!o.json.empty()) check_output(o.json);
-  std::error_code ignored;
-  if (fs::equivalent(input_file(o), o.output, ignored))
-    fail("-o {} is the model itself, which would be lost; name another file", o.output);
   if (!o.report && (o.render.size || !o.render.cameras.empty() || !o.render.views.empty()))
     fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
 }
@@ -146,18 +128,6 @@ std::vector<ViewCost> compare(const ConvertOptions& o, const Views& views, const
         {shots[i].name, pictures[i].width, pictures[i].height, measure::psnr(originals[i], pictures[i])});
   }
   return costs;
-}
-
-std::vector<std::string> write(const ConvertOptions& o, const Model& model, ModelFormat format) {
-  OutputFile file(o.output);
-  std::vector<std::string> losses;
-  {
-    const Unfinished unfinished(file.path());
-    losses = write_model(file, model, format, o.harmonic_bits.value_or(8));
-  }
-  const Uninterrupted hold;
-  file.commit();
-  return losses;
 }
 
 const ViewCost& worst_of(const std::vector<ViewCost>& views) {
@@ -216,11 +186,7 @@ ExitCode convert(ConvertOptions o) {
   const Scene scene = open_scene(o.render);
   const CameraList list = o.report ? listed_cameras(o.render, scene.cameras) : CameraList{};
   Model model = scene.model();
-  if (model.scaffold) {
-    fail(
-        "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no other format can hold it",
-        o.render.scene);
-  }
+  refuse_scaffold(model, o.render.scene);
   Views views;
   std::vector<Image> originals;
   if (o.report) {
@@ -234,7 +200,7 @@ ExitCode convert(ConvertOptions o) {
              model_format_names[static_cast<int>(done.format)]);
   bring_into_axes(model, wanted);
   done.count = model.count();
-  done.losses = write(o, model, done.format);
+  done.losses = write_model_file(o.output, model, done.format, o.harmonic_bits.value_or(8));
   for (const std::string& loss : done.losses) log_warning("{}", loss);
   std::error_code ignored;
   if (fs::is_regular_file(o.render.scene, ignored)) done.bytes_before = fs::file_size(o.render.scene);

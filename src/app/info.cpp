@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <numeric>
 
 #include "app/command.h"
+#include "app/drawing.h"
 #include "app/render_report.h"
+#include "app/shots.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
@@ -16,6 +20,7 @@
 #include "scene/framing.h"
 #include "scene/summary.h"
 #include "stereo/rig.h"
+#include "study/weights.h"
 
 namespace binosplat::app {
 
@@ -24,10 +29,38 @@ namespace {
 using nlohmann::ordered_json;
 
 struct InfoOptions {
-  std::string model;
-  std::optional<int> lod;
+  RenderOptions render;  // scene, lod, cameras, device
   std::string json;
 };
+
+/// What the model's Gaussians are worth in views of it.
+struct Seen {
+  std::size_t views = 0;
+  std::size_t unseen = 0;   // Gaussians that touch no pixel
+  std::size_t most_of = 0;  // Gaussians of the largest weights, which together have 99 % of all
+};
+
+std::optional<Seen> see(const RenderOptions& options, const Model& model) {
+  if (options.cameras.empty()) return std::nullopt;
+  if (model.scaffold)
+    fail("--cameras: {} is a Scaffold-GS model, which makes its Gaussians anew for each eye", options.scene);
+  RenderOptions render = options;
+  render.mono = true;
+  render.views = {"all"};
+  const CameraList list = listed_cameras(render, {});
+  const double near_plane = near_plane_of(render, list, model);
+  std::vector<Camera> cameras;
+  for (const Shot& shot : make_shots(render, list, near_plane, model.axes))
+    cameras.push_back(shot.eyes.front().camera);
+  const auto context = open_context(render);
+  study::Weights weights = study::weigh(*context, model, cameras, near_plane);
+  std::vector<double>& weight = weights.weight;
+  Seen seen{cameras.size(), weights.unseen(), 0};
+  std::sort(weight.begin(), weight.end(), std::greater<>());
+  double left = 0.99 * std::accumulate(weight.begin(), weight.end(), 0.0);
+  while (left > 0.0 && seen.most_of < weight.size()) left -= weight[seen.most_of++];
+  return seen;
+}
 
 /// Where the three axes point in the cameras' world, in words.
 std::string axes_in_words(const Model& model) {
@@ -78,6 +111,17 @@ void print_sizes(const Model& model) {
   fmt::print("{:<14} ply {}, compressed ply {}, .splat {}{}, spz at most {}\n", "as a file",
              size(ModelFormat::ply), size(ModelFormat::compressed_ply), size(ModelFormat::splat),
              model.degree > 0 ? " (without harmonics)" : "", size(ModelFormat::spz));
+}
+
+void print(const Seen& seen, std::size_t all) {
+  const auto share = [&](std::size_t count) {
+    return 100.0 * static_cast<double>(count) / static_cast<double>(all);
+  };
+  fmt::print(
+      "\n{:.0f} % of the Gaussians ({}) never touch a pixel in these {} views; {:.0f} % ({}) make up 99 % of "
+      "the pictures\n{}\n",
+      share(seen.unseen), seen.unseen, seen.views, share(seen.most_of), seen.most_of,
+      "`binosplat trim` writes the smallest model that keeps them");
 }
 
 void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
@@ -157,11 +201,19 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
 
 ExitCode info(const InfoOptions& options) {
   if (!options.json.empty()) check_output(options.json);
-  const Model model = load_model(options.model, {.lod = options.lod});
+  const Model model = load_model(options.render.scene, {.lod = options.render.lod});
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
+  const std::optional<Seen> seen = see(options.render, model);
   print(model, summary, needs);
-  if (!options.json.empty()) save_json(options.json, to_json(model, summary, needs));
+  if (seen) print(*seen, model.count());
+  if (options.json.empty()) return ExitCode::done;
+  ordered_json json = to_json(model, summary, needs);
+  if (seen) {
+    json["views"] = {
+        {"count", seen->views}, {"unseen", seen->unseen}, {"gaussians_of_99_percent", seen->most_of}};
+  }
+  save_json(options.json, json);
   return ExitCode::done;
 }
 
@@ -170,11 +222,14 @@ ExitCode info(const InfoOptions& options) {
 void add_info(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("info", "Say what a model is made of");
   const auto options = std::make_shared<InfoOptions>();
-  sub->add_option("MODEL", options->model, "A model file, or the folder of a SOG or of Scaffold-GS")
+  sub->add_option("MODEL", options->render.scene, "A model file, or the folder of a SOG or of Scaffold-GS")
       ->required();
-  sub->add_option("--lod", options->lod, "Level of detail of a streamed SOG, 0 the finest")
+  sub->add_option("--lod", options->render.lod, "Level of detail of a streamed SOG, 0 the finest")
       ->check(CLI::Range(0, 100).description(""))
       ->type_name("N");
+  sub->add_option("--cameras", options->render.cameras,
+                  "Draw the views of these cameras, and say how many Gaussians they show")
+      ->type_name("FILE");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
   sub->footer(
       "Odd ones: never visible: opacity below 1/255; flat, needles: a hundred times thinner or longer than "

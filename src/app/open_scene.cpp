@@ -28,7 +28,7 @@ Scene open_once(const RenderOptions& options) {
          demo_city_name);
   }
   return {{}, [&options] {
-            Model model = load_model(options.scene, {.lod = options.lod, .appearance = options.appearance});
+            Model model = load_model(options.scene, {options.lod, options.appearance, options.budget});
             if (!options.axes.empty()) model.axes = options.axes;
             if (model.antialiased && !options.antialias)
               log_info("{} was trained with anti-aliasing and is drawn so (--no-antialias: as if not)",

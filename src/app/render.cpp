@@ -7,6 +7,7 @@
 
 #include "app/calibrated.h"
 #include "app/command.h"
+#include "app/detail.h"
 #include "app/drawing.h"
 #include "app/open_scene.h"
 #include "app/photos.h"
@@ -155,6 +156,7 @@ ExitCode render(RenderOptions options) {
   if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
   CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
   options.photos = photos_folder(options, list);
+  if (options.gpu_memory) options.budget = detail_budget(options, list);
   const Model model = scene.model();
   log_model(options, model);
   if (!list.listed) list = made_up_cameras(options, model);

@@ -60,8 +60,13 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
-  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || o.appearance || !o.axes.empty())) {
-    const char* const option = o.lod ? "--lod" : o.appearance ? "--appearance" : "--axes";
+  if (o.lod && o.gpu_memory)
+    fail("--lod and --gpu-memory both choose the levels of detail: leave one of them out");
+  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || o.gpu_memory || o.appearance || !o.axes.empty())) {
+    const char* const option = o.lod          ? "--lod"
+                               : o.gpu_memory ? "--gpu-memory"
+                               : o.appearance ? "--appearance"
+                                              : "--axes";
     fail("{} is for model files, and {} is none", option, o.scene);
   }
   if (o.repeat.has_value() != o.spacing.has_value())

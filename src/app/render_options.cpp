@@ -381,6 +381,12 @@ void add_view_options(CLI::App& sub, RenderOptions& options) {
 void add_options(CLI::App& sub, RenderOptions& options) {
   add_scene_name(sub, options);
   add_scene(sub, options);
+  sub.add_option(
+         "--gpu-memory", options.gpu_memory,
+         "Of a streamed SOG instead: the finest levels, near the cameras first,\nthat fit in so many MB")
+      ->type_name("MB")
+      ->check(positive)
+      ->group("Scene");
   add_cameras(sub, options);
   add_rig(sub, options);
   add_frame(sub, options);

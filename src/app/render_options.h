@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "formats/detail.h"
 #include "formats/pose_file.h"
 #include "shared/limits.h"
 
@@ -20,8 +21,10 @@ constexpr const char* photos_beside = "beside";
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 
-  std::optional<int> lod;  // of a model file that has levels of detail
-  std::string axes;        // where a model file's x, y and z point; empty: what its format says
+  std::optional<int> lod;              // of a model file that has levels of detail
+  std::optional<double> gpu_memory;    // MB, which levels are chosen to fit; instead of lod
+  std::optional<DetailBudget> budget;  // what it comes to, once the views are known
+  std::string axes;                    // where a model file's x, y and z point; empty: what its format says
   std::optional<std::size_t> appearance;  // of a Scaffold-GS model
 
   // Of scenes that the program makes, and how often a scene is repeated.

@@ -49,6 +49,10 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 
 void OutputFile::write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
+void OutputFile::flush() {
+  if (std::fflush(file_) != 0) fail_to_write();
+}
+
 void OutputFile::commit() {
   // What is buffered may find the disk full only now.
   std::FILE* file = file_;

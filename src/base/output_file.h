@@ -30,6 +30,10 @@ class OutputFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
+  /// What was written so far is in the temporary file, for those who want to read it before it is committed,
+  /// or instead. Throws Error as write() does.
+  void flush();
+
   /// Flushes, closes and renames to the target, replacing what stood there. Throws Error where any of it
   /// fails; then the target is as it was.
   void commit();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "formats/detail.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -11,7 +12,8 @@ namespace binosplat {
 struct ModelOptions {
   std::optional<int> lod;  // the level of detail of a model that has several; 0 is the finest
   std::optional<std::size_t>
-      appearance;  // of a Scaffold-GS model that has several; the first if none is named
+      appearance;                      // of a Scaffold-GS model that has several; the first if none is named
+  std::optional<DetailBudget> budget;  // instead of `lod`
 };
 
 /// Reads a trained model: INRIA's ply and PlayCanvas' compressed one (formats/ply.h), Scaffold-GS's with the

@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
+#include "formats/detail.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -23,9 +24,10 @@ Model load_sog(const std::filesystem::path& archive);
 
 /// Reads one level of detail of a streamed SOG, 0 being the finest, and the environment, which belongs to
 /// every level. Without `lod`: the finest of which all files are there, which is said where it is not 0.
-/// Gaussians come in the order of the files and of the Gaussians in them. Throws Error as above, and for a
-/// level that there is not.
+/// With a `budget`, which counts then, each leaf of the tree has a level of its own (formats/detail.h), among
+/// those whose files are there. Gaussians come in the order of the files and of the Gaussians in them. Throws
+/// Error as above, and for a level that there is not.
 Model load_streamed_sog(const std::filesystem::path& lod_meta, const nlohmann::json& root,
-                        std::optional<int> lod);
+                        std::optional<int> lod, const std::optional<DetailBudget>& budget = {});
 
 }  // namespace binosplat

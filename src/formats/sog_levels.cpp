@@ -1,6 +1,7 @@
 // Streamed SOG: levels of detail from several SOG folders.
 
 #include <algorithm>
+#include <functional>
 #include <mutex>
 #include <set>
 
@@ -43,21 +44,42 @@ class Levels {
   const std::vector<fs::path>& files() const { return files_; }
   const std::optional<fs::path>& environment() const { return environment_; }
 
-  /// For each file what a level takes of it, in order; slots are not set.
-  std::vector<Ranges> ranges(int level) const {
+  /// For each file what is taken of it, in order, where the tree's leaf number i has level_of(i); slots are
+  /// not set.
+  std::vector<Ranges> ranges(const std::function<int(std::size_t leaf)>& level_of) const {
     std::vector<Ranges> result(files_.size());
-    const std::string key = std::to_string(level);
-    std::vector<std::pair<JsonValue, int>> nodes{{root_.at("tree"), 0}};
-    while (!nodes.empty()) {
-      const auto [node, depth] = nodes.back();
-      nodes.pop_back();
-      if (node.has("lods") && node.at("lods").has(key)) add(node.at("lods").at(key), result);
-      if (!node.has("children")) continue;
-      if (depth == deepest) fail("{}: the tree is nested more than {} deep", root_.source(), deepest);
-      const JsonValue children = node.at("children");
-      for (std::size_t i = children.size(); i-- > 0;) nodes.emplace_back(children.at(i), depth + 1);
-    }
+    std::size_t leaf = 0;
+    walk([&](const JsonValue& node) {
+      const JsonValue lods = node.at("lods");
+      const std::string key = std::to_string(level_of(leaf++));
+      if (!lods.has(key)) return;
+      const auto [index, range] = part(lods.at(key));
+      if (range.count > 0) result[index].push_back(range);
+    });
     for (std::size_t i = 0; i < result.size(); ++i) sort(result[i], i);
+    return result;
+  }
+  std::vector<Ranges> ranges(int level) const {
+    return ranges([level](std::size_t) { return level; });
+  }
+
+  /// The tree's leaves, with the levels whose files are there.
+  std::vector<DetailPart> leaves() const {
+    std::vector<bool> there;
+    std::error_code ignored;
+    for (const fs::path& file : files_) there.push_back(fs::is_regular_file(file, ignored));
+    std::vector<DetailPart> result;
+    walk([&](const JsonValue& node) {
+      const JsonValue bound = node.at("bound"), lods = node.at("lods");
+      DetailPart leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
+      for (int level = 0; level < count_; ++level) {
+        const std::string key = std::to_string(level);
+        if (!lods.has(key)) continue;
+        const auto [index, range] = part(lods.at(key));
+        if (there[index]) leaf.levels.push_back({level, range.count});
+      }
+      result.push_back(std::move(leaf));
+    });
     return result;
   }
 
@@ -79,15 +101,33 @@ class Levels {
     return folder_ / name;
   }
 
-  void add(const JsonValue& lod, std::vector<Ranges>& result) const {
+  /// Calls see(node) for every node of the tree that has Gaussians, always in one order.
+  void walk(const std::function<void(const JsonValue&)>& see) const {
+    std::vector<std::pair<JsonValue, int>> nodes{{root_.at("tree"), 0}};
+    while (!nodes.empty()) {
+      const auto [node, depth] = nodes.back();
+      nodes.pop_back();
+      if (node.has("lods")) see(node);
+      if (!node.has("children")) continue;
+      if (depth == deepest) fail("{}: the tree is nested more than {} deep", root_.source(), deepest);
+      const JsonValue children = node.at("children");
+      for (std::size_t i = children.size(); i-- > 0;) nodes.emplace_back(children.at(i), depth + 1);
+    }
+  }
+
+  static glm::dvec3 corner(const JsonValue& value) {
+    const JsonValue three = value.list_of(3);
+    return {three.at(0).number(), three.at(1).number(), three.at(2).number()};
+  }
+
+  /// Which file a leaf's level lies in, and where.
+  std::pair<std::size_t, SogSource::Range> part(const JsonValue& lod) const {
     const std::uint64_t index = lod.at("file").whole(most_gaussians);
     if (index >= files_.size()) {
       lod.at("file").fail_here("there is no file {}: 'filenames' has {}, counted from 0", index,
                                files_.size());
     }
-    const SogSource::Range range{lod.at("offset").whole(most_gaussians),
-                                 lod.at("count").whole(most_gaussians), 0};
-    if (range.count > 0) result[index].push_back(range);
+    return {index, {lod.at("offset").whole(most_gaussians), lod.at("count").whole(most_gaussians), 0}};
   }
 
   void sort(Ranges& ranges, std::size_t index) const {
@@ -118,9 +158,9 @@ SogSource open_part(const fs::path& path) {
   return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
 }
 
-std::vector<Part> open_parts(const fs::path& lod_meta, const Levels& levels, int level) {
+std::vector<Part> open_parts(const fs::path& lod_meta, const Levels& levels,
+                             const std::vector<Ranges>& wanted) {
   std::vector<Part> parts;
-  const std::vector<Ranges> wanted = levels.ranges(level);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i].empty()) continue;
     parts.push_back({open_part(levels.files()[i]), wanted[i]});
@@ -166,15 +206,66 @@ int choose(const fs::path& path, const Levels& levels, std::optional<int> lod) {
   return level;
 }
 
+/// What is taken of each file, and what to call it.
+struct Choice {
+  std::vector<Ranges> wanted;
+  std::string name;
+};
+
+/// A level for each leaf, so that they fit.
+Choice choose(const fs::path& path, const Levels& levels, const DetailBudget& budget) {
+  const std::vector<DetailPart> leaves = levels.leaves();
+  const auto whole =
+      std::find_if(leaves.begin(), leaves.end(), [](const auto& l) { return !l.levels.empty(); });
+  if (whole == leaves.end()) fail("{}: none of its levels of detail is there: fetch one", path.string());
+  std::error_code ignored;
+  const auto there = std::find_if(levels.files().begin(), levels.files().end(),
+                                  [&](const fs::path& file) { return fs::is_regular_file(file, ignored); });
+  std::size_t most = budget.gaussians(open_part(*there).degree());
+  const std::size_t around = levels.environment() ? open_part(*levels.environment()).count() : 0;
+  most -= std::min(most, around);
+  const std::vector<std::size_t> chosen = choose_levels(leaves, budget.eyes, most);
+  std::vector<std::size_t> of_level(static_cast<std::size_t>(levels.count()), 0);
+  std::size_t total = 0;
+  std::vector<int> numbers(leaves.size(), -1);  // no level has that number
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (leaves[i].levels.empty()) continue;
+    const DetailPart::Level& level = leaves[i].levels[chosen[i]];
+    numbers[i] = level.number;
+    of_level[static_cast<std::size_t>(level.number)] += level.count;
+    total += level.count;
+  }
+  if (total > most)
+    log_warning("{}: even its coarsest levels of detail have {} Gaussians, and there is room for {}",
+                path.string(), total, most);
+  std::string parts;
+  for (std::size_t level = 0; level < of_level.size(); ++level) {
+    if (of_level[level] > 0)
+      parts += fmt::format("{}{} Gaussians of level {}", parts.empty() ? "" : ", ", of_level[level], level);
+  }
+  log_info("{}: {}", path.string(), parts);
+  return {levels.ranges([&](std::size_t leaf) { return numbers[leaf]; }),
+          fmt::format("streamed SOG, levels chosen of {}", levels.count())};
+}
+
+/// One level for all.
+Choice choose_one(const fs::path& path, const Levels& levels, std::optional<int> lod) {
+  const int level = choose(path, levels, lod);
+  log_info("{}: level of detail {} of {}", path.string(), level, levels.count());
+  return {levels.ranges([&](std::size_t) { return level; }),
+          fmt::format("streamed SOG, level {} of {}", level, levels.count())};
+}
+
 }  // namespace
 
-Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod) {
+Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod,
+                        const std::optional<DetailBudget>& budget) {
   const Levels levels(lod_meta, root);
-  const int level = choose(lod_meta, levels, lod);
-  std::vector<Part> parts = open_parts(lod_meta, levels, level);
+  const Choice choice = budget ? choose(lod_meta, levels, *budget) : choose_one(lod_meta, levels, lod);
+  std::vector<Part> parts = open_parts(lod_meta, levels, choice.wanted);
   Model model;
   model.name = lod_meta.filename().string();
-  model.format = fmt::format("streamed SOG, level {} of {}", level, levels.count());
+  model.format = choice.name;
   std::size_t total = 0;
   for (Part& part : parts) {
     model.degree = std::max(model.degree, part.source.degree());
@@ -184,8 +275,7 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
       total += range.count;
     }
   }
-  if (total == 0) fail("{} holds no Gaussians at level {}", lod_meta.string(), level);
-  log_info("{}: level of detail {} of {}", lod_meta.string(), level, levels.count());
+  if (total == 0) fail("{} holds no Gaussians ({})", lod_meta.string(), choice.name);
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
   Progress progress("reading " + lod_meta.string(), total);

@@ -41,11 +41,13 @@ double transmittance_by_contrast(const Blended& blended, const glm::dvec3& colou
   fail("contrast {}: expected one of shared/axes.h", contrast);
 }
 
-/// The largest value(what a pixel blends, the pixel in the end) of each Gaussian.
-template <typename Value>
-std::vector<double> largest_by_gaussian(const std::vector<Splat>& splats, const TileLists& lists,
-                                        const shared::View& view, const Value& value) {
-  // Each tile measures for its own pairs; the largest of a Gaussian's pairs is taken afterwards.
+/// Measures pixel by pixel, a tile for its own pairs; the pairs of a Gaussian are brought together
+/// afterwards, so that threads do not matter. `measure(of_pair, blended, final_colour)` changes what the pair
+/// has so far, `join(of_gaussian, of_pair)` what the Gaussian has, from `start` on.
+template <typename Measure, typename Join>
+std::vector<double> measure_pairs(const std::vector<Splat>& splats, const TileLists& lists,
+                                  const shared::View& view, const glm::dvec3& background, double start,
+                                  const Measure& measure, const Join& join) {
   std::vector<double> of_pairs(lists.pairs(), 0.0);
   tbb::parallel_for(std::size_t{0}, lists.begin.size() - 1, [&](std::size_t t) {
     const int size = static_cast<int>(lists.tile_size);
@@ -62,37 +64,47 @@ std::vector<double> largest_by_gaussian(const std::vector<Splat>& splats, const 
                           if (verdict == Verdict::blended) way.push_back({place, i, alpha, before});
                           ++place;
                         });
-        for (const Blended& blended : way) {
-          double& largest = of_pairs[lists.begin[t] + blended.place];
-          largest = std::max(largest, value(blended, sum));
-        }
+        const glm::dvec3 final_colour = sum.colour + sum.transmittance * background;
+        for (const Blended& blended : way)
+          measure(of_pairs[lists.begin[t] + blended.place], blended, final_colour);
       }
     }
   });
-  std::vector<double> result(splats.size(), not_seen);
-  for (std::size_t pair = 0; pair < lists.pairs(); ++pair) {
-    double& largest = result[lists.gaussians[pair]];
-    largest = std::max(largest, of_pairs[pair]);
-  }
+  std::vector<double> result(splats.size(), start);
+  for (std::size_t pair = 0; pair < lists.pairs(); ++pair)
+    join(result[lists.gaussians[pair]], of_pairs[pair]);
   return result;
 }
+
+void keep_largest(double& largest, double value) { largest = std::max(largest, value); }
 
 }  // namespace
 
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view, int contrast,
                                           const glm::dvec3& background) {
-  return largest_by_gaussian(splats, lists, view, [&](const Blended& blended, const PixelSum& sum) {
-    return transmittance_by_contrast(blended, splats[blended.gaussian].colour,
-                                     sum.colour + sum.transmittance * background, contrast);
-  });
+  const auto measure = [&](double& largest, const Blended& blended, const glm::dvec3& final_colour) {
+    keep_largest(largest,
+                 transmittance_by_contrast(blended, splats[blended.gaussian].colour, final_colour, contrast));
+  };
+  return measure_pairs(splats, lists, view, background, not_seen, measure, keep_largest);
 }
 
 std::vector<double> measure_contributions(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view) {
-  return largest_by_gaussian(splats, lists, view, [](const Blended& blended, const PixelSum&) {
-    return blended.alpha * blended.before.transmittance;
-  });
+  const auto measure = [](double& largest, const Blended& blended, const glm::dvec3&) {
+    keep_largest(largest, blended.alpha * blended.before.transmittance);
+  };
+  return measure_pairs(splats, lists, view, glm::dvec3(0.0), not_seen, measure, keep_largest);
+}
+
+std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
+                                    const shared::View& view) {
+  const auto measure = [](double& sum, const Blended& blended, const glm::dvec3&) {
+    sum += blended.alpha * blended.before.transmittance;
+  };
+  const auto join = [](double& sum, double more) { sum += more; };
+  return measure_pairs(splats, lists, view, glm::dvec3(0.0), 0.0, measure, join);
 }
 
 std::vector<double> floored(std::vector<double> measured, double floor) {

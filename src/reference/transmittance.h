@@ -27,6 +27,10 @@ std::vector<double> measure_transmittance(const std::vector<Splat>& splats, cons
 std::vector<double> measure_contributions(const std::vector<Splat>& splats, const TileLists& lists,
                                           const shared::View& view);
 
+/// For each Gaussian its blending weight alpha * T, summed over the pixels that blend it; 0 where none does.
+std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
+                                    const shared::View& view);
+
 /// A measurement as set_thresholds() takes it: at least `floor`, and 1 where the Gaussian was not seen.
 std::vector<double> floored(std::vector<double> measured, double floor);
 

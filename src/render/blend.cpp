@@ -29,23 +29,24 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
 }
 
 // The tile test is no part of this program: with every test the same lists give the same bits.
-gl::Defines defines_of(const FrameShape& shape, bool records, int contrast) {
+gl::Defines defines_of(const FrameShape& shape, bool records, bool weighs, int contrast) {
   return {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
           {"RECORDS", records ? "1" : "0"},
+          {"WEIGHS", weighs ? "1" : "0"},
           {"CONTRAST", std::to_string(contrast)}};
 }
 
 }  // namespace
 
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  run(dispatcher, shape, buffers, defines_of(shape, shape.records, shape.settings.contrast),
-      buffers.measured);
+  run(dispatcher, shape, buffers,
+      defines_of(shape, shape.records, shape.settings.weigh, shape.settings.contrast), buffers.measured);
 }
 
 void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what) {
   buffers.shown.reserve(shape.pixel_count * 4);
   const auto with = [&](bool records, int show) {
-    gl::Defines defines = defines_of(shape, records, CONTRAST_OFF);
+    gl::Defines defines = defines_of(shape, records, false, CONTRAST_OFF);
     defines.emplace_back("SHOW", std::to_string(show));
     run(dispatcher, shape, buffers, defines, buffers.shown_light);
   };

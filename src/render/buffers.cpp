@@ -176,6 +176,7 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) 
     upper_next->reserve(gaussians * shape.asked * 4);
     measured.reserve(slots * shape.view_count() * 4);
   }
+  if (shape.settings.weigh) measured.reserve(slots * shape.view_count() * 8);
   order.reserve(slots);
   pair_offsets.reserve(slots * 4);
   splats.reserve(slots * shape.view_count() * static_cast<std::int64_t>(sizeof(shared::Splat)));

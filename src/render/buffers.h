@@ -89,7 +89,7 @@ struct FrameBuffers {
   // while the last frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> upper;
   std::unique_ptr<gl::Buffer> upper_next;
-  gl::Buffer measured;     // uint (view, slot), bits of the largest float
+  gl::Buffer measured;     // uint (view, slot), bits of the largest float; two, low first, where weighed
   gl::Buffer depth_table;  // float by bin
 
   // Of all views.

@@ -201,22 +201,38 @@ std::vector<Image> Frame::read_shown(int what) {
   return images;
 }
 
-std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
-  if (!shape_.records) return {};
-  const shared::View& view = shape_.views.at(v);
-  const DrawnBuffers& drawn = *buffers_.drawn[view.order_group];
+// What was measured in a view, a T a slot: take(Gaussian, T) of those drawn.
+template <typename T, typename Take>
+void Frame::read_drawn(std::uint32_t v, const Take& take) const {
+  const DrawnBuffers& drawn = *buffers_.drawn[shape_.views.at(v).order_group];
   const auto count = drawn.amounts.read<shared::Amount>(1).front().count;
   const auto indices = drawn.indices.read<std::uint32_t>(count);
   const std::size_t first = std::size_t{v} * shape_.slots;
   const auto tiles = buffers_.tile_counts.read<std::uint32_t>(count, first);
-  const auto most = buffers_.measured.read<float>(count, first);
-  std::vector<MeasuredGaussian> measured;
+  const auto measured = buffers_.measured.read<T>(count, first);
   for (std::size_t slot = 0; slot < count; ++slot) {
-    if (tiles[slot] == 0) continue;
-    const glm::vec3 p = model_.position[indices[slot]] - glm::vec3(view.anchor);
-    measured.push_back({indices[slot], glm::dot(glm::vec3(view.row_z), p) + view.row_z.w, most[slot]});
+    if (tiles[slot] != 0) take(indices[slot], measured[slot]);
   }
+}
+
+std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
+  if (!shape_.records) return {};
+  const shared::View& view = shape_.views.at(v);
+  std::vector<MeasuredGaussian> measured;
+  read_drawn<float>(v, [&](std::uint32_t i, float most) {
+    const glm::vec3 p = model_.position[i] - glm::vec3(view.anchor);
+    measured.push_back({i, glm::dot(glm::vec3(view.row_z), p) + view.row_z.w, most});
+  });
   return measured;
+}
+
+std::vector<WeighedGaussian> Frame::read_weights(std::uint32_t v) const {
+  if (!shape_.settings.weigh) return {};
+  std::vector<WeighedGaussian> weights;
+  read_drawn<std::uint64_t>(v, [&](std::uint32_t i, std::uint64_t steps) {
+    weights.push_back({i, static_cast<double>(steps) / WEIGHT_SCALE});
+  });
+  return weights;
 }
 
 }  // namespace binosplat::render

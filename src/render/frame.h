@@ -39,6 +39,12 @@ struct MeasuredGaussian {
   float transmittance = 0.0f;  // max(T), or W with contrast, not floored; 0 where no pixel blends it
 };
 
+/// A Gaussian that a frame drew in a view, and how much of the picture it is.
+struct WeighedGaussian {
+  std::uint32_t index = 0;  // in the model
+  double weight = 0.0;      // alpha * T summed over the pixels, px; 0 exactly where no pixel blends it
+};
+
 class Frame {
  public:
   /// Uploads the model; it must outlive the frame, and the context must be current in every call.
@@ -65,6 +71,10 @@ class Frame {
   /// Throws Error after a frame with --reference-until blend, whose lists never get to the GPU.
   std::vector<Image> read_shown(int what);
 
+  /// What the last frame's view `v` shows of each Gaussian drawn, in index order; none without
+  /// settings.weigh. Whole multiples of 1 / WEIGHT_SCALE, each pixel's to the nearest: the same bits always.
+  std::vector<WeighedGaussian> read_weights(std::uint32_t v) const;
+
   /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with
   /// --reference-until blend, whose pictures never get there.
   const gl::Buffer& colours() const { return buffers_.colours; }
@@ -75,6 +85,8 @@ class Frame {
   shared::Counters draw_once(FrameReport& report);
   void grow(const shared::Counters& counters);
   void decide_measuring();
+  template <typename T, typename Take>
+  void read_drawn(std::uint32_t v, const Take& take) const;
   void keep_measurements(const shared::Counters& counters, FrameReport& report);
 
   gl::Dispatcher dispatcher_;

@@ -47,6 +47,9 @@ struct FrameSettings {
   /// (loss_control.h). A view has so many strips; with 1 a whole view is drawn twice.
   float quality = 0.0f;
   int probe_strips = 16;
+  /// The frame sums the weight alpha * T of each Gaussian over the pixels, for Frame::read_weights; the
+  /// pictures are the same. Not with a measured transmittance.
+  bool weigh = false;
   int decode = DECODE_EYES;  // DECODE_; of Scaffold-GS only, cyclopean for views in pairs as above
   bool anchor_cull = true;   // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
   /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had

@@ -37,6 +37,9 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   if (s.contrast != CONTRAST_OFF && !measures(s.transmittance)) {
     fail("--contrast {}: only with a measured --transmittance", contrast_choices[s.contrast].name);
   }
+  if (s.weigh && measures(s.transmittance)) {
+    fail("--transmittance {}: not in a frame that weighs", transmittance_choices[s.transmittance].name);
+  }
   if (s.decode != DECODE_EYES && views % 2 != 0) {
     fail("--decode {}: only for both eyes together", decode_choices[s.decode].name);
   }
@@ -118,6 +121,10 @@ void limit_keys(FrameShape& shape, const Bounds& box) {
   }
 }
 
+std::uint32_t starting_slots(std::uint32_t gaussians) {
+  return std::max(gaussians / 2, std::min(gaussians, slots_start));
+}
+
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
                       const std::optional<Probe>& probe) {
   if (views.empty() || views.size() > MAX_VIEWS)
@@ -137,11 +144,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
     shape.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
     shape.anchor_bytes = anchor_bytes(*model.scaffold);
   }
-  // Of a small model all may be in view; of a large one hardly ever, and what is missing is grown. The
-  // reference's results need all the room they take at once.
-  const std::uint32_t half = shape.gaussian_count / 2;
-  const std::uint32_t start = std::max(half, std::min(shape.gaussian_count, slots_start));
-  shape.slots = settings.reference_until ? shape.gaussian_count : start;
+  // The reference's results need all the room they take at once.
+  shape.slots = settings.reference_until ? shape.gaussian_count : starting_slots(shape.gaussian_count);
   shape.asked = static_cast<std::uint32_t>(views.size());
   for (const shared::View& view : views) add_view(shape, view);
   shape.probe = probe;

@@ -59,6 +59,10 @@ struct FrameShape {
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
 
+/// Room that a frame starts with for the Gaussians it draws: of a small model all may be in view; of a large
+/// one hardly ever, and what is missing is grown.
+std::uint32_t starting_slots(std::uint32_t gaussians);
+
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
 /// contradict each other or the views.
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,

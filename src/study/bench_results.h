@@ -17,11 +17,9 @@
 #include <vector>
 
 #include "study/page.h"
+#include "study/settings.h"
 
 namespace binosplat::study {
-
-/// Equal pictures have no PSNR; charts show them here.
-constexpr double equal_db = 100.0;
 
 /// Whether a point was measured without a problem.
 bool is_measured(const nlohmann::ordered_json& point);

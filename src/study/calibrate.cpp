@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/statistics.h"
 #include "measure/search.h"
+#include "scene/axes.h"
 #include "study/squared_error.h"
 
 namespace binosplat::study {
@@ -14,7 +16,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double equal_db = 100.0;  // an equal picture's, so that means exist
 // A search ends so near to its target: a drop is asked for in tenths of a dB, a quality in whole ones.
 constexpr double drop_tolerance_db = 0.01, quality_tolerance_db = 0.05;
 
@@ -47,7 +48,7 @@ struct Calibrator::Wanted {
 
 Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
                        double near_plane, CalibrationTarget::Kind kind)
-    : frame_(context, model), kind_(kind) {
+    : context_(context), frame_(context, model), kind_(kind) {
   if (views.empty()) fail("calibration needs at least one view");
   for (const CalibrationView& view : views) {
     const bool drop = kind == CalibrationTarget::Kind::drop;
@@ -56,29 +57,42 @@ Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vect
       fail("view {}: a drop in dB is against a photo in the view's size, and there is none",
            view.camera.name);
     names_.push_back(view.camera.name);
-    views_.push_back(make_view(view.camera, near_plane));
+    views_.push_back(make_view(into_axes(view.camera, model.axes), near_plane));
     const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
     const std::vector<Picture> wanted = drop ? std::vector{as_picture(*view.photo)} : frame_.read_pictures();
     wanted_.push_back(std::make_unique<Wanted>(context, wanted, drop ? 255u : 0u, pairs));
-    wanted_.back()->exact_db = psnr_of(squared_error(views_.size() - 1));
+    wanted_.back()->exact_db = psnr_of(wanted_.back()->error.mean(frame_.colours()));
   }
 }
 
 Calibrator::~Calibrator() = default;
 
-double Calibrator::squared_error(std::size_t view) { return wanted_[view]->error.mean(frame_.colours()); }
-
 Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
+  return cost(frame_, settings, render::measures(settings.transmittance) ? render::settling_frames : 1);
+}
+
+Calibrator::Cost Calibrator::cost(const Model& other, int drawings) {
+  render::Frame frame(context_, other);
+  return cost(frame, {}, drawings);
+}
+
+Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSettings& settings, int drawings) {
   Cost cost;
   const bool drop = kind_ == CalibrationTarget::Kind::drop;
   const auto count = static_cast<double>(views_.size());
   for (std::size_t v = 0; v < views_.size(); ++v) {
     // Each view starts like a first frame: what another view measured says nothing here.
-    if (render::measures(settings.transmittance)) frame_.forget();
+    if (render::measures(settings.transmittance)) frame.forget();
     render::FrameReport report;
-    const int frames = render::measures(settings.transmittance) ? render::settling_frames : 1;
-    for (int n = 0; n < frames; ++n) report = frame_.draw(std::span(&views_[v], 1), settings);
-    const double db = psnr_of(squared_error(v)), value = drop ? wanted_[v]->exact_db - db : db;
+    std::vector<double> ms;
+    for (int n = 0; n < drawings; ++n) {
+      report = frame.draw(std::span(&views_[v], 1), settings);
+      ms.push_back(report.total_ms);
+    }
+    cost.ms += quantile(std::move(ms), 0.5) / count;
+    cost.pairs += static_cast<double>(report.pairs) / count;
+    const double db = psnr_of(wanted_[v]->error.mean(frame.colours())),
+                 value = drop ? wanted_[v]->exact_db - db : db;
     const bool worse = drop ? value > cost.worst_db : value < cost.worst_db;
     if (v == 0 || worse) {
       cost.worst_db = value;

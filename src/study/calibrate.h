@@ -13,11 +13,12 @@
 #include "render/frame.h"
 #include "scene/camera.h"
 #include "study/calibration.h"
+#include "study/settings.h"
 
 namespace binosplat::study {
 
 struct CalibrationView {
-  Camera camera;
+  Camera camera;               // of the world (scene/axes.h)
   std::optional<Image> photo;  // RGB in the camera's size
 };
 
@@ -36,6 +37,8 @@ class Calibrator {
     std::size_t worst_view = 0;
     double pairs_removed = 0.0;   // share of the exact frame's pairs, mean over the views
     std::vector<double> view_db;  // by view
+    double pairs = 0.0;           // mean over the views
+    double ms = 0.0;              // GPU time of a frame, mean over the views
   };
 
   /// What settings cost; frames that go by measurements are drawn until those have settled.
@@ -46,6 +49,10 @@ class Calibrator {
   /// PSNR of the exact pictures against the photos, mean over the views; 100 without photos.
   double exact_photo_db() const;
 
+  /// What another model in the same axes costs in the place of this one, drawn exactly; of so many drawings
+  /// of a view the median time counts.
+  Cost cost(const Model& other, int drawings = 1);
+
   render::DepthTable depth_table(const measure::DepthTableSettings& settings = {});
 
   /// The largest loss that costs no more than the target: the mean over the views. The settings' own loss is
@@ -53,9 +60,10 @@ class Calibrator {
   CalibrationEntry find(render::FrameSettings settings, double target_db);
 
  private:
-  double squared_error(std::size_t view);  // of the last frame drawn, mean
+  Cost cost(render::Frame& frame, const render::FrameSettings& settings, int drawings);
 
   struct Wanted;
+  gl::Context& context_;
   render::Frame frame_;
   CalibrationTarget::Kind kind_;
   std::vector<std::string> names_;

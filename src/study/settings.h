@@ -9,6 +9,9 @@
 
 namespace binosplat::study {
 
+/// The PSNR in dB that means and charts take for equal pictures, which have none.
+constexpr double equal_db = 100.0;
+
 /// The number of a name of one of the lists of shared/axes.h. Throws Error, beginning with `place`, for a
 /// name that is not in it; the text lists those that are.
 int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices);

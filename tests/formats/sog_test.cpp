@@ -73,6 +73,44 @@ TEST(Sog, PartsOfLevelsAndTheEnvironment) {
   EXPECT_TRUE(equal(model, 495, coarse));
 }
 
+// Leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+TEST(Sog, LevelsThatFitABudget) {
+  REQUIRE_FIXTURES(folder);
+  const fs::path lod = folder / "sog/st-lod";
+  const Model fine = load_model(lod / "0_0"), coarse = load_model(lod / "1_0");
+  const auto load = [&](std::size_t most, const glm::dvec3& eye) {
+    const auto gaussians = [most](int degree) { return degree == 3 ? most : 0; };
+    return load_model(lod, {.budget = DetailBudget{gaussians, {eye}}});
+  };
+  EXPECT_TRUE(equal(load(1000, {0, 0, 0}), 0, fine));
+  EXPECT_TRUE(equal(load(250, {0, 0, 0}), 0, coarse));
+  // Beside the second leaf, the last in the files, and beside the first.
+  const Model last = load(450, {6, 0, 13});
+  ASSERT_EQ(last.count(), 120u + 65 + 248);
+  EXPECT_EQ(last.position[0], fine.position[752]);
+  EXPECT_EQ(last.position[248], coarse.position[0]);
+  EXPECT_EQ(last.opacity[432], coarse.opacity[184]);
+  const Model first = load(650, {-14, -1, 0});
+  ASSERT_EQ(first.count(), 505u + 65 + 65);
+  EXPECT_EQ(first.position[0], fine.position[0]);
+  EXPECT_EQ(first.position[505], coarse.position[120]);
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        load_model(lod / "0_0", {.budget = DetailBudget{[](int) { return 1; }, {}}});
+      },
+      {"--gpu-memory", "no levels of detail"}));
+  const Copy copy(lod);  // what is not there is not chosen
+  fs::remove_all(copy.path() / "0_0");
+  const auto all = [](int) { return std::size_t{5000}; };
+  EXPECT_TRUE(equal(load_model(copy.path(), {.budget = DetailBudget{all, {}}}), 0, coarse));
+  fs::remove_all(copy.path() / "1_0");
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        load_model(copy.path(), {.budget = DetailBudget{all, {}}});
+      },
+      {"lod-meta.json", "none of its levels of detail is there"}));
+}
+
 TEST(Sog, LevelsThatAreNotThere) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/playbot-streamed-cut");
@@ -259,7 +297,7 @@ TEST(SogErrors, Levels) {
   EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 1000000; }, {"key 'lodLevels'", "from 0 to 100"}));
   EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 0; }, {"key 'lodLevels'", "one level at least"}));
   EXPECT_TRUE(edited([](json& m) { m.erase("tree"); }, {"the key 'tree' is missing"}));
-  EXPECT_TRUE(edited([](json& m) { m["tree"].erase("children"); }, {"holds no Gaussians at level 0"}));
+  EXPECT_TRUE(edited([](json& m) { m["tree"].erase("children"); }, {"holds no Gaussians (streamed SOG, level 0 of 2)"}));
   std::string deep = R"({"lodLevels": 1, "filenames": [], "tree": )";
   for (int i = 0; i < 100000; ++i) deep += R"({"children":[)";
   for (int i = 0; i < 100000; ++i) deep += "]}";

@@ -43,6 +43,20 @@ TEST(Transmittance, LayersByHand) {
   expect(CONTRAST_FINAL, {0.2 * rms(0.8, 0.7, 0.25), rms(0.2, 0.3, 0.25), 0.4 * rms(0.3, 0.2, 0.25)});
 }
 
+TEST(Transmittance, WeightsByHand) {
+  const std::vector<Splat> splats = {coloured(3, 0.5, {0.0, 1.0, 0.5}, wall),
+                                     coloured(1, 0.6, {1.0, 0.0, 0.0}, wall),
+                                     coloured(2, 0.003, {0.5, 0.5, 0.5}, wall)};  // below tau
+  for (const int size : {16, 40}) {                                               // one tile, and nine
+    const shared::View view = view_of(size, size);
+    const std::vector<double> got =
+        measure_weights(splats, make_lists(splats, depth_order(splats), view, TILES_ELLIPSE), view);
+    EXPECT_NEAR(got[0], 0.5 * 0.4 * size * size, 1e-3);
+    EXPECT_NEAR(got[1], 0.6 * size * size, 1e-3);
+    EXPECT_EQ(got[2], 0.0);
+  }
+}
+
 TEST(Transmittance, IsTheLargestOverThePixelsThatBlend) {
   // A wall of alpha 0.9 covers the left; the small splat behind reaches beyond its edge by a pixel or two.
   const std::vector<Splat> splats = {make_splat({0, 8}, {4, 0, 1e9}, 0.9), coloured(2, 0.5, glm::dvec3(1))};

@@ -1,0 +1,63 @@
+#include "app/detail.h"
+
+#include "app/drawing.h"
+#include "render/buffers.h"
+#include "scene/axes.h"
+
+namespace binosplat::app {
+
+namespace {
+
+std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& list, const std::string& axes) {
+  const double near_plane = options.near_plane.value_or(near_default);
+  if (list.listed) return make_shots(options, list, near_plane, axes);
+  if (options.eye) return make_shots(options, made_up_cameras(options, Model()), near_plane, axes);
+  return {};
+}
+
+/// Bytes that a frame starts with, the model's included.
+std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians) {
+  shape.gaussian_count = gaussians;
+  shape.slots = render::starting_slots(gaussians);
+  const render::MemoryNeeds needs = render::memory_needs(shape);
+  return needs.model + needs.frame;
+}
+
+}  // namespace
+
+DetailBudget detail_budget(const RenderOptions& options, const CameraList& list) {
+  const std::string axes = options.axes.empty() ? Model().axes : options.axes;
+  const std::vector<Shot> shots = known_shots(options, list, axes);
+  DetailBudget budget;
+  std::vector<shared::View> widest;  // the shot of the most pixels
+  std::uint64_t most_pixels = 0;
+  for (const Shot& shot : shots) {
+    std::uint64_t pixels = 0;
+    for (const Eye& eye : shot.eyes) {
+      budget.eyes.push_back(into_axes(eye.camera, axes).position);
+      pixels += std::uint64_t{eye.view.width} * eye.view.height;
+    }
+    if (pixels > most_pixels) widest = views_of(shot);
+    most_pixels = std::max(most_pixels, pixels);
+  }
+  if (shots.empty()) {
+    Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
+    widest.assign(options.mono || !options.only.empty() ? 1 : 2, make_view(sized(options, camera)));
+  }
+  render::FrameSettings settings = settings_of(options);
+  settings.depth_table = {1.0f, {1.0f}};  // not measured yet
+  const auto bytes = static_cast<std::int64_t>(1e6 * *options.gpu_memory);
+  budget.gaussians = [=](int degree) {
+    Model model;
+    model.degree = degree;
+    const render::FrameShape shape = render::make_shape(widest, settings, model);
+    std::uint32_t fits = 0;
+    for (std::uint32_t step = 1u << 30; step > 0; step /= 2) {
+      if (bytes_for(shape, fits + step) <= bytes) fits += step;
+    }
+    return std::size_t{fits};
+  };
+  return budget;
+}
+
+}  // namespace binosplat::app

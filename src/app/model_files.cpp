@@ -1,0 +1,53 @@
+#include "app/model_files.h"
+
+#include "app/command.h"
+#include "formats/scaffold_file.h"
+
+namespace binosplat::app {
+
+namespace fs = std::filesystem;
+
+ModelFormat output_format(const std::string& output, const std::string& hint) {
+  const auto format = model_format_of(output);
+  if (!format) {
+    fail("-o {}: its ending names no format that can be written: .ply, .compressed.ply, .splat or .spz{}",
+         output, hint);
+  }
+  return *format;
+}
+
+fs::path model_file(const std::string& scene) {
+  std::error_code ignored;
+  if (!fs::is_directory(scene, ignored)) return scene;
+  return find_point_cloud(scene).value_or("");
+}
+
+void check_model_output(const std::string& output, const std::string& scene) {
+  check_output(output);
+  std::error_code ignored;
+  if (fs::equivalent(model_file(scene), output, ignored))
+    fail("-o {} is the model itself, which would be lost; name another file", output);
+}
+
+void refuse_scaffold(const Model& model, const std::string& scene) {
+  if (model.scaffold) {
+    fail(
+        "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no other format can hold it",
+        scene);
+  }
+}
+
+std::vector<std::string> write_model_file(const std::string& output, const Model& model, ModelFormat format,
+                                          int harmonic_bits) {
+  OutputFile file(output);
+  std::vector<std::string> losses;
+  {
+    const Unfinished unfinished(file.path());
+    losses = write_model(file, model, format, harmonic_bits);
+  }
+  const Uninterrupted hold;
+  file.commit();
+  return losses;
+}
+
+}  // namespace binosplat::app

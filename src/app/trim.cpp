@@ -1,0 +1,296 @@
+// binosplat trim: the smallest model that keeps the pictures.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "app/command.h"
+#include "app/drawing.h"
+#include "app/model_files.h"
+#include "app/open_scene.h"
+#include "app/photos.h"
+#include "app/shots.h"
+#include "base/log.h"
+#include "base/mapped_file.h"
+#include "formats/model_file.h"
+#include "formats/model_output.h"
+#include "scene/axes.h"
+#include "study/bench.h"
+#include "study/trim.h"
+
+namespace binosplat::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+using study::Calibrator;
+using Kind = study::CalibrationTarget::Kind;
+
+struct TrimOptions {
+  RenderOptions render;  // scene, lod, axes, cameras, size, photos, device
+  std::optional<double> max_drop;
+  std::optional<double> quality;
+  int views = 16;                  // held back
+  std::vector<std::string> tests;  // views by name
+  std::string output;
+  std::string json;
+};
+
+/// What the report says besides the steps.
+struct Names {
+  std::vector<std::string> held_back, test;
+  std::size_t weighed = 0;
+};
+
+ModelFormat check(const TrimOptions& o) {
+  if (o.max_drop.has_value() == o.quality.has_value())
+    fail("trim needs a bound: --photos DIR --max-drop DB, or --quality DB against the exact pictures");
+  if (o.max_drop.has_value() != !o.render.photos.empty())
+    fail("--max-drop and --photos go together: a drop in dB is against photos");
+  if (o.render.size && o.max_drop) fail("--size with --photos: a drop is measured in the photos' own size");
+  const ModelFormat format = output_format(o.output);
+  check_model_output(o.output, o.render.scene);
+  if (!o.json.empty()) check_output(o.json);
+  return format;
+}
+
+study::CalibrationView with_photo(const TrimOptions& o, const Shot& shot) {
+  study::CalibrationView view{shot.eyes.front().camera, {}};
+  if (o.render.photos.empty()) return view;
+  const auto file = find_view_photo(o.render.photos, shot);
+  if (!file) fail("--photos {}: there is no photo of view {}", o.render.photos, shot.name);
+  view.photo = load_view_photo(*file, view.camera);
+  return view;
+}
+
+/// Held back are so many of the cameras (that have a photo), evenly spread, and at most every other one; the
+/// rest are weighed. The test views are neither.
+study::TrimViews choose_views(const TrimOptions& o, const CameraList& list, const Model& model,
+                              Names& names) {
+  study::TrimViews views;
+  views.near_plane = near_plane_of(o.render, list, model);
+  RenderOptions render = o.render;
+  render.mono = true;
+  const auto shots_of = [&](const std::vector<std::string>& named) {
+    render.views = named;
+    return make_shots(render, list, views.near_plane, model.axes);
+  };
+  std::vector<Shot> shots = shots_of({"all"});
+  for (const Shot& shot : o.tests.empty() ? std::vector<Shot>() : shots_of(o.tests)) {
+    views.test.push_back(with_photo(o, shot));
+    names.test.push_back(shot.name);
+    std::erase_if(shots, [&](const Shot& other) { return other.name == shot.name; });
+  }
+  if (shots.size() < 2)
+    fail("{}: {} of its cameras for trim, which needs two at least: one to weigh in, one to hold back",
+         list.source, shots.size());
+  std::vector<std::size_t> judging;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    if (o.render.photos.empty() || find_view_photo(o.render.photos, shots[i])) judging.push_back(i);
+  }
+  if (judging.empty()) fail("--photos {}: there is no photo of any view", o.render.photos);
+  const std::size_t wanted = std::min(static_cast<std::size_t>(o.views), shots.size() / 2);
+  std::vector<bool> held_back(shots.size(), false);
+  for (const std::size_t k : study::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    if (!held_back[i]) {
+      views.weighed.push_back(shots[i].eyes.front().camera);
+      continue;
+    }
+    views.held_back.push_back(with_photo(o, shots[i]));
+    names.held_back.push_back(shots[i].name);
+  }
+  names.weighed = views.weighed.size();
+  return views;
+}
+
+/// Every candidate goes to a file beside the output, which is never committed.
+study::TrimWriter trial_writer(const TrimOptions& o, ModelFormat format) {
+  return [&o, format](const Model& model, int harmonic_bits) {
+    OutputFile file(o.output);
+    const Unfinished unfinished(file.path());
+    write_model(file, model, format, harmonic_bits);
+    file.flush();
+    return study::WrittenModel{load_model(file.path()), fs::file_size(file.path())};
+  };
+}
+
+/// The file that was read, where it has the format that is to be written.
+std::optional<fs::path> same_format(const TrimOptions& o, const std::string& format_read,
+                                    ModelFormat format) {
+  constexpr const char* names[] = {"ply", "compressed ply", ".splat", "spz"};  // as readers say it
+  const fs::path file = model_file(o.render.scene);
+  const std::string_view name = names[static_cast<int>(format)];
+  const bool same = format_read == name || format_read.starts_with(fmt::format("{} ", name));
+  return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
+}
+
+std::string decibels(Kind kind, double db) {
+  if (kind == Kind::quality && db >= study::equal_db) return "equal";
+  return fmt::format("{:.3f}", db);
+}
+
+void print(const TrimOptions& o, const study::Trimmed& found, const Names& names, std::size_t gaussians) {
+  const Kind kind = o.max_drop ? Kind::drop : Kind::quality;
+  fmt::print("{} views weighed, {} held back, {} of test; bound: {}\n", names.weighed, names.held_back.size(),
+             names.test.size(),
+             o.max_drop
+                 ? fmt::format("at most {} dB lost against the photos, mean of those held back", *o.max_drop)
+                 : fmt::format("{} dB against the exact pictures, mean of those held back", *o.quality));
+  fmt::print("{} of {} Gaussians touch no pixel of the views weighed, {:.1f} %\n\n", found.unseen, gaussians,
+             100.0 * static_cast<double>(found.unseen) / static_cast<double>(gaussians));
+  const char* db = kind == Kind::drop ? "drop dB" : "PSNR dB";
+  fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11}{:>9}{:>9}{:>9}{:>9}\n", "", "Gaussians", "SH", "bytes", "pairs",
+             "ms", db, "worst", names.test.empty() ? "" : "test");
+  for (const study::TrimStep& s : found.steps) {
+    fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}{:>9}{:>9}{:>9}\n", s.name, s.gaussians, s.degree,
+               s.bytes > 0 ? std::to_string(s.bytes) : "", s.held_back.pairs, s.held_back.ms,
+               decibels(kind, s.held_back.mean_db), decibels(kind, s.held_back.worst_db),
+               names.test.empty() ? "" : decibels(kind, s.test.mean_db));
+  }
+  const Calibrator::Cost& last = found.steps.back().held_back;
+  fmt::print("worst of those held back: {}, {} dB\n", names.held_back[last.worst_view],
+             decibels(kind, last.worst_db));
+}
+
+ordered_json to_json(const Calibrator::Cost& cost, const std::vector<std::string>& names) {
+  ordered_json json = {{"mean_db", cost.mean_db},
+                       {"worst_db", cost.worst_db},
+                       {"worst_view", names[cost.worst_view]},
+                       {"pairs", cost.pairs},
+                       {"gpu_ms", cost.ms}};
+  for (std::size_t v = 0; v < names.size(); ++v)
+    json["views"].push_back({{"name", names[v]}, {"db", cost.view_db[v]}});
+  return json;
+}
+
+ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const Names& names,
+                     ModelFormat format, const std::vector<std::string>& losses) {
+  ordered_json json = {{"version", BINOSPLAT_VERSION},
+                       {"model", o.render.scene},
+                       {"output", o.output},
+                       {"format", model_format_names[static_cast<int>(format)]},
+                       {"as_it_was", !found.less},
+                       {"unseen", found.unseen},
+                       {"views_weighed", names.weighed},
+                       {"losses", losses}};
+  if (o.max_drop) json["target"]["drop_db"] = *o.max_drop;
+  if (o.quality) json["target"]["quality_db"] = *o.quality;
+  for (const study::TrimStep& s : found.steps) {
+    ordered_json step = {
+        {"step", s.name}, {"gaussians", s.gaussians}, {"degree", s.degree}, {"bytes", nullptr}};
+    if (s.bytes > 0) step["bytes"] = s.bytes;
+    step["held_back"] = to_json(s.held_back, names.held_back);
+    if (!names.test.empty()) step["test"] = to_json(s.test, names.test);
+    json["steps"].push_back(step);
+  }
+  return json;
+}
+
+/// Writes what was found; the file itself where nothing of it could be left out.
+std::vector<std::string> write(const TrimOptions& o, const study::Trimmed& found, ModelFormat format,
+                               const std::optional<fs::path>& original) {
+  if (!found.less && original) {
+    OutputFile file(o.output);
+    const Unfinished unfinished(file.path());
+    const MappedFile bytes(*original);
+    file.write(bytes.bytes());
+    const Uninterrupted hold;
+    file.commit();
+    return {};
+  }
+  return write_model_file(o.output, found.model, format, found.harmonic_bits);
+}
+
+ExitCode trim(const TrimOptions& o) {
+  const ModelFormat format = check(o);
+  const Scene scene = open_scene(o.render);
+  const CameraList list = listed_cameras(o.render, scene.cameras);
+  if (!list.listed)
+    fail(
+        "trim needs the cameras that the pictures are of, and there are none beside {}: name their file with "
+        "--cameras",
+        o.render.scene);
+  Model model = scene.model();
+  refuse_scaffold(model, o.render.scene);
+  const std::optional<fs::path> original = same_format(o, model.format, format);
+  bring_into_axes(model, axes_of(format));
+  Names names;
+  const study::TrimViews views = choose_views(o, list, model, names);
+  const auto context = open_context(o.render);
+  const study::CalibrationTarget target{o.max_drop ? Kind::drop : Kind::quality,
+                                        o.max_drop ? *o.max_drop : *o.quality};
+  study::Trimmed found = study::trim(*context, model, views, target, format, trial_writer(o, format));
+  if (const fs::path file = model_file(o.render.scene); fs::is_regular_file(file))
+    found.steps.front().bytes = fs::file_size(file);
+  if (original && found.steps.back().bytes >= found.steps.front().bytes) found.less = false;
+  print(o, found, names, model.count());
+  if (!found.fits && !original) {
+    fail(
+        "-o {}: the format alone costs more than the bound allows, {}; choose .ply, which keeps all, or "
+        "allow for more",
+        o.output, fmt::format("{:.3f} dB", found.steps.back().held_back.mean_db));
+  }
+  const std::vector<std::string> losses = write(o, found, format, original);
+  for (const std::string& loss : losses) log_warning("{}", loss);
+  if (found.less) {
+    fmt::print("\n{}\n", o.output);
+  } else {
+    fmt::print("\n{}: the model as it was: nothing can be left out within the bound\n", o.output);
+  }
+  if (!o.json.empty()) save_json(o.json, to_json(o, found, names, format, losses));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_trim(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("trim", "Write the smallest model that keeps the pictures");
+  const auto o = std::make_shared<TrimOptions>();
+  const auto above_zero = CLI::PositiveNumber.description("");
+  sub->add_option("MODEL", o->render.scene, "A model file or folder, demo:room or demo:city")->required();
+  sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat or .spz")
+      ->type_name("FILE")
+      ->required();
+  sub->add_option("--max-drop", o->max_drop,
+                  "Bound: dB lost against the photos, mean over the views held back")
+      ->type_name("DB")
+      ->check(above_zero);
+  sub->add_option("--quality", o->quality, "Bound: PSNR against the exact pictures, likewise")
+      ->type_name("DB")
+      ->check(above_zero);
+  sub->add_option("--photos", o->render.photos, "DIR/NAME.jpg or .png of the views")
+      ->type_name("DIR")
+      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+  sub->add_option("--cameras", o->render.cameras, "Cameras, where they are not beside the model")
+      ->type_name("FILE");
+  sub->add_option(
+         "--views", o->views,
+         "So many views (that have a photo) are held back to judge by, spread\nevenly, at most half of the "
+         "cameras (16); the others say what each\nGaussian is worth")
+      ->type_name("N")
+      ->check(CLI::Range(1, 10000).description(""));
+  sub->add_option("--test", o->tests, "Views by name that decide nothing: what they lose is stated")
+      ->type_name("NAME...");
+  sub->add_option_function<std::string>(
+         "--size", [o](const std::string& text) { o->render.size = parse_size("--size", text); },
+         "Pixels of a view, instead of the cameras' own")
+      ->type_name("WxH");
+  sub->add_option("--lod", o->render.lod, "Level of detail of a streamed SOG, 0 the finest")
+      ->check(CLI::Range(0, 100).description(""))
+      ->type_name("N");
+  add_axes_option(*sub, o->render);
+  sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
+  add_measured_options(*sub, o->render);
+  sub->footer(
+      "Steps: fewer bits a harmonic (spz), lower harmonics, fewer Gaussians; each as far as the bound holds\n"
+      "for what is written. A model of which nothing can be left out is written as it was.\n"
+      "Examples:\n"
+      "  binosplat trim garden.ply --photos images --max-drop 0.1 -o garden.spz\n"
+      "  binosplat trim garden.ply --quality 40 -o small.ply --json small.json");
+  sub->callback([o, &command] { command = [o] { return trim(*o); }; });
+}
+
+}  // namespace binosplat::app

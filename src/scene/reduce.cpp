@@ -1,0 +1,48 @@
+#include "scene/reduce.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+namespace {
+
+/// Values of a Gaussian's harmonics up to a degree.
+std::ptrdiff_t values_of(int degree) { return 3 * static_cast<std::ptrdiff_t>(sh_count(degree)); }
+
+}  // namespace
+
+Model with_gaussians(const Model& model, const std::vector<std::uint8_t>& kept) {
+  Model fewer = model;
+  keep_only(fewer, kept);
+  fewer.left_out = model.left_out;
+  return fewer;
+}
+
+Model with_degree(const Model& model, int degree) {
+  Model lower = model;
+  lower.degree = degree;
+  lower.resize(model.count());
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    std::copy_n(model.sh.begin() + at * values_of(model.degree), values_of(degree),
+                lower.sh.begin() + at * values_of(degree));
+  }
+  return lower;
+}
+
+Model with_degrees(const Model& model, const std::vector<std::uint8_t>& degrees) {
+  Model lower = model;
+  int highest = 0;
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    const auto begin = lower.sh.begin() + static_cast<std::ptrdiff_t>(i) * values_of(model.degree);
+    const auto end = begin + values_of(model.degree);
+    std::fill(begin + values_of(std::min<int>(degrees[i], model.degree)), end, 0.0f);
+    for (int degree = model.degree; degree > highest; --degree) {
+      const bool used = std::any_of(begin + values_of(degree - 1), end, [](float v) { return v != 0.0f; });
+      if (used) highest = degree;
+    }
+  }
+  return highest < model.degree ? with_degree(lower, highest) : lower;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,199 @@
+#include "study/trim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "base/log.h"
+#include "base/statistics.h"
+#include "measure/search.h"
+#include "scene/reduce.h"
+#include "study/weights.h"
+
+namespace binosplat::study {
+
+namespace {
+
+constexpr int drawings = 3;                                 // of a view whose time is told
+constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
+
+class Trimmer {
+ public:
+  Trimmer(gl::Context& context, const Model& model, const TrimViews& views, const CalibrationTarget& target,
+          const TrimWriter& write)
+      : target_(target),
+        write_(write),
+        original_(model),
+        model_(model),
+        judge_(context, model, views.held_back, views.near_plane, target.kind) {
+    if (!views.test.empty()) {
+      test_ = std::make_unique<Calibrator>(context, model, views.test, views.near_plane, target.kind);
+    }
+    tell("as it was", model, 0);
+    weights_ = weigh(context, model, views.weighed, views.near_plane);
+  }
+
+  Trimmed run(ModelFormat format) {
+    found_.unseen = weights_.unseen();
+    const std::string name = model_format_names[static_cast<int>(format)];
+    const bool packs = format == ModelFormat::spz;
+    if (!holds(cost(model_, 8), 1.0)) {
+      found_.fits = false;
+      tell_written("as " + name);
+    } else {
+      const bool has_harmonics = model_.degree > 0 && format != ModelFormat::splat;
+      if (packs && has_harmonics) lower_bits();
+      tell_written(packs && has_harmonics
+                       ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
+                       : "as " + name);
+      if (has_harmonics) lower_harmonics(packs);
+      drop_gaussians();
+    }
+    found_.model = std::move(model_);
+    return std::move(found_);
+  }
+
+ private:
+  double cost(const Model& model, int bits) { return judge_.cost(write_(model, bits).model).mean_db; }
+
+  /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
+  double bound(double share) const {
+    return target_.kind == CalibrationTarget::Kind::drop ? share * target_.db
+                                                         : target_.db - 10.0 * std::log10(share);
+  }
+  double sign() const { return target_.kind == CalibrationTarget::Kind::drop ? -1.0 : 1.0; }
+  bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
+
+  /// The largest amount that holds a share of the bound, at which the model's cost is `db(amount)`; 0 must
+  /// hold.
+  double largest(const std::function<double(double)>& db, double share, measure::LossSearch search) {
+    search.tolerance = target_.kind == CalibrationTarget::Kind::drop ? 0.03 * target_.db : 0.1;
+    const auto value = [&](double amount) { return sign() * db(amount); };
+    return measure::find_loss(value, sign() * bound(share), search).loss;
+  }
+
+  void lower_bits() {
+    while (found_.harmonic_bits > 1 && holds(cost(model_, found_.harmonic_bits - 1), after_bits))
+      --found_.harmonic_bits;
+    found_.less = found_.harmonic_bits < 8;
+  }
+
+  /// Harmonics of so many degrees, base colours brought to the mean of what the weighed views see.
+  Model lowered(const std::vector<std::uint8_t>& degrees) const {
+    Model model = with_degrees(original_, degrees);
+    const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+    for (std::size_t i = 0; i < degrees.size(); ++i) {
+      if (degrees[i] >= original_.degree) continue;
+      const glm::vec3 shift = weights_.shift(i, degrees[i]);
+      for (int c = 0; c < 3; ++c)
+        model.sh[i * values + static_cast<std::size_t>(c)] += shift[c] / static_cast<float>(sh_c0);
+    }
+    return model;
+  }
+
+  void lower_harmonics(bool packs) {
+    const std::size_t count = original_.count();
+    for (int degree = 0; degree < original_.degree; ++degree) {
+      Model lower = lowered(std::vector<std::uint8_t>(count, static_cast<std::uint8_t>(degree)));
+      if (!holds(cost(lower, found_.harmonic_bits), after_harmonics)) continue;
+      model_ = std::move(lower);
+      take(fmt::format("degree {} instead of {}", degree, original_.degree));
+      break;
+    }
+    if (packs && model_.degree > 0 && holds(cost(model_, found_.harmonic_bits), after_harmonics))
+      lower_degrees();
+  }
+
+  /// The degree each Gaussian needs where its colour may change by so much (Weights::change).
+  std::vector<std::uint8_t> degrees(double change) const {
+    std::vector<std::uint8_t> of(original_.count());
+    for (std::size_t i = 0; i < of.size(); ++i) {
+      while (of[i] < model_.degree && weights_.change(i, of[i]) > change) ++of[i];
+    }
+    return of;
+  }
+
+  /// Zeros are packed well: a degree for each Gaussian.
+  void lower_degrees() {
+    std::vector<double> changes;
+    for (std::size_t i = 0; i < original_.count(); ++i) {
+      if (weights_.change(i, 0) > 0.0) changes.push_back(weights_.change(i, 0));
+    }
+    if (changes.empty()) return;
+    const double start = std::clamp(quantile(std::move(changes), 0.5), 1e-9, 1e9);
+    const auto db = [&](double change) {
+      return cost(change > 0.0 ? lowered(degrees(change)) : model_, found_.harmonic_bits);
+    };
+    const double change = largest(db, after_harmonics, {.start = start});
+    if (change == 0.0) return;
+    const std::vector<std::uint8_t> of = degrees(change);
+    const auto lower = std::count_if(of.begin(), of.end(), [&](int d) { return d < model_.degree; });
+    model_ = lowered(of);
+    take(fmt::format("lower degrees for {:.0f} %",
+                     100.0 * static_cast<double>(lower) / static_cast<double>(of.size())));
+  }
+
+  void drop_gaussians() {
+    const std::size_t count = model_.count();
+    if (count < 2) return;
+    std::vector<std::uint32_t> by_weight(count);
+    std::iota(by_weight.begin(), by_weight.end(), 0u);
+    std::stable_sort(by_weight.begin(), by_weight.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return weights_.weight[a] < weights_.weight[b];
+    });
+    const auto without = [&](double amount) {
+      std::vector<std::uint8_t> kept(count, 1);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_weight[k]] = 0;
+      return with_gaussians(model_, kept);
+    };
+    std::map<std::size_t, double> known;  // amounts that come to the same number
+    const auto db = [&](double amount) {
+      const auto [at, is_new] = known.try_emplace(static_cast<std::size_t>(amount));
+      if (is_new) at->second = cost(without(amount), found_.harmonic_bits);
+      return at->second;
+    };
+    const auto most = static_cast<double>(count - 1);
+    const double start = std::clamp(static_cast<double>(found_.unseen), 1.0, most);
+    const double dropped = largest(db, 1.0, {.start = start, .smallest = 1.0, .largest = most});
+    if (dropped == 0.0) return;
+    model_ = without(dropped);
+    take("fewer Gaussians");
+  }
+
+  void take(const std::string& name) {
+    found_.less = true;
+    tell_written(name);
+  }
+
+  void tell_written(const std::string& name) {
+    const WrittenModel written = write_(model_, found_.harmonic_bits);
+    tell(name, written.model, written.bytes);
+  }
+
+  void tell(const std::string& name, const Model& model, std::uintmax_t bytes) {
+    TrimStep& step = found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}});
+    step.held_back = judge_.cost(model, drawings);
+    if (test_) step.test = test_->cost(model);
+    log_info("{}: {} Gaussians, {:.3f} dB", name, step.gaussians, step.held_back.mean_db);
+  }
+
+  const CalibrationTarget& target_;
+  const TrimWriter& write_;
+  const Model& original_;
+  Model model_;  // as trimmed so far
+  Calibrator judge_;
+  std::unique_ptr<Calibrator> test_;
+  Weights weights_;
+  Trimmed found_;
+};
+
+}  // namespace
+
+Trimmed trim(gl::Context& context, const Model& model, const TrimViews& views,
+             const CalibrationTarget& target, ModelFormat format, const TrimWriter& write) {
+  return Trimmer(context, model, views, target, write).run(format);
+}
+
+}  // namespace binosplat::study

@@ -1,0 +1,60 @@
+#pragma once
+// The smallest model that keeps the pictures: in three steps, each searched against what it costs in views
+// that had no say in what goes.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "formats/model_output.h"
+#include "study/calibrate.h"
+
+namespace binosplat::study {
+
+/// The views of a trimming. What a Gaussian is worth is learned in some, what leaving it out costs is judged
+/// in others: a model that was trimmed for the views it is judged in would look better than it is.
+struct TrimViews {
+  std::vector<Camera> weighed;             // of the world
+  std::vector<CalibrationView> held_back;  // at least one; the bound is on their mean
+  std::vector<CalibrationView> test;       // decide nothing: what is lost there is stated; may be empty
+  double near_plane = near_default;        // world units
+};
+
+/// A model as its file keeps it, and the bytes of that file.
+struct WrittenModel {
+  Model model;
+  std::uintmax_t bytes = 0;
+};
+
+/// Writes a model to a file of the wanted format and reads it back.
+using TrimWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>;
+
+/// A model on its way.
+struct TrimStep {
+  std::string name;  // what was done last
+  std::size_t gaussians = 0;
+  int degree = 0;
+  std::uintmax_t bytes = 0;
+  Calibrator::Cost held_back;
+  Calibrator::Cost test;  // all 0 without such views
+};
+
+struct Trimmed {
+  Model model;                  // what to write, with
+  int harmonic_bits = 8;        // of spz
+  bool fits = true;             // the bound allows for what the format itself costs; else nothing was tried
+  bool less = false;            // anything could be left out
+  std::size_t unseen = 0;       // Gaussians that touch no pixel of the weighed views
+  std::vector<TrimStep> steps;  // from the whole model on, which has the bytes of no file
+};
+
+/// Searches in the order in which the bound is spent: as few bits as the format has a choice of (spz) for a
+/// quarter of it; the harmonics that change colours least for another: a lower degree for all, then, where
+/// zeros are packed (spz), for as many Gaussians as possible; last the Gaussians of the least summed weight,
+/// for all that remains, half of it at least. Every candidate is judged as it reads back from its file, so
+/// the bound holds for what is written. The model's axes are those of the format, and it is not
+/// Scaffold-GS's. Throws Error for views that a target cannot be measured in (Calibrator).
+Trimmed trim(gl::Context& context, const Model& model, const TrimViews& views,
+             const CalibrationTarget& target, ModelFormat format, const TrimWriter& write);
+
+}  // namespace binosplat::study
