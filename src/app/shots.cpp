@@ -171,7 +171,7 @@ glm::dvec3 up_of(const RenderOptions& options) {
 
 std::optional<SavedPose> find_saved(const RenderOptions& options) {
   if (options.scene.rfind("demo:", 0) == 0) return std::nullopt;
-  const auto saved = find_pose(options.scene);
+  auto saved = find_pose(options.scene);
   if (saved)
     log_info("{}: {} world units a metre, eyes {} m apart, unless options say otherwise",
              pose_path(options.scene).string(), saved->units_per_metre, saved->ipd);

@@ -204,8 +204,8 @@ void Panel::draw(Session& session) {
 void draw_loading(const std::string& scene, bool read, double seconds) {
   ImGui::SetNextWindowPos({10, 10});
   ImGui::Begin("loading", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar);
-  ImGui::Text("%s %s, %.0f s", read ? "to the GPU:" : "reading", scene.c_str(), seconds);
-  if (const std::string progress = latest_progress(); !progress.empty()) ImGui::Text("%s", progress.c_str());
+  ImGui::Text("reading %s, %.0f s", scene.c_str(), seconds);
+  ImGui::TextUnformatted(read ? "to the GPU" : latest_progress().c_str());
   ImGui::End();
 }
 

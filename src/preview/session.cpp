@@ -142,6 +142,7 @@ bool Session::draw() {
     const std::vector<shared::View> asked = views();
     reports_.push_back(frame_.draw(asked, choices.settings));
     shown_layout_ = choices.layout;
+    drawn_ = frame_.views();
     make_shown(asked);
     trouble_.clear();
   } catch (const Error& error) {
@@ -157,14 +158,14 @@ bool Session::draw() {
 
 void Session::present() {
   if (frames_drawn_ == 0) return;
-  const shared::View& eye = frame_.views()[0];
+  const shared::View& eye = drawn_[0];
   const glm::ivec2 size =
       stereo::layout_size(shown_layout_, {static_cast<int>(eye.width), static_cast<int>(eye.height)});
   stereo::Target target;
   target.y = std::max(0, framebuffer_.y - size.y);
   const gl::Buffer& colours = shown_.pictures.empty() ? frame_.colours() : shown_colours_;
   const auto draw = [&](std::size_t first, int layout) {
-    presenter_.draw(colours, frame_.views(), first, layout, target, choices.background);
+    presenter_.draw(colours, drawn_, first, layout, target, choices.background);
   };
   if (shown_layout_ != LAYOUT_QUAD_BUFFER) return draw(0, shown_layout_);
   context_.gl().DrawBuffer(GL_BACK_LEFT);
@@ -176,7 +177,7 @@ void Session::present() {
 
 void Session::focus(const glm::ivec2& pixel) {
   if (frames_drawn_ == 0) return;
-  const shared::View& eye = frame_.views()[0];
+  const shared::View& eye = drawn_[0];
   const auto layout = static_cast<shared::uint>(shown_layout_);
   const shared::LayoutSource from = shared::layout_source(
       layout, static_cast<shared::uint>(pixel.x), static_cast<shared::uint>(pixel.y), eye.width, eye.height);

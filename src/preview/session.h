@@ -99,7 +99,8 @@ class Session {
   gl::Buffer shown_colours_;  // as the frame's colours
   glm::ivec2 framebuffer_{0};
   std::array<Camera, 2> eyes_;
-  int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn
+  int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn, as are
+  std::vector<shared::View> drawn_;     // its views as the frame has them
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
   std::deque<render::FrameReport> reports_;

@@ -18,6 +18,7 @@ unsigned reset_status() {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): GLFW's own name
 extern "C" Function glfwGetProcAddress(const char* name) {
   if (std::strcmp(name, "glGetGraphicsResetStatus") == 0) return reinterpret_cast<Function>(reset_status);
   using Get = Function (*)(const char*);

@@ -86,13 +86,15 @@ struct ViewOnADisplay : test::SceneTest {
   void hands(const std::string& what) const {
     EXPECT_EQ(std::system(fmt::format("DISPLAY={} xdotool {}", display, what).c_str()), 0) << what;
   }
-  /// Ends the preview. The window may be gone before the key is let go, of which xdotool complains.
-  Outcome leave(Program& program) const {
-    const std::string keys = "search --name binosplat windowfocus --sync key Escape";
+  /// The last key that the preview gets. The window may be gone before it is let go, of which xdotool
+  /// complains.
+  Outcome ended_by(const std::string& name, Program& program) const {
+    const std::string keys = "search --name binosplat windowfocus --sync key " + name;
     if (std::system(fmt::format("DISPLAY={} xdotool {} 2> /dev/null", display, keys).c_str()) < 0)
       ADD_FAILURE() << "no shell";
     return program.wait();
   }
+  Outcome leave(Program& program) const { return ended_by("Escape", program); }
 
   void key(const std::string& name) const { hands("search --name binosplat windowfocus --sync key " + name); }
 
@@ -287,8 +289,7 @@ TEST_F(ViewOnADisplay, ALostGpuEndsIt) {
   key("F12");
   ASSERT_TRUE(says(program, "saved"));
   test::write_text(flag, "");
-  hands("search --name binosplat windowfocus --sync key t");
-  EXPECT_TRUE(ended(program.wait(), 3, "was reset"));
+  EXPECT_TRUE(ended(ended_by("t", program), 3, "was reset"));
 }
 
 TEST_F(ViewOnADisplay, AtRestNothingIsDrawn) {

@@ -67,7 +67,7 @@ TEST_F(ShowTest, ASplitIsAsDrawnOnTheLeftAndExactOnTheRight) {
   for (std::size_t v = 0; v < 2; ++v) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        const auto k = static_cast<std::size_t>(y * width + x);
+        const auto k = static_cast<std::size_t>(y) * width + x;
         ASSERT_EQ(middle[v].colour[k], (x < 16 ? pictures : exact)[v].colour[k]) << x << " " << y;
       }
     }
@@ -121,7 +121,7 @@ TEST_F(ShowTest, DisagreementIsOfEachEye) {
         const auto worst = [&](const Image& e) {
           return 255.0 * std::max({e.at(x, y, 0), e.at(x, y, 1), e.at(x, y, 2)});
         };
-        const glm::vec3 seen(shown.pictures[v].colour[static_cast<std::size_t>(y * width + x)]);
+        const glm::vec3 seen(shown.pictures[v].colour[static_cast<std::size_t>(y) * width + x]);
         off += glm::length(seen - colour(worst(expected(v)), *shown.most)) > 1e-3f ? 1 : 0;
         other += glm::length(seen - colour(worst(expected(1 - v)), *shown.most)) > 1e-3f ? 1 : 0;
       }
