@@ -13,7 +13,14 @@ layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE) in;
 #define SHOW SHOW_PICTURE
 #endif
 #define PIXELS (TILE_SIZE * TILE_SIZE)
-#define BATCH (PIXELS < 256 ? PIXELS : 256)  // splats in shared memory at a time: 12 KiB at most
+// Splats in shared memory at a time, 9 KiB at most: with more an H200 holds fewer groups, with less the longest lists take
+// longer (src/render/README.md).
+#if RECORDS || WEIGHS
+#define BATCH_MAX 176
+#else
+#define BATCH_MAX 192
+#endif
+#define BATCH (PIXELS < BATCH_MAX ? PIXELS : BATCH_MAX)
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };

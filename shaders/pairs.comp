@@ -1,9 +1,11 @@
-// Stage 3, pairs: (tile, splat) for every tile that a splat touches, in depth order. One invocation a pair, which finds
-// its Gaussian by bisection, then its tile by walking the splat's rows: however many tiles one Gaussian covers, the work
-// is spread evenly.
+// Stage 3, pairs: (tile, splat) for every tile that a splat touches, in depth order. A work group makes SCAN_BLOCK pairs, and
+// its invocations share what leads to them: first each takes a splat and counts its rows, then a row and finds its tiles,
+// then pairs. However many rows and tiles a Gaussian covers, the work is spread evenly.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "shared/saturate.glsl"
+#include "primitives/scan_block.glsl"
 #include "tiles/tiles.glsl"
 
 layout(local_size_x = THREADS) in;
@@ -21,44 +23,100 @@ uniform uint slots;  // of one view
 uniform uint view_begin;
 uniform uint view_end;
 
-// The last rank whose pairs begin at or before `pair`.
+shared uint found;
+// Of the splats at hand: which, their tile boxes (two numbers of 16 bits a word), and the rows before each.
+shared uint splat_at[THREADS];
+shared uvec2 box_at[THREADS];
+shared uint rows_before[THREADS];
+// Of the rows at hand: splat, first tile, and the tiles before each.
+shared uint row_splat[THREADS];
+shared uint row_tile[THREADS];
+shared uint tiles_before[THREADS];
+
+// The last rank whose pairs begin at or before `pair`, looked for by all invocations together.
 uint rank_of(uint pair) {
   uint low = 0u;
-  uint high = order_amounts[0].count;
-  while (high - low > 1u) {
-    uint middle = (low + high) / 2u;
-    if (pair_offsets[middle] <= pair) low = middle;
-    else high = middle;
+  uint size = order_amounts[0].count;
+  while (size > 1u) {
+    if (gl_LocalInvocationIndex == 0u) found = low;
+    barrier();
+    uint step = (size + THREADS - 1u) / THREADS;
+    uint at = gl_LocalInvocationIndex * step;
+    if (at < size && pair_offsets[low + at] <= pair) atomicMax(found, low + at);
+    barrier();
+    size = min(step, low + size - found);
+    low = found;
+    barrier();
   }
   return low;
 }
 
-void main() {
-  uint pair = thread_index();
-  if (pair >= pair_amounts[0].count) return;
-  uint rank = rank_of(pair);
-  uint nth = pair - pair_offsets[rank];  // of the Gaussian's tiles, view after view, row after row
-  uint v = view_begin;
-  uint splat_index = v * slots + order[rank];
-  while (v + 1u < view_end && nth >= tile_counts[splat_index]) {
-    nth -= tile_counts[splat_index];
-    ++v;
-    splat_index += slots;
-  }
+// The last of THREADS sums that is at most `value`.
+#define LAST_BEFORE(sums, value, at) \
+  uint at = 0u;                      \
+  for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) at += sums[at + half_way] <= (value) ? half_way : 0u;
+
+// The rows of the nth splat from `rank` on, view after view; 0 where there is none.
+uint take_splat(uint rank, uint nth) {
+  uint self = gl_LocalInvocationIndex;
+  uint in_views = view_end - view_begin;
+  rank += nth / in_views;
+  if (rank >= order_amounts[0].count) return 0u;
+  uint v = view_begin + nth % in_views;
+  uint splat = v * slots + order[rank];
+  if (tile_counts[splat] == 0u) return 0u;
+  uvec4 box = tile_box(splats[splat], views[v]);
+  splat_at[self] = splat;
+  box_at[self] = box.xy | box.zw << 16;
+  return box.w - box.y;
+}
+
+// The tiles of the nth row of the splats at hand.
+uint take_row(uint nth) {
+  LAST_BEFORE(rows_before, nth, at)
+  uint self = gl_LocalInvocationIndex;
+  uint splat = splat_at[at];
+  uint v = splat / slots;
   View view = views[v];
-  Splat splat = splats[splat_index];
-  uvec4 box = tile_box(splat, view);
-  uint row = box.y;
-  uvec2 columns = tile_row(splat, view, box, row);
-  while (nth >= columns.y - columns.x && row + 1u < box.w) {
-    nth -= columns.y - columns.x;
-    columns = tile_row(splat, view, box, ++row);
-  }
-  uint to = pair_amounts[0].first + pair;
+  uvec4 box = uvec4(box_at[at] & 0xFFFFu, box_at[at] >> 16);
+  uint row = box.y + nth - rows_before[at];
+  uvec2 columns = tile_row(splats[splat], view, box, row);
+  row_splat[self] = splat;
 #if TILES == TILES_ALL
-  keys[to] = v;  // one list a view
+  row_tile[self] = v;  // one list a view
 #else
-  keys[to] = view.tile_offset + row * view.tiles_x + columns.x + nth;
+  row_tile[self] = view.tile_offset + row * view.tiles_x + columns.x;
 #endif
-  values[to] = splat_index;
+  return columns.y - columns.x;
+}
+
+void main() {
+  uint self = gl_LocalInvocationIndex;
+  uint first = group_index() * SCAN_BLOCK;
+  uint end = min(first + SCAN_BLOCK, pair_amounts[0].count);
+  if (first >= end) return;
+  uint rank = rank_of(first);
+  uint pair = pair_offsets[rank];  // the first that the rows at hand make
+  uint splats_left = (order_amounts[0].count - rank) * (view_end - view_begin);
+  for (uint nth = 0u; pair < end && nth < splats_left; nth += THREADS) {
+    uint before = scan_group(take_splat(rank, nth + self));
+    rows_before[self] = before;
+    uint rows = group_total();
+    barrier();
+    for (uint row = 0u; row < rows && pair < end; row += THREADS) {
+      before = scan_group(row + self < rows ? take_row(row + self) : 0u);
+      tiles_before[self] = before;
+      uint tiles = group_total();
+      barrier();
+      uint skipped = first > pair ? first - pair : 0u;  // by the groups before
+      for (uint tile = skipped + self; tile < min(tiles, end - pair); tile += THREADS) {
+        LAST_BEFORE(tiles_before, tile, at)
+        uint to = pair_amounts[0].first + pair + tile;
+        keys[to] = row_tile[at] + tile - tiles_before[at];
+        values[to] = row_splat[at];
+      }
+      pair += tiles;
+      barrier();
+    }
+  }
 }

@@ -27,7 +27,8 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
                   {"groups_max", context.limits().groups},
                   {"digit_bits", primitives::RadixSort::digit_bits(shape.list_bits())}});
-  dispatcher.run(context.program("pairs.comp", pair_defines(shape)), each(buffers.pair_amounts),
+  dispatcher.run(context.program("pairs.comp", pair_defines(shape)),
+                 gl::Work::indirect(buffers.pair_amounts, offsetof(shared::Amount, scan_x)),
                  {{"OrderAmounts", drawn},
                   {"PairAmounts", buffers.pair_amounts},
                   {"Views", buffers.views},

@@ -73,6 +73,9 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
 
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings) {
   render::Frame frame(context_, other);
+  // While the model was made the GPU slept.
+  const Clock::time_point awake = Clock::now() + std::chrono::milliseconds(drawings > 1 ? 500 : 0);
+  while (Clock::now() < awake) frame.draw(std::span(&views_.front(), 1));
   return cost(frame, {}, drawings);
 }
 

@@ -62,13 +62,13 @@ TEST(Weigh, SumsWhatTheReferenceSums) {
 TEST(Weigh, LargeSumsCarry) {
   Model model;
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f);
-  test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f);
+  test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.9f);
   test::add(model, {0, 0, 4}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f);
   test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);
   const std::vector<double> weights = weigh(model, front());
   EXPECT_NEAR(weights[0], 0.99 * 96 * 80, 0.1);
   EXPECT_GT(weights[0] * WEIGHT_SCALE, 0x1p33) << "one word would do";
-  EXPECT_NEAR(weights[1], 0.0099 * 96 * 80, 0.01);
+  EXPECT_NEAR(weights[1], 0.01 * 0.9 * 96 * 80, 0.01);
   EXPECT_EQ(weights[2], 0.0) << "it would leave less than the blend goes on with";
   EXPECT_EQ(weights[3], 0.0) << "behind the camera";
 }
