@@ -13,12 +13,13 @@
 #include "app/drawing.h"
 #include "app/open_scene.h"
 #include "app/shots.h"
+#include "app/study_parts.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "scene/axes.h"
 #include "study/carried.h"
 #include "study/eyes.h"
 #include "study/rules.h"
+#include "study/stability_page.h"
 
 namespace binosplat::app {
 
@@ -26,27 +27,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using study::Variant;
-
-struct StudyOptions {
-  RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
-  bool stability = false;
-  bool eyes = false;
-  bool rules = false;
-  std::optional<int> frames;  // timed of each rule in each round
-  std::vector<std::string> test;
-  std::string output = "out/study";
-  std::vector<std::string> cases;
-  double target = 40.0;  // dB
-  std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
-  std::string json;
-};
-
-// What is there to study, and the shots of it that the options ask for.
-struct Studied {
-  std::shared_ptr<const Model> model;
-  double near_plane = 0.0;
-  std::vector<Shot> shots;
-};
 
 Studied open(const StudyOptions& options) {
   // A case takes a head along paths of its own, and makes the eyes itself.
@@ -60,106 +40,6 @@ Studied open(const StudyOptions& options) {
   studied.shots = make_shots(render, list, studied.near_plane, studied.model->axes);
   if (options.scene.path.empty() && studied.shots.size() > 1) fail("--view all: a study is of one view");
   return studied;
-}
-
-// JSON has no infinity: null.
-ordered_json to_json(const study::StabilityResult& r) {
-  return {{"verdict", r.verdict},
-          {"worst_db", r.worst_db},
-          {"worst_frame", r.worst_frame},
-          {"settled_db", r.settled_db},
-          {"drift_db", r.drift_db},
-          {"settling_frames", r.settling},
-          {"largest_error", r.largest},
-          {"p99_error", r.p99},
-          {"mean_signed_error", r.signed_mean},
-          {"edge_over_inside", r.edges},
-          {"disagreement_db", r.disagreement_db},
-          {"pairs_removed", r.removed}};
-}
-
-ordered_json to_json(const study::StabilityBounds& b) {
-  return {{"dips: a frame below dB", b.worst_db},
-          {"wrong: settled below dB", b.settled_db},
-          {"drifts: the last third below the second by dB", b.drift_db},
-          {"slow: more frames until within 1 dB", b.settling},
-          {"darkens or brightens: mean signed error beyond", b.darkening},
-          {"rivalry: disagreement below dB", b.disagreement_db}};
-}
-
-void find_losses(study::Still& still, double target, std::vector<Variant>& variants) {
-  Progress progress("losses", variants.size());
-  for (std::size_t k = 0; k < variants.size(); ++k) {
-    // The eyes' rules are compared at one loss.
-    variants[k].loss =
-        variants[k].th_eyes == TH_EYES_PER_EYE ? still.loss_at(variants[k], target) : variants[k - 1].loss;
-    progress.update(k + 1);
-  }
-}
-
-void print_case(const study::StabilityCase& one, const std::vector<Variant>& variants,
-                const std::vector<study::StabilityResult>& results) {
-  fmt::print("\n## {}: {}\n\n", one.name, one.fear);
-  fmt::print(
-      "| rule | worst dB (frame) | settled dB | frames to settle | largest, p99 error | signed | edges | "
-      "disagreement dB | removed | verdict |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|\n");
-  for (std::size_t k = 0; k < variants.size(); ++k) {
-    const study::StabilityResult& r = results[k];
-    fmt::print(
-        "| {} | {:.1f} ({}) | {:.1f} | {} | {:.3f}, {:.3f} | {:+.4f} | {:.2f} | {:.1f} | {:.1f} % | {} |\n",
-        variants[k].name(), r.worst_db, r.worst_frame, r.settled_db, r.settling, r.largest, r.p99,
-        r.signed_mean, r.edges, r.disagreement_db, 100.0 * r.removed, r.verdict);
-  }
-  std::fflush(stdout);
-}
-
-void check_cases(const std::vector<std::string>& wanted, const std::vector<study::StabilityCase>& cases) {
-  for (const std::string& name : wanted) {
-    std::string names;
-    bool known = false;
-    for (const study::StabilityCase& one : cases) {
-      known = known || one.name == name;
-      names += "\n  " + one.name;
-    }
-    if (!known) fail("--case {}: there is no such case. There are:{}", name, names);
-  }
-}
-
-ordered_json stability(gl::Context& context, const StudyOptions& options, const Studied& studied) {
-  const Camera head = into_axes(studied.shots.front().eyes.front().camera, studied.model->axes);
-  const stereo::RigSettings settings = rig_settings(options.scene, studied.near_plane);
-  auto cases = study::built_in_cases();
-  for (auto& one : study::cases_in(studied.model, head, settings)) cases.push_back(std::move(one));
-  check_cases(options.cases, cases);
-  std::vector<Variant> variants = study::all_variants();
-  {
-    const stereo::EyePair eyes = stereo::make_rig(head, settings);
-    study::Still still(context, *studied.model, {eyes.views.begin(), eyes.views.end()});
-    find_losses(still, options.target, variants);
-  }
-
-  const study::StabilityBounds bounds;
-  ordered_json json = {{"target_db", options.target}, {"bounds", to_json(bounds)}};
-  fmt::print("Losses for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.scene,
-             head.name, head.width, head.height);
-  for (const Variant& variant : variants) {
-    if (variant.th_eyes == TH_EYES_PER_EYE) fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
-    json["losses"][variant.name()] = variant.loss;
-  }
-  for (const study::StabilityCase& one : cases) {
-    if (!options.cases.empty() &&
-        std::find(options.cases.begin(), options.cases.end(), one.name) == options.cases.end()) {
-      continue;
-    }
-    Progress progress(one.name, variants.size());
-    std::size_t done = 0;
-    const auto results = study::run_case(context, one, variants, bounds, [&] { progress.update(++done); });
-    print_case(one, variants, results);
-    for (std::size_t k = 0; k < variants.size(); ++k)
-      json["cases"][one.name][variants[k].name()] = to_json(results[k]);
-  }
-  return json;
 }
 
 Variant variant_of(const StudyOptions& o) {
@@ -297,20 +177,30 @@ ExitCode study_scene(const StudyOptions& options) {
   if (chosen == 0) {
     if (!options.json.empty() || options.scene.loss || options.scene.quality || !options.cases.empty())
       fail("study: --json, --loss, --quality and --case go with --stability, --eyes, --rules or --path FILE");
-    return analyse_scene({options.scene, options.test, options.frames.value_or(24), options.output});
+    return analyse_scene({options.scene, options.test, options.frames.value_or(24),
+                          options.output.empty() ? "out/study" : options.output});
   }
   if (!options.test.empty() || !options.scene.photos.empty())
     fail("study: --test and --photos are for the analyses, without --stability, --eyes, --rules and --path");
   if (options.scene.views.size() > 1) fail("--view: this study is of one view");
   if (options.eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
+  if (!options.output.empty() && !options.stability)
+    fail("study: -o is for the analyses and --stability: --json keeps the numbers of the others");
+  const std::filesystem::path folder = options.output;
+  if (!options.output.empty()) check_output(folder / "study.json");
   if (!options.json.empty()) check_output(options.json);
   const Studied studied = open(options);
   const auto context = open_context(options.scene);
-  const ordered_json json = options.stability ? stability(*context, options, studied)
+  const ordered_json json = options.stability ? study_stability(*context, options, studied)
                             : options.eyes    ? eyes(*context, options, studied)
                             : options.rules   ? rules(*context, options, studied)
                                               : carried(*context, options, studied);
   if (!options.json.empty()) save_json(options.json, json);
+  if (!options.output.empty()) {
+    save_json(folder / "study.json", json);
+    const Uninterrupted hold;
+    study::save_page(folder / "report.html", study::stability_page(json));
+  }
   return ExitCode::done;
 }
 
@@ -366,7 +256,8 @@ void add_study(CLI::App& program, Command& command) {
   sub->add_option("--photos", o.scene.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB")
       ->type_name("DIR")
       ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
-  sub->add_option("-o,--output", o.output, "Folder for report.html and study.json (out/study)")
+  sub->add_option("-o,--output", o.output,
+                  "Folder for report.html and study.json (out/study);\nwith --stability, too")
       ->type_name("DIR");
   sub->add_option_function<std::string>(
          "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },

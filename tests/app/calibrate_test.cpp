@@ -3,6 +3,7 @@
 #include "app/scene.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
+#include "support/scenes.h"
 
 namespace binosplat {
 namespace {
@@ -58,6 +59,26 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
       {"--mono", "--view", "front", "--size", "36x24", "-o", folder / "small.png", "--calibration", file});
   ASSERT_TRUE(good(small));
   EXPECT_NE(small.err.find("the loss is scaled"), std::string::npos) << small.err;
+}
+
+TEST(CalibrateFox, AtAQuarterOfItsSize) {
+  REQUIRE_SCENE("fox", fox);
+  const test::TempFolder folder;
+  const Outcome outcome = test::run_program({"calibrate", fox / "fox.ply", "--view", "0003", "--size",
+                                             "129x236", "--quality", "40", "-o", folder / "fox.json"});
+  ASSERT_TRUE(good(outcome));
+  const ordered_json found = ordered_json::parse(read_text(folder / "fox.json"));
+  ASSERT_EQ(found["entries"].size(), 8);
+  double paper = 0.0, ours = 0.0;  // pairs removed at 40 dB
+  for (const ordered_json& entry : found["entries"]) {
+    EXPECT_GE(entry["reached_db"].get<double>(), 40.0) << entry;
+    EXPECT_LT(entry["reached_db"].get<double>(), 40.6) << entry;
+    if (entry["contrast"] != "off") continue;
+    if (entry["th"] == "peripheral" && entry["transmittance"] == "one") paper = entry["pairs_removed"];
+    if (entry["th"] == "squared" && entry["transmittance"] == "last") ours = entry["pairs_removed"];
+  }
+  EXPECT_GT(paper, 0.1);
+  EXPECT_GT(ours, paper + 0.1) << "METHOD 8: squared with measured light removes far more at equal error";
 }
 
 TEST_F(CalibrateTest, DropsAreAgainstPhotos) {

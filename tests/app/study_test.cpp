@@ -154,6 +154,7 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--stability", "--photos", folder / "."}, "--test and --photos are for the analyses"},
       {{"--test", "no-such"}, "--view no-such"},
       {{"-o", folder / "file"}, "file"},
+      {{"--rules", "-o", folder / "out"}, "-o is for the analyses and --stability"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
       {{"--eyes", "--view", "all"}, "--view all"},

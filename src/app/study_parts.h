@@ -1,0 +1,42 @@
+#pragma once
+// What the parts of `binosplat study` share.
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/render_options.h"
+#include "app/shots.h"
+#include "gl/context.h"
+#include "scene/model.h"
+
+namespace binosplat::app {
+
+struct StudyOptions {
+  RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
+  bool stability = false;
+  bool eyes = false;
+  bool rules = false;
+  std::optional<int> frames;  // timed of each rule in each round
+  std::vector<std::string> test;
+  std::string output;
+  std::vector<std::string> cases;
+  double target = 40.0;  // dB
+  std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
+  std::string json;
+};
+
+/// What is there to study, and the shots of it that the options ask for.
+struct Studied {
+  std::shared_ptr<const Model> model;
+  double near_plane = 0.0;
+  std::vector<Shot> shots;
+};
+
+/// --stability: prints the tables; the JSON is stability_page.h's.
+nlohmann::ordered_json study_stability(gl::Context& context, const StudyOptions& options,
+                                       const Studied& studied);
+
+}  // namespace binosplat::app
