@@ -14,7 +14,7 @@ namespace {
 
 /// What is parsed is copied, compared and written by recursion, which must not leave the stack.
 void check_depth(const std::string& source, std::string_view text) {
-  constexpr int most = 200;
+  constexpr int most = 500;
   int depth = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
