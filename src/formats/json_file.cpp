@@ -26,8 +26,9 @@ void check_depth(const std::string& source, std::string_view text) {
     if (c == ']' || c == '}') --depth;
     if (depth > most) {
       const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
-      fail("{}: its lists and objects are nested more than {} deep, at line {}, byte {}", source, most, line,
-           i + 1);
+      const Content content = content_of(std::as_bytes(std::span(text)));  // bytes of a binary file, say
+      fail("{}: its lists and objects are nested more than {} deep, at line {}, byte {}{}", source, most,
+           line, i + 1, content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
     }
   }
 }
