@@ -1,5 +1,6 @@
 #include "formats/colmap_records.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -41,10 +42,11 @@ std::size_t parameters_of(int model) {
 
 /// A quaternion of length 1; a pose without one is refused.
 glm::dvec4 unit(const std::string& where, const glm::dvec4& q) {
-  const double length = glm::length(q);
-  if (!(length > 0.0 && std::isfinite(length)))
-    fail("{}: the rotation is no quaternion (all zero, or not finite)", where);
-  return q / length;
+  // Squares of its numbers may be too large or too small for a double; not so next to the largest of them.
+  const glm::dvec4 size = glm::abs(q), shrunk = q / std::max({size.x, size.y, size.z, size.w});
+  const double length = glm::length(shrunk);
+  if (!std::isfinite(length)) fail("{}: the rotation is no quaternion (all zero, or not finite)", where);
+  return shrunk / length;
 }
 
 void check_pose(const std::string& where, const ColmapImage& image) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -19,6 +20,9 @@ constexpr const char* packed_names[] = {"KHR_gaussian_splatting_compression_spz_
                                         "KHR_gaussian_splatting_compression_spz",
                                         "KHR_spz_gaussian_splats_compression", "KHR_spz_compression"};
 constexpr std::uint64_t most = std::uint64_t{1} << 40;
+/// Nodes may share a mesh, and meshes their numbers: a few bytes each, however many Gaussians they add. So
+/// many may be there beyond one a byte; a Gaussian that is there once takes 10 bytes and more.
+constexpr std::size_t most_copies = std::size_t{1} << 20;
 
 /// A node's own transform: a matrix, or translation, rotation and scale.
 glm::dmat4 transform_of(const JsonValue& node) {
@@ -64,10 +68,15 @@ void move(const JsonValue& node, const glm::dmat4& matrix, Model& model) {
         "it turns harmonics of degree {}, which is not supported; apply the rotation when exporting",
         model.degree);
   }
-  const glm::dquat turn = glm::quat_cast(rotation);
+  // As exact as the matrix, whose axes may be uneven by the bound above, is not exact enough.
+  const glm::dquat turn = glm::normalize(glm::quat_cast(rotation));
   for (std::size_t i = 0; i < model.count(); ++i) {
     model.position[i] = glm::dvec3(matrix * glm::dvec4(model.position[i], 1.0));
-    model.scale[i] *= static_cast<float>(scale);
+    model.scale[i] = glm::dvec3(model.scale[i]) * scale;
+    for (const glm::vec3& v : {model.position[i], model.scale[i]}) {
+      if (!glm::all(glm::lessThan(glm::abs(v), glm::vec3(std::numeric_limits<float>::infinity()))))
+        node.fail_here("its transform, or one above it, moves Gaussians beyond the largest number");
+    }
     if (!turns) continue;
     const glm::vec4& q = model.rotation[i];
     const glm::dquat turned_q = turn * glm::dquat(q.x, q.y, q.z, q.w);
@@ -158,6 +167,12 @@ class GltfReader {
       Model part = packed ? load_spz(fmt::format("{}: its spz data", path_.string()), document_.view(*packed))
                           : read_points(primitive.at("attributes"));
       packed_ = packed_ || packed.has_value();
+      read_ += part.count() + part.left_out;
+      if (read_ > document_.size() + most_copies) {
+        node.fail_here(
+            "its mesh makes that {} Gaussians of a file of {} bytes, by showing the same ones many times",
+            read_, document_.size());
+      }
       move(node, matrix, part);
       append(model_, std::move(part));
     }
@@ -235,6 +250,7 @@ class GltfReader {
   GltfDocument document_;
   Model model_;
   bool packed_ = false;
+  std::size_t read_ = 0;                 // Gaussians, of all nodes
   std::size_t meshes_ = 0, points_ = 0;  // primitives that are no Gaussians
 };
 

@@ -80,7 +80,7 @@ std::size_t optional_size(const JsonValue& value, const char* key) {
 }  // namespace
 
 GltfDocument::GltfDocument(const std::filesystem::path& path, std::span<const std::byte> bytes)
-    : path_(path) {
+    : path_(path), size_(bytes.size()) {
   if (content_of(bytes) == Content::glb) {
     open_binary(bytes);
   } else {
@@ -121,14 +121,14 @@ std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
     if (index != 0 || binary_.empty()) buffer.fail_here("it has no uri, and the file no binary chunk for it");
     return binary_;
   }
-  const auto known = buffers_.find(index);
-  if (known != buffers_.end()) return known->second;
   const JsonValue uri = buffer.at("uri");
   const std::string text = uri.text();
+  const auto known = buffers_.find(text);
+  if (known != buffers_.end()) return known->second;
   if (text.starts_with("data:")) {
     const std::size_t comma = text.find(";base64,");
     if (comma == std::string::npos) uri.fail_here("expected base64 in a data: URI");
-    return buffers_[index] = decode_base64(uri, std::string_view(text).substr(comma + 8));
+    return buffers_[text] = decode_base64(uri, std::string_view(text).substr(comma + 8));
   }
   const std::filesystem::path file = path_.parent_path() / text;
   std::error_code ignored;
@@ -136,7 +136,8 @@ std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
   if (!std::filesystem::is_regular_file(file, ignored))
     uri.fail_here("{} is missing; fetch or export it again", file.string());
   const MappedFile mapped(file);
-  return buffers_[index] = {mapped.bytes().begin(), mapped.bytes().end()};
+  size_ += mapped.bytes().size();
+  return buffers_[text] = {mapped.bytes().begin(), mapped.bytes().end()};
 }
 
 std::span<const std::byte> GltfDocument::view(std::size_t index) {

@@ -24,10 +24,13 @@ class GltfDocument {
   /// The bytes of a buffer view. Throws Error naming the key where it leaves its buffer, or is compressed.
   std::span<const std::byte> view(std::size_t index);
 
-  /// The numbers of an accessor, `components` each element one after the other, integers brought to 0 to 1 or
-  /// -1 to 1 where it says `normalized`. Throws Error naming the key where it leaves its view, or has another
-  /// number of components or elements than asked for, or a type that is not float, byte or short.
-  std::vector<float> read(std::size_t accessor, std::size_t components, std::size_t count);
+  /// The numbers of the accessor `index`, `components` each element one after the other, integers brought to
+  /// 0 to 1 or -1 to 1 where it says `normalized`. Throws Error naming the key where it leaves its view, or
+  /// has another number of components or elements than asked for, or a type that is not float, byte or short.
+  std::vector<float> read(std::size_t index, std::size_t components, std::size_t count);
+
+  /// Bytes of the file and of the buffers that were read so far.
+  std::size_t size() const { return size_; }
 
   /// The number of elements of an accessor; not checked against the bytes.
   std::size_t count(std::size_t accessor) const;
@@ -42,7 +45,8 @@ class GltfDocument {
   nlohmann::json json_;
   std::unique_ptr<JsonValue> root_;
   std::span<const std::byte> binary_;                      // of a .glb
-  std::map<std::size_t, std::vector<std::byte>> buffers_;  // decoded or read from files
+  std::map<std::string, std::vector<std::byte>> buffers_;  // by their URIs, decoded or read from files
+  std::size_t size_;
 };
 
 }  // namespace binosplat

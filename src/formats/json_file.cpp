@@ -10,7 +10,33 @@ namespace binosplat {
 
 using nlohmann::json;
 
+namespace {
+
+/// What is parsed is copied, compared and written by recursion, which must not leave the stack.
+void check_depth(const std::string& source, std::string_view text) {
+  constexpr int most = 500;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') quoted = !quoted;
+    if (quoted && c == '\\') ++i;
+    if (quoted) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > most) {
+      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+      const Content content = content_of(std::as_bytes(std::span(text)));  // bytes of a binary file, say
+      fail("{}: its lists and objects are nested more than {} deep, at line {}, byte {}{}", source, most,
+           line, i + 1, content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
+    }
+  }
+}
+
+}  // namespace
+
 json parse_json(const std::string& source, std::string_view text) {
+  check_depth(source, text);
   try {
     return json::parse(text.begin(), text.end());
   } catch (const json::parse_error& error) {

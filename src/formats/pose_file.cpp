@@ -1,5 +1,7 @@
 #include "formats/pose_file.h"
 
+#include <cmath>
+
 #include "base/mapped_file.h"
 #include "base/output_file.h"
 #include "formats/cameras_file.h"
@@ -25,10 +27,7 @@ std::filesystem::path pose_path(const std::filesystem::path& model) {
   return path += ".binosplat.json";
 }
 
-std::optional<SavedPose> find_pose(const std::filesystem::path& model) {
-  const std::filesystem::path path = pose_path(model);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+SavedPose load_pose(const std::filesystem::path& path) {
   SavedPose pose;
   pose.camera = load_cameras(path).front();
   const MappedFile file(path);
@@ -36,12 +35,20 @@ std::optional<SavedPose> find_pose(const std::filesystem::path& model) {
   const JsonValue saved = JsonValue(path.string(), root).at(std::size_t{0});
   const JsonValue up = saved.at("up").list_of(3);
   for (int k = 0; k < 3; ++k) pose.up[k] = up.at(static_cast<std::size_t>(k)).number();
-  if (!(glm::length(pose.up) > 0.0)) up.fail_here("expected a direction");
+  const double length = glm::length(pose.up);
+  if (!(length > 0.0 && std::isfinite(length))) up.fail_here("expected a direction");
   pose.units_per_metre = above_zero(saved.at("units_per_metre"));
   pose.ipd = saved.at("ipd_metres").number();
   if (!(pose.ipd >= 0.0)) saved.at("ipd_metres").fail_here("expected zero or more");
   pose.near_plane = above_zero(saved.at("near"));
   return pose;
+}
+
+std::optional<SavedPose> find_pose(const std::filesystem::path& model) {
+  const std::filesystem::path path = pose_path(model);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return std::nullopt;
+  return load_pose(path);
 }
 
 void save_pose(const std::filesystem::path& path, const SavedPose& pose) {

@@ -20,7 +20,10 @@ struct SavedPose {
 /// Beside a model's file or folder, without that file's ending: models of one name share it.
 std::filesystem::path pose_path(const std::filesystem::path& model);
 
-/// What lies there, if anything does. Throws Error naming the file and the key for what cannot be understood.
+/// Throws Error naming the file and the key for what cannot be understood.
+SavedPose load_pose(const std::filesystem::path& path);
+
+/// What lies at pose_path, if anything does. Throws as load_pose does.
 std::optional<SavedPose> find_pose(const std::filesystem::path& model);
 
 /// Throws Error where it cannot be written.

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 using Ranges = std::vector<SogSource::Range>;
 
 constexpr std::uint64_t most_levels = 100;
-constexpr int deepest = 200;  // of the tree; octrees of a planet are not deeper than 30
 constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
 
 /// What lod-meta.json says.
@@ -36,7 +35,12 @@ class Levels {
     count_ = static_cast<int>(root_.at("lodLevels").whole(most_levels));
     if (count_ == 0) root_.at("lodLevels").fail_here("expected one level at least");
     const JsonValue names = root_.at("filenames");
-    for (std::size_t i = 0; i < names.size(); ++i) files_.push_back(file(names.at(i)));
+    std::set<fs::path> named;  // twice, a file could be taken any number of times
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      files_.push_back(file(names.at(i)));
+      if (!named.insert(files_.back().lexically_normal()).second)
+        names.at(i).fail_here("this file is named twice");
+    }
     if (root_.has("environment")) environment_ = file(root_.at("environment"));
   }
 
@@ -103,15 +107,14 @@ class Levels {
 
   /// Calls see(node) for every node of the tree that has Gaussians, always in one order.
   void walk(const std::function<void(const JsonValue&)>& see) const {
-    std::vector<std::pair<JsonValue, int>> nodes{{root_.at("tree"), 0}};
+    std::vector<JsonValue> nodes{root_.at("tree")};
     while (!nodes.empty()) {
-      const auto [node, depth] = nodes.back();
+      const JsonValue node = nodes.back();
       nodes.pop_back();
       if (node.has("lods")) see(node);
       if (!node.has("children")) continue;
-      if (depth == deepest) fail("{}: the tree is nested more than {} deep", root_.source(), deepest);
       const JsonValue children = node.at("children");
-      for (std::size_t i = children.size(); i-- > 0;) nodes.emplace_back(children.at(i), depth + 1);
+      for (std::size_t i = children.size(); i-- > 0;) nodes.push_back(children.at(i));
     }
   }
 

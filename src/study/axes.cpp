@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "formats/json_file.h"
 #include "study/embedded.h"
 #include "study/settings.h"
 
@@ -82,6 +83,8 @@ struct Key {
   std::function<void(render::FrameSettings&, const json&)> set;
 };
 
+constexpr std::size_t most_settings = 10000;  // of all blocks; nobody measures that many
+
 /// All combinations of a block's lists, appended; the last key's values follow one another.
 void add_settings(const Block& block, std::vector<render::FrameSettings>& settings) {
   using S = render::FrameSettings;
@@ -101,10 +104,12 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
   };
   std::vector<S> all(1);
   for (const Key& key : keys) {
+    const std::vector<json> values = block.values(key.name, key.otherwise);
+    if (settings.size() + all.size() * values.size() > most_settings)
+      fail("{}: from here on there are more than {} combinations", block.place(), most_settings);
     std::vector<S> next;
     for (const S& before : all) {
-      for (const json& value : block.values(key.name, key.otherwise))
-        key.set(next.emplace_back(before), value);
+      for (const json& value : values) key.set(next.emplace_back(before), value);
     }
     all = std::move(next);
   }
@@ -130,12 +135,7 @@ std::vector<std::string> sizes_of(const Block& top) {
 }  // namespace
 
 Axes parse_axes(const std::string& name, const std::string& text) {
-  json root;
-  try {
-    root = json::parse(text);
-  } catch (const json::parse_error& error) {
-    fail("{}: not JSON: {}", name, error.what());
-  }
+  const json root = parse_json(name, text);
   const Block top(name, root, {"views", "frames", "repeats", "eyes", "sizes", "settings"});
   Axes axes;
   axes.name = name;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "formats/json_file.h"
 #include "study/settings.h"
 
 namespace binosplat::study {
@@ -173,8 +174,7 @@ ordered_json to_json(const Calibration& c) {
 }
 
 Calibration parse_calibration(const std::string& name, const std::string& text) {
-  const json root = json::parse(text, nullptr, false);
-  if (root.is_discarded()) fail("{}: not JSON, or cut short", name);
+  const json root = parse_json(name, text);
   const Reader top(name, root);
   if (top.text("format") != "binosplat calibration" || top.number("version") != 1)
     fail("{}: not a calibration of this version: make it with binosplat calibrate", name);

@@ -106,7 +106,7 @@ TEST_F(CalibrateTest, ErrorsSayWhatToDo) {
   EXPECT_TRUE(ended(calibrate({"--quality", "0"}), 2, "--help"));
   EXPECT_TRUE(ended(calibrate({"--quality", "40", "--size", "big"}), 2, "--size big: expected pixels"));
   EXPECT_TRUE(ended(render({"-o", out, "--calibration", none}), 2, "none.json"));
-  EXPECT_TRUE(ended(render({"-o", out, "--calibration", model}), 2, "not JSON"));
+  EXPECT_TRUE(ended(render({"-o", out, "--calibration", model}), 2, "not valid JSON"));
   EXPECT_TRUE(ended(render({"-o", out, "--calibration", file, "--loss", "1"}), 2, "leave one of them out"));
   EXPECT_TRUE(
       ended(render({"-o", out, "--calibration", file, "--th", "tau"}), 2, "has no effect with --th tau"));

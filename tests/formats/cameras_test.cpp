@@ -129,7 +129,12 @@ TEST(Cameras, ErrorsOfTheWholeFile) {
   EXPECT_TRUE(refuses("", {"an empty file"}));
   EXPECT_TRUE(refuses("<html>", {"line 1, byte 1", "an HTML or XML page"}));
   EXPECT_TRUE(refuses("[1e999]", {"not valid JSON"}));
-  EXPECT_TRUE(refuses(std::string(300000, '['), {"not valid JSON"}));
+  EXPECT_TRUE(refuses("[\n" + std::string(300000, '['), {"nested more than 500 deep, at line 2, byte 502"}));
+  // Neither brackets in quotes nor those that are closed again count.
+  EXPECT_TRUE(refuses("[\"\\\"" + std::string(300, '[') + "\"]", {"camera 0", "expected an object"}));
+  std::string wide = "[[]";
+  for (int i = 0; i < 300; ++i) wide += ",[{}]";
+  EXPECT_TRUE(refuses(wide + "]", {"camera 0", "expected an object"}));
   EXPECT_TRUE(
       test::fails_saying([] { load_cameras("/nowhere/cameras.json"); }, {"/nowhere", "No such file"}));
 }

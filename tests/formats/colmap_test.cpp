@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/cameras_file.h"
+#include "formats/colmap_records.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 #include "support/truth.h"
@@ -176,6 +177,16 @@ TEST(ColmapErrors, Binary) {
                            {"there is a camera 1 already"}));
   for (std::size_t end = 0; end < cameras.size(); ++end)
     EXPECT_TRUE(with_cameras(cameras.substr(0, end), {"cameras.bin is cut short"})) << end;
+}
+
+TEST(Colmap, QuaternionsOfAnyLengthAreRotations) {
+  // Squares of all but the first are no numbers any more, or hardly.
+  for (const char* size : {"1", "5e-162", "1e200", "1e-300"}) {
+    const test::TempFolder folder;
+    test::write_text(folder / "images.txt", fmt::format("1 {0} -{0} {0} {0} 0 0 0 1 a.png\n\n", size));
+    const glm::dvec4 rotation = colmap_images_text(folder / "images.txt").at(0).rotation;
+    EXPECT_LT(glm::length(rotation - glm::dvec4(0.5, -0.5, 0.5, 0.5)), 1e-15) << size;
+  }
 }
 
 TEST(ColmapErrors, Text) {

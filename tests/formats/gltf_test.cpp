@@ -63,6 +63,15 @@ struct Gltf : testing::Test {
     good = test::read_text(fixtures / "gltf/st-train-sh3.glb");
   }
 
+  Glb without_harmonics() const {
+    Glb glb(good);
+    for (int band = 1; band <= 3; ++band) {
+      for (int m = 0; m <= 2 * band; ++m)
+        glb.attributes().erase(fmt::format("{}:SH_DEGREE_{}_COEF_{}", extension, band, m));
+    }
+    return glb;
+  }
+
   /// Whether the good file, changed, ends in an error that names it and says `parts`.
   template <typename Change>
   testing::AssertionResult refuses(const Change& change, std::initializer_list<std::string> parts) const {
@@ -91,6 +100,29 @@ TEST_F(Gltf, NodesMoveWhatIsInThem) {
   EXPECT_LT(glm::length(two.scale[1007] - 2.0f * plain.scale[7]), 1e-6f);
   EXPECT_EQ(two.rotation[1007], plain.rotation[7]);
   EXPECT_EQ(two.sh[1007 * 48 + 47], plain.sh[7 * 48 + 47]);
+}
+
+TEST_F(Gltf, TurnedGaussiansKeepQuaternionsOfLengthOne) {
+  Glb glb = without_harmonics();
+  // A quarter turn, uneven by as much as is let pass.
+  glb.root["nodes"][0]["matrix"] = {0, 1.00006, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const Model turned = load(glb.bytes());
+  EXPECT_EQ(turned.degree, 0);
+  for (const glm::vec4& q : turned.rotation) ASSERT_NEAR(glm::length(q), 1.0f, 1e-6f);
+  // Not the quaternions that were there.
+  EXPECT_GT(glm::length(turned.rotation[7] - load(good).rotation[7]), 0.1f);
+}
+
+TEST_F(Gltf, CopiesHaveALimit) {
+  Glb glb = without_harmonics();
+  const auto copies = [&](int n) {
+    glb.root["nodes"] = json(static_cast<std::size_t>(n), json{{"mesh", 0}});
+    json& nodes = glb.root["scenes"][0]["nodes"] = json::array();
+    for (int i = 0; i < n; ++i) nodes.push_back(i);
+    return glb.bytes();
+  };
+  EXPECT_EQ(load(copies(50)).count(), 50000u);
+  EXPECT_TRUE(refuses_bytes(copies(2000), {"a.glb, key 'nodes[", "showing the same ones many times"}));
 }
 
 TEST_F(Gltf, BuffersMayLieBeside) {
@@ -182,6 +214,13 @@ TEST_F(Gltf, BrokenScenes) {
   EXPECT_TRUE(refuses([&](Glb& g) { node(g)["scale"] = {1, 1, -1}; }, {"key 'nodes[0]'", "mirrors"}));
   EXPECT_TRUE(refuses([&](Glb& g) { node(g)["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1}; },
                       {"key 'nodes[0]'", "mirrors"}));
+  for (const char* key : {"scale", "translation"}) {
+    EXPECT_TRUE(refuses(
+        [&](Glb& g) {
+          node(g)[key] = {1e90, 1e90, 1e90};
+        },
+        {"key 'nodes[0]'", "beyond the largest number"}));
+  }
   EXPECT_TRUE(refuses([&](Glb& g) { node(g)["scale"] = {1, 1, 2}; }, {"scales its axes differently"}));
   EXPECT_TRUE(refuses([&](Glb& g) { node(g)["rotation"] = {0, 1, 0, 1}; }, {"turns harmonics of degree 3"}));
   EXPECT_TRUE(

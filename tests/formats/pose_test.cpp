@@ -76,6 +76,7 @@ TEST(PoseFile, WhatCannotBeIsNamed) {
   EXPECT_TRUE(fails("\"ipd_metres\": 0.061", "\"ipd_metres\": -1", "ipd_metres"));
   EXPECT_TRUE(fails("\"near\": 0.05", "\"near\": \"far\"", "near"));
   EXPECT_TRUE(fails("\"up\"", "\"down\"", "up"));
+  EXPECT_TRUE(fails("0.6", "1e200", "up"));
   EXPECT_TRUE(fails("\"fx\": 210.5", "\"fx\": -1", "fx"));
   EXPECT_TRUE(fails("[", "{", "line"));
   write_text(path, good);

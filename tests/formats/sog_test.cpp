@@ -294,16 +294,19 @@ TEST(SogErrors, Levels) {
                      {"Gaussians 752 to 1000 of", "0_0/meta.json", "which has 1000"}));
   EXPECT_TRUE(edited([](json& m) { m["filenames"][0] = "../0_0/meta.json"; },
                      {"key 'filenames[0]'", "must lie below"}));
+  EXPECT_TRUE(edited([](json& m) { m["filenames"].push_back("./" + m["filenames"][0].get<std::string>()); },
+                     {"key 'filenames[", "named twice"}));
   EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 1000000; }, {"key 'lodLevels'", "from 0 to 100"}));
   EXPECT_TRUE(edited([](json& m) { m["lodLevels"] = 0; }, {"key 'lodLevels'", "one level at least"}));
   EXPECT_TRUE(edited([](json& m) { m.erase("tree"); }, {"the key 'tree' is missing"}));
-  EXPECT_TRUE(edited([](json& m) { m["tree"].erase("children"); }, {"holds no Gaussians (streamed SOG, level 0 of 2)"}));
+  EXPECT_TRUE(edited([](json& m) { m["tree"].erase("children"); },
+                     {"holds no Gaussians (streamed SOG, level 0 of 2)"}));
   std::string deep = R"({"lodLevels": 1, "filenames": [], "tree": )";
   for (int i = 0; i < 100000; ++i) deep += R"({"children":[)";
   for (int i = 0; i < 100000; ++i) deep += "]}";
   EXPECT_TRUE(refuses(folder / "sog/st-lod",
                       [&](const Copy& copy) { copy.write(deep + "}", "lod-meta.json"); },
-                      {"lod-meta.json", "nested more than 200 deep"}));
+                      {"lod-meta.json", "nested more than 500 deep"}));
 }
 
 }  // namespace

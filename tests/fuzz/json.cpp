@@ -1,13 +1,19 @@
-// Cameras: load_cameras.
+// What is JSON and no model: cameras, the pose beside a model, a calibration, the axes of a measurement.
 
 #include <cmath>
 
 #include "formats/cameras_file.h"
+#include "formats/content.h"
+#include "formats/pose_file.h"
 #include "fuzz/input.h"
+#include "study/axes.h"
+#include "study/calibration.h"
 
 namespace binosplat::fuzz {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 /// What formats/cameras_file.h promises.
 void check(const Camera& camera) {
@@ -20,14 +26,35 @@ void check(const Camera& camera) {
   demand(std::abs(glm::determinant(camera.rotation) - 1.0) < 2e-3, "a rotation that is none");
 }
 
+void check(const SavedPose& pose) {
+  check(pose.camera);
+  demand(glm::length(glm::normalize(pose.up)) > 0.0, "no way up");
+  demand(pose.units_per_metre > 0.0 && pose.near_plane > 0.0 && pose.ipd >= 0.0, "a length below zero");
+}
+
+void check(const study::Calibration& calibration) {
+  demand(calibration.width >= 1 && calibration.height >= 1 && calibration.focal > 0.0, "a view of nothing");
+  demand(!calibration.depth_table.upper.empty() && calibration.depth_table.far > 0.0f, "no table of depths");
+  for (const study::CalibrationEntry& entry : calibration.entries)
+    demand(entry.loss >= 0.0 && std::isfinite(static_cast<float>(entry.loss)), "a loss that is none");
+}
+
 }  // namespace
 
 void target(std::span<const std::byte> bytes) {
-  feed(bytes, [](const std::filesystem::path& path) {
+  feed(bytes, [](const fs::path& path) {
     const std::vector<Camera> cameras = load_cameras(path);
     demand(!cameras.empty(), "no cameras");
     for (const Camera& camera : cameras) check(camera);
   });
+  // What is no JSON at all, the others refuse in the same place.
+  const std::string_view text = as_text(bytes);
+  const nlohmann::json root = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+  if (root.is_array()) feed(bytes, [](const fs::path& path) { check(load_pose(path)); });
+  if (!root.is_object()) return;
+  feed(bytes, [](const fs::path& path) { check(study::load_calibration(path)); });
+  feed(bytes,
+       [](const fs::path& path) { demand(!study::load_axes(path.string()).settings.empty(), "no axes"); });
 }
 
 }  // namespace binosplat::fuzz

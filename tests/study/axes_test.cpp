@@ -51,7 +51,8 @@ TEST(Axes, ErrorsNameThePlace) {
     const char* text;
     const char* said;
   } cases[] = {
-      {"{", "a.json: not JSON"},
+      {"{", "a.json is not valid JSON"},
+      {R"({"frames": 1e999})", "a.json is not valid JSON"},
       {"[]", "a.json: expected an object"},
       {R"({"settings": []})", "expected a list 'settings'"},
       {R"({"settings": {}})", "expected a list 'settings'"},
@@ -88,6 +89,12 @@ TEST(Axes, ErrorsNameThePlace) {
     }
   }
   EXPECT_THROW(load_axes("no-such-preset"), Error);
+  // Lists whose combinations no memory would hold.
+  const nlohmann::json block = {
+      {"th", "squared"}, {"loss", nlohmann::json(500, 0.5)}, {"tile", nlohmann::json(50, 8)}};
+  const std::string many = nlohmann::json{{"settings", {block}}}.dump();
+  EXPECT_TRUE(
+      test::fails_saying([&] { parse_axes("a.json", many); }, {"block 1", "more than 10000 combinations"}));
 }
 
 }  // namespace

@@ -80,6 +80,9 @@ TEST(Calibration, ErrorsNameTheKey) {
   }
   EXPECT_THROW(parse_calibration("c", "{\"format\""), Error);
   EXPECT_THROW(parse_calibration("c", "[]"), Error);
+  // So deep that writing it into the error would leave the stack.
+  const std::string deep = std::string(300000, '[') + std::string(300000, ']');
+  EXPECT_THROW(parse_calibration("c", "{\"format\": " + deep + "}"), Error);
   ordered_json json = to_json(sample());
   json["entries"][0].erase("worst_view");
   EXPECT_THROW(parse_calibration("c", json.dump()), Error);
