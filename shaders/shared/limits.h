@@ -29,8 +29,8 @@
 // zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be measured again.
 #define UPPER_FLOOR 0.01
 #define UPPER_AGEING 1.25
-// Blending weights alpha T are summed in steps of this: the least one that a pixel can blend, tau times the least T, is
-// more than one step, and the sum of a tile of 1,024 px fits a word.
+// Blending weights alpha T are summed in steps of this: the least one that a pixel can blend, tau times the
+// least T, is more than one step, and the sum of a tile of 1,024 px fits a word.
 #define WEIGHT_SCALE 4194304.0
 
 // Invocations of a work group that handles one thing each.

@@ -24,9 +24,7 @@ void RadixSort::reserve(std::int64_t count) {
   scan_.reserve(counters);
 }
 
-std::uint32_t RadixSort::digit_bits(std::uint32_t bits) {
-  return bits <= 8 * passes(bits) ? 8 : 9;
-}
+std::uint32_t RadixSort::digit_bits(std::uint32_t bits) { return bits <= 8 * passes(bits) ? 8 : 9; }
 
 std::uint32_t RadixSort::passes(std::uint32_t bits) { return (bits + SORT_BITS_MAX - 1) / SORT_BITS_MAX; }
 

@@ -21,15 +21,15 @@ struct FrameReport {
   std::uint32_t order_groups = 0;
   std::uint32_t order_passes = 0;      // of the radix sort by depth, of an order group
   std::uint32_t tile_sort_passes = 0;  // of that by tile
-  int redrawn = 0;                    // times that buffers had to grow
-  std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
-  double total_ms = 0;                // their sum
-  double submit_ms = 0;               // CPU time of handing the last drawing to the driver
-  std::int64_t gpu_bytes = 0;         // in buffers, the model's included
-  float loss = 0.0f;                  // K or kappa that the frame went by
-  bool remembered = false;            // it went by what an earlier frame measured
-  bool recorded = false;              // it measured for later ones
-  double quality = 0.0;               // with settings.quality: the PSNR in dB that its probes so far tell of
+  int redrawn = 0;                     // times that buffers had to grow
+  std::vector<gl::StageTime> stages;   // GPU time of the last, complete drawing
+  double total_ms = 0;                 // their sum
+  double submit_ms = 0;                // CPU time of handing the last drawing to the driver
+  std::int64_t gpu_bytes = 0;          // in buffers, the model's included
+  float loss = 0.0f;                   // K or kappa that the frame went by
+  bool remembered = false;             // it went by what an earlier frame measured
+  bool recorded = false;               // it measured for later ones
+  double quality = 0.0;                // with settings.quality: the PSNR in dB that its probes so far tell of
 };
 
 /// A Gaussian that a frame drew in a view, and the most light that reached it.
