@@ -38,8 +38,7 @@ int main(int argc, char** argv) try {
   const stereo::Fov left = {-0.855, 0.646, 0.7, -0.7}, right = {-0.646, 0.855, 0.7, -0.7};
   const std::array<stereo::XrEye, 2> eyes = {stereo::XrEye{.position = {-0.0315, 1.6, 0.0}, .fov = left},
                                              stereo::XrEye{.position = {0.0315, 1.6, 0.0}, .fov = right}};
-  const stereo::Stage stage =
-      stereo::stage_of(model, {0.0, 1.6, 0.0});  // the floor lies 1.6 below the origin
+  const stereo::Stage stage = stereo::stage_of(model, {0.0, 1.6, 0.0});  // the floor lies 1.6 below the origin
   const glm::ivec2 size(width, height);
   const stereo::EyePair pair = stereo::eyes_from_xr(eyes, stage, {size, size});
   const stereo::Target targets[] = {{.texture = textures[0]}, {.texture = textures[1]}};
