@@ -156,7 +156,7 @@ std::string lit_bins(const ordered_json& results) {
 
 Section real_drops(const ordered_json& results) {
   const bool drop = is_drop(results);
-  Plot plot{{drop ? "target on the calibration views" : "target on the calibration views", "dB"},
+  Plot plot{{"target on the calibration views", "dB"},
             {drop ? "drop on the test views" : "PSNR on the test views", "dB"},
             {}};
   Table table{{"rule", "target dB", "reached dB", "test views dB", "worst dB", "in view", "loss"}, {}};

@@ -219,11 +219,8 @@ Image halved(const Image& image) {
   for (int y = 0; y < half.height; ++y) {
     for (int x = 0; x < half.width; ++x) {
       for (int c = 0; c < half.channels; ++c) {
-        const auto at = [&](int dx, int dy) {
-          return image.data[static_cast<std::size_t>(((2 * y + dy) * image.width + 2 * x + dx) * 3 + c)];
-        };
-        half.data[static_cast<std::size_t>((y * half.width + x) * 3 + c)] =
-            0.25f * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1));
+        const auto at = [&](int dx, int dy) { return image.at(2 * x + dx, 2 * y + dy, c); };
+        half.at(x, y, c) = 0.25f * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1));
       }
     }
   }

@@ -50,7 +50,7 @@ glm::dvec2 centre(const std::vector<float>& pixels) {
   glm::dvec2 sum(0.0);
   double weight = 0.0;
   for (int k = 0; k < size.x * size.y; ++k) {
-    const double v = pixels[static_cast<std::size_t>(4 * k)];
+    const double v = pixels[4 * static_cast<std::size_t>(k)];
     sum += v * glm::dvec2(k % size.x, k / size.x);
     weight += v;
   }

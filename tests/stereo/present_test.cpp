@@ -37,7 +37,9 @@ struct Present : testing::Test {
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) {
         for (int c = 0; c < image.channels; ++c) {
-          const auto at = static_cast<std::size_t>(4 * ((image.height - 1 - y) * image.width + x) + c);
+          const std::size_t row =
+              static_cast<std::size_t>(image.height - 1 - y) * static_cast<std::size_t>(image.width);
+          const std::size_t at = 4 * (row + static_cast<std::size_t>(x)) + static_cast<std::size_t>(c);
           worst = std::max(worst, std::abs(double{pixels[at]} - image.at(x, y, c)));
         }
       }
@@ -49,7 +51,7 @@ struct Present : testing::Test {
     const glm::ivec2 size = layout_size(layout, {width, height});
     const std::uint32_t texture = caller.texture(GL_RGBA32F, size.x, size.y);
     presenter.draw(frame, first, layout, {.texture = texture}, background);
-    const auto pixels = caller.read<float>(texture, size.x, size.y);
+    auto pixels = caller.read<float>(texture, size.x, size.y);
     caller.DeleteTextures(1, &texture);
     return pixels;
   }
@@ -96,7 +98,7 @@ TEST_F(Present, EncodedTexturesHoldDisplayValues) {
   for (int k = 0; k < width * height; ++k) {
     const int y = height - 1 - k / width;
     const float v = std::min(1.0f, image.at(k % width, y, 1));
-    const int byte = bytes[static_cast<std::size_t>(4 * k + 1)];
+    const int byte = bytes[4 * static_cast<std::size_t>(k) + 1];
     if (std::abs(byte - 255.0f * v) > 0.51f) ++off;
     if (std::abs(byte - 255.0f * std::pow(v, 1.0f / 2.2f)) > 2.0f) ++encoded_twice;
   }
@@ -126,7 +128,8 @@ TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
   for (int y = 0; y < height + 5; ++y) {
     for (int x = 0; x < 2 * width + 3; ++x) {
       const bool inside = x >= 2 && x < 2 * width + 2 && y >= 4 && y < height + 4;
-      const float value = pixels[static_cast<std::size_t>(4 * (y * (2 * width + 3) + x) + 2)];
+      const float value =
+          pixels[4 * (static_cast<std::size_t>(y) * (2 * width + 3) + static_cast<std::size_t>(x)) + 2];
       ASSERT_NEAR(value, inside ? expected.at(x - 2, height - 1 - (y - 4), 2) : 0.0f, 1e-6) << x << " " << y;
     }
   }

@@ -34,7 +34,7 @@ ordered_json of_walls() {
   const ContributionView view{"front", make_view(test::front_camera(32, 24, 32.0)), {}};
   const render::DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
   int views = 0;
-  const ordered_json json = contributions(model, std::span(&view, 1), table, [&] { ++views; });
+  ordered_json json = contributions(model, std::span(&view, 1), table, [&] { ++views; });
   EXPECT_EQ(views, 1);
   return json;
 }
@@ -107,8 +107,9 @@ struct Spots : testing::Test {
     whole.push_back({camera, {}});
     for (int n = 0; n < columns * rows; ++n) {
       const double variance = 1.5 + 0.06 * n, opacity = 0.1 + 0.07 * n;
-      const double x = (n % columns + 0.5) * tile - 0.5 * camera.width;
-      const double y = (n / columns + 0.5) * tile - 0.5 * camera.height;
+      const int column = n % columns, row = n / columns;
+      const double x = (column + 0.5) * tile - 0.5 * camera.width;
+      const double y = (row + 0.5) * tile - 0.5 * camera.height;
       const auto scale = static_cast<float>(std::sqrt(variance - 0.3) * depth / focal);
       test::add(model, glm::vec3(x, y, focal) * static_cast<float>(depth / focal),
                 glm::vec3(scale, scale, 1e-6f), static_cast<float>(opacity));

@@ -73,8 +73,8 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
   work.tile_sort_passes = report.tile_sort_passes;
   EXPECT_GE(report.order_passes, 2u);
   EXPECT_EQ(report.tile_sort_passes, 1u);
-  for (const float alphas : frame.read_shown(SHOW_ALPHAS).front().data)
-    work.alphas += static_cast<double>(alphas);
+  const std::vector<Image> shown = frame.read_shown(SHOW_ALPHAS);
+  for (const float alphas : shown.front().data) work.alphas += static_cast<double>(alphas);
   EXPECT_GT(work.alphas, work.pixels);
   work.stages = times.front().stages;
   for (const auto& stage : profile(work, peaks)) {
