@@ -28,6 +28,15 @@ Image load_view_photo(const fs::path& file, const Camera& camera) {
   return photo;
 }
 
+study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot) {
+  study::CalibrationView view{shot.eyes.front().camera, {}};
+  if (options.photos.empty()) return view;
+  const auto file = find_view_photo(options.photos, shot);
+  if (!file) fail("--photos {}: there is no photo of view {}", options.photos, shot.name);
+  view.photo = load_view_photo(*file, view.camera);
+  return view;
+}
+
 std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,
                                                        const Model& model, double near_plane,
                                                        std::size_t wanted,
@@ -45,14 +54,8 @@ std::vector<study::CalibrationView> photographed_views(const RenderOptions& opti
     fail("--photos {}: there is no photo of any view", render.photos);
   if (!options.views.empty()) wanted = shots.size();
   std::vector<study::CalibrationView> views;
-  for (const std::size_t i : study::spread_evenly(shots.size(), wanted)) {
-    study::CalibrationView& view =
-        views.emplace_back(study::CalibrationView{shots[i].eyes.front().camera, {}});
-    if (render.photos.empty()) continue;
-    const auto file = find_view_photo(render.photos, shots[i]);
-    if (!file) fail("--photos {}: there is no photo of view {}", render.photos, shots[i].name);
-    view.photo = load_view_photo(*file, view.camera);
-  }
+  for (const std::size_t i : study::spread_evenly(shots.size(), wanted))
+    views.push_back(with_photo(options, shots[i]));
   return views;
 }
 

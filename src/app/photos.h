@@ -18,6 +18,9 @@ std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path
 /// Reads it. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
 
+/// A shot's first camera; with --photos its photo, too. Throws Error where there is none.
+study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot);
+
 /// The cameras, without a rig, that --view names, or else `wanted` of all, evenly spread, but for those
 /// called as one of `without`; with --photos each has its photo, and of all only those count that have one.
 std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,

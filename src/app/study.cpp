@@ -182,6 +182,7 @@ ExitCode study_scene(const StudyOptions& options) {
   }
   if (!options.test.empty() || !options.scene.photos.empty())
     fail("study: --test and --photos are for the analyses, without --stability, --eyes, --rules and --path");
+  if (options.frames && !options.rules) fail("--frames goes with --rules, or with the analyses");
   if (options.scene.views.size() > 1) fail("--view: this study is of one view");
   if (options.eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
   if (!options.output.empty() && !options.stability)

@@ -56,15 +56,6 @@ ModelFormat check(const TrimOptions& o) {
   return format;
 }
 
-study::CalibrationView with_photo(const TrimOptions& o, const Shot& shot) {
-  study::CalibrationView view{shot.eyes.front().camera, {}};
-  if (o.render.photos.empty()) return view;
-  const auto file = find_view_photo(o.render.photos, shot);
-  if (!file) fail("--photos {}: there is no photo of view {}", o.render.photos, shot.name);
-  view.photo = load_view_photo(*file, view.camera);
-  return view;
-}
-
 /// Held back are so many of the cameras (that have a photo), evenly spread, and at most every other one; the
 /// rest are weighed. The test views are neither.
 study::TrimViews choose_views(const TrimOptions& o, const CameraList& list, const Model& model,
@@ -79,7 +70,7 @@ study::TrimViews choose_views(const TrimOptions& o, const CameraList& list, cons
   };
   std::vector<Shot> shots = shots_of({"all"});
   for (const Shot& shot : o.tests.empty() ? std::vector<Shot>() : shots_of(o.tests)) {
-    views.test.push_back(with_photo(o, shot));
+    views.test.push_back(with_photo(o.render, shot));
     names.test.push_back(shot.name);
     std::erase_if(shots, [&](const Shot& other) { return other.name == shot.name; });
   }
@@ -99,7 +90,7 @@ study::TrimViews choose_views(const TrimOptions& o, const CameraList& list, cons
       views.weighed.push_back(shots[i].eyes.front().camera);
       continue;
     }
-    views.held_back.push_back(with_photo(o, shots[i]));
+    views.held_back.push_back(with_photo(o.render, shots[i]));
     names.held_back.push_back(shots[i].name);
   }
   names.weighed = views.weighed.size();

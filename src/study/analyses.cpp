@@ -50,10 +50,11 @@ ordered_json names_of(const std::vector<CalibrationView>& views) {
   return names;
 }
 
-std::vector<ContributionView> some_of(const std::vector<CalibrationView>& views, double near_plane) {
+/// `views` as the tester sees them, in the model's axes.
+std::vector<ContributionView> some_of(const std::vector<CalibrationView>& views, const Calibrator& tester) {
   std::vector<ContributionView> some;
   for (const std::size_t i : spread_evenly(views.size(), contribution_views))
-    some.push_back({views[i].camera.name, make_view(views[i].camera, near_plane), views[i].photo});
+    some.push_back({views[i].camera.name, tester.views()[i], views[i].photo});
   return some;
 }
 
@@ -98,7 +99,7 @@ ordered_json analyse(gl::Context& context, const Model& model,
     json["photo_db"] = {{"calibration", calibrator.exact_photo_db()}, {"test", tester.exact_photo_db()}};
   json["depth_table"] = {{"far", table.far}, {"upper", table.upper}};
 
-  const auto some = some_of(test, settings.near_plane);
+  const auto some = some_of(test, tester);
   std::size_t done = 0;
   json["contributions"] =
       contributions(model, some, table, [&] { progress("contributions", ++done, some.size()); });

@@ -163,6 +163,7 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--rules", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--th", "squared"}, "--rules"},
       {{"--rules", "--loss", "0.1"}, "--loss"},
+      {{"--eyes", "--frames", "5"}, "--rules"},
       {{"--path", "no_such.json"}, "no_such.json"},
       {{"--stability", "--json", folder / "file/s.json"}, "file"},
   };

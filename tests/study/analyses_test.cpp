@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "scene/axes.h"
 #include "study/chromium.h"
 #include "study/contributions.h"
 #include "support/gl.h"
@@ -197,6 +198,18 @@ TEST_F(Spots, LossesCostWhatTheSpotsAreWorth) {
     EXPECT_EQ(section.problem, "") << section.id;
     EXPECT_EQ(section.sentence.find("nan"), std::string::npos) << section.sentence;
   }
+}
+
+TEST_F(Spots, ModelsOfOtherAxesAreSeenFromTheSameSide) {
+  bring_into_axes(model, "RUB");
+  const AnalysisSettings settings{
+      .scene = "spots", .kind = CalibrationTarget::Kind::quality, .targets = {23.0}, .frames = 1};
+  const ordered_json json = analyse(test::gl_context(), model, whole, left, settings,
+                                    [](const std::string&, std::size_t, std::size_t) {});
+  int shown = 0;
+  for (const ordered_json& bin : json["contributions"]["by_depth"]) shown += bin["gaussians"].get<int>();
+  EXPECT_EQ(shown, columns * rows / 2);
+  EXPECT_EQ(json["systems"][0]["pairs"], columns * rows / 2);
 }
 
 /// Results of a run as analyse() leaves them, small.
