@@ -7,6 +7,7 @@
 #include "app/drawing.h"
 #include "app/open_scene.h"
 #include "app/photos.h"
+#include "app/report.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "study/analyses.h"
@@ -76,12 +77,8 @@ ExitCode analyse_scene(const AnalysisOptions& options) {
        .targets = photos ? std::vector{0.1, 0.2, 0.3, 0.4, 0.5} : std::vector{50.0, 45.0, 40.0, 37.0, 34.0},
        .frames = options.frames},
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
-  save_json(folder / "study.json", results);
   const study::Page page = study::analysis_page(results);
-  {
-    const Uninterrupted hold;
-    study::save_page(folder / "report.html", page);
-  }
+  save_report(folder, "study.json", results, page);
   print(page);
   fmt::print("\n{}: report.html, study.json\n", folder.string());
   return ExitCode::done;

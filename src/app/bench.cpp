@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "app/drawing.h"
 #include "app/photos.h"
+#include "app/report.h"
 #include "base/log.h"
 #include "base/output_file.h"
 #include "base/progress.h"
@@ -165,13 +166,12 @@ void print(const ordered_json& results) {
 
 ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
   const ordered_json results = folder.results();
-  save_json(folder.path() / "results.json", results);
+  save_report(folder.path(), "results.json", results, study::bench_page(results));
   {
     const Uninterrupted hold;
     OutputFile csv(folder.path() / "results.csv");
     csv.write(study::csv(results));
     csv.commit();
-    study::save_page(folder.path() / "report.html", study::bench_page(results));
   }
   print(results);
   fmt::print("\n{}: report.html, results.csv, results.json\n", folder.path().string());

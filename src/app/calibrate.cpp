@@ -18,20 +18,11 @@ namespace {
 
 struct CalibrateOptions {
   RenderOptions render;  // scene, cameras, views, size, photos, device
-  std::optional<double> max_drop;
-  std::optional<double> quality;
+  TargetOptions target;
   int views = 16;
   measure::DepthTableSettings table;
   std::string output;
 };
-
-void check(const CalibrateOptions& o) {
-  if (o.max_drop.has_value() == o.quality.has_value())
-    fail("calibrate needs a target: --photos DIR --max-drop DB, or --quality DB against the exact pictures");
-  if (o.max_drop.has_value() != !o.render.photos.empty())
-    fail("--max-drop and --photos go together: a drop in dB is against photos");
-  if (o.render.size && o.max_drop) fail("--size with --photos: a drop is measured in the photos' own size");
-}
 
 void print(const study::Calibration& c, const CalibrateOptions& o) {
   const bool drop = c.target.kind == study::CalibrationTarget::Kind::drop;
@@ -52,7 +43,7 @@ void print(const study::Calibration& c, const CalibrateOptions& o) {
 }
 
 ExitCode calibrate(const CalibrateOptions& o) {
-  check(o);
+  check_target("calibrate", "a target", o.target, o.render);
   check_output(o.output);
   const Scene scene = open_scene(o.render);
   CameraList list = listed_cameras(o.render, scene.cameras);
@@ -62,12 +53,9 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const std::vector<study::CalibrationView> views =
       photographed_views(o.render, list, model, near_plane, static_cast<std::size_t>(o.views));
   const auto context = open_context(o.render);
-  const study::CalibrationTarget target =
-      o.max_drop ? study::CalibrationTarget{study::CalibrationTarget::Kind::drop, *o.max_drop}
-                 : study::CalibrationTarget{study::CalibrationTarget::Kind::quality, *o.quality};
   Progress progress("calibrating", study::calibrated_settings().size());
   const study::Calibration found =
-      study::calibrate(*context, model, views, near_plane, target, o.table,
+      study::calibrate(*context, model, views, near_plane, o.target.target(), o.table,
                        [&](std::size_t entries, std::size_t) { progress.update(entries); });
   save_json(o.output, study::to_json(found));
   print(found, o);
@@ -83,10 +71,11 @@ void add_calibrate(CLI::App& program, Command& command) {
   const auto above_zero = CLI::PositiveNumber.description("");
   sub->add_option("SCENE", o->render.scene, "A model, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();
-  sub->add_option("--quality", o->quality, "Target: PSNR against the exact pictures, mean over the views")
+  sub->add_option("--quality", o->target.quality,
+                  "Target: PSNR against the exact pictures, mean over the views")
       ->type_name("DB")
       ->check(above_zero);
-  sub->add_option("--max-drop", o->max_drop, "Target: dB lost against the photos, mean over the views")
+  sub->add_option("--max-drop", o->target.max_drop, "Target: dB lost against the photos, mean over the views")
       ->type_name("DB")
       ->check(above_zero);
   sub->add_option("--photos", o->render.photos, "DIR/NAME.jpg or .png of the views")

@@ -28,6 +28,22 @@ Image load_view_photo(const fs::path& file, const Camera& camera) {
   return photo;
 }
 
+study::CalibrationTarget TargetOptions::target() const {
+  using Kind = study::CalibrationTarget::Kind;
+  return {max_drop ? Kind::drop : Kind::quality, max_drop ? *max_drop : *quality};
+}
+
+void check_target(const std::string& command, const std::string& what, const TargetOptions& options,
+                  const RenderOptions& render) {
+  if (options.max_drop.has_value() == options.quality.has_value())
+    fail("{} needs {}: --photos DIR --max-drop DB, or --quality DB against the exact pictures", command,
+         what);
+  if (options.max_drop.has_value() != !render.photos.empty())
+    fail("--max-drop and --photos go together: a drop in dB is against photos");
+  if (render.size && options.max_drop)
+    fail("--size with --photos: a drop is measured in the photos' own size");
+}
+
 study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot) {
   study::CalibrationView view{shot.eyes.front().camera, {}};
   if (options.photos.empty()) return view;

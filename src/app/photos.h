@@ -18,6 +18,17 @@ std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path
 /// Reads it. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
 
+/// What pictures may lose: --max-drop against the photos, or --quality against the exact pictures.
+struct TargetOptions {
+  std::optional<double> max_drop, quality;  // dB
+
+  study::CalibrationTarget target() const;
+};
+
+/// Throws Error unless there is one of the two, with what it needs; `command` needs `what`, as in "a bound".
+void check_target(const std::string& command, const std::string& what, const TargetOptions& options,
+                  const RenderOptions& render);
+
 /// A shot's first camera; with --photos its photo, too. Throws Error where there is none.
 study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot);
 

@@ -12,6 +12,7 @@
 #include "app/command.h"
 #include "app/drawing.h"
 #include "app/open_scene.h"
+#include "app/report.h"
 #include "app/shots.h"
 #include "app/study_parts.h"
 #include "base/log.h"
@@ -197,11 +198,7 @@ ExitCode study_scene(const StudyOptions& options) {
                             : options.rules   ? rules(*context, options, studied)
                                               : carried(*context, options, studied);
   if (!options.json.empty()) save_json(options.json, json);
-  if (!options.output.empty()) {
-    save_json(folder / "study.json", json);
-    const Uninterrupted hold;
-    study::save_page(folder / "report.html", study::stability_page(json));
-  }
+  if (!options.output.empty()) save_report(folder, "study.json", json, study::stability_page(json));
   return ExitCode::done;
 }
 

@@ -30,8 +30,7 @@ using Kind = study::CalibrationTarget::Kind;
 
 struct TrimOptions {
   RenderOptions render;  // scene, lod, axes, cameras, size, photos, device
-  std::optional<double> max_drop;
-  std::optional<double> quality;
+  TargetOptions bound;
   int views = 16;                  // held back
   std::vector<std::string> tests;  // views by name
   std::string output;
@@ -45,11 +44,7 @@ struct Names {
 };
 
 ModelFormat check(const TrimOptions& o) {
-  if (o.max_drop.has_value() == o.quality.has_value())
-    fail("trim needs a bound: --photos DIR --max-drop DB, or --quality DB against the exact pictures");
-  if (o.max_drop.has_value() != !o.render.photos.empty())
-    fail("--max-drop and --photos go together: a drop in dB is against photos");
-  if (o.render.size && o.max_drop) fail("--size with --photos: a drop is measured in the photos' own size");
+  check_target("trim", "a bound", o.bound, o.render);
   const ModelFormat format = output_format(o.output);
   check_model_output(o.output, o.render.scene);
   if (!o.json.empty()) check_output(o.json);
@@ -124,12 +119,13 @@ std::string decibels(Kind kind, double db) {
 }
 
 void print(const TrimOptions& o, const study::Trimmed& found, const Names& names, std::size_t gaussians) {
-  const Kind kind = o.max_drop ? Kind::drop : Kind::quality;
-  fmt::print("{} views weighed, {} held back, {} of test; bound: {}\n", names.weighed, names.held_back.size(),
-             names.test.size(),
-             o.max_drop
-                 ? fmt::format("at most {} dB lost against the photos, mean of those held back", *o.max_drop)
-                 : fmt::format("{} dB against the exact pictures, mean of those held back", *o.quality));
+  const Kind kind = o.bound.target().kind;
+  fmt::print(
+      "{} views weighed, {} held back, {} of test; bound: {}\n", names.weighed, names.held_back.size(),
+      names.test.size(),
+      o.bound.max_drop
+          ? fmt::format("at most {} dB lost against the photos, mean of those held back", *o.bound.max_drop)
+          : fmt::format("{} dB against the exact pictures, mean of those held back", *o.bound.quality));
   fmt::print("{} of {} Gaussians touch no pixel of the views weighed, {:.1f} %\n\n", found.unseen, gaussians,
              100.0 * static_cast<double>(found.unseen) / static_cast<double>(gaussians));
   const char* db = kind == Kind::drop ? "drop dB" : "PSNR dB";
@@ -167,8 +163,8 @@ ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const Na
                        {"unseen", found.unseen},
                        {"views_weighed", names.weighed},
                        {"losses", losses}};
-  if (o.max_drop) json["target"]["drop_db"] = *o.max_drop;
-  if (o.quality) json["target"]["quality_db"] = *o.quality;
+  if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
+  if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
   for (const study::TrimStep& s : found.steps) {
     ordered_json step = {
         {"step", s.name}, {"gaussians", s.gaussians}, {"degree", s.degree}, {"bytes", nullptr}};
@@ -211,9 +207,8 @@ ExitCode trim(const TrimOptions& o) {
   Names names;
   const study::TrimViews views = choose_views(o, list, model, names);
   const auto context = open_context(o.render);
-  const study::CalibrationTarget target{o.max_drop ? Kind::drop : Kind::quality,
-                                        o.max_drop ? *o.max_drop : *o.quality};
-  study::Trimmed found = study::trim(*context, model, views, target, format, trial_writer(o, format));
+  study::Trimmed found =
+      study::trim(*context, model, views, o.bound.target(), format, trial_writer(o, format));
   if (const fs::path file = model_file(o.render.scene); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
   if (original && found.steps.back().bytes >= found.steps.front().bytes) found.less = false;
@@ -245,11 +240,11 @@ void add_trim(CLI::App& program, Command& command) {
   sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat or .spz")
       ->type_name("FILE")
       ->required();
-  sub->add_option("--max-drop", o->max_drop,
+  sub->add_option("--max-drop", o->bound.max_drop,
                   "Bound: dB lost against the photos, mean over the views held back")
       ->type_name("DB")
       ->check(above_zero);
-  sub->add_option("--quality", o->quality, "Bound: PSNR against the exact pictures, likewise")
+  sub->add_option("--quality", o->bound.quality, "Bound: PSNR against the exact pictures, likewise")
       ->type_name("DB")
       ->check(above_zero);
   sub->add_option("--photos", o->render.photos, "DIR/NAME.jpg or .png of the views")

@@ -1,0 +1,16 @@
+#pragma once
+// What the studies leave in a folder.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "study/page.h"
+
+namespace binosplat::app {
+
+/// Writes the numbers, as `name`, and their page, report.html; each whole or not at all.
+void save_report(const std::filesystem::path& folder, const std::string& name,
+                 const nlohmann::ordered_json& results, const study::Page& page);
+
+}  // namespace binosplat::app
