@@ -2,37 +2,6 @@
 // rho = 2 ln(sigma / Th), that is where alpha reaches Th. The rounding of fp32 must not drop a pair that the blend would
 // show, so the test has a margin (METHOD 4).
 
-// The smallest q over the pixel centres from `low` to `high`, less its rounding, and where that is, seen from the mean.
-float lowest_level(Splat splat, vec2 low, vec2 high, out vec2 at) {
-  precise vec2 a = low - splat.mean;
-  precise vec2 b = high - splat.mean;
-  precise vec2 nearest = clamp(vec2(0.0), a, b);
-  at = nearest;
-  if (nearest == vec2(0.0)) return RHO_NONE;
-  precise float xx = splat.conic.x;
-  precise float xy = splat.conic.y;
-  precise float yy = splat.conic.z;
-  // q is convex: its smallest value lies on an edge that faces the mean, one or two of the four.
-  precise float best = 3.4e38;
-  if (nearest.x != 0.0) {
-    precise float y = clamp(-xy * nearest.x / yy, a.y, b.y);
-    precise float q = xx * nearest.x * nearest.x + 2.0 * xy * nearest.x * y + yy * y * y;
-    best = q;
-    at = vec2(nearest.x, y);
-  }
-  if (nearest.y != 0.0) {
-    precise float x = clamp(-xy * nearest.y / xx, a.x, b.x);
-    precise float q = xx * x * x + 2.0 * xy * x * nearest.y + yy * nearest.y * nearest.y;
-    if (q < best) {
-      best = q;
-      at = vec2(x, nearest.y);
-    }
-  }
-  precise float size = abs(xx) * at.x * at.x + 2.0 * abs(xy * at.x * at.y) + abs(yy) * at.y * at.y;
-  precise float level = best - (2e-6 * size + 4e-6);
-  return level;
-}
-
 // The test itself.
 bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {
   vec2 at;

@@ -7,8 +7,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 
-// rho below this: alpha cannot reach the threshold. What fp32's log2 and exp2 may err by lies above it.
-#define RHO_NONE (-4e-6)
+#include "tiles/level.glsl"
 
 // First and one-past-last tile along an axis for pixels [low, high]; beyond the grid is cut off. Clamped as floats, since
 // int() of a huge float is anything.

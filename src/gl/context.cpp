@@ -95,10 +95,11 @@ void Context::read_limits() {
     const auto* name =
         reinterpret_cast<const char*>(functions_.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
     if (name != nullptr && std::string_view(name) == "GL_KHR_shader_subgroup") {
-      has_subgroups_ =
-          integer(GL_SUBGROUP_SIZE_KHR) == 32 &&
-          (integer(GL_SUBGROUP_SUPPORTED_STAGES_KHR) & GL_COMPUTE_SHADER_BIT) != 0 &&
-          (integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & GL_SUBGROUP_FEATURE_BALLOT_BIT_KHR) != 0;
+      constexpr int needed = GL_SUBGROUP_FEATURE_BALLOT_BIT_KHR | GL_SUBGROUP_FEATURE_SHUFFLE_BIT_KHR |
+                             GL_SUBGROUP_FEATURE_VOTE_BIT_KHR;
+      has_subgroups_ = integer(GL_SUBGROUP_SIZE_KHR) == 32 &&
+                       (integer(GL_SUBGROUP_SUPPORTED_STAGES_KHR) & GL_COMPUTE_SHADER_BIT) != 0 &&
+                       (integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & needed) == needed;
     }
   }
   use_subgroups(true);

@@ -14,17 +14,28 @@ struct Variant {
   int show = SHOW_PICTURE;
 };
 
-// The tile test is no part of this program: with every test the same lists give the same bits. Nor does a
+// Who measures or counts has the tile's splats before all its pixels; and what tests nothing shows what tests
+// lose.
+bool by_blocks(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
+  const bool plain = !variant.records && !variant.weighs && variant.show == SHOW_PICTURE;
+  return context.limits().subgroups_of_32 && plain && shape.settings.tiles != TILES_ALL;
+}
+
+// The tile test is no part of these programs: with every test the same lists give the same bits. Nor does a
 // pixel's colour depend on how many of them an invocation draws.
-gl::Defines defines_of(const FrameShape& shape, const Variant& variant, bool long_lists) {
-  return {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-          {"LONG_LISTS", long_lists ? "1" : "0"},
-          {"COLUMN", long_lists ? "1" : "2"},
-          {"AHEAD", long_lists ? "8" : "4"},
-          {"RECORDS", variant.records ? "1" : "0"},
-          {"WEIGHS", variant.weighs ? "1" : "0"},
-          {"CONTRAST", std::to_string(variant.contrast)},
-          {"SHOW", std::to_string(variant.show)}};
+const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
+                           bool long_lists) {
+  const bool blocks = by_blocks(context, shape, variant);
+  const int column = blocks && shape.settings.tile_size > 8 ? 4 : 2;
+  return context.program(blocks ? "blend_blocks.comp" : "blend.comp",
+                         {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+                          {"LONG_LISTS", long_lists ? "1" : "0"},
+                          {"COLUMN", std::to_string(long_lists ? 1 : column)},
+                          {"AHEAD", long_lists ? "8" : "4"},
+                          {"RECORDS", variant.records ? "1" : "0"},
+                          {"WEIGHS", variant.weighs ? "1" : "0"},
+                          {"CONTRAST", std::to_string(variant.contrast)},
+                          {"SHOW", std::to_string(variant.show)}});
 }
 
 void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,
@@ -32,7 +43,7 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
   gl::Context& context = dispatcher.context();
   const glm::vec3& background = shape.settings.background;
   const auto draw = [&](bool long_lists, const gl::Work& work) {
-    dispatcher.start(context.program("blend.comp", defines_of(shape, variant, long_lists)), work,
+    dispatcher.start(program(context, shape, variant, long_lists), work,
                      {{"Views", buffers.views},
                       {"Ranges", buffers.ranges},
                       {"Values", buffers.pairs.values()},
