@@ -16,8 +16,8 @@ namespace binosplat::gl {
 ///
 /// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers,
 /// uniform buffers), and neither are other images, pixel store, clear values, viewports, masks, tests,
-/// blending or the debug callback. Not to be used within conditional rendering; queries that are active count
-/// what is done here.
+/// blending or the debug callback. Not to be used within transform feedback or conditional rendering; queries
+/// that are active count what is done here.
 class KeptState {
  public:
   explicit KeptState(const Context& context);
