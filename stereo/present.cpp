@@ -123,21 +123,21 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   const auto write = [&](const Target& image, GLenum format) {
     context.gl().BindImageTexture(0, image.texture, image.level, GL_FALSE, std::max(image.layer, 0),
                                   GL_WRITE_ONLY, format);
-    dispatcher_.run(context.program("present.comp"), gl::Work::of_groups(std::uint64_t{groups.x} * groups.y),
-                    {{"Colours", colours}},
-                    {{"kind", static_cast<std::uint32_t>(layout)},
-                     {"first", left.pixel_offset},
-                     {"second", right.pixel_offset},
-                     {"width", left.width},
-                     {"height", left.height},
-                     {"columns", static_cast<std::uint32_t>(size.x)},
-                     {"rows", static_cast<std::uint32_t>(size.y)},
-                     {"left", static_cast<std::uint32_t>(image.x)},
-                     {"bottom", static_cast<std::uint32_t>(image.y)},
-                     {"background_r", std::bit_cast<std::uint32_t>(behind.r)},
-                     {"background_g", std::bit_cast<std::uint32_t>(behind.g)},
-                     {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
-                     {"keeps_alpha", background ? 0u : 1u}});
+    dispatcher_.start(context.program("present.comp"),
+                      gl::Work::of_groups(std::uint64_t{groups.x} * groups.y), {{"Colours", colours}},
+                      {{"kind", static_cast<std::uint32_t>(layout)},
+                       {"first", left.pixel_offset},
+                       {"second", right.pixel_offset},
+                       {"width", left.width},
+                       {"height", left.height},
+                       {"columns", static_cast<std::uint32_t>(size.x)},
+                       {"rows", static_cast<std::uint32_t>(size.y)},
+                       {"left", static_cast<std::uint32_t>(image.x)},
+                       {"bottom", static_cast<std::uint32_t>(image.y)},
+                       {"background_r", std::bit_cast<std::uint32_t>(behind.r)},
+                       {"background_g", std::bit_cast<std::uint32_t>(behind.g)},
+                       {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
+                       {"keeps_alpha", background ? 0u : 1u}});
     context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the picture is read next
   };
   const std::uint32_t framebuffer = framebuffer_of(target);
