@@ -1,7 +1,7 @@
 #pragma once
 // A frame's pictures into any texture or framebuffer of the context, by the layouts of stereo/layout.h. Waits
-// for nothing. Textures that a compute shader can write take a tenth of a millisecond at a headset's size;
-// others, and framebuffers, are copied into.
+// for nothing. Textures that a compute shader can write are written in place; others, and framebuffers, are
+// copied into.
 
 #include <cstddef>
 #include <cstdint>

@@ -237,36 +237,42 @@ struct State : testing::Test {
 
 std::array<shared::View, 2> views() { return make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views; }
 
+/// One that is written in place, and one that is copied into.
+struct Targets {
+  std::array<std::uint32_t, 2> textures;
+  std::array<Target, 2> both;
+
+  explicit Targets(const test::Caller& caller)
+      : textures{caller.texture(GL_RGBA32F, 40, 32), caller.texture(GL_RGBA8, 40, 32)} {
+    both[0].texture = textures[0];
+    caller.gl.CreateFramebuffers(1, &both[1].framebuffer);
+    caller.gl.NamedFramebufferTexture(both[1].framebuffer, GL_COLOR_ATTACHMENT0, textures[1], 0);
+  }
+};
+
 TEST_F(State, IsTheSameAfterAFrame) {
   const Model model = test::random_model(1, 200, 1);
   std::unique_ptr<EmbeddedRenderer> renderer;
   const auto made =
       changed_by([&] { renderer = std::make_unique<EmbeddedRenderer>(caller.get_proc_address(), model); });
   EXPECT_EQ(made, std::set<std::string>()) << "by uploading the model";
-  const auto of = [](const test::Caller& of_it) {  // one that is written in place, one that is copied into
-    const std::array textures = {of_it.texture(GL_RGBA32F, 40, 32), of_it.texture(GL_RGBA8, 40, 32)};
-    std::uint32_t of_texture = 0;
-    of_it.gl.CreateFramebuffers(1, &of_texture);
-    of_it.gl.NamedFramebufferTexture(of_texture, GL_COLOR_ATTACHMENT0, textures[1], 0);
-    return std::pair(std::array{Target{.texture = textures[0]}, Target{.framebuffer = of_texture}}, textures);
-  };
-  const auto [targets, textures] = of(caller);
-  const auto drawn = changed_by([&] { renderer->draw(views(), targets); });
+  const Targets targets(caller);
+  const auto drawn = changed_by([&] { renderer->draw(views(), targets.both); });
   EXPECT_EQ(drawn, std::set<std::string>());
 
   // And the pictures are those of a plain context: none of that state reached them.
-  const auto odd = caller.read<float>(textures[0], 40, 32),
-             odd_copy = caller.read<float>(textures[1], 40, 32);
+  const auto odd = caller.read<float>(targets.textures[0], 40, 32),
+             odd_copy = caller.read<float>(targets.textures[1], 40, 32);
   const auto refused = changed_by([&] {
-    EXPECT_THROW(renderer->draw(views(), std::array{targets[0], Target{.texture = 4711}}), Error);
+    EXPECT_THROW(renderer->draw(views(), std::array{targets.both[0], Target{.texture = 4711}}), Error);
   });
   EXPECT_EQ(refused, std::set<std::string>()) << "by a frame that failed";
   test::Caller plain;
   EmbeddedRenderer other(plain.get_proc_address(), model);
-  const auto [plain_targets, plain_textures] = of(plain);
-  other.draw(views(), plain_targets);
-  EXPECT_EQ(plain.read<float>(plain_textures[0], 40, 32), odd);
-  EXPECT_EQ(plain.read<float>(plain_textures[1], 40, 32), odd_copy);
+  const Targets plain_targets(plain);
+  other.draw(views(), plain_targets.both);
+  EXPECT_EQ(plain.read<float>(plain_targets.textures[0], 40, 32), odd);
+  EXPECT_EQ(plain.read<float>(plain_targets.textures[1], 40, 32), odd_copy);
   EXPECT_GT(*std::max_element(odd_copy.begin(), odd_copy.end()), 0.1f) << "nothing was copied";
 }
 
