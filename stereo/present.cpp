@@ -1,32 +1,71 @@
 #include "stereo/present.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 
 #include "base/error.h"
 #include "gl/state.h"
+#include "shared/limits.h"
 #include "stereo/layout.h"
 
 namespace binosplat::stereo {
 
-Presenter::~Presenter() {
-  if (framebuffer_ != 0) dispatcher_.context().gl().DeleteFramebuffers(1, &framebuffer_);
+namespace {
+
+/// How a compute shader writes a texture of the caller's in place; GL_NONE: not at all.
+struct InPlace {
+  GLenum format = GL_NONE;
+  bool by_view = false;  // of another format than its own
+};
+
+InPlace in_place(const gl::Functions& gl, const Target& target) {
+  if (target.texture == 0) return {};
+  GLint kind = 0, format = 0, immutable = 0;
+  gl.GetTextureParameteriv(target.texture, GL_TEXTURE_TARGET, &kind);
+  gl.GetTextureParameteriv(target.texture, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
+  gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_INTERNAL_FORMAT, &format);
+  if (kind != GL_TEXTURE_2D && kind != GL_TEXTURE_2D_ARRAY) return {};
+  // sRGB is written as the plain bytes that display values are; only immutable textures have views.
+  if (format == GL_SRGB8_ALPHA8 && immutable != 0) return {GL_RGBA8, true};
+  constexpr std::array formats = {GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F};
+  if (std::find(formats.begin(), formats.end(), format) == formats.end()) return {};
+  return {static_cast<GLenum>(format)};
 }
 
-void Presenter::bind(const Target& target) {
-  const gl::Functions& gl = dispatcher_.context().gl();
-  if (target.texture == 0) {
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer);
-    return;
+/// The format that holds a picture until it is copied into a framebuffer, with no fewer bits than are there.
+GLenum copied_from(const gl::Functions& gl, GLuint framebuffer) {
+  GLenum place = GL_COLOR_ATTACHMENT0;
+  if (framebuffer == 0) {
+    GLint doubled = 0;
+    gl.GetNamedFramebufferParameteriv(0, GL_DOUBLEBUFFER, &doubled);
+    place = doubled != 0 ? GL_BACK_LEFT : GL_FRONT_LEFT;
   }
-  if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);
+  GLint bits = 0;
+  gl.GetNamedFramebufferAttachmentParameteriv(framebuffer, place, GL_FRAMEBUFFER_ATTACHMENT_RED_SIZE, &bits);
+  gl.GetError();  // nothing there: whether there is elsewhere shows when it is copied
+  return bits > 0 && bits <= 8 ? GL_RGBA8 : GL_RGBA32F;
+}
+
+}  // namespace
+
+Presenter::~Presenter() {
+  const std::array framebuffers = {target_framebuffer_, scratch_framebuffer_};  // 0 is passed over
+  dispatcher_.context().gl().DeleteFramebuffers(framebuffers.size(), framebuffers.data());
+}
+
+std::uint32_t Presenter::framebuffer_of(const Target& target) {
+  if (target.texture == 0) return target.framebuffer;
+  const gl::Functions& gl = dispatcher_.context().gl();
+  if (target_framebuffer_ == 0) gl.CreateFramebuffers(1, &target_framebuffer_);
   if (target.layer < 0) {
-    gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, target.texture, target.level);
+    gl.NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, target.texture, target.level);
   } else {
-    gl.NamedFramebufferTextureLayer(framebuffer_, GL_COLOR_ATTACHMENT0, target.texture, target.level,
+    gl.NamedFramebufferTextureLayer(target_framebuffer_, GL_COLOR_ATTACHMENT0, target.texture, target.level,
                                     target.layer);
   }
   const GLenum error = gl.GetError();
-  const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer_, GL_DRAW_FRAMEBUFFER);
+  const GLenum status = gl.CheckNamedFramebufferStatus(target_framebuffer_, GL_DRAW_FRAMEBUFFER);
   if (error != GL_NO_ERROR || status != GL_FRAMEBUFFER_COMPLETE) {
     fail(
         "texture {}, level {}, layer {} cannot be drawn into (OpenGL error 0x{:04x}, status 0x{:04x}): "
@@ -34,7 +73,28 @@ void Presenter::bind(const Target& target) {
         "2D texture, or a layer of an array, of a colour-renderable format",
         target.texture, target.level, target.layer, error, status);
   }
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_);
+  return target_framebuffer_;
+}
+
+void Presenter::copy(const glm::ivec2& size, std::uint32_t to, const glm::ivec2& corner) {
+  const gl::Functions& gl = dispatcher_.context().gl();
+  gl.BlitNamedFramebuffer(scratch_framebuffer_, to, 0, 0, size.x, size.y, corner.x, corner.y,
+                          corner.x + size.x, corner.y + size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR) {
+    fail("framebuffer {} cannot be drawn into (OpenGL error 0x{:04x}): expected a complete one of colours",
+         to, error);
+  }
+}
+
+const gl::Texture& Presenter::scratch(const glm::ivec2& size, GLenum format) {
+  const gl::Functions& gl = dispatcher_.context().gl();
+  if (scratch_ != nullptr && scratch_->is(format, size.x, size.y)) return *scratch_;
+  scratch_.reset();  // its memory first
+  scratch_ = std::make_unique<gl::Texture>(dispatcher_.context(), format, size.x, size.y);
+  if (scratch_framebuffer_ == 0) gl.CreateFramebuffers(1, &scratch_framebuffer_);
+  gl.NamedFramebufferTexture(scratch_framebuffer_, GL_COLOR_ATTACHMENT0, scratch_->id(), 0);
+  return *scratch_;
 }
 
 void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first,
@@ -54,28 +114,47 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
          layout_choices[layout].name);
   }
   const glm::ivec2 size = layout_size(layout, {static_cast<int>(left.width), static_cast<int>(left.height)});
+  const glm::uvec2 groups = (glm::uvec2(size) + glm::uvec2(PRESENT_COLUMNS, PRESENT_ROWS) - 1u) /
+                            glm::uvec2(PRESENT_COLUMNS, PRESENT_ROWS);
   const glm::vec3 behind = background.value_or(glm::vec3(0.0f));
-  const gl::KeptState kept(dispatcher_.context());
+  gl::Context& context = dispatcher_.context();
+  const gl::KeptState kept(context);
   kept.set_plain();
-  bind(target);
-  dispatcher_.context().gl().ViewportIndexedf(0, static_cast<float>(target.x), static_cast<float>(target.y),
-                                              static_cast<float>(size.x), static_cast<float>(size.y));
-  dispatcher_.fill(dispatcher_.context().program("present.frag"), {{"Colours", colours}},
-                   {{"kind", static_cast<std::uint32_t>(layout)},
-                    {"first", left.pixel_offset},
-                    {"second", right.pixel_offset},
-                    {"width", left.width},
-                    {"height", left.height},
-                    {"left", static_cast<std::uint32_t>(target.x)},
-                    {"bottom", static_cast<std::uint32_t>(target.y)},
-                    {"rows", static_cast<std::uint32_t>(size.y)},
-                    {"background_r", std::bit_cast<std::uint32_t>(behind.r)},
-                    {"background_g", std::bit_cast<std::uint32_t>(behind.g)},
-                    {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
-                    {"keeps_alpha", background ? 0u : 1u}});
+  const auto write = [&](const Target& image, GLenum format) {
+    context.gl().BindImageTexture(0, image.texture, image.level, GL_FALSE, std::max(image.layer, 0),
+                                  GL_WRITE_ONLY, format);
+    dispatcher_.start(context.program("present.comp"),
+                      gl::Work::of_groups(std::uint64_t{groups.x} * groups.y), {{"Colours", colours}},
+                      {{"kind", static_cast<std::uint32_t>(layout)},
+                       {"first", left.pixel_offset},
+                       {"second", right.pixel_offset},
+                       {"width", left.width},
+                       {"height", left.height},
+                       {"columns", static_cast<std::uint32_t>(size.x)},
+                       {"rows", static_cast<std::uint32_t>(size.y)},
+                       {"left", static_cast<std::uint32_t>(image.x)},
+                       {"bottom", static_cast<std::uint32_t>(image.y)},
+                       {"background_r", std::bit_cast<std::uint32_t>(behind.r)},
+                       {"background_g", std::bit_cast<std::uint32_t>(behind.g)},
+                       {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
+                       {"keeps_alpha", background ? 0u : 1u}});
+    context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the picture is read next
+  };
+  const std::uint32_t framebuffer = framebuffer_of(target);
+  const auto [format, by_view] = in_place(context.gl(), target);
+  if (format == GL_NONE) {
+    const gl::Texture& picture = scratch(size, copied_from(context.gl(), framebuffer));
+    write({.texture = picture.id()}, picture.format());
+    copy(size, framebuffer, {target.x, target.y});
+  } else if (by_view) {
+    const gl::Texture view(context, format, target.texture, target.level, std::max(target.layer, 0));
+    write({.texture = view.id(), .x = target.x, .y = target.y}, format);
+  } else {
+    write(target, format);
+  }
   // What is the caller's to delete is not held on to.
   if (target.texture != 0)
-    dispatcher_.context().gl().NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
+    context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
 }  // namespace binosplat::stereo

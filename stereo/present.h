@@ -1,19 +1,27 @@
 #pragma once
-// A frame's pictures into any framebuffer or texture of the context, by the layouts of stereo/layout.h. Takes
-// a fraction of a millisecond and waits for nothing.
+// A frame's pictures into any texture or framebuffer of the context, by the layouts of stereo/layout.h. Waits
+// for nothing. Textures that a compute shader can write are written in place; others, and framebuffers, are
+// copied into.
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
 #include <span>
 
 #include "base/image.h"
 #include "gl/dispatch.h"
+#include "gl/texture.h"
 #include "render/frame.h"
 #include "shared/axes.h"
 
 namespace binosplat::stereo {
 
-/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer.
+/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer. A 2D texture, or a
+/// layer of an array, is written without a copy where its format is GL_RGBA8, RGBA16, RGBA16F, RGBA32F or
+/// RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and its like); all else takes a
+/// picture of the presenter's own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a
+/// colour.
 struct Target {
   std::uint32_t texture = 0;      // 2D, or 2D array with a layer; 0: the framebuffer below
   int level = 0;                  // of the texture
@@ -36,9 +44,10 @@ class Presenter {
   ///
   /// Colours are display-referred, as trained, and written as they are, without conversion by
   /// GL_FRAMEBUFFER_SRGB: what a window shows, and what a texture of format SRGB8_ALPHA8 means. Without a
-  /// background they are premultiplied by the alpha beside them. All state is as before afterwards
-  /// (gl/state.h). Throws Error(bad_input) for views that are not there or differ in size, a texture that
-  /// cannot be drawn into, and what layout_size() and lay_out() refuse.
+  /// background they are premultiplied by the alpha beside them. All draw buffers of a framebuffer get the
+  /// picture; blending, masks and tests do not touch it. All state is as before afterwards (gl/state.h), and
+  /// whatever reads the target next sees the picture. Throws Error(bad_input) for views that are not there or
+  /// differ in size, a target that cannot be drawn into, and what layout_size() and lay_out() refuse.
   void draw(const render::Frame& frame, std::size_t first, int layout, const Target& target,
             const Background& background = glm::vec3(0.0f)) {
     draw(frame.colours(), frame.views(), first, layout, target, background);
@@ -50,10 +59,14 @@ class Presenter {
             const Target& target, const Background& background);
 
  private:
-  void bind(const Target& target);
+  std::uint32_t framebuffer_of(const Target& target);
+  const gl::Texture& scratch(const glm::ivec2& size, GLenum format);
+  void copy(const glm::ivec2& size, std::uint32_t to, const glm::ivec2& corner);
 
   gl::Dispatcher dispatcher_;
-  std::uint32_t framebuffer_ = 0;  // of textures, made at first use
+  // Made at first use: of the caller's textures, and of what is copied into framebuffers.
+  std::uint32_t target_framebuffer_ = 0, scratch_framebuffer_ = 0;
+  std::unique_ptr<gl::Texture> scratch_;
 };
 
 }  // namespace binosplat::stereo

@@ -43,6 +43,9 @@
 
 // Invocations of a work group that handles one thing each.
 #define THREADS 256
+// Pixels that a work group of `present` writes: each row of them is read as 512 bytes on end.
+#define PRESENT_COLUMNS 32u
+#define PRESENT_ROWS 8u
 // Elements that one work group scans, compacts or sorts: several rounds of THREADS.
 #define SCAN_BLOCK 2048
 #define COMPACT_BLOCK 2048

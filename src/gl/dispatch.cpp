@@ -10,7 +10,6 @@ namespace binosplat::gl {
 
 Dispatcher::~Dispatcher() {
   if (!queries_.empty()) context_.gl().DeleteQueries(static_cast<int>(queries_.size()), queries_.data());
-  if (no_vertices_ != 0) context_.gl().DeleteVertexArrays(1, &no_vertices_);
 }
 
 void Dispatcher::begin_frame() { marks_.clear(); }
@@ -80,17 +79,6 @@ void Dispatcher::start(const Program& program, const Work& work, std::initialize
     if (rows > 65535) throw std::logic_error(program.name() + ": more work groups than any driver takes");
     gl.DispatchCompute(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), 1);
   }
-  context_.check(program.name());
-}
-
-void Dispatcher::fill(const Program& program, std::initializer_list<Binding> bindings,
-                      std::initializer_list<Uniform> uniforms) {
-  const Functions& gl = context_.gl();
-  bind(program, bindings, uniforms);
-  if (no_vertices_ == 0) gl.CreateVertexArrays(1, &no_vertices_);
-  gl.BindVertexArray(no_vertices_);
-  gl.UseProgram(program.id());
-  gl.DrawArrays(GL_TRIANGLES, 0, 3);
   context_.check(program.name());
 }
 

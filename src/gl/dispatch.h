@@ -71,11 +71,6 @@ class Dispatcher {
   /// The barrier that start() leaves out.
   void wait_for_writes();
 
-  /// Runs a program of a .frag on every pixel of the viewport, with what is current besides (gl/state.h).
-  /// Throws as run() does.
-  void fill(const Program& program, std::initializer_list<Binding> bindings,
-            std::initializer_list<Uniform> uniforms = {});
-
   /// Waits for the frame on the GPU, then the time of each stage in order of first appearance, from
   /// timestamps (llvmpipe reports nothing between a GL_TIME_ELAPSED pair).
   std::vector<StageTime> wait_and_time();
@@ -92,7 +87,6 @@ class Dispatcher {
   Context& context_;
   std::vector<std::uint32_t> queries_;
   std::vector<Mark> marks_;
-  std::uint32_t no_vertices_ = 0;  // a vertex array without arrays, made at first use
 };
 
 }  // namespace binosplat::gl

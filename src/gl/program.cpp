@@ -28,18 +28,13 @@ void for_each_resource(const Functions& gl, std::uint32_t program, GLenum kind, 
 Program::Program(const Functions& gl, const std::string& name, const Defines& defines,
                  const std::filesystem::path& folder, const ProgramCache& cache)
     : gl_(&gl), name_(name), id_(gl.CreateProgram()) {
-  const bool compute = name.size() < 5 || name.compare(name.size() - 5, 5, ".frag") != 0;
-  Sources sources;
-  if (!compute) sources.emplace_back(GL_VERTEX_SHADER, ShaderSource("screen.vert", {}, folder));
-  sources.emplace_back(compute ? GL_COMPUTE_SHADER : GL_FRAGMENT_SHADER, ShaderSource(name, defines, folder));
-  std::string text;
-  for (const auto& [kind, source] : sources) text += source.text();
-  if (!cache.load(gl, id_, text)) {
-    compile(sources);
-    cache.store(gl, id_, text);
+  const ShaderSource source(name, defines, folder);
+  if (!cache.load(gl, id_, source.text())) {
+    compile(source);
+    cache.store(gl, id_, source.text());
   }
   gl.ObjectLabel(GL_PROGRAM, id_, -1, name_.c_str());
-  reflect(compute);
+  reflect();
 }
 
 Program::~Program() {
@@ -54,52 +49,44 @@ Program::Program(Program&& other) noexcept
       blocks_(std::move(other.blocks_)),
       uniforms_(std::move(other.uniforms_)) {}
 
-void Program::refuse(const char* what, const ShaderSource& source, const std::string& log) {
-  gl_->DeleteProgram(std::exchange(id_, 0));
-  throw Error(ExitCode::no_gl,
-              fmt::format("shader {} does not {}:\n{}", name_, what, source.with_file_names(log)));
-}
-
-void Program::attach(GLenum kind, const ShaderSource& source) {
-  const std::uint32_t shader = gl_->CreateShader(kind);
+void Program::compile(const ShaderSource& source) {
+  const std::uint32_t shader = gl_->CreateShader(GL_COMPUTE_SHADER);
   const char* text = source.text().c_str();
   gl_->ShaderSource(shader, 1, &text, nullptr);
   gl_->CompileShader(shader);
-  std::int32_t compiled = 0;
-  gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-  std::string log(compiled == 0 ? 1 << 16 : 1, '\0');
-  std::int32_t length = 0;
-  gl_->GetShaderInfoLog(shader, static_cast<int>(log.size()), &length, log.data());
   gl_->AttachShader(id_, shader);
-  gl_->DeleteShader(shader);
-  if (compiled == 0) refuse("compile", source, log.substr(0, static_cast<std::size_t>(length)));
-}
-
-void Program::compile(const Sources& sources) {
-  for (const auto& [kind, source] : sources) attach(kind, source);
   gl_->ProgramParameteri(id_, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
   gl_->LinkProgram(id_);
+  std::int32_t compiled = 0;
   std::int32_t linked = 0;
+  gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
   gl_->GetProgramiv(id_, GL_LINK_STATUS, &linked);
-  if (linked != 0) return;
   std::string log(1 << 16, '\0');
   std::int32_t length = 0;
-  gl_->GetProgramInfoLog(id_, static_cast<int>(log.size()), &length, log.data());
-  refuse("link", sources.back().second, log.substr(0, static_cast<std::size_t>(length)));
+  if (compiled == 0) {
+    gl_->GetShaderInfoLog(shader, static_cast<int>(log.size()), &length, log.data());
+  } else if (linked == 0) {
+    gl_->GetProgramInfoLog(id_, static_cast<int>(log.size()), &length, log.data());
+  }
+  gl_->DeleteShader(shader);
+  if (compiled != 0 && linked != 0) return;
+  gl_->DeleteProgram(std::exchange(id_, 0));
+  log.resize(static_cast<std::size_t>(length));
+  throw Error(ExitCode::no_gl, fmt::format("shader {} does not {}:\n{}", name_,
+                                           compiled == 0 ? "compile" : "link", source.with_file_names(log)));
 }
 
-void Program::reflect(bool compute) {
-  if (compute) {
-    std::array<std::int32_t, 3> size{};
-    gl_->GetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
-    local_size_ = static_cast<std::uint32_t>(size[0] * size[1] * size[2]);
-  }
+void Program::reflect() {
+  std::array<std::int32_t, 3> size{};
+  gl_->GetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
+  local_size_ = static_cast<std::uint32_t>(size[0] * size[1] * size[2]);
   for_each_resource(*gl_, id_, GL_SHADER_STORAGE_BLOCK, GL_BUFFER_BINDING,
                     [&](const char* name, std::int32_t binding) {
                       blocks_.push_back({name, static_cast<std::uint32_t>(binding)});
                     });
-  for_each_resource(*gl_, id_, GL_UNIFORM, GL_LOCATION, [&](const char* name, std::int32_t location) {
-    uniforms_.push_back({name, location});
+  // Images are bound to units, not given values.
+  for_each_resource(*gl_, id_, GL_UNIFORM, GL_TYPE, [&](const char* name, std::int32_t type) {
+    if (type != GL_IMAGE_2D) uniforms_.push_back({name, gl_->GetUniformLocation(id_, name)});
   });
 }
 

@@ -1,9 +1,8 @@
 #pragma once
-// A compiled compute shader, or one that fills the screen, and the names in it.
+// A compiled compute shader and the names in it.
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "gl/functions.h"
@@ -24,8 +23,8 @@ class Program {
     std::int32_t location;
   };
 
-  /// Takes the program from the cache, or compiles and links it: a name.comp by itself, a name.frag with
-  /// screen.vert before it. Throws Error(no_gl) with the driver's log, places given as file:line.
+  /// Takes the program from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log,
+  /// places given as file:line.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
           const std::filesystem::path& folder, const ProgramCache& cache);
   ~Program();
@@ -36,17 +35,13 @@ class Program {
 
   std::uint32_t id() const { return id_; }
   const std::string& name() const { return name_; }
-  std::uint32_t local_size() const { return local_size_; }      // invocations of a work group; 1 of a .frag
-  const std::vector<Block>& blocks() const { return blocks_; }  // storage blocks the shader really uses
+  std::uint32_t local_size() const { return local_size_; }            // invocations of a work group
+  const std::vector<Block>& blocks() const { return blocks_; }        // storage blocks the shader really uses
   const std::vector<Uniform>& uniforms() const { return uniforms_; }  // those the shader really uses
 
  private:
-  /// Shaders by their kind, GL_COMPUTE_SHADER and its like.
-  using Sources = std::vector<std::pair<GLenum, ShaderSource>>;
-  void compile(const Sources& sources);
-  void attach(GLenum kind, const ShaderSource& source);
-  [[noreturn]] void refuse(const char* what, const ShaderSource& source, const std::string& log);
-  void reflect(bool compute);
+  void compile(const ShaderSource& source);
+  void reflect();
 
   const Functions* gl_;
   std::string name_;

@@ -9,15 +9,15 @@
 
 namespace binosplat::gl {
 
-/// Remembers all state that a frame, and pictures drawn into a framebuffer, change, and sets it again when it
-/// goes: the program; the vertex array; the framebuffer drawn into; storage buffers, those of the first
-/// storage_blocks_needed bindings and the general one; the buffer of indirect dispatches; viewport, colour
-/// mask, scissor test and blending of index 0; clip control; polygon mode; and the tests and effects of
-/// set_plain().
+/// Remembers all state that a frame, and pictures written into a texture or framebuffer, change, and sets it
+/// again when it goes: the program; storage buffers, those of the first storage_blocks_needed bindings and
+/// the general one; the buffer of indirect dispatches; the image of unit 0; the scissor test of index 0 and
+/// the conversion to sRGB.
 ///
-/// Nothing else is touched: no textures, samplers, images, uniform buffers, pixel store, clear values, read
-/// framebuffer, other indexed viewports, debug callback. Not to be used within transform feedback or
-/// conditional rendering; queries that are active count what is drawn here.
+/// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers,
+/// uniform buffers), and neither are other images, pixel store, clear values, viewports, masks, tests,
+/// blending or the debug callback. Not to be used within transform feedback or conditional rendering; queries
+/// that are active count what is done here.
 class KeptState {
  public:
   explicit KeptState(const Context& context);
@@ -25,9 +25,7 @@ class KeptState {
   KeptState(const KeptState&) = delete;
   KeptState& operator=(const KeptState&) = delete;
 
-  /// What a fragment shader's colours reach the framebuffer unchanged with: no scissors, blending, logic
-  /// operation, tests of depth and stencil, culling, clipping, sample masks, dithering or conversion to sRGB;
-  /// all of the colour mask; y upwards; filled polygons.
+  /// What a copy reaches a framebuffer whole and unchanged with: no scissors, no conversion to sRGB.
   void set_plain() const;
 
  private:
@@ -35,16 +33,15 @@ class KeptState {
     GLint buffer = 0;
     std::int64_t offset = 0, size = 0;  // bytes; size 0: the whole buffer
   };
+  struct Image {
+    GLint texture = 0, level = 0, layered = 0, layer = 0, access = 0, format = 0;
+  };
 
   const Functions& gl_;
-  GLint program_ = 0, vertices_ = 0, framebuffer_ = 0, storage_ = 0, indirect_ = 0;
-  GLint clip_origin_ = 0, clip_depth_ = 0;
-  std::array<GLint, 2> polygon_mode_{};
-  std::array<GLfloat, 4> viewport_{};
-  std::array<GLboolean, 4> colour_mask_{};
-  GLboolean scissors_ = 0, blends_ = 0;
-  std::vector<GLboolean> enabled_;
-  std::vector<Storage> storages_;
+  GLint program_ = 0, storage_ = 0, indirect_ = 0;
+  Image image_;
+  GLboolean scissors_ = 0, encodes_ = 0;
+  std::array<Storage, storage_blocks_needed> storages_;
 };
 
 }  // namespace binosplat::gl

@@ -37,10 +37,10 @@ struct Bench {
   int frames;
 
   // A texture to draw into, and a framebuffer of it.
-  std::pair<std::uint32_t, std::uint32_t> target(const glm::ivec2& size) {
+  std::pair<std::uint32_t, std::uint32_t> target(const glm::ivec2& size, GLenum format = GL_RGBA8) {
     std::uint32_t texture = 0, framebuffer = 0;
     context->gl().CreateTextures(GL_TEXTURE_2D, 1, &texture);
-    context->gl().TextureStorage2D(texture, 1, GL_RGBA8, size.x, size.y);
+    context->gl().TextureStorage2D(texture, 1, format, size.x, size.y);
     context->gl().CreateFramebuffers(1, &framebuffer);
     context->gl().NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
     return {texture, framebuffer};
@@ -49,13 +49,20 @@ struct Bench {
   void layouts(const Model& model, const Camera& head) {
     render::Frame frame(*context, model);
     const auto report = frame.draw(stereo::make_rig(head, {}).views);
-    fmt::print("| frame of {} x {} px an eye | {:.3f} |\n", head.width, head.height, report.total_ms);
+    fmt::print("A frame of {} x {} px an eye: {:.3f} ms\n\n", head.width, head.height, report.total_ms);
+    fmt::print("| layout | into a texture | into one of sRGB | into a framebuffer |\n|---|---|---|---|\n");
     stereo::Presenter presenter(*context);
     for (int layout = LAYOUT_PARALLEL; layout <= LAYOUT_GREY; ++layout) {
-      const auto [texture, framebuffer] = target(stereo::layout_size(layout, {head.width, head.height}));
-      const double ms =
-          time(dispatcher, frames, [&, to = texture] { presenter.draw(frame, 0, layout, {.texture = to}); });
-      fmt::print("| {} | {:.3f} |\n", layout_choices[layout].name, ms);
+      const glm::ivec2 size = stereo::layout_size(layout, {head.width, head.height});
+      fmt::print("| {} ", layout_choices[layout].name);
+      const auto print = [&](const stereo::Target& to) {
+        fmt::print("| {:.3f} ", time(dispatcher, frames, [&] { presenter.draw(frame, 0, layout, to); }));
+      };
+      const auto [texture, framebuffer] = target(size);
+      print({.texture = texture});
+      print({.texture = target(size, GL_SRGB8_ALPHA8).first});
+      print({.framebuffer = framebuffer});
+      fmt::print("|\n");
     }
   }
 
@@ -83,7 +90,7 @@ struct Bench {
       ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     });
     if (ImGui::GetDrawData()->TotalVtxCount == 0) fail("the widgets were not drawn");
-    fmt::print("| widgets in {} x {} px | {:.3f} |\n", size.x, size.y, ms);
+    fmt::print("\nThe widgets in {} x {} px: {:.3f} ms\n", size.x, size.y, ms);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui::DestroyContext();
   }
@@ -91,8 +98,7 @@ struct Bench {
 
 void run(int frames, int shrink) {
   Bench bench{.frames = frames};
-  fmt::print("{}, {}\n\n| what | median ms |\n|---|---|\n", bench.context->renderer(),
-             bench.context->version());
+  fmt::print("{}, {}, medians in ms\n\n", bench.context->renderer(), bench.context->version());
   Demo demo = demo_room();
   const Camera headset = stereo::apply_preset(demo.cameras.at(0), "headset");
   const Camera head = resized(headset, headset.width / shrink / 2 * 2, headset.height / shrink);

@@ -52,7 +52,7 @@ struct Present : testing::Test {
     const std::uint32_t texture = caller.texture(GL_RGBA32F, size.x, size.y);
     presenter.draw(frame, first, layout, {.texture = texture}, background);
     auto pixels = caller.read<float>(texture, size.x, size.y);
-    caller.DeleteTextures(1, &texture);
+    caller.gl.DeleteTextures(1, &texture);
     return pixels;
   }
 };
@@ -88,22 +88,44 @@ TEST_F(Present, AnEyeByItself) {
   EXPECT_GT(difference(pixels, composite(eyes[1], std::nullopt)), 0.01) << "straight alpha goes unnoticed";
 }
 
-TEST_F(Present, EncodedTexturesHoldDisplayValues) {
-  const std::uint32_t texture = caller.texture(GL_SRGB8_ALPHA8, width, height);
+TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
+  // Written in place, through a view, and copied; each with rows above and columns left of the picture.
+  const auto immutable = [&](GLenum format) { return caller.texture(format, width + 3, height + 5); };
+  std::uint32_t mutable_one = 0;
+  caller.gl.CreateTextures(GL_TEXTURE_2D, 1, &mutable_one);
+  caller.BindTexture(GL_TEXTURE_2D, mutable_one);
+  caller.TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width + 3, height + 5, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+                    nullptr);
   caller.gl.Enable(GL_FRAMEBUFFER_SRGB);
-  presenter.draw(frame, 0, LAYOUT_SEPARATE, {.texture = texture}, blue);
-  const auto bytes = caller.read<std::uint8_t>(texture, width, height);
   const Image image = composite(eyes[0], blue);
-  int off = 0, encoded_twice = 0;
-  for (int k = 0; k < width * height; ++k) {
-    const int y = height - 1 - k / width;
-    const float v = std::min(1.0f, image.at(k % width, y, 1));
-    const int byte = bytes[4 * static_cast<std::size_t>(k) + 1];
-    if (std::abs(byte - 255.0f * v) > 0.51f) ++off;
-    if (std::abs(byte - 255.0f * std::pow(v, 1.0f / 2.2f)) > 2.0f) ++encoded_twice;
+  struct Kind {
+    const char* name;
+    std::uint32_t texture;
+    float bound;  // half a step of its colours, of halves a whole one: drivers may cut
+  };
+  const float byte = 0.51f / 255;
+  for (const auto& [name, texture, bound] : {Kind{"RGBA8", immutable(GL_RGBA8), byte},
+                                             {"RGB10_A2", immutable(GL_RGB10_A2), 0.51f / 1023},
+                                             {"RGBA16", immutable(GL_RGBA16), 0.51f / 65535},
+                                             {"RGBA16F", immutable(GL_RGBA16F), 1.01f / 2048},
+                                             {"SRGB8_ALPHA8", immutable(GL_SRGB8_ALPHA8), byte},
+                                             {"SRGB8_ALPHA8, mutable", mutable_one, byte},
+                                             {"RGB8", immutable(GL_RGB8), byte}}) {
+    presenter.draw(frame, 0, LAYOUT_SEPARATE, {.texture = texture, .x = 3}, blue);
+    const auto pixels = caller.read<float>(texture, width + 3, height + 5);
+    int off = 0, encoded_twice = 0, upside_down = 0;
+    for (int k = 0; k < width * height; ++k) {
+      const int x = k % width, y = k / width;
+      const float v = std::min(1.0f, image.at(x, height - 1 - y, 1));
+      const float shown = pixels[4 * static_cast<std::size_t>(y * (width + 3) + x + 3) + 1];
+      if (std::abs(shown - v) > bound) ++off;
+      if (std::abs(shown - std::pow(v, 1.0f / 2.2f)) > bound) ++encoded_twice;
+      if (std::abs(shown - std::min(1.0f, image.at(x, y, 1))) > bound) ++upside_down;
+    }
+    EXPECT_EQ(off, 0) << name;
+    EXPECT_GT(encoded_twice, 100) << name << ": this picture cannot tell";
+    EXPECT_GT(upside_down, 100) << name << ": this picture cannot tell";
   }
-  EXPECT_EQ(off, 0);
-  EXPECT_GT(encoded_twice, 100) << "this picture cannot tell";
 }
 
 TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
@@ -145,6 +167,9 @@ TEST_F(Present, WhatCannotBeIsRefused) {
   EXPECT_TRUE(fails(1, LAYOUT_ROWS, {.texture = plain}, blue, "view 2 of a frame of 2 views"));
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = depth}, blue, "cannot be drawn into"));
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = 4711}, blue, "texture 4711"));
+  std::uint32_t empty = 0;
+  caller.gl.CreateFramebuffers(1, &empty);
+  EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.framebuffer = empty}, blue, "expected a complete one"));
   EXPECT_TRUE(fails(0, LAYOUT_GREY, {.texture = plain}, std::nullopt, "give a background"));
   EXPECT_TRUE(fails(0, LAYOUT_QUAD_BUFFER, {.texture = plain}, blue, "each view by itself"));
   EXPECT_TRUE(fails(0, LAYOUT_MULTI_VIEW, {.texture = plain}, blue, "for OpenEXR"));

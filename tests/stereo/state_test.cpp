@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <set>
 #include <string>
@@ -22,25 +23,24 @@ struct Piece {
   std::string name;
   std::function<void()> set;
   std::function<Values()> get;
-  bool drawing_changes = true;
 };
 
 struct State : testing::Test {
   test::Caller caller;
   const gl::Functions& gl = caller.gl;
   std::vector<Piece> pieces;
+  std::size_t changed_count = 0;  // of the pieces, the first ones: those that drawing changes
   gl::Buffer buffer{*caller.context, "the caller's"};
   std::uint32_t framebuffer = 0, vertices = 0, sampler = 0;
-  std::uint32_t texture = caller.texture(GL_RGBA8, 8, 8);
+  std::uint32_t texture = caller.texture(GL_RGBA8, 8, 8), array = caller.texture(GL_RGBA16F, 8, 8, 2);
 
   Values integers(GLenum name, int count = 1) const {
     std::array<GLint, 4> values{};
     gl.GetIntegerv(name, values.data());
     return {values.begin(), values.begin() + count};
   }
-  void add(const std::string& name, std::function<void()> set, std::function<Values()> get,
-           bool changes = true) {
-    pieces.push_back({name, std::move(set), std::move(get), changes});
+  void add(const std::string& name, std::function<void()> set, std::function<Values()> get) {
+    pieces.push_back({name, std::move(set), std::move(get)});
   }
   void add_enabled(const std::string& name, GLenum effect) {
     add(
@@ -51,29 +51,43 @@ struct State : testing::Test {
   State() {
     buffer.reserve(4096);
     gl.CreateFramebuffers(1, &framebuffer);
-    gl.CreateVertexArrays(1, &vertices);
+    caller.CreateVertexArrays(1, &vertices);
     caller.CreateSamplers(1, &sampler);
-    add_bindings();
+    add_changed();
+    changed_count = pieces.size();
     add_effects();
     add_untouched();
   }
 
-  void add_bindings() {
+  void add_changed() {
     add(
         "program", [this] { gl.UseProgram(caller.context->program("ranges_clear.comp").id()); },
         [this] { return integers(GL_CURRENT_PROGRAM); });
-    add(
-        "vertex array", [this] { gl.BindVertexArray(vertices); },
-        [this] { return integers(GL_VERTEX_ARRAY_BINDING); });
-    add(
-        "draw framebuffer", [this] { gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer); },
-        [this] { return integers(GL_DRAW_FRAMEBUFFER_BINDING); });
     add(
         "storage buffer", [this] { gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.id()); },
         [this] { return integers(GL_SHADER_STORAGE_BUFFER_BINDING); });
     add(
         "indirect buffer", [this] { gl.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, buffer.id()); },
         [this] { return integers(GL_DISPATCH_INDIRECT_BUFFER_BINDING); });
+    add(
+        "image", [this] { gl.BindImageTexture(0, array, 0, GL_FALSE, 1, GL_READ_ONLY, GL_RGBA16F); },
+        [this] {
+          Values values;
+          for (const GLenum name :
+               {GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_LEVEL, GL_IMAGE_BINDING_LAYERED,
+                GL_IMAGE_BINDING_LAYER, GL_IMAGE_BINDING_ACCESS, GL_IMAGE_BINDING_FORMAT}) {
+            GLint value = 0;
+            gl.GetIntegeri_v(name, 0, &value);
+            values.push_back(value);
+          }
+          return values;
+        });
+    add(
+        "scissor test", [this] { gl.Enablei(GL_SCISSOR_TEST, 0); },
+        [this] { return Values{double(gl.IsEnabledi(GL_SCISSOR_TEST, 0))}; });
+    add(
+        "sRGB framebuffer", [this] { gl.Enable(GL_FRAMEBUFFER_SRGB); },
+        [this] { return Values{double(gl.IsEnabled(GL_FRAMEBUFFER_SRGB))}; });
     for (GLuint i = 0; i < gl::storage_blocks_needed; ++i) {
       // Some bound as a range, some as a whole, and the general binding must survive both.
       const auto set = [this, i] {
@@ -98,39 +112,35 @@ struct State : testing::Test {
 
   void add_effects() {
     add(
-        "viewport", [this] { gl.ViewportIndexedf(0, 1.5f, 2, 33, 44); },
+        "viewport", [this] { caller.ViewportIndexedf(0, 1.5f, 2, 33, 44); },
         [this] {
           std::array<float, 4> v{};
-          gl.GetFloati_v(GL_VIEWPORT, 0, v.data());
+          caller.GetFloati_v(GL_VIEWPORT, 0, v.data());
           return Values(v.begin(), v.end());
         });
     add(
-        "colour mask", [this] { gl.ColorMaski(0, GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE); },
+        "colour mask", [this] { caller.ColorMaski(0, GL_FALSE, GL_TRUE, GL_FALSE, GL_FALSE); },
         [this] {
           std::array<GLboolean, 4> v{};
-          gl.GetBooleani_v(GL_COLOR_WRITEMASK, 0, v.data());
+          caller.GetBooleani_v(GL_COLOR_WRITEMASK, 0, v.data());
           return Values(v.begin(), v.end());
         });
-    add(
-        "scissor test", [this] { gl.Enablei(GL_SCISSOR_TEST, 0); },
-        [this] { return Values{double(gl.IsEnabledi(GL_SCISSOR_TEST, 0))}; });
     add(
         "blending", [this] { gl.Enablei(GL_BLEND, 0); },
         [this] { return Values{double(gl.IsEnabledi(GL_BLEND, 0))}; });
     add(
-        "clip origin", [this] { gl.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE); },
+        "clip origin", [this] { caller.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE); },
         [this] { return integers(GL_CLIP_ORIGIN); });
     add(
         "clip depth", [] {}, [this] { return integers(GL_CLIP_DEPTH_MODE); });
     add(
-        "polygon mode", [this] { gl.PolygonMode(GL_FRONT_AND_BACK, GL_LINE); },
+        "polygon mode", [this] { caller.PolygonMode(GL_FRONT_AND_BACK, GL_LINE); },
         [this] { return integers(GL_POLYGON_MODE); });
     for (const auto& [name, effect] :
          std::vector<std::pair<const char*, GLenum>>{{"depth test", GL_DEPTH_TEST},
                                                      {"stencil test", GL_STENCIL_TEST},
                                                      {"culling", GL_CULL_FACE},
                                                      {"rasterizer discard", GL_RASTERIZER_DISCARD},
-                                                     {"sRGB framebuffer", GL_FRAMEBUFFER_SRGB},
                                                      {"logic operation", GL_COLOR_LOGIC_OP},
                                                      {"dithering", GL_DITHER},
                                                      {"alpha to coverage", GL_SAMPLE_ALPHA_TO_COVERAGE},
@@ -146,60 +156,64 @@ struct State : testing::Test {
 
   void add_untouched() {
     add(
+        "vertex array", [this] { caller.BindVertexArray(vertices); },
+        [this] { return integers(GL_VERTEX_ARRAY_BINDING); });
+    add(
+        "draw framebuffer", [this] { gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer); },
+        [this] { return integers(GL_DRAW_FRAMEBUFFER_BINDING); });
+    add(
         "texture unit", [this] { caller.ActiveTexture(GL_TEXTURE5); },
-        [this] { return integers(GL_ACTIVE_TEXTURE); }, false);
+        [this] { return integers(GL_ACTIVE_TEXTURE); });
     add(
         "texture", [this] { caller.BindTexture(GL_TEXTURE_2D, texture); },
-        [this] { return integers(GL_TEXTURE_BINDING_2D); }, false);
+        [this] { return integers(GL_TEXTURE_BINDING_2D); });
     add(
         "sampler", [this] { caller.BindSampler(5, sampler); },
-        [this] { return integers(GL_SAMPLER_BINDING); }, false);
+        [this] { return integers(GL_SAMPLER_BINDING); });
     add(
         "uniform buffer", [this] { gl.BindBufferRange(GL_UNIFORM_BUFFER, 0, buffer.id(), 0, 256); },
-        [this] { return integers(GL_UNIFORM_BUFFER_BINDING); }, false);
+        [this] { return integers(GL_UNIFORM_BUFFER_BINDING); });
     add(
         "read framebuffer", [this] { gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer); },
-        [this] { return integers(GL_READ_FRAMEBUFFER_BINDING); }, false);
+        [this] { return integers(GL_READ_FRAMEBUFFER_BINDING); });
     add(
         "array buffer", [this] { gl.BindBuffer(GL_ARRAY_BUFFER, buffer.id()); },
-        [this] { return integers(GL_ARRAY_BUFFER_BINDING); }, false);
+        [this] { return integers(GL_ARRAY_BUFFER_BINDING); });
     add(
         "pixel pack buffer", [this] { gl.BindBuffer(GL_PIXEL_PACK_BUFFER, buffer.id()); },
-        [this] { return integers(GL_PIXEL_PACK_BUFFER_BINDING); }, false);
+        [this] { return integers(GL_PIXEL_PACK_BUFFER_BINDING); });
     add(
         "pixel store", [this] { caller.PixelStorei(GL_PACK_ALIGNMENT, 8); },
-        [this] { return integers(GL_PACK_ALIGNMENT); }, false);
+        [this] { return integers(GL_PACK_ALIGNMENT); });
     add(
         "blend function", [this] { caller.BlendFunc(GL_ONE, GL_DST_COLOR); },
-        [this] { return integers(GL_BLEND_DST_RGB); }, false);
+        [this] { return integers(GL_BLEND_DST_RGB); });
     add(
         "depth function", [this] { caller.DepthFunc(GL_GREATER); },
-        [this] { return integers(GL_DEPTH_FUNC); }, false);
+        [this] { return integers(GL_DEPTH_FUNC); });
     add(
-        "depth mask", [this] { caller.DepthMask(GL_FALSE); }, [this] { return integers(GL_DEPTH_WRITEMASK); },
-        false);
+        "depth mask", [this] { caller.DepthMask(GL_FALSE); },
+        [this] { return integers(GL_DEPTH_WRITEMASK); });
     add(
         "clear colour", [this] { gl.ClearColor(0.1f, 0.2f, 0.3f, 0.4f); },
         [this] {
           std::array<float, 4> v{};
           caller.GetFloatv(GL_COLOR_CLEAR_VALUE, v.data());
           return Values(v.begin(), v.end());
-        },
-        false);
+        });
     add(
         "scissors", [this] { caller.ScissorIndexed(0, 1, 2, 3, 4); },
-        [this] { return integers(GL_SCISSOR_BOX, 4); }, false);
+        [this] { return integers(GL_SCISSOR_BOX, 4); });
     add(
-        "viewport 1", [this] { gl.ViewportIndexedf(1, 5, 6, 7, 8); },
+        "viewport 1", [this] { caller.ViewportIndexedf(1, 5, 6, 7, 8); },
         [this] {
           std::array<float, 4> v{};
-          gl.GetFloati_v(GL_VIEWPORT, 1, v.data());
+          caller.GetFloati_v(GL_VIEWPORT, 1, v.data());
           return Values(v.begin(), v.end());
-        },
-        false);
+        });
     add(
         "blending of buffer 1", [this] { gl.Enablei(GL_BLEND, 1); },
-        [this] { return Values{double(gl.IsEnabledi(GL_BLEND, 1))}; }, false);
+        [this] { return Values{double(gl.IsEnabledi(GL_BLEND, 1))}; });
   }
 
   void set_all() {
@@ -223,51 +237,57 @@ struct State : testing::Test {
 
 std::array<shared::View, 2> views() { return make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views; }
 
+/// One that is written in place, and one that is copied into.
+struct Targets {
+  std::array<std::uint32_t, 2> textures;
+  std::array<Target, 2> both;
+
+  explicit Targets(const test::Caller& caller)
+      : textures{caller.texture(GL_RGBA32F, 40, 32), caller.texture(GL_RGBA8, 40, 32)} {
+    both[0].texture = textures[0];
+    caller.gl.CreateFramebuffers(1, &both[1].framebuffer);
+    caller.gl.NamedFramebufferTexture(both[1].framebuffer, GL_COLOR_ATTACHMENT0, textures[1], 0);
+  }
+};
+
 TEST_F(State, IsTheSameAfterAFrame) {
   const Model model = test::random_model(1, 200, 1);
   std::unique_ptr<EmbeddedRenderer> renderer;
   const auto made =
       changed_by([&] { renderer = std::make_unique<EmbeddedRenderer>(caller.get_proc_address(), model); });
   EXPECT_EQ(made, std::set<std::string>()) << "by uploading the model";
-  const std::array targets = {Target{.texture = caller.texture(GL_RGBA32F, 40, 32)},
-                              Target{.texture = caller.texture(GL_RGBA32F, 40, 32)}};
-  const auto drawn = changed_by([&] { renderer->draw(views(), targets); });
+  const Targets targets(caller);
+  const auto drawn = changed_by([&] { renderer->draw(views(), targets.both); });
   EXPECT_EQ(drawn, std::set<std::string>());
 
   // And the pictures are those of a plain context: none of that state reached them.
-  const auto odd = caller.read<float>(targets[0].texture, 40, 32);
+  const auto odd = caller.read<float>(targets.textures[0], 40, 32),
+             odd_copy = caller.read<float>(targets.textures[1], 40, 32);
   const auto refused = changed_by([&] {
-    EXPECT_THROW(renderer->draw(views(), std::array{targets[0], Target{.texture = 4711}}), Error);
+    EXPECT_THROW(renderer->draw(views(), std::array{targets.both[0], Target{.texture = 4711}}), Error);
   });
   EXPECT_EQ(refused, std::set<std::string>()) << "by a frame that failed";
   test::Caller plain;
   EmbeddedRenderer other(plain.get_proc_address(), model);
-  const std::array plain_targets = {Target{.texture = plain.texture(GL_RGBA32F, 40, 32)},
-                                    Target{.texture = plain.texture(GL_RGBA32F, 40, 32)}};
-  other.draw(views(), plain_targets);
-  EXPECT_EQ(plain.read<float>(plain_targets[0].texture, 40, 32), odd);
+  const Targets plain_targets(plain);
+  other.draw(views(), plain_targets.both);
+  EXPECT_EQ(plain.read<float>(plain_targets.textures[0], 40, 32), odd);
+  EXPECT_EQ(plain.read<float>(plain_targets.textures[1], 40, 32), odd_copy);
+  EXPECT_GT(*std::max_element(odd_copy.begin(), odd_copy.end()), 0.1f) << "nothing was copied";
 }
 
 TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   const Model model = test::random_model(1, 200, 1);
   render::Frame frame(*caller.context, model);
   const gl::KeptState kept(*caller.context);  // of the caller's before the test sets its own: ends it all
-  const std::uint32_t target = caller.texture(GL_RGBA32F, 40, 32);
   const auto careless = changed_by([&] {
     frame.draw(views());
     kept.set_plain();
-    std::uint32_t own = 0;
-    gl.CreateFramebuffers(1, &own);
-    gl.NamedFramebufferTexture(own, GL_COLOR_ATTACHMENT0, target, 0);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, own);
-    gl.ViewportIndexedf(0, 0, 0, 40, 32);
-    gl.BindVertexArray(0);
+    gl.BindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
     gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, 8, frame.colours().id(), 0, 16);
   });
   std::set<std::string> expected;
-  for (const Piece& piece : pieces) {
-    if (piece.drawing_changes) expected.insert(piece.name);
-  }
+  for (std::size_t k = 0; k < changed_count; ++k) expected.insert(pieces[k].name);
   EXPECT_EQ(careless, expected);
 }
 

@@ -18,16 +18,24 @@ namespace binosplat::test {
   X(ActiveTexture, ACTIVETEXTURE)           \
   X(BindSampler, BINDSAMPLER)               \
   X(BindTexture, BINDTEXTURE)               \
+  X(BindVertexArray, BINDVERTEXARRAY)       \
   X(BlendFunc, BLENDFUNC)                   \
+  X(ClipControl, CLIPCONTROL)               \
+  X(ColorMaski, COLORMASKI)                 \
   X(CreateSamplers, CREATESAMPLERS)         \
-  X(DeleteTextures, DELETETEXTURES)         \
+  X(CreateVertexArrays, CREATEVERTEXARRAYS) \
   X(DepthFunc, DEPTHFUNC)                   \
   X(DepthMask, DEPTHMASK)                   \
+  X(GetBooleani_v, GETBOOLEANI_V)           \
+  X(GetFloati_v, GETFLOATI_V)               \
   X(GetFloatv, GETFLOATV)                   \
   X(GetTextureSubImage, GETTEXTURESUBIMAGE) \
   X(PixelStorei, PIXELSTOREI)               \
+  X(PolygonMode, POLYGONMODE)               \
   X(ScissorIndexed, SCISSORINDEXED)         \
-  X(TextureStorage3D, TEXTURESTORAGE3D)
+  X(TexImage2D, TEXIMAGE2D)                 \
+  X(TextureStorage3D, TEXTURESTORAGE3D)     \
+  X(ViewportIndexedf, VIEWPORTINDEXEDF)
 
 /// The caller's context, current from its making on, and its functions.
 struct Caller {

@@ -1,0 +1,41 @@
+// Both eyes' pictures, or one, into an image of any format: shared/layout.h says which pixel goes where. Colours are
+// display-referred and written as they are.
+#include "shared/layout.h"
+#include "shared/limits.h"
+#include "shared/grid.glsl"
+
+layout(local_size_x = PRESENT_COLUMNS, local_size_y = PRESENT_ROWS) in;
+
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(binding = 0) writeonly uniform image2D shown;
+uniform uint kind;            // LAYOUT_
+uniform uint first, second;   // the eyes' first pixels in `colours`; of a single picture both are its own
+uniform uint width, height;   // of an eye
+uniform uint columns, rows;   // of the picture
+uniform uint left, bottom;    // of it in the image
+uniform uint background_r, background_g, background_b;  // bits of floats
+uniform uint keeps_alpha;     // 1: no background, but associated alpha
+
+vec4 over(vec4 colour) {
+  if (keeps_alpha != 0u) return vec4(colour.rgb, 1.0 - colour.a);
+  return vec4(colour.rgb + colour.a * uintBitsToFloat(uvec3(background_r, background_g, background_b)), 1.0);
+}
+
+vec4 pixel_at(uvec2 at) {
+  LayoutSource from = layout_source(kind, at.x, at.y, width, height);
+  uint pixel = from.y * width + from.x;
+  if (from.eye == EYE_BOTH)
+    return vec4(layout_mix(kind, over(colours[first + pixel]).rgb, over(colours[second + pixel]).rgb), 1.0);
+  uint start = (from.eye == EYE_LEFT ? first : second) + pixel;
+  vec4 colour = vec4(0.0);
+  for (uint k = 0u; k < from.columns; ++k) colour += colours[start + k];
+  return over(colour / float(from.columns));
+}
+
+void main() {
+  uint across = (columns + PRESENT_COLUMNS - 1u) / PRESENT_COLUMNS;
+  uint group = group_index();
+  uvec2 at = uvec2(group % across, group / across) * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy;
+  if (at.x >= columns || at.y >= rows) return;
+  imageStore(shown, ivec2(left + at.x, bottom + rows - 1u - at.y), pixel_at(at));
+}
