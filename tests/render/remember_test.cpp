@@ -34,7 +34,7 @@ Model wall() {
 shared::View front() { return make_view(test::front_camera(96, 80, 90)); }
 
 TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
-  const FrameSettings settings = {.th = TH_SQUARED, .loss = 0.5f, .transmittance = TRANSMITTANCE_LAST};
+  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
   const Model other = test::random_model(83, 1500, 1);
   for (const std::size_t at_first : {std::size_t{400}, std::size_t{5000}}) {
     Model model = test::random_model(82, static_cast<int>(at_first), 1);
