@@ -278,7 +278,7 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
 std::vector<Taken> StreamedSog::Source::wanted(const std::function<int(std::size_t)>& level_of,
                                                std::size_t leaves) const {
   std::vector<Taken> taken = levels.taken(level_of);
-  if (levels.environment()) taken.push_back({{leaves, {0, files.back()->count(), 0}}});
+  if (levels.environment()) taken.emplace_back().push_back({leaves, {0, files.back()->count(), 0}});
   return taken;
 }
 
