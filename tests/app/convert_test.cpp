@@ -119,7 +119,7 @@ TEST_F(ConvertTest, ErrorsSayWhatToDo) {
   const std::string ply = folder / "trained/point_cloud/iteration_7/point_cloud.ply";
   test::write_text(ply, before);
   EXPECT_TRUE(ended(run_program({"convert", folder / "trained", "-o", ply}), 2, "is the model itself"));
-  EXPECT_TRUE(ended(convert("m.spz", {"--to", "sog"}), 2, "--to"));
+  EXPECT_TRUE(ended(convert("m.spz", {"--to", "ksplat"}), 2, "--to"));
   EXPECT_TRUE(ended(convert("m.ply", {"--sh-bits", "4"}), 2, "only spz"));
   EXPECT_TRUE(ended(convert("m.spz", {"--sh-bits", "9"}), 2, "--sh-bits"));
   EXPECT_TRUE(ended(convert("m.spz", {"--report", "0"}), 2, "--report"));
