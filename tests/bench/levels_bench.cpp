@@ -132,8 +132,8 @@ Json row_of(double detail, const Numbers& n) {
 void print_row(const Json& row) {
   fmt::print("|");
   for (const auto& [key, value] : row.items()) {
-    const int digits = key.ends_with("_db") || key.starts_with("frame") ? 2 : 0;
-    fmt::print(" {} |", value.is_null() ? "-" : fmt::format("{:.{}f}", value.get<double>(), digits));
+    const bool fine = key.ends_with("_db") || key.starts_with("frame") || key == "detail_px";
+    fmt::print(" {} |", value.is_null() ? "-" : fmt::format("{:.{}f}", value.get<double>(), fine ? 2 : 0));
   }
   fmt::print("\n");
   std::fflush(stdout);
