@@ -237,7 +237,7 @@ struct StreamedSog::Source {
     tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
       if (levels.there(i)) files[i] = open_part(levels.files()[i]);
     });
-    if (levels.environment()) files.push_back(open_part(*levels.environment()));
+    if (levels.environment()) files.emplace_back(open_part(*levels.environment()));
   }
 
   /// What is taken of each of the files, where leaf number i of so many has level_of(i).
