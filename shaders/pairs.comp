@@ -51,11 +51,6 @@ uint rank_of(uint pair) {
   return low;
 }
 
-// The last of THREADS sums that is at most `value`.
-#define LAST_BEFORE(sums, value, at) \
-  uint at = 0u;                      \
-  for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) at += sums[at + half_way] <= (value) ? half_way : 0u;
-
 // The rows of the nth splat from `rank` on, view after view; 0 where there is none.
 uint take_splat(uint rank, uint nth) {
   uint self = gl_LocalInvocationIndex;
@@ -101,13 +96,11 @@ void main() {
   for (uint nth = 0u; pair < end && nth < splats_left; nth += THREADS) {
     uint before = scan_group(take_splat(rank, nth + self));
     rows_before[self] = before;
-    uint rows = group_total();
-    barrier();
+    uint rows = take_group_total();
     for (uint row = 0u; row < rows && pair < end; row += THREADS) {
       before = scan_group(row + self < rows ? take_row(row + self) : 0u);
       tiles_before[self] = before;
-      uint tiles = group_total();
-      barrier();
+      uint tiles = take_group_total();
       uint skipped = first > pair ? first - pair : 0u;  // by the groups before
       for (uint tile = skipped + self; tile < min(tiles, end - pair); tile += THREADS) {
         LAST_BEFORE(tiles_before, tile, at)

@@ -19,9 +19,19 @@ layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };
 #if RECORDS || WEIGHS
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), of one word or two
 #endif
+layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
+layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for count_tall.comp, in any order
 uniform uint view_begin;
 uniform uint view_end;
 uniform uint slots;  // of one view
+
+void leave_aside(uint splat) {
+  uint place = atomicAdd(counters.tall, 1u);
+  tall[place] = splat;
+  counters.tall_x = TALL_ROW;
+  if (place % (TALL_EACH * TALL_ROW) == 0u) atomicMax(counters.tall_y, place / (TALL_EACH * TALL_ROW) + 1u);
+  counters.tall_z = 1u;
+}
 
 void main() {
   uint slot = thread_index();
@@ -40,7 +50,10 @@ void main() {
     uint tiles = 0u;
     if (is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(v, indices[slot], g, axes, splat);
-      tiles = tile_count(splat, view);
+      uvec4 box = tile_box(splat, view);
+      bool is_tall = box.w - box.y > TALL_ROWS;
+      tiles = is_tall ? 1u : tile_count(splat, view, box);  // not known yet
+      if (is_tall) leave_aside(v * slots + slot);
     }
     tile_counts[v * slots + slot] = tiles;
 #if WEIGHS

@@ -1,7 +1,8 @@
-// Scan, third: each value becomes the sum of all values before it.
+// Scan, second: each value becomes the sum of all values before it.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "shared/amount.glsl"
 #include "shared/saturate.glsl"
 #include "primitives/scan_block.glsl"
 
@@ -10,16 +11,24 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 1) buffer Values { uint values[]; };
 layout(std430, binding = 2) readonly buffer BlockSums { uint block_sums[]; };
+layout(std430, binding = 3) writeonly buffer Total { uint total[]; };
 uniform uint amount;
 
 void main() {
   uint count = amounts[amount].count;
   uint block = group_index();
-  if (block * SCAN_BLOCK >= count) return;
+  uint blocks = max(1u, blocks_of(count, SCAN_BLOCK));
+  if (block >= blocks) return;
+  // Each group sums up the blocks before its own: for a few thousand of them cheaper than a dispatch that scans their sums.
+  uint before = 0u;
+  for (uint i = gl_LocalInvocationIndex; i < block; i += THREADS) before = saturating_add(before, block_sums[i]);
+  scan_group(before);
+  before = take_group_total();
   uint first = block * SCAN_BLOCK + gl_LocalInvocationIndex * SCAN_EACH;
   uint mine[SCAN_EACH];
   for (uint i = 0u; i < SCAN_EACH; ++i) mine[i] = first + i < count ? values[first + i] : 0u;
-  scan_neighbours(block_sums[block], mine);
+  scan_neighbours(before, mine);
+  if (block + 1u == blocks && gl_LocalInvocationIndex == 0u) total[0] = saturating_add(before, group_total());
   for (uint i = 0u; i < SCAN_EACH; ++i) {
     if (first + i < count) values[first + i] = mine[i];
   }

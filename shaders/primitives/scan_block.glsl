@@ -30,5 +30,19 @@ void scan_neighbours(uint before, inout uint mine[SCAN_EACH]) {
   }
 }
 
+// Of THREADS sums, the last that is at most `value`: `at`.
+#define LAST_BEFORE(sums, value, at) \
+  uint at = 0u;                      \
+  for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) at += sums[at + half_way] <= (value) ? half_way : 0u;
+
 // The sum over all invocations; after scan_group or scan_neighbours.
 uint group_total() { return scan_sums[THREADS - 1u]; }
+
+// The same where the group is to scan again: NVIDIA's compiler (580.159) moves the reading of shared memory beyond a barrier()
+// that stands alone.
+uint take_group_total() {
+  uint total = group_total();
+  memoryBarrierShared();
+  barrier();
+  return total;
+}

@@ -1,4 +1,4 @@
-// Scan, first of three dispatches: the sum of each block of SCAN_BLOCK values (reduce, then scan: Sengupta 2007; no group
+// Scan, first of two dispatches: the sum of each block of SCAN_BLOCK values (reduce, then scan: Sengupta 2007; no group
 // waits for another, which GL does not promise to work).
 #include "shared/limits.h"
 #include "shared/types.h"

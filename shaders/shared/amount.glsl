@@ -9,7 +9,7 @@ uint blocks_of(uint count, uint block) { return count / block + uint(count % blo
 
 Amount make_amount(uint first, uint count, uint groups_max) {
   uvec2 threads = split_groups(blocks_of(count, THREADS), groups_max);
-  uvec2 scan = split_groups(blocks_of(count, SCAN_BLOCK), groups_max);
+  uvec2 scan = split_groups(max(1u, blocks_of(count, SCAN_BLOCK)), groups_max);  // of nothing, too, there is a total
   uvec2 sort = split_groups(blocks_of(count, SORT_BLOCK), groups_max);
   Amount a;
   a.count = count;

@@ -33,6 +33,14 @@
 // least T, is more than one step, and the sum of a tile of 1,024 px fits a word.
 #define WEIGHT_SCALE 4194304.0
 
+// A splat that reaches over more rows of tiles than this has its tiles counted by many invocations together;
+// so many splats a work group, and so many groups along x.
+#ifndef TALL_ROWS
+#define TALL_ROWS 4u
+#endif
+#define TALL_EACH 64
+#define TALL_ROW 1024u
+
 // Invocations of a work group that handles one thing each.
 #define THREADS 256
 // Elements that one work group scans, compacts or sorts: several rounds of THREADS.
@@ -45,5 +53,10 @@
 // of lanes together), so a tile's list may have 8 times as many entries before it is cut; and then it is
 // reported.
 #define BLEND_UNROLL 8
+// A tile with more pairs than this is drawn by more invocations, of a launch that starts before the others'.
+#ifndef LONG_LIST
+#define LONG_LIST 2048
+#endif
+#define LONG_ROW 1024u  // groups along x of that launch
 
 #endif

@@ -18,4 +18,6 @@ uvec4 tile_box(Splat splat, View view) {
   return uvec4(first, max(first, last));
 }
 
+uint likely_row(Splat splat, View view, uvec4 box) { return box.y; }
+
 uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }

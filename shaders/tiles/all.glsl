@@ -3,4 +3,6 @@
 
 uvec4 tile_box(Splat splat, View view) { return uvec4(0u, 0u, 1u, 1u); }
 
+uint likely_row(Splat splat, View view, uvec4 box) { return box.y; }
+
 uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }

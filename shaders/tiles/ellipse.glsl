@@ -2,35 +2,45 @@
 // rho = 2 ln(sigma / Th), that is where alpha reaches Th. The rounding of fp32 must not drop a pair that the blend would
 // show, so the test has a margin (METHOD 4).
 
-// The test itself, for pixel centres from `low` to `high`.
-bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {
+// The smallest q over the pixel centres from `low` to `high`, less its rounding, and where that is, seen from the mean.
+float lowest_level(Splat splat, vec2 low, vec2 high, out vec2 at) {
   precise vec2 a = low - splat.mean;
   precise vec2 b = high - splat.mean;
   precise vec2 nearest = clamp(vec2(0.0), a, b);
-  if (nearest == vec2(0.0)) return rho >= RHO_NONE;
+  at = nearest;
+  if (nearest == vec2(0.0)) return RHO_NONE;
   precise float xx = splat.conic.x;
   precise float xy = splat.conic.y;
   precise float yy = splat.conic.z;
   // q is convex: its smallest value lies on an edge that faces the mean, one or two of the four.
   precise float best = 3.4e38;
-  precise vec2 d = nearest;
   if (nearest.x != 0.0) {
     precise float y = clamp(-xy * nearest.x / yy, a.y, b.y);
     precise float q = xx * nearest.x * nearest.x + 2.0 * xy * nearest.x * y + yy * y * y;
     best = q;
-    d = vec2(nearest.x, y);
+    at = vec2(nearest.x, y);
   }
   if (nearest.y != 0.0) {
     precise float x = clamp(-xy * nearest.y / xx, a.x, b.x);
     precise float q = xx * x * x + 2.0 * xy * x * nearest.y + yy * nearest.y * nearest.y;
     if (q < best) {
       best = q;
-      d = vec2(x, nearest.y);
+      at = vec2(x, nearest.y);
     }
   }
-  precise float size = abs(xx) * d.x * d.x + 2.0 * abs(xy * d.x * d.y) + abs(yy) * d.y * d.y;
-  precise float margin = 2e-6 * size + 4e-6;
-  return best - margin <= rho;
+  precise float size = abs(xx) * at.x * at.x + 2.0 * abs(xy * at.x * at.y) + abs(yy) * at.y * at.y;
+  precise float level = best - (2e-6 * size + 4e-6);
+  return level;
+}
+
+// The test itself.
+bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {
+  vec2 at;
+  return lowest_level(splat, low, high, at) <= rho;
+}
+
+float lowest_level(Splat splat, View view, out vec2 at) {
+  return lowest_level(splat, vec2(0.0), vec2(view.width - 1u, view.height - 1u), at);
 }
 
 // What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.
@@ -43,7 +53,17 @@ uvec4 tile_box(Splat splat, View view) {
   precise vec2 extent = sqrt(ellipse_outer_rho(rho) * c.xz) * 1.0001 + 0.01;
   uvec2 columns = tile_span(splat.mean.x - extent.x, splat.mean.x + extent.x, view.tiles_x);
   uvec2 rows = tile_span(splat.mean.y - extent.y, splat.mean.y + extent.y, view.tiles_y);
+  // Of tall ones beside the picture no row need be asked.
+  vec2 at;
+  if (rows.y - rows.x > TALL_ROWS && lowest_level(splat, view, at) > ellipse_outer_rho(rho)) return uvec4(0u);
   return uvec4(columns.x, rows.x, columns.y, rows.y);
+}
+
+uint likely_row(Splat splat, View view, uvec4 box) {
+  if (box.w - box.y <= TALL_ROWS) return box.y;
+  vec2 at;
+  lowest_level(splat, view, at);
+  return clamp(uint(max(0.0, splat.mean.y + at.y)) / uint(TILE_SIZE), box.y, box.w - 1u);
 }
 
 uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {

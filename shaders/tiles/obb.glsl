@@ -51,6 +51,8 @@ vec2 strip(vec2 axis, float y, float limit) {
   return vec2(min(ends.x, ends.y), max(ends.x, ends.y));
 }
 
+uint likely_row(Splat splat, View view, uvec4 box) { return box.y; }
+
 uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   OrientedBox oriented = oriented_box(splat);
   // Where the box's strips leave room for a tile's middle, a little too wide; then the test itself from both ends.

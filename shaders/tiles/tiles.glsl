@@ -1,5 +1,6 @@
-// Which tiles of a view a splat is offered to (METHOD 4). A shape is a file beside this one with two functions:
+// Which tiles of a view a splat is offered to (METHOD 4). A shape is a file beside this one with three functions:
 //   uvec4 tile_box(Splat, View)                      columns [x, z) and rows [y, w) that it can touch, inside the grid
+//   uint likely_row(Splat, View, uvec4 box)          the row most likely to have such a tile
 //   uvec2 tile_row(Splat, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
 // Counting and emission call the same code and must agree to the bit, so everything that decides is `precise`.
 #include "shared/axes.h"
@@ -52,8 +53,7 @@ bool holds_a_centre(Splat splat, View view, vec2 extent) {
 
 #include "tiles/{TILES_NAME}.glsl"
 
-uint tile_count(Splat splat, View view) {
-  uvec4 box = tile_box(splat, view);
+uint tile_count(Splat splat, View view, uvec4 box) {
   uint count = 0u;
   for (uint row = box.y; row < box.w; ++row) {
     uvec2 columns = tile_row(splat, view, box, row);
@@ -64,7 +64,9 @@ uint tile_count(Splat splat, View view) {
 
 bool touches_a_tile(Splat splat, View view) {
   uvec4 box = tile_box(splat, view);
-  for (uint row = box.y; row < box.w; ++row) {
+  uint likely = likely_row(splat, view, box);
+  for (uint n = 0u; n < box.w - box.y; ++n) {
+    uint row = n == 0u ? likely : box.y + n - uint(box.y + n <= likely);
     uvec2 columns = tile_row(splat, view, box, row);
     if (columns.y > columns.x) return true;
   }

@@ -57,6 +57,16 @@ void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bin
 
 void Dispatcher::run(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
                      std::initializer_list<Uniform> uniforms) {
+  start(program, work, bindings, uniforms);
+  wait_for_writes();
+}
+
+void Dispatcher::wait_for_writes() {
+  context_.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
+void Dispatcher::start(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
+                       std::initializer_list<Uniform> uniforms) {
   if (work.arguments == nullptr && work.groups == 0) return;
   const Functions& gl = context_.gl();
   bind(program, bindings, uniforms);
@@ -70,7 +80,6 @@ void Dispatcher::run(const Program& program, const Work& work, std::initializer_
     if (rows > 65535) throw std::logic_error(program.name() + ": more work groups than any driver takes");
     gl.DispatchCompute(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), 1);
   }
-  gl.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
   context_.check(program.name());
 }
 

@@ -64,6 +64,13 @@ class Dispatcher {
   void run(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
            std::initializer_list<Uniform> uniforms = {});
 
+  /// As run(), without the barrier: what comes next may run at the same time.
+  void start(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
+             std::initializer_list<Uniform> uniforms = {});
+
+  /// The barrier that start() leaves out.
+  void wait_for_writes();
+
   /// Runs a program of a .frag on every pixel of the viewport, with what is current besides (gl/state.h).
   /// Throws as run() does.
   void fill(const Program& program, std::initializer_list<Binding> bindings,

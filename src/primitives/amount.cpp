@@ -1,5 +1,7 @@
 #include "primitives/amount.h"
 
+#include <algorithm>
+
 #include "shared/limits.h"
 
 namespace binosplat::primitives {
@@ -23,7 +25,7 @@ shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max) {
   shared::Amount a{};
   a.count = count;
   split(blocks_of(count, THREADS), groups_max, a.threads_x, a.threads_y, a.threads_z);
-  split(blocks_of(count, SCAN_BLOCK), groups_max, a.scan_x, a.scan_y, a.scan_z);
+  split(std::max(1u, blocks_of(count, SCAN_BLOCK)), groups_max, a.scan_x, a.scan_y, a.scan_z);
   split(blocks_of(count, SORT_BLOCK), groups_max, a.sort_x, a.sort_y, a.sort_z);
   return a;
 }

@@ -19,10 +19,9 @@ void Scan::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint3
       amounts, static_cast<std::int64_t>(which * sizeof(shared::Amount) + offsetof(shared::Amount, scan_x)));
   dispatcher.run(context.program("primitives/scan_reduce.comp"), blocks,
                  {{"Amounts", amounts}, {"Values", values}, {"BlockSums", block_sums_}}, {{"amount", which}});
-  dispatcher.run(context.program("primitives/scan_blocks.comp"), gl::Work::of_groups(1),
-                 {{"Amounts", amounts}, {"BlockSums", block_sums_}, {"Total", total_}}, {{"amount", which}});
   dispatcher.run(context.program("primitives/scan_apply.comp"), blocks,
-                 {{"Amounts", amounts}, {"Values", values}, {"BlockSums", block_sums_}}, {{"amount", which}});
+                 {{"Amounts", amounts}, {"Values", values}, {"BlockSums", block_sums_}, {"Total", total_}},
+                 {{"amount", which}});
 }
 
 }  // namespace binosplat::primitives

@@ -1,5 +1,5 @@
 #pragma once
-// Exclusive prefix sum on the GPU: reduce, then scan, in three dispatches; sums stop at COUNT_MAX instead of
+// Exclusive prefix sum on the GPU: reduce, then scan, in two dispatches; sums stop at COUNT_MAX instead of
 // wrapping.
 
 #include "gl/dispatch.h"

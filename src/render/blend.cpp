@@ -1,4 +1,5 @@
 #include <bit>
+#include <cstddef>
 
 #include "render/stages.h"
 
@@ -6,55 +7,77 @@ namespace binosplat::render {
 
 namespace {
 
-void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
-         const gl::Defines& defines, const gl::Buffer& measured) {
-  const glm::vec3& background = shape.settings.background;
-  dispatcher.run(dispatcher.context().program("blend.comp", defines), gl::Work::of_groups(shape.tile_count),
-                 {{"Views", buffers.views},
-                  {"Ranges", buffers.ranges},
-                  {"Values", buffers.pairs.values()},
-                  {"Splats", buffers.splats},
-                  {"Colours", buffers.colours},
-                  {"ZSums", buffers.z_sums},
-                  {"FrameCounters", buffers.counters},
-                  {"Measured", measured},
-                  {"Shown", buffers.shown}},
-                 {{"view_count", shape.view_count()},
-                  {"remembers", shape.remembers ? 1u : 0u},
-                  {"background_r", std::bit_cast<std::uint32_t>(background.r)},
-                  {"background_g", std::bit_cast<std::uint32_t>(background.g)},
-                  {"background_b", std::bit_cast<std::uint32_t>(background.b)},
-                  {"tile_count", shape.tile_count},
-                  {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
+struct Variant {
+  bool records = false;
+  bool weighs = false;
+  int contrast = CONTRAST_OFF;
+  int show = SHOW_PICTURE;
+};
+
+// The tile test is no part of this program: with every test the same lists give the same bits. Nor does a
+// pixel's colour depend on how many of them an invocation draws.
+gl::Defines defines_of(const FrameShape& shape, const Variant& variant, bool long_lists) {
+  return {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+          {"LONG_LISTS", long_lists ? "1" : "0"},
+          {"COLUMN", long_lists ? "1" : "2"},
+          {"AHEAD", long_lists ? "8" : "4"},
+          {"RECORDS", variant.records ? "1" : "0"},
+          {"WEIGHS", variant.weighs ? "1" : "0"},
+          {"CONTRAST", std::to_string(variant.contrast)},
+          {"SHOW", std::to_string(variant.show)}};
 }
 
-// The tile test is no part of this program: with every test the same lists give the same bits.
-gl::Defines defines_of(const FrameShape& shape, bool records, bool weighs, int contrast) {
-  return {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-          {"RECORDS", records ? "1" : "0"},
-          {"WEIGHS", weighs ? "1" : "0"},
-          {"CONTRAST", std::to_string(contrast)}};
+void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,
+         const gl::Buffer& measured) {
+  gl::Context& context = dispatcher.context();
+  const glm::vec3& background = shape.settings.background;
+  const auto draw = [&](bool long_lists, const gl::Work& work) {
+    dispatcher.start(context.program("blend.comp", defines_of(shape, variant, long_lists)), work,
+                     {{"Views", buffers.views},
+                      {"Ranges", buffers.ranges},
+                      {"Values", buffers.pairs.values()},
+                      {"Splats", buffers.splats},
+                      {"Colours", buffers.colours},
+                      {"ZSums", buffers.z_sums},
+                      {"FrameCounters", buffers.counters},
+                      {"LongLists", buffers.long_lists},
+                      {"Measured", measured},
+                      {"Shown", buffers.shown}},
+                     {{"view_count", shape.view_count()},
+                      {"remembers", shape.remembers ? 1u : 0u},
+                      {"background_r", std::bit_cast<std::uint32_t>(background.r)},
+                      {"background_g", std::bit_cast<std::uint32_t>(background.g)},
+                      {"background_b", std::bit_cast<std::uint32_t>(background.b)},
+                      {"tile_count", shape.tile_count},
+                      {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
+  };
+  draw(true, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
+  draw(false, gl::Work::of_groups(shape.tile_count));
+  dispatcher.wait_for_writes();
 }
 
 }  // namespace
 
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+  if (shape.settings.tiles != TILES_ALL) {
+    dispatcher.run(
+        dispatcher.context().program("long_lists.comp"), gl::Work::threads(shape.tile_count, THREADS),
+        {{"Ranges", buffers.ranges}, {"LongLists", buffers.long_lists}, {"FrameCounters", buffers.counters}},
+        {{"tile_count", shape.tile_count}});
+  }
+  const FrameSettings& settings = shape.settings;
   run(dispatcher, shape, buffers,
-      defines_of(shape, shape.records, shape.settings.weigh, shape.settings.contrast), buffers.measured);
+      {.records = shape.records, .weighs = settings.weigh, .contrast = settings.contrast}, buffers.measured);
 }
 
 void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what) {
   buffers.shown.reserve(shape.pixel_count * 4);
-  const auto with = [&](bool records, int show) {
-    gl::Defines defines = defines_of(shape, records, false, CONTRAST_OFF);
-    defines.emplace_back("SHOW", std::to_string(show));
-    run(dispatcher, shape, buffers, defines, buffers.shown_light);
-  };
   if (what == SHOW_LIGHT) {
     buffers.shown_light.upload(std::vector<std::uint32_t>(std::size_t{shape.slots} * shape.view_count()));
-    with(true, SHOW_VISIBLE);  // measures
+    run(dispatcher, shape, buffers, {.records = true, .show = SHOW_VISIBLE},
+        buffers.shown_light);  // measures
   }
-  with(false, what);
+  run(dispatcher, shape, buffers, {.show = what}, buffers.shown_light);
 }
 
 }  // namespace binosplat::render

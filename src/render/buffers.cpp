@@ -114,12 +114,12 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
       shape.anchor_bytes + std::int64_t{decodings} * shape.gaussian_count *
                                (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
   const bool measured = measures(shape.settings.transmittance);
-  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measured ? 2 : 1);
+  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measured ? 3 : 2);
   const std::int64_t gaussian_bytes = 4 + (measured ? shape.asked * 8 : 0);
   const std::int64_t pair_bytes = 4 * 4;                                     // tile and splat, twice
   const std::int64_t slot_bytes = shape.view_count() * splat_bytes + 6 * 4;  // indices, order twice, offsets
   needs.frame = shape.gaussian_count * gaussian_bytes + shape.slots * slot_bytes + shape.pixel_count * 20 +
-                shape.tile_count * 8LL + starting_pairs(shape) * pair_bytes;
+                shape.tile_count * 12LL + starting_pairs(shape) * pair_bytes;
   return needs;
 }
 
@@ -137,9 +137,11 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       depth_table(context, "transmittance by depth"),
       splats(context, "splats"),
       tile_counts(context, "tile counts"),
+      tall(context, "tall splats"),
       pair_amounts(context, "amounts of pairs"),
       pairs(context, "Gaussian-tile pairs"),
       ranges(context, "tile ranges"),
+      long_lists(context, "tiles with long lists"),
       colours(context, "pixels"),
       z_sums(context, "depth of pixels"),
       shown(context, "what the blend comes by"),
@@ -181,9 +183,11 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) 
   pair_offsets.reserve(slots * 4);
   splats.reserve(slots * shape.view_count() * static_cast<std::int64_t>(sizeof(shared::Splat)));
   tile_counts.reserve(slots * shape.view_count() * 4);
+  tall.reserve(slots * shape.view_count() * 4);
   pair_amounts.reserve(sizeof(primitives::SortAmounts));
   pairs.reserve(pair_capacity);
   ranges.reserve(std::max<std::int64_t>(shape.tile_count, shape.view_count()) * 8);
+  long_lists.reserve(shape.tile_count * 4LL);
   colours.reserve(shape.pixel_count * 16);
   z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));

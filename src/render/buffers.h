@@ -95,9 +95,11 @@ struct FrameBuffers {
   // Of all views.
   gl::Buffer splats;              // Splat (view, slot)
   gl::Buffer tile_counts;         // uint (view, slot)
+  gl::Buffer tall;                // splats over many rows of tiles
   gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
   primitives::PairBuffers pairs;  // tile (view with --tiles all), splat
   gl::Buffer ranges;              // begin, end by list
+  gl::Buffer long_lists;          // tiles with long lists
 
   gl::Buffer colours;  // vec4 by pixel: C, T
   gl::Buffer z_sums;   // float by pixel

@@ -119,6 +119,8 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Indices", drawn.indices},
                     {"Splats", buffers.splats},
                     {"TileCounts", buffers.tile_counts},
+                    {"FrameCounters", buffers.counters},
+                    {"Tall", buffers.tall},
                     {"Upper", *buffers.upper},
                     {"DepthTable", buffers.depth_table},
                     {"Measured", buffers.measured}},
@@ -137,6 +139,14 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"gaussian_count", shape.gaussian_count},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
+  dispatcher.run(dispatcher.context().program("count_tall.comp", pair_defines(shape)),
+                 gl::Work::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
+                 {{"Views", buffers.views},
+                  {"FrameCounters", buffers.counters},
+                  {"Tall", buffers.tall},
+                  {"Splats", buffers.splats},
+                  {"TileCounts", buffers.tile_counts}},
+                 {{"slots", shape.slots}});
 }
 
 }  // namespace binosplat::render

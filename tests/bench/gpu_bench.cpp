@@ -36,6 +36,7 @@ struct Case {
   int repeat = 1;       // times along x and z
   double spacing = 0;   // world units
   std::vector<std::string> views;
+  int lod = 0;  // of a streamed model
 };
 
 const std::vector<Case> cases = {
@@ -45,6 +46,7 @@ const std::vector<Case> cases = {
     {"garden 4 x 4", "garden/garden.ply", "garden_bench.json", 4, 20, {"DSC07956", "DSC08060", "DSC08116"}},
     {"taebak LOD 0", "taebak", "taebak_bench.json", 1, 0, {"air", "walk"}},
     {"taebak 2 x 2", "taebak", "taebak_bench.json", 2, 60, {"air", "walk"}},
+    {"lacadiere LOD 1", "lacadiere", "lacadiere_bench.json", 1, 0, {"flat", "flat2"}, 1},
     {"city of 4 million", "", "", 1, 0, {}},
 };
 
@@ -77,7 +79,9 @@ Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int sh
     }
     return loaded;
   }
-  loaded.model = load_model(scenes / c.model);
+  ModelOptions options;
+  if (fs::is_directory(scenes / c.model)) options.lod = c.lod;
+  loaded.model = load_model(scenes / c.model, options);
   if (c.repeat > 1) loaded.model = repeat(std::move(loaded.model), c.repeat, c.repeat, c.spacing);
   const std::vector<Camera> cameras = load_cameras(views / c.cameras);
   for (const std::string& name : c.views) {

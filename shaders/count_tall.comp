@@ -1,0 +1,47 @@
+// Stage 1, project, last part: the tiles of splats of many rows, which project.comp left aside. A work group takes TALL_EACH
+// of them and its invocations share their rows, so that none waits for the one with the tallest.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "shared/saturate.glsl"
+#include "primitives/scan_block.glsl"
+#include "tiles/tiles.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
+layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats: view * slots + slot
+layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
+layout(std430, binding = 4) writeonly buffer TileCounts { uint tile_counts[]; };
+uniform uint slots;  // of one view
+
+shared uvec4 box_at[TALL_EACH];
+shared uint tiles_at[TALL_EACH];
+shared uint rows_before[THREADS];
+
+void main() {
+  uint self = gl_LocalInvocationIndex;
+  uint first = group_index() * TALL_EACH;
+  if (first >= counters.tall) return;
+  bool has_one = self < TALL_EACH && first + self < counters.tall;
+  uint rows = 0u;
+  if (has_one) {
+    uint splat = tall[first + self];
+    uvec4 box = tile_box(splats[splat], views[splat / slots]);
+    box_at[self] = box;
+    tiles_at[self] = 0u;
+    rows = box.w - box.y;
+  }
+  rows_before[self] = scan_group(rows);
+  barrier();
+  for (uint nth = self; nth < group_total(); nth += THREADS) {
+    LAST_BEFORE(rows_before, nth, at)
+    uint splat = tall[first + at];
+    uvec4 box = box_at[at];
+    uvec2 columns = tile_row(splats[splat], views[splat / slots], box, box.y + nth - rows_before[at]);
+    atomicAdd(tiles_at[at], columns.y - columns.x);
+  }
+  barrier();
+  if (has_one) tile_counts[tall[first + self]] = tiles_at[self];
+}
