@@ -21,13 +21,13 @@ constexpr int attempts_max = 8;
 }  // namespace
 
 Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
-    : dispatcher_(context), model_(model), page_gaussians_(page_gaussians), buffers_(context) {
-  model_buffers_.emplace(context, model, page_gaussians);
-}
+    : dispatcher_(context),
+      model_(model),
+      model_buffers_(context, model, page_gaussians),
+      buffers_(context) {}
 
 void Frame::reload() {
-  model_buffers_.reset();
-  model_buffers_.emplace(dispatcher_.context(), model_, page_gaussians_);
+  model_buffers_.upload(dispatcher_.context(), model_);
   recorded_shape_ = {};
   last_shape_.gaussian_count = static_cast<std::uint32_t>(model_.count());
 }
@@ -40,7 +40,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
     shape_.settings.loss = loss_control_.next_loss(settings, cut);
   }
   decide_measuring();
-  if (model_buffers_->box) limit_keys(shape_, *model_buffers_->box);
+  if (model_buffers_.box) limit_keys(shape_, *model_buffers_.box);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
   if (settings.order_capacity > 0) slots_ = settings.order_capacity;
   pair_capacity_ =
@@ -56,7 +56,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   for (;;) {
     shape_.slots = static_cast<std::uint32_t>(slots_);
     buffers_.reserve(shape_, pair_capacity_);
-    model_buffers_->reserve(shape_);
+    model_buffers_.reserve(shape_);
     counters = draw_once(report);
     if (counters.overflow == 0) break;
     if (++report.redrawn == attempts_max) throw std::logic_error("a frame overflowed again and again");
@@ -88,18 +88,18 @@ shared::Counters Frame::draw_once(FrameReport& report) {
   reference_pictures_.clear();
   if (shape_.settings.reference_until) {
     reference_pictures_ =
-        fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, *model_buffers_, buffers_);
+        fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, model_buffers_, buffers_);
   }
   const auto start = std::chrono::steady_clock::now();
   dispatcher_.begin_frame();
   if (shape_.offset_count > 0 && !twin(Stage::decode)) {
     dispatcher_.begin_stage("decode");
-    decode(dispatcher_, shape_, *model_buffers_, buffers_);
+    decode(dispatcher_, shape_, model_buffers_, buffers_);
   }
   for (std::uint32_t group = 0; group < shape_.groups.size(); ++group) {
     if (!twin(Stage::project)) {
       dispatcher_.begin_stage("project");
-      project(dispatcher_, shape_, group, *model_buffers_, buffers_);
+      project(dispatcher_, shape_, group, model_buffers_, buffers_);
     }
     if (!twin(Stage::order)) {
       dispatcher_.begin_stage("order");
@@ -154,7 +154,7 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   } else if (!measures(shape_.settings.transmittance)) {
     recorded_shape_ = {};
   }
-  model_buffers_->keep_last();
+  model_buffers_.keep_last();
   report.recorded = shape_.records;
   report.loss = shape_.settings.loss;
   report.remembered = shape_.remembers;

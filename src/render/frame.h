@@ -2,7 +2,6 @@
 // One frame: a model drawn in one or more views (both eyes of a rig) by compute shaders, without a read-back
 // inside.
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,9 +52,9 @@ class Frame {
   Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
 
   /// Uploads the model again, which has changed since: it is the same scene at other levels of detail, so
-  /// that a loss that was found stays, but no measured transmittance. What was uploaded before is freed
-  /// first. Nothing can be read of the last frame but its pictures until the next one is drawn. Throws as the
-  /// constructor does.
+  /// that a loss that was found stays, but no measured transmittance. Buffers are used again where they are
+  /// large enough. Nothing can be read of the last frame but its pictures until the next one is drawn. Throws
+  /// as the constructor does.
   void reload();
 
   /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to
@@ -98,8 +97,7 @@ class Frame {
 
   gl::Dispatcher dispatcher_;
   const Model& model_;
-  std::uint32_t page_gaussians_;
-  std::optional<ModelBuffers> model_buffers_;
+  ModelBuffers model_buffers_;
   FrameBuffers buffers_;
   FrameShape shape_;
   FrameShape last_shape_;      // of the last frame drawn
