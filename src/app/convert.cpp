@@ -220,14 +220,14 @@ void add_convert(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("convert", "Write a model in another format, and say what it costs");
   const auto o = std::make_shared<ConvertOptions>();
   sub->add_option("MODEL", o->render.scene, "A model file or folder, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat or .spz")
+  sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat, .spz\nor .sog")
       ->type_name("FILE")
       ->required();
   sub->add_option("--to", o->to, "The format, where FILE's ending does not say it")
       ->check(CLI::IsMember(
                   std::vector<std::string>(std::begin(model_format_names), std::end(model_format_names)))
                   .description(""))
-      ->type_name("ply|compressed-ply|splat|spz");
+      ->type_name("ply|compressed-ply|splat|spz|sog");
   sub->add_option("--sh-bits", o->harmonic_bits,
                   "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
                   "costs some 15 dB")

@@ -25,6 +25,21 @@ std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians) {
 
 }  // namespace
 
+std::size_t gaussians_that_fit(const RenderOptions& options, std::span<const shared::View> views,
+                               int degree) {
+  render::FrameSettings settings = settings_of(options);
+  settings.depth_table = {1.0f, {1.0f}};  // not measured yet
+  const auto bytes = static_cast<std::int64_t>(1e6 * *options.gpu_memory);
+  Model model;
+  model.degree = degree;
+  const render::FrameShape shape = render::make_shape(views, settings, model);
+  std::uint32_t fits = 0;
+  for (std::uint32_t step = 1u << 30; step > 0; step /= 2) {
+    if (bytes_for(shape, fits + step) <= bytes) fits += step;
+  }
+  return fits;
+}
+
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list) {
   const std::string axes = options.axes.empty() ? Model().axes : options.axes;
   const std::vector<Shot> shots = known_shots(options, list, axes);
@@ -44,19 +59,7 @@ DetailBudget detail_budget(const RenderOptions& options, const CameraList& list)
     Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
     widest.assign(options.mono || !options.only.empty() ? 1 : 2, make_view(sized(options, camera)));
   }
-  render::FrameSettings settings = settings_of(options);
-  settings.depth_table = {1.0f, {1.0f}};  // not measured yet
-  const auto bytes = static_cast<std::int64_t>(1e6 * *options.gpu_memory);
-  budget.gaussians = [=](int degree) {
-    Model model;
-    model.degree = degree;
-    const render::FrameShape shape = render::make_shape(widest, settings, model);
-    std::uint32_t fits = 0;
-    for (std::uint32_t step = 1u << 30; step > 0; step /= 2) {
-      if (bytes_for(shape, fits + step) <= bytes) fits += step;
-    }
-    return std::size_t{fits};
-  };
+  budget.gaussians = [&options, widest](int degree) { return gaussians_that_fit(options, widest, degree); };
   return budget;
 }
 

@@ -29,7 +29,6 @@ Scene open_once(const RenderOptions& options) {
   }
   return {{}, [&options] {
             Model model = load_model(options.scene, {options.lod, options.appearance, options.budget});
-            if (!options.axes.empty()) model.axes = options.axes;
             if (model.antialiased && !options.antialias)
               log_info("{} was trained with anti-aliasing and is drawn so (--no-antialias: as if not)",
                        options.scene);
@@ -46,12 +45,17 @@ CitySettings city_settings(const RenderOptions& options) {
   return settings;
 }
 
+void set_as_asked(const RenderOptions& options, Model& model) {
+  if (!options.axes.empty()) model.axes = options.axes;
+  model.antialiased = options.antialias.value_or(model.antialiased);
+  model.kernel_px2 = options.kernel_px2.value_or(model.kernel_px2);
+}
+
 Scene open_scene(const RenderOptions& options) {
   Scene scene = open_once(options);
   scene.model = [read = scene.model, &options] {
     Model model = read();
-    model.antialiased = options.antialias.value_or(model.antialiased);
-    model.kernel_px2 = options.kernel_px2.value_or(model.kernel_px2);
+    set_as_asked(options, model);
     return model;
   };
   if (!options.repeat) return scene;

@@ -20,6 +20,9 @@ struct Scene {
 /// The city that the options ask for.
 CitySettings city_settings(const RenderOptions& options);
 
+/// What the options say of how a model file is to be taken: axes and anti-aliasing.
+void set_as_asked(const RenderOptions& options, Model& model);
+
 /// The scene that the options name; they must outlive it. Throws Error for a built-in one that there is not.
 Scene open_scene(const RenderOptions& options);
 

@@ -9,6 +9,7 @@
 #include "app/command.h"
 #include "app/detail.h"
 #include "app/drawing.h"
+#include "app/followed.h"
 #include "app/open_scene.h"
 #include "app/photos.h"
 #include "app/render_options.h"
@@ -93,7 +94,7 @@ void settle(render::Frame& frame, const std::vector<shared::View>& views, render
 
 // Draws every shot options.frames times and writes its last frame.
 void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> shots, const CameraList& list,
-              RenderReport& report) {
+              Model& model, std::optional<FollowedLevels>& followed, RenderReport& report) {
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
   render::Frame frame(context, report.model);
@@ -110,12 +111,15 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     const std::vector<shared::View> views = views_of(drawn.shot);
     if (options.quality && options.path.empty()) settle(frame, views, settings);
     const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
+    if (followed) drawn.levels = followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < options.frames; ++n) {
       drawn.report = frame.draw(views, of_shot);
       report.times.add(drawn.report);
       progress.update(++done);
     }
     const std::vector<Picture> pictures = frame.read_pictures();
+    if (options.detail_report)
+      drawn.levels->finest_psnr = followed->against_finest(context, views, pictures, of_shot);
     drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
     const stereo::Shown shown =
         show.make(number_of(options.show, show_choices), frame, views, pictures, of_shot, options.background);
@@ -156,8 +160,13 @@ ExitCode render(RenderOptions options) {
   if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
   CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
   options.photos = photos_folder(options, list);
-  if (options.gpu_memory) options.budget = detail_budget(options, list);
-  const Model model = scene.model();
+  std::optional<FollowedLevels> followed;
+  if (options.detail) {
+    followed.emplace(options);
+  } else if (options.gpu_memory) {
+    options.budget = detail_budget(options, list);
+  }
+  Model model = followed ? followed->coarsest() : scene.model();
   log_model(options, model);
   if (!list.listed) list = made_up_cameras(options, model);
 
@@ -165,12 +174,13 @@ ExitCode render(RenderOptions options) {
   std::vector<Shot> shots = make_shots(options, list, near_plane, model.axes);
   check_shots(plan, shots);
   if (!options.photos.empty()) check_photos(options.photos, shots);
+  if (followed) followed->bring(model, views_of(shots[0]));
 
   const auto context = open_context(options);
   if (!options.shader_dir.empty()) context->set_shader_folder(options.shader_dir);
   RenderReport report{options, model, *context, near_plane, memory_needs(options, model, shots), {}, {}};
   print_needs(report.needs);
-  draw_all(*context, plan, std::move(shots), list, report);
+  draw_all(*context, plan, std::move(shots), list, model, followed, report);
   print(report);
   if (!options.json.empty()) save_json(options.json, to_json(report));
   return ExitCode::done;

@@ -60,11 +60,17 @@ void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
     fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.scene);
   }
-  if (o.lod && o.gpu_memory)
-    fail("--lod and --gpu-memory both choose the levels of detail: leave one of them out");
-  if (o.scene.rfind("demo:", 0) == 0 && (o.lod || o.gpu_memory || o.appearance || !o.axes.empty())) {
+  if (o.lod && (o.gpu_memory || o.detail)) {
+    fail("--lod and {} both choose the levels of detail: leave one of them out",
+         o.gpu_memory ? "--gpu-memory" : "--detail");
+  }
+  if (o.detail && o.repeat) fail("--detail and --repeat: copies have one level of detail for all");
+  if (o.detail_report && !o.detail) fail("--detail-report tells what --detail costs, which is missing");
+  if (o.scene.rfind("demo:", 0) == 0 &&
+      (o.lod || o.gpu_memory || o.detail || o.appearance || !o.axes.empty())) {
     const char* const option = o.lod          ? "--lod"
                                : o.gpu_memory ? "--gpu-memory"
+                               : o.detail     ? "--detail"
                                : o.appearance ? "--appearance"
                                               : "--axes";
     fail("{} is for model files, and {} is none", option, o.scene);

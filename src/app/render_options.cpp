@@ -1,12 +1,9 @@
 #include "app/render_options.h"
 
-#include <fmt/ranges.h>
-
 #include <cctype>
-#include <charconv>
-#include <cmath>
 #include <sstream>
 
+#include "app/option_checks.h"
 #include "base/error.h"
 #include "scene/axes.h"
 #include "shared/axes.h"
@@ -49,50 +46,6 @@ Background parse_background(const std::string& text) {
   return glm::vec3(rgb);
 }
 
-// Finite and above zero; written so that "nan" and "inf" fail too.
-const CLI::Validator positive(
-    [](std::string& text) {
-      double value = 0.0;
-      const bool good = CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
-      return good ? std::string() : text + ": expected a number above zero";
-    },
-    "");
-
-// From 0 to 2^64 - 1; CLI11 by itself would take -1 for the largest.
-const CLI::Validator whole(
-    [](std::string& text) {
-      std::uint64_t value = 0;
-      const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-      const bool good = error == std::errc() && end == text.data() + text.size();
-      return good ? std::string() : text + ": expected a whole number";
-    },
-    "");
-
-// A choice of words or numbers; the help names them as the option's type, and once is enough.
-template <typename T>
-CLI::Validator one_of(std::initializer_list<T> choices) {
-  return CLI::IsMember(std::vector<T>(choices)).description("");
-}
-
-// The names of a list of shared/axes.h, as a check, as the option's type, and as lines of help.
-template <std::size_t n>
-CLI::Option* choose(CLI::App& sub, const char* option, std::string& into, const std::string& help,
-                    const Choice (&choices)[n]) {
-  std::vector<std::string> names;
-  std::string lines;
-  for (const Choice& choice : choices) {
-    names.emplace_back(choice.name);
-    lines += fmt::format("\n  {}: {}", choice.name, choice.help);
-  }
-  return sub.add_option(option, into, help + lines)
-      ->check(CLI::IsMember(names).description(""))
-      ->type_name(fmt::format("{}", fmt::join(names, "|")));
-}
-
-CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }
-
-CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
-
 void add_scene_name(CLI::App& sub, RenderOptions& o) {
   sub.add_option("SCENE", o.scene,
                  "A model (ply; SOG as folder, .sog or streamed), or one that is\nbuilt in: demo:room, a "
@@ -107,6 +60,20 @@ void add_scene(CLI::App& sub, RenderOptions& o) {
                  "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)")
       ->type_name("N")
       ->check(range(0, 100))
+      ->group(group);
+  sub.add_option(
+         "--detail", o.detail,
+         "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
+         "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit")
+      ->type_name("PX")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->group(group);
+  sub.add_option(
+         "--gpu-memory", o.gpu_memory,
+         "Of a streamed SOG: levels, near the eyes the finest, that fit in so\nmany MB; for each view "
+         "with --detail, else one choice for all")
+      ->type_name("MB")
+      ->check(positive)
       ->group(group);
   add_axes_option(sub, o)->group(group);
   auto* antialias =
@@ -381,11 +348,8 @@ void add_view_options(CLI::App& sub, RenderOptions& options) {
 void add_options(CLI::App& sub, RenderOptions& options) {
   add_scene_name(sub, options);
   add_scene(sub, options);
-  sub.add_option(
-         "--gpu-memory", options.gpu_memory,
-         "Of a streamed SOG instead: the finest levels, near the cameras first,\nthat fit in so many MB")
-      ->type_name("MB")
-      ->check(positive)
+  sub.add_flag("--detail-report", options.detail_report,
+               "Print PSNR against the finest levels, and between those before and\nafter each switch")
       ->group("Scene");
   add_cameras(sub, options);
   add_rig(sub, options);

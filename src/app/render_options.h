@@ -21,8 +21,10 @@ constexpr const char* photos_beside = "beside";
 struct RenderOptions {
   std::string scene;  // a model file, or one that the program makes
 
-  std::optional<int> lod;              // of a model file that has levels of detail
-  std::optional<double> gpu_memory;    // MB, which levels are chosen to fit; instead of lod
+  std::optional<int> lod;            // of a model file that has levels of detail
+  std::optional<double> gpu_memory;  // MB, which levels are chosen to fit; instead of lod
+  std::optional<double> detail;      // px, by which levels are chosen for each view anew
+  bool detail_report = false;
   std::optional<DetailBudget> budget;  // what it comes to, once the views are known
   std::string axes;                    // where a model file's x, y and z point; empty: what its format says
   std::optional<std::size_t> appearance;  // of a Scaffold-GS model

@@ -90,6 +90,54 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
               stereo::comfortable_degrees, instead);
 }
 
+std::string levels_text(const ShotLevels& levels) {
+  std::string text = fmt::format("  levels of {} Gaussians", levels.gaussians);
+  if (levels.finest_psnr) text += fmt::format(", {:.2f} dB against the finest", *levels.finest_psnr);
+  if (levels.switched) {
+    text += fmt::format("; switched: {:.0f} ms to read, {:.1f} to upload", levels.read_ms, levels.upload_ms);
+    if (levels.switch_psnr) text += fmt::format(", {:.2f} dB to those before", *levels.switch_psnr);
+  }
+  return text;
+}
+
+ordered_json levels_json(const ShotLevels& levels) {
+  ordered_json json = {{"gaussians", levels.gaussians}, {"switched", levels.switched}};
+  json["read_ms"] = levels.read_ms;
+  json["upload_ms"] = levels.upload_ms;
+  if (levels.switch_psnr) json["switch_psnr_db"] = *levels.switch_psnr;
+  if (levels.finest_psnr) json["finest_psnr_db"] = *levels.finest_psnr;
+  return json;
+}
+
+// Along a path: how much is drawn, how often it changes, and the worst of what that costs.
+void print_levels(const RenderReport& report) {
+  std::vector<double> gaussians, finest, switches, read, upload;
+  for (const Drawn& drawn : report.drawn) {
+    if (!drawn.levels) return;
+    gaussians.push_back(static_cast<double>(drawn.levels->gaussians));
+    if (drawn.levels->finest_psnr) finest.push_back(*drawn.levels->finest_psnr);
+    if (drawn.levels->switch_psnr) switches.push_back(*drawn.levels->switch_psnr);
+    if (!drawn.levels->switched) continue;
+    read.push_back(drawn.levels->read_ms);
+    upload.push_back(drawn.levels->upload_ms);
+  }
+  fmt::print("levels of detail: {:.0f} Gaussians (median), {} switches in {} views", quantile(gaussians, 0.5),
+             read.size(), gaussians.size());
+  if (!read.empty()) {
+    fmt::print(" of {:.0f} ms to read and {:.1f} to upload (median; at most {:.0f} and {:.1f})",
+               quantile(read, 0.5), quantile(upload, 0.5), quantile(read, 1.0), quantile(upload, 1.0));
+  }
+  if (!finest.empty()) {
+    fmt::print("; against the finest {:.2f} dB (median), {:.2f} at worst", quantile(finest, 0.5),
+               quantile(finest, 0.0));
+  }
+  if (!switches.empty()) {
+    fmt::print("; across a switch {:.2f} dB (median), {:.2f} at worst", quantile(switches, 0.5),
+               quantile(switches, 0.0));
+  }
+  fmt::print("\n");
+}
+
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   ordered_json json = {{"name", drawn.shot.name}, {"units_per_metre", units_per_metre(options)}};
   if (drawn.shot.ipd) json["ipd_metres"] = *drawn.shot.ipd;
@@ -105,6 +153,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   if (options.quality || !options.calibration.empty()) json["loss"] = drawn.report.loss;
   if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
   if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
+  if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
   if (drawn.most_shown) json["show"] = {{"what", options.show}, {"most", *drawn.most_shown}};
   json["outputs"] = drawn.files;
@@ -124,6 +173,7 @@ ordered_json settings_json(const RenderReport& report) {
   json["contrast"] = o.contrast;
   json["th_eyes"] = o.th_eyes;
   if (report.model.scaffold) json["decode"] = o.decode.empty() ? decode_choices[DECODE_EYES].name : o.decode;
+  if (o.detail) json["detail_px"] = *o.detail;
   if (o.quality) json["quality_db"] = *o.quality;
   if (!o.calibration.empty()) json["calibration"] = o.calibration;
   json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
@@ -216,10 +266,12 @@ void print(const RenderReport& report) {
     if (drawn.most_shown)
       fmt::print("  colours: {}: 0 (dark blue) to {} and more (yellow)\n", report.options.show,
                  *drawn.most_shown);
+    if (drawn.levels) fmt::print("{}\n", levels_text(*drawn.levels));
     if (drawn.comfort) print_comfort(drawn);
   }
   warn_of_discomfort(report.drawn);
   if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
+  print_levels(report);
   const std::size_t frames = report.times.frames();
   fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
   for (const StageTimes::Row& row : report.times.rows()) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/followed.h"
 #include "app/render_options.h"
 #include "app/shots.h"
 #include "gl/context.h"
@@ -52,6 +53,7 @@ struct Drawn {
   std::optional<double> most_shown;  // with --show: the number of the brightest colour
   std::optional<double> photo_psnr;  // dB
   std::optional<Comfort> comfort;
+  std::optional<ShotLevels> levels;  // with --detail
 };
 
 struct RenderReport {

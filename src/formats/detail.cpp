@@ -8,6 +8,9 @@ namespace binosplat {
 
 namespace {
 
+/// By how much a level must be too coarse, or finer than need be, before it is left: heads are never still.
+constexpr double inertia = 1.1;
+
 /// From the nearest eye to the box, at least a hundredth of its diagonal: 0 within it would hide how coarse
 /// its Gaussians are. 1 without eyes.
 double distance_to(const DetailPart& part, const std::vector<glm::dvec3>& eyes) {
@@ -21,9 +24,10 @@ double distance_to(const DetailPart& part, const std::vector<glm::dvec3>& eyes) 
 }  // namespace
 
 std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
-                                       const std::vector<glm::dvec3>& eyes, std::size_t most) {
+                                       const std::vector<glm::dvec3>& eyes, std::size_t most, double enough,
+                                       std::span<const std::size_t> before) {
   struct Coarse {
-    double apart;  // of its Gaussians, as seen
+    double apart;  // of its Gaussians, as seen, radians
     std::size_t part;
     bool operator<(const Coarse& other) const { return apart < other.apart; }
   };
@@ -35,7 +39,9 @@ std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
     if (chosen[p] == 0) return;  // the finest
     const auto count = static_cast<double>(std::max<std::size_t>(part.levels[chosen[p]].count, 1));
     const double diagonal = glm::distance(part.low, part.high);
-    coarse.push({diagonal / std::sqrt(count) / distance_to(part, eyes), p});
+    const double stays = before.empty() ? 1.0 : chosen[p] > before[p] ? inertia : 1.0 / inertia;
+    const double apart = stays * diagonal / std::sqrt(count) / distance_to(part, eyes);
+    if (apart > enough) coarse.push({apart, p});
   };
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (parts[p].levels.empty()) continue;

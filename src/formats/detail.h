@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace binosplat {
@@ -26,9 +27,12 @@ struct DetailPart {
 
 /// For each part the place of its level in `levels`. All begin with their coarsest; then, as long as there is
 /// room, that part gets its next finer one whose Gaussians lie farthest apart as the nearest eye sees them:
-/// the box's diagonal by the root of the count, over the distance to the box. The choice is one for all eyes.
-/// More than `most` only if the coarsest levels are more already.
+/// the box's diagonal by the root of the count, over the distance to the box, in radians; parts where that is
+/// no more than `enough` stay as they are. The choice is one for all eyes. More than `most` only if the
+/// coarsest levels are more already. `before`, a choice for the same parts, is kept to where the eyes have
+/// moved by little: its levels count as a tenth more needed, finer ones as a tenth less.
 std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
-                                       const std::vector<glm::dvec3>& eyes, std::size_t most);
+                                       const std::vector<glm::dvec3>& eyes, std::size_t most,
+                                       double enough = 0.0, std::span<const std::size_t> before = {});
 
 }  // namespace binosplat

@@ -12,6 +12,7 @@
 #include "formats/sog.h"
 #include "formats/splat.h"
 #include "formats/spz.h"
+#include "formats/streamed_sog.h"
 
 namespace binosplat {
 

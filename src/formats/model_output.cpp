@@ -1,5 +1,6 @@
 #include "formats/model_output.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include "base/error.h"
@@ -17,6 +18,8 @@ Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmo
       return write_compressed_ply(file, model);
     case ModelFormat::splat:
       return write_splat(file, model);
+    case ModelFormat::sog:
+      return write_sog(file, model);
     case ModelFormat::spz:
       break;
   }
@@ -32,6 +35,7 @@ std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   if (name.ends_with(".ply")) return ModelFormat::ply;
   if (name.ends_with(".splat")) return ModelFormat::splat;
   if (name.ends_with(".spz")) return ModelFormat::spz;
+  if (name.ends_with(".sog")) return ModelFormat::sog;
   return std::nullopt;
 }
 
@@ -44,6 +48,8 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
       return count * (16 + higher) + (count + 255) / 256 * 72;
     case ModelFormat::splat:
       return count * 32;
+    case ModelFormat::sog:
+      return count * (degree > 0 ? 19 : 17) + std::min<std::uint64_t>(count, 65536) * higher;
     case ModelFormat::spz:
       break;
   }

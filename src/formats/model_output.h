@@ -13,19 +13,19 @@
 
 namespace binosplat {
 
-enum class ModelFormat { ply, compressed_ply, splat, spz };
+enum class ModelFormat { ply, compressed_ply, splat, spz, sog };
 
 /// As --to and reports call them, in the order of the enum.
-constexpr const char* model_format_names[] = {"ply", "compressed-ply", "splat", "spz"};
+constexpr const char* model_format_names[] = {"ply", "compressed-ply", "splat", "spz", "sog"};
 
-/// By the end of a name: .compressed.ply, .ply, .splat or .spz, in any case.
+/// By the end of a name: .compressed.ply, .ply, .splat, .spz or .sog, in any case.
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path);
 
 /// The frame in which a format's numbers are by convention; none of these files says so itself.
 constexpr std::string_view axes_of(ModelFormat format) { return format == ModelFormat::spz ? "RUB" : "RDF"; }
 
 /// Bytes that a model takes in a format, but for the header; of spz before gzip, which takes off more than a
-/// third of trained ones.
+/// third of trained ones; of SOG before WebP, which takes off about as much.
 std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 
 /// Writes a model whose axes are axes_of(format) (bring_into_axes does that) to `file`, which the caller
@@ -37,6 +37,9 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 ///  - .splat: antimatter15's (formats/splat.h).
 ///  - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, are those of a coefficient of
 ///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4.
+///  - SOG: version 2 as an archive (formats/sog.h), in Morton order; harmonics of degrees 1 to 3 from a
+///  palette
+///    of 65,536 at most (formats/codebook.h).
 /// Progress is shown where it takes long. Throws Error where the disk is full, for a model that the format
 /// cannot hold at all, and for a Scaffold-GS model, whose Gaussians no file has.
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,

@@ -31,8 +31,6 @@ Model load_whole(const std::filesystem::path& path, const SogSource& source) {
 
 bool is_sog_meta(const nlohmann::json& root) { return root.is_object() && root.contains("means"); }
 
-bool is_sog_levels(const nlohmann::json& root) { return root.is_object() && root.contains("lodLevels"); }
-
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root) {
   const std::string source = meta.string();
   const std::filesystem::path folder = meta.parent_path();

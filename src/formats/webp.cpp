@@ -1,6 +1,7 @@
 #include "formats/webp.h"
 
 #include <webp/decode.h>
+#include <webp/encode.h>
 
 #include "base/error.h"
 #include "formats/content.h"
@@ -32,6 +33,33 @@ WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes) 
         source);
   }
   return {features.width, features.height};
+}
+
+std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height) {
+  constexpr int effort = 6;  // of 9: more takes off less than a hundredth and is many times slower
+  WebPConfig config;
+  WebPPicture picture;
+  WebPMemoryWriter writer;
+  bool good = WebPConfigInit(&config) != 0 && WebPConfigLosslessPreset(&config, effort) != 0 &&
+              WebPPictureInit(&picture) != 0;
+  config.exact = 1;  // colours count where alpha is 0, too
+  picture.use_argb = 1;
+  picture.width = width;
+  picture.height = height;
+  WebPMemoryWriterInit(&writer);
+  picture.writer = WebPMemoryWrite;
+  picture.custom_ptr = &writer;
+  good = good && WebPPictureImportRGBA(&picture, texels.data(), 4 * width) != 0 &&
+         WebPEncode(&config, &picture) != 0;
+  const auto* data = reinterpret_cast<const std::byte*>(writer.mem);
+  std::vector<std::byte> bytes;
+  if (good) bytes.assign(data, data + writer.size);
+  WebPPictureFree(&picture);
+  WebPMemoryWriterClear(&writer);
+  if (!good)
+    throw Error(ExitCode::out_of_memory,
+                fmt::format("no memory for a WebP picture of {} x {} texels", width, height));
+  return bytes;
 }
 
 std::vector<std::uint8_t> webp_texels(const std::string& source, std::span<const std::byte> bytes) {

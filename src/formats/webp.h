@@ -26,4 +26,8 @@ WebpSize webp_size(const std::string& source, std::span<const std::byte> bytes);
 /// this needs is the header's promise.
 std::vector<std::uint8_t> webp_texels(const std::string& source, std::span<const std::byte> bytes);
 
+/// The file of a picture without losses, texels as webp_texels gives them. Throws Error where memory is
+/// short.
+std::vector<std::byte> webp_file(std::span<const std::uint8_t> texels, int width, int height);
+
 }  // namespace binosplat

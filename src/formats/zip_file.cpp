@@ -28,6 +28,35 @@ bool stays_below(const std::string& name) {
          std::none_of(path.begin(), path.end(), [](const auto& part) { return part == ".."; });
 }
 
+std::vector<std::byte> zip_of(const ZipEntries& entries) {
+  constexpr zip_uint16_t first_day = 1 << 5 | 1;  // of 1980: zip knows none before
+  zip_source_t* out = zip_source_buffer_create(nullptr, 0, 0, nullptr);
+  if (out != nullptr) zip_source_keep(out);
+  zip_t* archive = out == nullptr ? nullptr : zip_open_from_source(out, ZIP_TRUNCATE, nullptr);
+  bool good = archive != nullptr;
+  for (const auto& [name, bytes] : entries) {
+    if (!good) break;
+    zip_source_t* source = zip_source_buffer(archive, bytes.data(), bytes.size(), 0);
+    const zip_int64_t at = zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
+    if (at < 0) zip_source_free(source);
+    const auto index = static_cast<zip_uint64_t>(at);
+    good = at >= 0 && zip_set_file_compression(archive, index, ZIP_CM_STORE, 0) == 0 &&
+           zip_file_set_dostime(archive, index, 0, first_day, 0) == 0;
+  }
+  good = good && zip_close(archive) == 0;
+  if (!good && archive != nullptr) zip_discard(archive);
+  std::vector<std::byte> bytes;
+  zip_stat_t stat;
+  if (good && zip_source_stat(out, &stat) == 0 && zip_source_open(out) == 0) {
+    bytes.resize(stat.size);
+    good = zip_source_read(out, bytes.data(), bytes.size()) == static_cast<zip_int64_t>(bytes.size());
+    zip_source_close(out);
+  }
+  if (out != nullptr) zip_source_free(out);
+  if (!good || bytes.empty()) throw Error(ExitCode::out_of_memory, "no memory for a zip archive");
+  return bytes;
+}
+
 void ZipFile::Close::operator()(zip* archive) const { zip_discard(archive); }
 
 ZipFile::ZipFile(std::string source, std::span<const std::byte> bytes) : source_(std::move(source)) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 struct zip;
@@ -14,6 +15,13 @@ namespace binosplat {
 
 /// Whether a name that a file gives stays below that file's folder.
 bool stays_below(const std::string& name);
+
+/// Files of an archive that is to be written: names and contents.
+using ZipEntries = std::vector<std::pair<std::string, std::vector<std::byte>>>;
+
+/// An archive of these files, stored as they are; always the same bytes for the same files. Throws Error
+/// where memory is short.
+std::vector<std::byte> zip_of(const ZipEntries& entries);
 
 class ZipFile {
  public:

@@ -58,10 +58,10 @@ void Buffer::reserve(std::int64_t bytes) {
   gl.ObjectLabel(GL_BUFFER, id_, -1, label_.c_str());
 }
 
-void Buffer::write(const void* data, std::int64_t bytes) {
+void Buffer::write(const void* data, std::int64_t bytes, std::int64_t offset) {
   const auto* from = static_cast<const std::byte*>(data);
   for (std::int64_t at = 0; at < bytes; at += piece_bytes) {
-    context_.gl().NamedBufferSubData(id_, at, std::min(piece_bytes, bytes - at), from + at);
+    context_.gl().NamedBufferSubData(id_, offset + at, std::min(piece_bytes, bytes - at), from + at);
   }
   context_.check("uploading " + label_);
 }

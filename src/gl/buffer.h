@@ -33,6 +33,13 @@ class Buffer {
     upload(std::span<const T>(data));
   }
 
+  /// Elements from element `first` on, within what is reserved; the others stay.
+  template <typename T>
+  void upload_part(std::span<const T> data, std::size_t first) {
+    write(data.data(), static_cast<std::int64_t>(data.size_bytes()),
+          static_cast<std::int64_t>(first * sizeof(T)));
+  }
+
   /// `count` elements from element `first` on, after everything before it has run.
   template <typename T>
   std::vector<T> read(std::size_t count, std::size_t first = 0) const {
@@ -48,7 +55,7 @@ class Buffer {
 
  private:
   void release();
-  void write(const void* data, std::int64_t bytes);
+  void write(const void* data, std::int64_t bytes, std::int64_t offset = 0);
   void read_bytes(void* out, std::int64_t offset, std::int64_t bytes) const;
 
   Context& context_;

@@ -127,7 +127,16 @@ void Session::make_shown(std::span<const shared::View> views) {
   shown_colours_.upload(colours);
 }
 
+void Session::replace(Model model) {
+  model_ = std::move(model);
+  show_.release();
+  frame_.reload();
+  change();
+}
+
 std::vector<shared::View> Session::views() {
+  const glm::ivec2 size = eye_size();
+  if (size.x < 1 || size.y < 1) return {};
   const Camera camera = head_camera();
   eyes_ = stereo::make_rig(camera, choices.rig).cameras;
   const auto drawn = stereo::make_rig(into_axes(camera, model_.axes), choices.rig).views;

@@ -41,6 +41,9 @@ class Session {
   Navigator head;
   Choices choices;
 
+  /// The same scene at other levels of detail; all else stays.
+  void replace(Model model);
+
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
   /// settled.
   void change();
@@ -80,10 +83,12 @@ class Session {
   const std::string& trouble() const { return trouble_; }
   const Model& model() const { return model_; }
 
+  /// What the next frame draws, left eye first; none before there is a size to draw in.
+  std::vector<shared::View> views();
+
  private:
   glm::ivec2 eye_size() const;
   Camera head_camera() const;
-  std::vector<shared::View> views();
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;

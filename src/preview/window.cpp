@@ -1,7 +1,5 @@
 #include "preview/window.h"
 
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui/backends/imgui_impl_glfw.h>
 #include <imgui/backends/imgui_impl_opengl3.h>
@@ -15,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "preview/glfw.h"
 #include "preview/panel.h"
 
 namespace binosplat::preview {
@@ -22,20 +21,6 @@ namespace binosplat::preview {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string glfw_said;
-
-constexpr const char* instead = "`binosplat render` draws without a display";
-
-// GLFW from its start to its end.
-struct Glfw {
-  Glfw() {
-    glfwSetErrorCallback([](int, const char* text) { glfw_said = text; });
-    if (glfwInit() == GLFW_FALSE)
-      throw Error(ExitCode::no_gl, fmt::format("no display for a window ({}): {}", glfw_said, instead));
-  }
-  ~Glfw() { glfwTerminate(); }
-};
 
 fs::file_time_type newest(const fs::path& folder) {
   fs::file_time_type time = fs::file_time_type::min();
@@ -89,14 +74,15 @@ class Window {
       reload_shaders();
       if (session_) {
         go();
+        follow_levels();
         if (draw()) ui_frames_ = std::max(ui_frames_, 1);
       }
       if (ui_frames_ > 0) show();
       context_->check_alive();
     }
-    if (loading_.valid()) {
+    if (loading_.valid() || levels_.valid()) {
       // Nobody waits for a model that is not looked at, and nothing but memory was taken for it.
-      log_info("left while {} was being read", next_.name);
+      log_info("left while {} was being read", loading_.valid() ? next_.name : scene_.name);
       std::quick_exit(0);
     }
     log_info("{} frames were drawn, {} shown", session_ ? session_->frames_drawn() : 0, shown_);
@@ -104,24 +90,8 @@ class Window {
 
  private:
   void make_window() {
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_FALSE);
-    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
     panel_.stereo_window = choices_.layout == LAYOUT_QUAD_BUFFER;
-    glfwWindowHint(GLFW_STEREO, panel_.stereo_window ? GLFW_TRUE : GLFW_FALSE);
-    window_ = glfwCreateWindow(settings_.size.x, settings_.size.y, "binosplat", nullptr, nullptr);
-    if (window_ == nullptr && panel_.stereo_window) {
-      throw Error(ExitCode::no_gl,
-                  fmt::format("--layout quad-buffer: this driver has no stereo windows ({}): choose another "
-                              "--layout",
-                              glfw_said));
-    }
-    if (window_ == nullptr) {
-      throw Error(ExitCode::no_gl,
-                  fmt::format("this display has no OpenGL 4.5 ({}): {}", glfw_said, instead));
-    }
+    window_ = open_window(settings_.size, panel_.stereo_window);
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
@@ -154,6 +124,8 @@ class Window {
     } else if (loading_.valid()) {
       glfwWaitEventsTimeout(0.05);
       ui_frames_ = 1;
+    } else if (levels_.valid()) {
+      glfwWaitEventsTimeout(0.02);
     } else if (!settings_.shader_folder.empty()) {
       glfwWaitEventsTimeout(0.5);
     } else {
@@ -162,6 +134,7 @@ class Window {
   }
 
   void take_loaded() {
+    if (levels_.valid()) return;  // their thread reads from the scene that would go
     if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     if (!read_) {  // first say so: the driver takes the model in one go
       read_ = true;
@@ -187,6 +160,27 @@ class Window {
       panel_.message = scene_.name;
     } catch (const Error& error) {
       if (!session_) throw;
+      tell(error.what());
+    }
+    ui_frames_ = 3;
+  }
+
+  // Takes the levels that were read, and has those read that the head needs now. What cannot be read leaves
+  // the levels as they are.
+  void follow_levels() {
+    if (!levels_.valid()) {
+      if (!scene_.levels || loading_.valid()) return;
+      const auto read = scene_.levels(session_->views());
+      if (read) levels_ = std::async(std::launch::async, read);
+      return;
+    }
+    if (levels_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    try {
+      session_->replace(levels_.get());
+      log_info("{}: levels of {} Gaussians", scene_.name, session_->model().count());
+    } catch (const Error& error) {
+      if (error.code() == ExitCode::no_gl) throw;
+      scene_.levels = nullptr;
       tell(error.what());
     }
     ui_frames_ = 3;
@@ -298,6 +292,7 @@ class Window {
   // The same model as its file is now.
   void read_again() {
     if (loading_.valid()) return;
+    if (levels_.valid()) return tell(fmt::format("levels of {} are still being read", scene_.name));
     load(scene_);
     again_ = true;
   }
@@ -368,7 +363,7 @@ class Window {
   Opened scene_, next_;  // what is shown, and what is being read
   bool read_ = false;    // that is done, and to be handed to the GPU
   bool again_ = false;   // that is the same one
-  std::future<Model> loading_;
+  std::future<Model> loading_, levels_;
   double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0;
   glm::dvec2 cursor_{0.0};
   fs::file_time_type shaders_changed_;

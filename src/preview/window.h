@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Opened {
   /// Where to start and what to step through, for the model; not empty. Sets what of the choices follows from
   /// the model, such as the near plane.
   std::function<std::vector<Camera>(const Model& model, Choices& choices)> cameras;
+  /// Of a model with levels of detail: what reads the levels that these views need, in a thread of its own
+  /// and one at a time; nothing where they are the last ones that were read.
+  std::function<std::function<Model()>(std::span<const shared::View> views)> levels;
 };
 
 struct WindowSettings {

@@ -15,61 +15,81 @@ namespace {
 // Of one Gaussian, with the padding that vec4s need.
 std::int64_t harmonic_bytes(int degree) { return (3 * sh_count(degree) + 3) / 4 * 16; }
 
-std::vector<shared::Gaussian> pack_gaussians(const Model& model, std::size_t first, std::size_t count) {
-  std::vector<shared::Gaussian> packed(count);
-  for (std::size_t k = 0; k < count; ++k) {
+void pack_gaussians(const Model& model, std::size_t first, std::span<shared::Gaussian> packed) {
+  for (std::size_t k = 0; k < packed.size(); ++k) {
     const std::size_t i = first + k;
     packed[k].position = glm::vec4(model.position[i], model.opacity[i]);
     packed[k].rotation = model.rotation[i];
     packed[k].scale = glm::vec4(model.scale[i], 0.0f);
   }
-  return packed;
 }
 
-std::vector<float> pad_harmonics(const Model& model, std::size_t first, std::size_t count) {
+// `padded` is zero between the coefficients of two Gaussians.
+void pad_harmonics(const Model& model, std::size_t first, std::span<float> padded, std::size_t stride) {
   const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  const std::size_t stride = static_cast<std::size_t>(harmonic_bytes(model.degree)) / sizeof(float);
-  std::vector<float> padded(count * stride);
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < padded.size() / stride; ++k)
     std::copy_n(&model.sh[(first + k) * floats], floats, &padded[k * stride]);
+}
+
+// A page of a model, in pieces: switches of levels must not wait for memory that is touched once.
+void upload_page(const Model& model, const ModelBuffers::Page& page) {
+  constexpr std::size_t piece = 1 << 15;
+  const std::size_t stride = static_cast<std::size_t>(harmonic_bytes(model.degree)) / sizeof(float);
+  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  page.gaussians->reserve(page.count * static_cast<std::int64_t>(sizeof(shared::Gaussian)));
+  page.harmonics->reserve(page.count * harmonic_bytes(model.degree));
+  std::vector<shared::Gaussian> packed(std::min<std::size_t>(piece, page.count));
+  std::vector<float> padded(stride == floats ? 0 : packed.size() * stride);
+  for (std::size_t at = 0; at < page.count; at += piece) {
+    const std::size_t first = page.first + at, count = std::min<std::size_t>(piece, page.count - at);
+    const auto gaussians = std::span(packed).first(count);
+    pack_gaussians(model, first, gaussians);
+    page.gaussians->upload_part<shared::Gaussian>(gaussians, at);
+    if (padded.empty()) {
+      page.harmonics->upload_part(std::span(model.sh).subspan(first * floats, count * floats), at * stride);
+    } else {
+      const auto harmonics = std::span(padded).first(count * stride);
+      pad_harmonics(model, first, harmonics, stride);
+      page.harmonics->upload_part<float>(harmonics, at * stride);
+    }
   }
-  return padded;
 }
 
 }  // namespace
 
 ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
-    : networks(context) {
+    : networks(context), page_gaussians_(page_gaussians) {
+  upload(context, model);
+}
+
+void ModelBuffers::upload(gl::Context& context, const Model& model) {
   const std::int64_t each = std::max<std::int64_t>(sizeof(shared::Gaussian), harmonic_bytes(model.degree));
   const std::int64_t reach = context.limits().storage_block_bytes / each;
-  const std::size_t step = page_gaussians != 0 ? page_gaussians : static_cast<std::size_t>(reach);
+  const std::size_t step = page_gaussians_ != 0 ? page_gaussians_ : static_cast<std::size_t>(reach);
+  box.reset();
   if (model.scaffold) {
-    upload(context, *model.scaffold, page_gaussians != 0 ? step : step / MAX_VIEWS);
+    pages.clear();
+    upload_pages(context, *model.scaffold, page_gaussians_ != 0 ? step : step / MAX_VIEWS);
   } else {
-    upload(context, model, step);
+    upload_pages(context, model, step);
     if (model.count() > 0) box = all_bounds(model);
   }
 }
 
-void ModelBuffers::upload(gl::Context& context, const Model& model, std::size_t step) {
-  for (std::size_t first = 0; first < model.count(); first += step) {
-    const std::size_t count = std::min(step, model.count() - first);
-    Page& page = pages.emplace_back();
-    page.first = static_cast<std::uint32_t>(first);
-    page.count = static_cast<std::uint32_t>(count);
-    page.gaussians = std::make_unique<gl::Buffer>(context, "Gaussians");
-    page.gaussians->upload(pack_gaussians(model, first, count));
-    page.harmonics = std::make_unique<gl::Buffer>(context, "SH coefficients");
-    const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-    if (floats % 4 == 0) {
-      page.harmonics->upload(std::span(model.sh).subspan(first * floats, count * floats));
-    } else {
-      page.harmonics->upload(pad_harmonics(model, first, count));
-    }
+void ModelBuffers::upload_pages(gl::Context& context, const Model& model, std::size_t step) {
+  pages.resize((model.count() + step - 1) / step);
+  for (std::size_t k = 0; k < pages.size(); ++k) {
+    Page& page = pages[k];
+    page.first = static_cast<std::uint32_t>(k * step);
+    page.count = static_cast<std::uint32_t>(std::min(step, model.count() - k * step));
+    page.anchors.reset();
+    if (!page.gaussians) page.gaussians = std::make_unique<gl::Buffer>(context, "Gaussians");
+    if (!page.harmonics) page.harmonics = std::make_unique<gl::Buffer>(context, "SH coefficients");
+    upload_page(model, page);
   }
 }
 
-void ModelBuffers::upload(gl::Context& context, const Scaffold& scaffold, std::size_t step) {
+void ModelBuffers::upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step) {
   const std::size_t k = scaffold.offset_count;
   const std::size_t anchors = std::max<std::size_t>(step / k, 1);
   for (std::size_t first = 0; first < scaffold.anchor_count(); first += anchors) {

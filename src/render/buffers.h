@@ -30,6 +30,9 @@ struct ModelBuffers {
   /// Uploads; `page_gaussians` limits a page for tests, 0: what the driver reaches.
   ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
 
+  /// Another model in the place of this one, in the buffers that there are where they are large enough.
+  void upload(gl::Context& context, const Model& model);
+
   /// Room for what a frame of this shape decodes.
   void reserve(const FrameShape& shape);
 
@@ -41,8 +44,10 @@ struct ModelBuffers {
   std::optional<Bounds> box;  // around all positions; none of a model that is decoded or empty
 
  private:
-  void upload(gl::Context& context, const Model& model, std::size_t step);
-  void upload(gl::Context& context, const Scaffold& scaffold, std::size_t step);
+  void upload_pages(gl::Context& context, const Model& model, std::size_t step);
+  void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
+
+  std::uint32_t page_gaussians_;
 };
 
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.

@@ -26,6 +26,12 @@ Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussi
       model_buffers_(context, model, page_gaussians),
       buffers_(context) {}
 
+void Frame::reload() {
+  model_buffers_.upload(dispatcher_.context(), model_);
+  recorded_shape_ = {};
+  last_shape_.gaussian_count = static_cast<std::uint32_t>(model_.count());
+}
+
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
   shape_ = make_shape(views, settings, model_);
   if (settings.quality > 0.0f) {

@@ -51,6 +51,12 @@ class Frame {
   /// `page_gaussians` is for tests (see ModelBuffers). Throws Error(out_of_memory) if the GPU has no room.
   Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
 
+  /// Uploads the model again, which has changed since: it is the same scene at other levels of detail, so
+  /// that a loss that was found stays, but no measured transmittance. Buffers are used again where they are
+  /// large enough. Nothing can be read of the last frame but its pictures until the next one is drawn. Throws
+  /// as the constructor does.
+  void reload();
+
   /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to
   /// the bit) share one depth order; each eye of a rig has the same bits drawn together with the other or
   /// alone. A frame that overflows its buffers is drawn again with larger ones. Throws Error: bad views

@@ -1,6 +1,12 @@
-// binosplat render --gpu-memory: levels of detail that fit.
+// binosplat render --gpu-memory and --detail: levels of detail that fit, and that follow a path.
+
+#include <fmt/format.h>
+
+#include <cmath>
 
 #include "app/scene.h"
+#include "formats/image_file.h"
+#include "measure/metrics.h"
 #include "support/fixtures.h"
 
 namespace binosplat {
@@ -39,11 +45,78 @@ TEST(RenderLevels, FitTheMemoryNearTheCameraFirst) {
   EXPECT_NE(framed.err.find("1000 Gaussians of level 0\n"), std::string::npos) << framed.err;
 }
 
+/// A path of heads that look along z.
+std::string write_path(const test::TempFolder& folder, const std::vector<double>& along_z) {
+  nlohmann::json cameras;
+  for (const double z : along_z) {
+    nlohmann::json camera = test::camera_json(fmt::format("z{}", z), 0.0);
+    camera["position"][2] = z;
+    cameras.push_back(camera);
+  }
+  test::write_text(folder / "path.json", cameras.dump());
+  return folder / "path.json";
+}
+
+TEST(RenderLevels, FollowAPathAndTellWhatTheyCost) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  const std::string path = write_path(folder, {-200, -60, -59, -30, -8});
+  const auto render = [&](const std::vector<std::string>& more, const std::string& out) {
+    std::vector<std::string> arguments = {
+        "render", fixtures / "sog/st-lod", "--path", path, "-o", folder / out,
+        "--json", folder / (out + ".json")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::run_program(arguments);
+  };
+  ASSERT_TRUE(good(render({"--detail", "3", "--detail-report"}, "followed")));
+  ASSERT_TRUE(good(render({}, "finest")));
+  const auto views = test::load_json(folder / "followed.json")["views"];
+  std::size_t before = 0;
+  for (const auto& view : views) {
+    const auto& levels = view["levels_of_detail"];
+    EXPECT_GE(levels["gaussians"], before) << view["name"];
+    EXPECT_EQ(levels["switched"], before != 0 && levels["gaussians"] != before) << view["name"];
+    EXPECT_EQ(levels.contains("switch_psnr_db"), levels["switched"]) << view["name"];
+    before = levels["gaussians"];
+    // What it says of its pictures against the finest, within the rounding to 8 bits.
+    const std::string name = view["name"];
+    const auto picture = [&](const std::string& out, const char* eye) {
+      return load_image(folder / (out + "/" + name + eye + ".png"));
+    };
+    double error = 0.0;
+    for (const char* eye : {"_left", "_right"})
+      error += 0.5 * std::pow(10.0, -0.1 * measure::psnr(picture("followed", eye), picture("finest", eye)));
+    if (before == 1000) {
+      EXPECT_EQ(error, 0.0) << name;
+    } else {
+      EXPECT_NEAR(-10.0 * std::log10(error), levels["finest_psnr_db"], 0.5) << name;
+    }
+  }
+  EXPECT_EQ(views[0]["levels_of_detail"]["gaussians"], 250);
+  EXPECT_EQ(before, 1000u);
+  // Planted: the coarsest levels for all of the path are not what is near.
+  ASSERT_TRUE(good(render({"--lod", "1"}, "coarse")));
+  EXPECT_GT(measure::largest_difference(load_image(folder / "followed/z-8_left.png"),
+                                        load_image(folder / "coarse/z-8_left.png"))
+                .max,
+            0.1);
+  // Within a memory that has room for fewer.
+  ASSERT_TRUE(good(render({"--detail", "0", "--gpu-memory", "1.2"}, "small")));
+  for (const auto& view : test::load_json(folder / "small.json")["views"]) {
+    EXPECT_LT(view["levels_of_detail"]["gaussians"], 1000);
+    EXPECT_GT(view["levels_of_detail"]["gaussians"], 250);
+  }
+}
+
 using LevelErrors = test::SceneTest;
 
 TEST_F(LevelErrors, SayWhatToDo) {
   EXPECT_TRUE(ended(render({"--gpu-memory", "100", "-o", out}), 2, "no levels of detail to choose from"));
   EXPECT_TRUE(ended(render({"--gpu-memory", "100", "--lod", "1", "-o", out}), 2, "leave one of them out"));
+  EXPECT_TRUE(ended(render({"--detail", "2", "-o", out}), 2, "no levels of detail to choose from"));
+  EXPECT_TRUE(ended(render({"--detail", "2", "--lod", "1", "-o", out}), 2, "leave one of them out"));
+  EXPECT_TRUE(ended(render({"--detail-report", "-o", out}), 2, "--detail"));
+  EXPECT_TRUE(ended(render({"--detail", "-1", "-o", out}), 2, "--detail"));
   EXPECT_TRUE(ended(render({"--gpu-memory", "0", "-o", out}), 2, "--gpu-memory"));
   EXPECT_TRUE(ended(test::run_program({"render", "demo:room", "--gpu-memory", "100", "-o", out}), 2,
                     "--gpu-memory is for model files"));

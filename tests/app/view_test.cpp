@@ -10,6 +10,7 @@
 #include "app/scene.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
+#include "support/fixtures.h"
 
 namespace binosplat {
 namespace {
@@ -253,6 +254,42 @@ TEST_F(ViewOnADisplay, AFailedLoadIsToldAndTheOldSceneStays) {
   ASSERT_TRUE(says(program, "saved", 3));
   EXPECT_TRUE(same(picture(1), picture(3)));
   EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
+  REQUIRE_FIXTURES(fixtures);
+  const std::string scene = fixtures / "sog/st-lod";
+  const auto start = [&](const std::string& to, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"view", scene, "-o", to, "--size", "600x400"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Program(arguments, {.variables = {{"DISPLAY", display}}});
+  };
+  Program program = start(out, {});
+  ASSERT_TRUE(says(program, ": 250 Gaussians")) << "the coarsest at first";
+  ASSERT_TRUE(says(program, "levels of 1000 Gaussians"));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 1));
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 2));
+  EXPECT_EQ(leave(program).code, 0);
+  const auto drawn = [&](const std::string& level) {
+    const Outcome outcome =
+        test::run_program({"render", scene, "--cameras", out + "/cameras.json", "--view", "key_000", "--size",
+                           "300x400", "--lod", level, "-o", folder / "level.png"});
+    EXPECT_TRUE(good(outcome));
+    return load_image(folder / "level.png");
+  };
+  EXPECT_TRUE(same(picture(1), drawn("0")));
+  EXPECT_FALSE(same(picture(1), drawn("1")));
+
+  Program far_away = start(folder / "far", {"--detail", "1e6"});
+  ASSERT_TRUE(says(far_away, ": 250 Gaussians"));
+  key("F12");
+  ASSERT_TRUE(says(far_away, "saved"));
+  const Outcome outcome = leave(far_away);
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err.find("levels of"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(same(load_image(folder / "far/preview_001.png"), drawn("1")));
 }
 
 TEST_F(ViewOnADisplay, NobodyWaitsForABigModel) {

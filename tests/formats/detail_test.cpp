@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace binosplat {
 namespace {
 
@@ -40,6 +43,55 @@ TEST(Detail, KeepsToTheBudget) {
   }
   EXPECT_EQ(choose_levels(parts, {}, 2400), std::vector<std::size_t>(6, 0));
   EXPECT_EQ(choose_levels(parts, {}, 0), std::vector<std::size_t>(6, 2)) << "the coarsest are there anyway";
+}
+
+/// Whether each part is as fine as `enough` asks, and no finer.
+bool as_needed(const std::vector<DetailPart>& parts, const std::vector<std::size_t>& chosen,
+               const glm::dvec3& eye, double enough) {
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double distance = glm::distance(eye, glm::clamp(eye, parts[p].low, parts[p].high));
+    const auto apart = [&](std::size_t level) {
+      return std::sqrt(3.0 / static_cast<double>(parts[p].levels[level].count)) / distance;
+    };
+    if (chosen[p] > 0 && apart(chosen[p]) > enough) return false;
+    if (chosen[p] + 1 < parts[p].levels.size() && apart(chosen[p] + 1) <= enough) return false;
+  }
+  return true;
+}
+
+TEST(Detail, FineEnoughIsEnough) {
+  const std::vector<DetailPart> parts = row(6);
+  const glm::dvec3 eye(-1, 0.5, 0.5);
+  std::size_t last = 6 * 400 + 1;
+  for (const double enough : {0.005, 0.02, 0.04, 0.08, 0.16, 1.0}) {
+    const std::vector<std::size_t> chosen = choose_levels(parts, {eye}, 10000, enough);
+    EXPECT_TRUE(as_needed(parts, chosen, eye, enough)) << enough;
+    EXPECT_LT(total(parts, chosen), last) << enough;
+    last = total(parts, chosen);
+  }
+  // Planted faults: what is near as if it were far, and a part that is too fine.
+  std::vector<std::size_t> wrong = choose_levels(parts, {eye}, 10000, 0.04);
+  std::reverse(wrong.begin(), wrong.end());
+  EXPECT_FALSE(as_needed(parts, wrong, eye, 0.04));
+  wrong = choose_levels(parts, {eye}, 10000, 0.04);
+  --wrong.back();
+  EXPECT_FALSE(as_needed(parts, wrong, eye, 0.04));
+}
+
+TEST(Detail, KeepsToWhatWasChosenBefore) {
+  const std::vector<DetailPart> parts = row(6);
+  const auto choose = [&](double x, std::span<const std::size_t> before) {
+    return choose_levels(parts, {{x, 0.5, 0.5}}, 10000, 0.04, before);
+  };
+  for (double x = -12.0; x < 0.0; x += 0.25) {
+    const std::vector<std::size_t> here = choose(x, {});
+    for (const double by : {0.97, 1.03}) {  // of the distance to the nearest part; less to the others
+      EXPECT_EQ(choose(x * by, here), here) << x << " times " << by;
+    }
+  }
+  const std::vector<std::size_t> far_away = choose(-12.0, {});
+  EXPECT_NE(choose(-1.0, far_away), far_away);
+  EXPECT_EQ(choose(-12.0, choose(-1.0, {})), far_away);
 }
 
 TEST(Detail, PartsThatLackLevels) {

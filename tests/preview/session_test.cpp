@@ -58,6 +58,23 @@ TEST_F(SessionTest, TheSplitIsWhereTheSliderStands) {
   EXPECT_EQ(apart(picture(), exact), 0.0);
 }
 
+TEST_F(SessionTest, OtherLevelsTakeThePlaceOfTheModel) {
+  session.choices.settings = {};
+  const Image before = picture();
+  session.choices.show = SHOW_SPLIT;  // has a frame of the exact picture, too
+  session.choices.split = 0.0;
+  session.change_show();
+  EXPECT_EQ(apart(picture(), before), 0.0);
+  session.replace(test::random_model(10, 900, 0, 0.6));
+  const Image after = picture();
+  EXPECT_GT(apart(after, before), 0.1);
+  session.choices.show = SHOW_PICTURE;
+  session.change_show();
+  EXPECT_EQ(apart(picture(), after), 0.0);
+  session.replace(test::random_model(9, 400, 0, 0.6));
+  EXPECT_EQ(apart(picture(), before), 0.0);
+}
+
 TEST_F(SessionTest, MapsHaveARangeAndGoAgain) {
   const Image drawn = picture();
   EXPECT_FALSE(session.most_shown());

@@ -209,6 +209,21 @@ TEST(Frame, AModelInPagesGivesTheSamePicture) {
   }
 }
 
+// A page is uploaded 32,768 Gaussians at a time.
+TEST(Frame, APageInPiecesGivesTheSamePicture) {
+  const shared::View view = make_view(test::front_camera(64, 40, 60));
+  for (const int degree : {0, 1, 2}) {  // with and without padding between Gaussians
+    Model model = test::random_model(76, 70000, degree);
+    for (std::size_t i = 0; i < 65600; ++i) model.opacity[i] = 0.0f;  // seen is the last piece
+    render::Frame frame(test::gl_context(), model, 20000);
+    frame.draw(std::vector{view});
+    const Picture paged = frame.read_pictures().front();
+    EXPECT_TRUE(same_bits(draw(model, view), paged)) << degree;
+    std::rotate(model.position.begin(), model.position.begin() + 32768, model.position.end());
+    EXPECT_FALSE(same_bits(draw(model, view), paged)) << "planted: one piece for another";
+  }
+}
+
 TEST(Frame, WorksWhenADriverAllowsFewGroups) {
   const Model model = test::random_model(72, 3000, 0);
   const shared::View view = make_view(test::front_camera(150, 90, 140));

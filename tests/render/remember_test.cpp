@@ -33,6 +33,25 @@ Model wall() {
 
 shared::View front() { return make_view(test::front_camera(96, 80, 90)); }
 
+TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
+  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
+  const Model other = test::random_model(83, 1500, 1);
+  for (const std::size_t at_first : {std::size_t{400}, std::size_t{5000}}) {
+    Model model = test::random_model(82, static_cast<int>(at_first), 1);
+    render::Frame frame(test::gl_context(), model);
+    for (int n = 0; n < 3; ++n) frame.draw(std::vector{front()}, settings);
+    model = other;
+    frame.reload();
+    EXPECT_FALSE(frame.draw(std::vector{front()}, settings).remembered);
+    EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, front(), settings)));
+    EXPECT_TRUE(frame.draw(std::vector{front()}, settings).remembered);
+    // Planted: changed, and not uploaded.
+    model.position[700] += 0.5f;
+    frame.draw(std::vector{front()}, settings);
+    EXPECT_FALSE(same_bits(frame.read_pictures().front(), test::draw(model, front(), settings)));
+  }
+}
+
 TEST(Remember, MeasuringDoesNotChangeThePicture) {
   const Model model = test::random_model(81, 4000, 1);
   const shared::View view = make_view(test::front_camera(160, 96, 160));

@@ -16,7 +16,7 @@
 namespace binosplat::test {
 
 constexpr ModelFormat formats[] = {ModelFormat::ply, ModelFormat::compressed_ply, ModelFormat::splat,
-                                   ModelFormat::spz};
+                                   ModelFormat::spz, ModelFormat::sog};
 
 inline std::string name_of(ModelFormat format) { return model_format_names[static_cast<int>(format)]; }
 
@@ -140,6 +140,49 @@ inline Expected of_spz(const Model& model, std::size_t i, int harmonic_bits) {
   return e;
 }
 
+/// `low` and `high` are the ends of the values that share a codebook: 64 of its values are even.
+struct Ends {
+  double low = 0, high = 0;
+  void add(double v) { low = std::min(low, v), high = std::max(high, v); }
+  double half_step() const { return (high - low) / 126 + rounding * std::max(std::abs(low), std::abs(high)); }
+};
+struct SogEnds {
+  glm::dvec3 low{1e300}, high{-1e300};  // of sign(p) ln(1 + |p|)
+  Ends scale{1e300, -1e300}, dc{1e300, -1e300}, sh{1e300, -1e300};
+};
+
+inline double log_position(double p) { return std::copysign(std::log1p(std::abs(p)), p); }
+
+inline SogEnds sog_ends(const Model& model) {
+  SogEnds ends;
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    const Expected e = exact(model, i);
+    for (int c = 0; c < 3; ++c) {
+      ends.low[c] = std::min(ends.low[c], log_position(e.position[c]));
+      ends.high[c] = std::max(ends.high[c], log_position(e.position[c]));
+      ends.scale.add(std::clamp(e.log_scale[c], -20.0, 20.0));
+    }
+    for (std::size_t k = 0; k < e.sh.size(); ++k) (k < 3 ? ends.dc : ends.sh).add(e.sh[k]);
+  }
+  return ends;
+}
+
+/// Of up to 65,536 Gaussians, each of which has harmonics of its own in the palette.
+inline Expected of_sog(const Model& model, std::size_t i, const SogEnds& ends) {
+  Expected e = exact(model, i);
+  for (int c = 0; c < 3; ++c) {
+    const double half = 0.5 * (ends.high[c] - ends.low[c]) / 65535;
+    e.position_error[c] = std::expm1(half) * (1 + std::abs(e.position[c])) * (1 + half) +
+                          rounding * (1 + std::abs(e.position[c]));
+  }
+  e.log_scale = glm::clamp(e.log_scale, -20.0, 20.0);
+  e.log_scale_error = glm::dvec3(ends.scale.half_step() + 20 * rounding);
+  e.opacity_error = 0.5 / 255 + rounding;
+  e.rotation_error = smallest_three_error(0.5 * std::sqrt(2.0) / 255);
+  for (std::size_t k = 0; k < e.sh.size(); ++k) e.sh_error[k] = (k < 3 ? ends.dc : ends.sh).half_step();
+  return e;
+}
+
 /// `chunk` holds the indices of the Gaussians that share bounds with this one.
 inline Expected of_compressed(const Model& model, std::size_t i, std::span<const std::uint32_t> chunk) {
   constexpr double fine = 1.0 / 2047, coarse = 1.0 / 1023;  // 11, 10 and 11 bits
@@ -203,11 +246,14 @@ inline std::string difference(const Model& model, const Model& back, ModelFormat
   if (back.axes != model.axes) return "axes";
   std::vector<std::uint32_t> order(model.count());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
-  if (format == ModelFormat::compressed_ply) order = morton_order(model.position);
+  if (format == ModelFormat::compressed_ply || format == ModelFormat::sog)
+    order = morton_order(model.position);
+  const SogEnds ends = sog_ends(model);
   for (std::size_t j = 0; j < order.size(); ++j) {
     const std::size_t i = order[j], chunk = j / 256 * 256;
     const Expected e = format == ModelFormat::ply     ? of_ply(model, i)
                        : format == ModelFormat::splat ? of_splat(model, i)
+                       : format == ModelFormat::sog   ? of_sog(model, i, ends)
                        : format == ModelFormat::spz
                            ? of_spz(model, i, harmonic_bits)
                            : of_compressed(model, i,

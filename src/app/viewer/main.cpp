@@ -8,6 +8,7 @@
 
 #include "app/command.h"
 #include "app/drawing.h"
+#include "app/followed.h"
 #include "app/open_scene.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
@@ -44,6 +45,30 @@ preview::Choices choices_of(const RenderOptions& o) {
   return choices;
 }
 
+// The coarsest levels of a streamed SOG are there at once, the others come while one looks.
+void follow_levels(const std::shared_ptr<RenderOptions>& o, preview::Opened& opened) {
+  if (o->lod || o->scene.rfind("demo:", 0) == 0) return;
+  const bool asked = o->detail || o->gpu_memory;
+  if (!o->detail) o->detail = 0.0;
+  const auto levels = std::make_shared<std::optional<StreamedSog>>();
+  const auto read = [o, levels] {
+    Model model = (*levels)->read();
+    set_as_asked(*o, model);
+    return model;
+  };
+  opened.load = [o, levels, read, asked, other = opened.load] {
+    if (!asked && !is_streamed_sog(o->scene)) return other();
+    levels->emplace(o->scene);
+    (*levels)->choose({}, {});
+    return read();
+  };
+  opened.levels = [o, levels, read](std::span<const shared::View> views) -> std::function<Model()> {
+    if (!*levels || views.empty()) return nullptr;
+    return (*levels)->choose(views, detail_need(*o, **levels, views)) ? std::function<Model()>(read)
+                                                                      : nullptr;
+  };
+}
+
 // The scene of these options, which the result keeps. Cameras that come as pairs of eyes are taken one by
 // one.
 preview::Opened open(const std::shared_ptr<RenderOptions>& o) {
@@ -55,6 +80,7 @@ preview::Opened open(const std::shared_ptr<RenderOptions>& o) {
   opened.up = up_of(*o);
   if (o->scene.rfind("demo:", 0) != 0) opened.pose_file = pose_path(o->scene);
   opened.load = [o, scene] { return scene->model(); };
+  follow_levels(o, opened);
   opened.cameras = [o, list, saved](const Model& model, preview::Choices& choices) {
     const double near_plane = near_plane_of(*o, saved ? *saved : *list, model);
     const stereo::RigSettings rig = rig_settings(*o, near_plane);

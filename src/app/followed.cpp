@@ -1,0 +1,97 @@
+#include "app/followed.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "app/detail.h"
+#include "app/open_scene.h"
+#include "formats/model_file.h"
+#include "measure/metrics.h"
+
+namespace binosplat::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Over all views together.
+double psnr(const RenderOptions& options, std::span<const Picture> a, std::span<const Picture> b) {
+  const glm::vec3 behind = options.background.value_or(glm::vec3(0.0f));
+  double error = 0.0, pixels = 0.0;
+  for (std::size_t v = 0; v < a.size(); ++v) {
+    const double each = static_cast<double>(a[v].width) * a[v].height;
+    error += each * std::pow(10.0, -0.1 * measure::psnr(composite(a[v], behind), composite(b[v], behind)));
+    pixels += each;
+  }
+  return -10.0 * std::log10(error / pixels);
+}
+
+std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views, int tile_size) {
+  render::FrameSettings plain;
+  plain.tile_size = tile_size;
+  frame.draw(views, plain);
+  return frame.read_pictures();
+}
+
+}  // namespace
+
+DetailNeed detail_need(const RenderOptions& options, const StreamedSog& scene,
+                       std::span<const shared::View> views) {
+  DetailNeed need{*options.detail};
+  if (options.gpu_memory) need.most = gaussians_that_fit(options, views, scene.degree());
+  return need;
+}
+
+Model FollowedLevels::coarsest() {
+  scene_.choose({}, {});
+  Model model = scene_.read();
+  set_as_asked(options_, model);
+  return model;
+}
+
+void FollowedLevels::bring(Model& model, std::span<const shared::View> views) {
+  if (!scene_.choose(views, detail_need(options_, scene_, views))) return;
+  const auto start = Clock::now();
+  model = scene_.read();
+  set_as_asked(options_, model);
+  read_ms_ += ms_since(start);
+}
+
+ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Show& show,
+                                  std::span<const shared::View> views,
+                                  const render::FrameSettings& settings) {
+  ShotLevels levels;
+  if (scene_.choose(views, detail_need(options_, scene_, views))) {
+    levels.switched = true;
+    std::vector<Picture> before;
+    if (options_.detail_report) before = exact(frame, views, settings.tile_size);
+    bring(model, views);
+    show.release();
+    const auto start = Clock::now();
+    frame.reload();
+    levels.upload_ms = ms_since(start);
+    if (options_.detail_report)
+      levels.switch_psnr = psnr(options_, before, exact(frame, views, settings.tile_size));
+  }
+  levels.gaussians = model.count();
+  levels.read_ms = std::exchange(read_ms_, 0.0);
+  return levels;
+}
+
+double FollowedLevels::against_finest(gl::Context& context, std::span<const shared::View> views,
+                                      std::span<const Picture> pictures,
+                                      const render::FrameSettings& settings) {
+  if (!finest_) {
+    finest_ = load_model(options_.scene);
+    set_as_asked(options_, *finest_);
+    show_finest_.emplace(context, *finest_);
+  }
+  return psnr(options_, pictures, show_finest_->exact(views, settings));
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,58 @@
+#pragma once
+// --detail: levels of detail that follow what is drawn.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "app/render_options.h"
+#include "formats/streamed_sog.h"
+#include "render/frame.h"
+#include "stereo/show.h"
+
+namespace binosplat::app {
+
+/// Which levels a shot was drawn with, and what that took.
+struct ShotLevels {
+  std::size_t gaussians = 0;  // of the model
+  bool switched = false;      // other levels than the shot before
+  double read_ms = 0.0;       // for the files, where they had to be read
+  double upload_ms = 0.0;     // for the GPU
+  std::optional<double>
+      switch_psnr;  // dB, between the shot with the levels before and with these, both exact
+  std::optional<double> finest_psnr;  // dB, against the exact picture of the finest levels
+};
+
+/// What views of a run need (formats/streamed_sog.h): --detail, and --gpu-memory for the model and their
+/// frame.
+DetailNeed detail_need(const RenderOptions& options, const StreamedSog& scene,
+                       std::span<const shared::View> views);
+
+class FollowedLevels {
+ public:
+  /// Opens the scene. Throws Error where it is no streamed SOG.
+  explicit FollowedLevels(const RenderOptions& options) : options_(options), scene_(options.scene) {}
+
+  /// The coarsest levels, by which cameras are made up where there are none.
+  Model coarsest();
+
+  /// Brings the model to the levels that the views need, before there is a frame of it.
+  void bring(Model& model, std::span<const shared::View> views);
+
+  /// The same with a frame and maps of the model. With --detail-report it says what the switch changes.
+  ShotLevels follow(Model& model, render::Frame& frame, stereo::Show& show,
+                    std::span<const shared::View> views, const render::FrameSettings& settings);
+
+  /// PSNR of pictures of these views against those of the finest levels, drawn exactly; all are of one mean.
+  double against_finest(gl::Context& context, std::span<const shared::View> views,
+                        std::span<const Picture> pictures, const render::FrameSettings& settings);
+
+ private:
+  const RenderOptions& options_;
+  StreamedSog scene_;
+  double read_ms_ = 0.0;  // since the last shot
+  std::optional<Model> finest_;
+  std::optional<stereo::Show> show_finest_;
+};
+
+}  // namespace binosplat::app

@@ -1,0 +1,58 @@
+#pragma once
+// lod-meta.json of a streamed SOG: which Gaussians of which files are which leaf of its tree, at which level
+// of detail.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "formats/detail.h"
+#include "formats/json_file.h"
+#include "formats/sog_source.h"
+
+namespace binosplat {
+
+class SogLevels {
+ public:
+  /// What is taken of a file for a leaf; the range's slot is not set.
+  struct Taken {
+    std::size_t leaf = 0;
+    SogSource::Range range;
+  };
+
+  /// `json`, the parsed lod-meta.json at `path`, must outlive this. Throws Error, here as in all that
+  /// follows, naming the key that is wrong.
+  SogLevels(const std::filesystem::path& path, const nlohmann::json& json);
+
+  int count() const { return count_; }
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+  /// The SOG that belongs to every level.
+  const std::optional<std::filesystem::path>& environment() const { return environment_; }
+  /// Whether a file is there: those of levels that are not drawn need not be.
+  bool there(std::size_t file) const;
+
+  /// For each file what is taken of it, in order, where the tree's leaf number i has level_of(i).
+  std::vector<std::vector<Taken>> taken(const std::function<int(std::size_t leaf)>& level_of) const;
+  std::vector<std::vector<Taken>> taken(int level) const;
+
+  /// The tree's leaves, with the levels whose files are there.
+  std::vector<DetailPart> leaves() const;
+
+  /// The first file that a level needs and that is not there.
+  std::optional<std::filesystem::path> missing(int level) const;
+
+ private:
+  std::filesystem::path file(const JsonValue& value) const;
+  void walk(const std::function<void(const JsonValue&)>& see) const;
+  std::pair<std::size_t, SogSource::Range> part(const JsonValue& lod) const;
+  void sort(std::vector<Taken>& taken, std::size_t index) const;
+
+  std::filesystem::path folder_;
+  JsonValue root_;
+  int count_ = 0;
+  std::vector<std::filesystem::path> files_;
+  std::optional<std::filesystem::path> environment_;
+};
+
+}  // namespace binosplat

@@ -1,0 +1,210 @@
+// PlayCanvas' SOG, version 2, as an archive.
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/progress.h"
+#include "formats/codebook.h"
+#include "formats/model_writers.h"
+#include "formats/morton.h"
+#include "formats/webp.h"
+#include "formats/zip_file.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::size_t widest = 16383;  // of a WebP picture
+constexpr std::size_t palette_columns = 64, palette_most = 65536;
+/// Logarithms of scales beyond this are cut, as by PlayCanvas.
+constexpr double log_scale_most = 20.0;
+
+using Rgba = std::array<std::uint8_t, 4>;
+
+/// A picture, a texel a Gaussian but for the palette's, and its name in the archive.
+struct Texture {
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> texels;
+
+  Texture(std::string name_, std::size_t width_, std::size_t height_)
+      : name(std::move(name_)),
+        width(static_cast<int>(width_)),
+        height(static_cast<int>(height_)),
+        texels(4 * width_ * height_, 255) {}
+  void set(std::size_t i, const Rgba& value) { std::copy(value.begin(), value.end(), &texels[4 * i]); }
+};
+
+float log_scale(float scale) {
+  return static_cast<float>(
+      std::clamp(std::log(static_cast<double>(scale)), -log_scale_most, log_scale_most));
+}
+
+/// What positions are stored as.
+double log_position(float p) { return std::copysign(std::log1p(std::abs(static_cast<double>(p))), p); }
+
+class SogWriter {
+ public:
+  explicit SogWriter(const Model& model)
+      : model_(model),
+        order_(morton_order(model.position)),
+        values_(3 * static_cast<std::size_t>(sh_count(model.degree))) {
+    const auto n = static_cast<double>(model.count());
+    width_ = 4 * static_cast<std::size_t>(std::ceil(std::sqrt(n) / 4.0));
+    height_ = (model.count() + 4 * width_ - 1) / (4 * width_) * 4;
+    if (width_ > widest || height_ > widest)
+      fail("{}: {} Gaussians do not fit the {} x {} texels of a SOG", model.name, model.count(), widest,
+           widest);
+    meta_ = {{"version", 2}, {"asset", {{"generator", "binosplat"}}}, {"count", model.count()}};
+    if (model.antialiased) meta_["model"] = "antialiased";
+  }
+
+  std::vector<std::byte> archive() {
+    add_positions();
+    add_scales();
+    add_rotations();
+    add_colours();
+    if (model_.degree > 0) add_harmonics();
+    ZipEntries entries(textures_.size() + 1);
+    const std::string meta = meta_.dump();
+    const auto text = std::as_bytes(std::span(meta));
+    entries[0] = {"meta.json", {text.begin(), text.end()}};
+    Progress progress("writing", textures_.size());
+    std::atomic<std::size_t> done = 0;
+    tbb::parallel_for(std::size_t{0}, textures_.size(), [&](std::size_t k) {
+      const Texture& t = textures_[k];
+      entries[k + 1] = {t.name, webp_file(t.texels, t.width, t.height)};
+      progress.update(++done);
+    });
+    return zip_of(entries);
+  }
+
+ private:
+  /// A picture with value(i) for Gaussian i, under a name that it returns.
+  template <typename Value>
+  std::string add(const std::string& name, const Value& value) {
+    Texture& texture = textures_.emplace_back(name + ".webp", width_, height_);
+    tbb::parallel_for(std::size_t{0}, order_.size(),
+                      [&](std::size_t k) { texture.set(k, value(order_[k])); });
+    return texture.name;
+  }
+
+  /// get(i, c) for all Gaussians and channels.
+  template <typename Get>
+  Codebook codebook(const Get& get) const {
+    std::vector<float> values(3 * model_.count());
+    tbb::parallel_for(std::size_t{0}, model_.count(), [&](std::size_t i) {
+      for (std::size_t c = 0; c < 3; ++c) values[3 * i + c] = get(i, c);
+    });
+    return Codebook(std::move(values));
+  }
+
+  void add_positions() {
+    glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+    for (const glm::vec3& p : model_.position) {
+      const glm::dvec3 v(log_position(p.x), log_position(p.y), log_position(p.z));
+      low = glm::min(low, v);
+      high = glm::max(high, v);
+    }
+    const auto step = [&](std::size_t i, int c) {
+      const double span = high[c] - low[c];
+      return span > 0.0 ? nearest_step((log_position(model_.position[i][c]) - low[c]) / span * 65535.0, 65535)
+                        : 0u;
+    };
+    const auto bytes = [&](std::size_t i, int shift) {
+      Rgba texel{0, 0, 0, 255};
+      for (int c = 0; c < 3; ++c)
+        texel[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(step(i, c) >> shift & 255u);
+      return texel;
+    };
+    const std::string lower = add("means_l", [&](std::size_t i) { return bytes(i, 0); });
+    const std::string upper = add("means_u", [&](std::size_t i) { return bytes(i, 8); });
+    meta_["means"] = {
+        {"mins", {low.x, low.y, low.z}}, {"maxs", {high.x, high.y, high.z}}, {"files", {lower, upper}}};
+  }
+
+  void add_scales() {
+    const auto get = [&](std::size_t i, std::size_t c) {
+      return log_scale(model_.scale[i][static_cast<glm::length_t>(c)]);
+    };
+    const Codebook book = codebook(get);
+    const std::string file = add("scales", [&](std::size_t i) -> Rgba {
+      return {book.nearest(get(i, 0)), book.nearest(get(i, 1)), book.nearest(get(i, 2)), 255};
+    });
+    meta_["scales"] = {{"codebook", book.entries()}, {"files", {file}}};
+  }
+
+  void add_rotations() {
+    const std::string file = add("quats", [&](std::size_t i) -> Rgba {
+      const SmallestThree smallest = smallest_three(model_.rotation[i]);
+      Rgba texel;
+      for (int c = 0; c < 3; ++c) {
+        texel[static_cast<std::size_t>(c)] =
+            static_cast<std::uint8_t>(nearest_step((smallest.others[c] / std::sqrt(2.0) + 0.5) * 255.0, 255));
+      }
+      texel[3] = static_cast<std::uint8_t>(252 + smallest.largest);
+      return texel;
+    });
+    meta_["quats"] = {{"files", {file}}};
+  }
+
+  void add_colours() {
+    const auto get = [&](std::size_t i, std::size_t c) { return model_.sh[i * values_ + c]; };
+    const Codebook book = codebook(get);
+    const std::string file = add("sh0", [&](std::size_t i) -> Rgba {
+      const auto opacity = static_cast<std::uint8_t>(nearest_step(255.0 * model_.opacity[i], 255));
+      return {book.nearest(get(i, 0)), book.nearest(get(i, 1)), book.nearest(get(i, 2)), opacity};
+    });
+    meta_["sh0"] = {{"codebook", book.entries()}, {"files", {file}}};
+  }
+
+  void add_harmonics() {
+    const std::size_t higher = values_ - 3, coefficients = higher / 3;
+    const Palette palette = make_palette(model_.count(), higher, palette_most,
+                                         [&](std::size_t i) { return &model_.sh[i * values_ + 3]; });
+    const Codebook book(palette.entries);
+    const std::size_t rows = (palette.count + palette_columns - 1) / palette_columns;
+    Texture& centroids = textures_.emplace_back("shN_centroids.webp", palette_columns * coefficients, rows);
+    for (std::size_t k = 0; k < palette.count * coefficients; ++k) {
+      const float* rgb = &palette.entries[3 * k];
+      centroids.set(k, {book.nearest(rgb[0]), book.nearest(rgb[1]), book.nearest(rgb[2]), 255});
+    }
+    const std::string labels = add("shN_labels", [&](std::size_t i) -> Rgba {
+      const std::uint32_t label = palette.labels[i];
+      return {static_cast<std::uint8_t>(label & 255u), static_cast<std::uint8_t>(label >> 8), 0, 255};
+    });
+    meta_["shN"] = {{"count", palette.count},
+                    {"bands", model_.degree},
+                    {"codebook", book.entries()},
+                    {"files", {"shN_centroids.webp", labels}}};
+  }
+
+  const Model& model_;
+  std::vector<std::uint32_t> order_;
+  std::size_t values_;  // coefficients of a Gaussian, degree 0 included
+  std::size_t width_ = 0, height_ = 0;
+  nlohmann::ordered_json meta_;
+  std::deque<Texture> textures_;
+};
+
+}  // namespace
+
+Losses write_sog(OutputFile& file, const Model& model) {
+  file.write(SogWriter(model).archive());
+  Losses losses;
+  const double thin = std::exp(-log_scale_most), thick = std::exp(log_scale_most);
+  count_lost(losses, model, "scales beyond e^-20 to e^20, which a SOG cuts", [&](std::size_t i) {
+    const glm::vec3& s = model.scale[i];
+    return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;
+  });
+  return losses;
+}
+
+}  // namespace binosplat

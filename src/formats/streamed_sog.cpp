@@ -1,0 +1,351 @@
+#include "formats/streamed_sog.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/mapped_file.h"
+#include "base/progress.h"
+#include "formats/content.h"
+#include "formats/json_file.h"
+#include "formats/sog_levels.h"
+#include "formats/sog_source.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Taken = std::vector<SogLevels::Taken>;
+
+constexpr int no_level = -1;
+
+/// A SOG and what is taken of it.
+struct Part {
+  SogSource source;
+  Taken taken;
+};
+
+SogSource open_part(const fs::path& path) {
+  const MappedFile file(path);
+  return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
+}
+
+/// What is taken of a file must be in it.
+void check_taken(const fs::path& lod_meta, const fs::path& file, const SogSource& source,
+                 std::span<const SogLevels::Taken> taken) {
+  const SogSource::Range& last = taken.back().range;
+  if (last.first + last.count <= source.count()) return;
+  fail("{}: Gaussians {} to {} of {} are wanted, which has {}", lod_meta.string(), last.first,
+       last.first + last.count - 1, file.string(), source.count());
+}
+
+/// The finest level that is there, or the one that was asked for.
+int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
+  const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
+  if (lod && (*lod < 0 || *lod >= levels.count())) {
+    fail("--lod {}: {} has the levels {}, 0 being the finest", *lod, path.string(), range());
+  }
+  std::set<int> there;
+  std::optional<fs::path> missing;
+  for (int level = 0; level < levels.count(); ++level) {
+    const auto absent = levels.missing(level);
+    if (!absent) there.insert(level);
+    if (absent && (!missing || level == lod)) missing = absent;
+  }
+  if (there.empty()) {
+    fail("{}: no level of detail is complete; {} is missing: fetch it", path.string(), missing->string());
+  }
+  if (lod && there.count(*lod) == 0) {
+    fail("--lod {}: {} is missing; the finest level that is there is {}", *lod, missing->string(),
+         *there.begin());
+  }
+  const int level = lod.value_or(*there.begin());
+  if (!lod && level > 0) {
+    log_warning("{}: level 0 is not complete ({} is missing); level {} is drawn", path.string(),
+                missing->string(), level);
+  }
+  return level;
+}
+
+/// What is taken of each file, and what to call it.
+struct Choice {
+  std::vector<Taken> taken;
+  std::string name;
+};
+
+std::string name_of(const SogLevels& levels) {
+  return fmt::format("streamed SOG, levels chosen of {}", levels.count());
+}
+
+void check_leaves(const fs::path& path, const std::vector<DetailPart>& leaves) {
+  if (std::all_of(leaves.begin(), leaves.end(), [](const auto& leaf) { return leaf.levels.empty(); }))
+    fail("{}: none of its levels of detail is there: fetch one", path.string());
+}
+
+/// A level for each leaf, so that they fit.
+Choice choose(const fs::path& path, const SogLevels& levels, const DetailBudget& budget) {
+  const std::vector<DetailPart> leaves = levels.leaves();
+  check_leaves(path, leaves);
+  std::size_t file = 0;
+  while (!levels.there(file)) ++file;
+  std::size_t most = budget.gaussians(open_part(levels.files()[file]).degree());
+  const std::size_t around = levels.environment() ? open_part(*levels.environment()).count() : 0;
+  most -= std::min(most, around);
+  const std::vector<std::size_t> chosen = choose_levels(leaves, budget.eyes, most);
+  std::vector<std::size_t> of_level(static_cast<std::size_t>(levels.count()), 0);
+  std::size_t total = 0;
+  std::vector<int> numbers(leaves.size(), no_level);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (leaves[i].levels.empty()) continue;
+    const DetailPart::Level& level = leaves[i].levels[chosen[i]];
+    numbers[i] = level.number;
+    of_level[static_cast<std::size_t>(level.number)] += level.count;
+    total += level.count;
+  }
+  if (total > most)
+    log_warning("{}: even its coarsest levels of detail have {} Gaussians, and there is room for {}",
+                path.string(), total, most);
+  std::string parts;
+  for (std::size_t level = 0; level < of_level.size(); ++level) {
+    if (of_level[level] > 0)
+      parts += fmt::format("{}{} Gaussians of level {}", parts.empty() ? "" : ", ", of_level[level], level);
+  }
+  log_info("{}: {}", path.string(), parts);
+  return {levels.taken([&](std::size_t leaf) { return numbers[leaf]; }), name_of(levels)};
+}
+
+/// One level for all.
+Choice choose_one(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
+  const int level = choose(path, levels, lod);
+  log_info("{}: level of detail {} of {}", path.string(), level, levels.count());
+  return {levels.taken(level), fmt::format("streamed SOG, level {} of {}", level, levels.count())};
+}
+
+std::vector<Part> open_parts(const fs::path& lod_meta, const SogLevels& levels,
+                             const std::vector<Taken>& taken) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (taken[i].empty()) continue;
+    parts.push_back({open_part(levels.files()[i]), taken[i]});
+    check_taken(lod_meta, levels.files()[i], parts.back().source, taken[i]);
+  }
+  if (levels.environment()) {
+    SogSource source = open_part(*levels.environment());
+    const std::size_t count = source.count();
+    parts.push_back({std::move(source), {{0, {0, count, 0}}}});
+  }
+  return parts;
+}
+
+std::vector<SogSource::Range> ranges_of(const Taken& taken) {
+  std::vector<SogSource::Range> ranges;
+  for (const SogLevels::Taken& of_leaf : taken) ranges.push_back(of_leaf.range);
+  return ranges;
+}
+
+/// Copies Gaussians from one model to another of the same degree.
+void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t slot) {
+  const auto take = [&](const auto& a, auto& b, std::size_t each) {
+    std::copy_n(a.begin() + static_cast<std::ptrdiff_t>(first * each), count * each,
+                b.begin() + static_cast<std::ptrdiff_t>(slot * each));
+  };
+  take(from.position, to.position, 1);
+  take(from.scale, to.scale, 1);
+  take(from.rotation, to.rotation, 1);
+  take(from.opacity, to.opacity, 1);
+  take(from.sh, to.sh, 3 * static_cast<std::size_t>(sh_count(from.degree)));
+}
+
+fs::path lod_meta_of(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? path / "lod-meta.json" : path;
+}
+
+/// What lod-meta.json says; none if the file is another one, or not there.
+std::optional<nlohmann::json> parse_lod_meta(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return std::nullopt;
+  const MappedFile file(path);
+  if (content_of(file.bytes()) != Content::json) return std::nullopt;
+  nlohmann::json json = parse_json(path.string(), as_text(file.bytes()));
+  return is_sog_levels(json) ? std::optional(std::move(json)) : std::nullopt;
+}
+
+nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
+  auto json = parse_lod_meta(path);
+  if (!json)
+    fail("--detail: {} has no levels of detail to choose from; a streamed SOG's lod-meta.json has",
+         asked.string());
+  return std::move(*json);
+}
+
+}  // namespace
+
+bool is_sog_levels(const nlohmann::json& root) { return root.is_object() && root.contains("lodLevels"); }
+
+bool is_streamed_sog(const fs::path& path) { return parse_lod_meta(lod_meta_of(path)).has_value(); }
+
+Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod,
+                        const std::optional<DetailBudget>& budget) {
+  const SogLevels levels(lod_meta, root);
+  const Choice choice = budget ? choose(lod_meta, levels, *budget) : choose_one(lod_meta, levels, lod);
+  std::vector<Part> parts = open_parts(lod_meta, levels, choice.taken);
+  Model model;
+  model.name = lod_meta.filename().string();
+  model.format = choice.name;
+  std::size_t total = 0;
+  for (Part& part : parts) {
+    model.degree = std::max(model.degree, part.source.degree());
+    model.antialiased = model.antialiased || part.source.antialiased();
+    for (SogLevels::Taken& taken : part.taken) {
+      taken.range.slot = total;
+      total += taken.range.count;
+    }
+  }
+  if (total == 0) fail("{} holds no Gaussians ({})", lod_meta.string(), choice.name);
+  model.resize(total);
+  std::vector<std::uint8_t> kept(total);
+  Progress progress("reading " + lod_meta.string(), total);
+  std::mutex counting;
+  std::size_t done = 0;
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+    const std::vector<SogSource::Range> ranges = ranges_of(parts[i].taken);
+    parts[i].source.decode(model, ranges, kept);
+    const std::lock_guard<std::mutex> lock(counting);
+    for (const SogSource::Range& range : ranges) done += range.count;
+    progress.update(done);
+  });
+  keep_only(model, kept);
+  return model;
+}
+
+/// lod-meta.json and the SOGs that are there; none of another file.
+struct StreamedSog::Source {
+  fs::path path;
+  nlohmann::json json;
+  SogLevels levels;
+  std::vector<std::optional<SogSource>> files;  // the environment last, where there is one
+
+  explicit Source(const fs::path& asked)
+      : path(lod_meta_of(asked)), json(levels_json(path, asked)), levels(path, json) {
+    files.resize(levels.files().size());
+    tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+      if (levels.there(i)) files[i] = open_part(levels.files()[i]);
+    });
+    if (levels.environment()) files.emplace_back(open_part(*levels.environment()));
+  }
+
+  /// What is taken of each of the files, where leaf number i of so many has level_of(i).
+  std::vector<Taken> wanted(const std::function<int(std::size_t)>& level_of, std::size_t leaves) const;
+};
+
+StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source>(path)) {
+  leaves_ = source_->levels.leaves();
+  check_leaves(source_->path, leaves_);
+  model_.name = source_->path.filename().string();
+  model_.format = name_of(source_->levels);
+  for (const auto& file : source_->files) {
+    if (!file) continue;
+    degree_ = std::max(degree_, file->degree());
+    model_.antialiased = model_.antialiased || file->antialiased();
+  }
+  model_.degree = degree_;
+}
+
+StreamedSog::~StreamedSog() = default;
+
+bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& need) {
+  std::vector<glm::dvec3> eyes;
+  double focal = 0.0;
+  for (const shared::View& view : views) {
+    eyes.push_back(glm::dvec3(view.anchor) + glm::dvec3(view.eye));
+    focal = std::max({focal, static_cast<double>(view.lens.x), static_cast<double>(view.lens.y)});
+  }
+  const auto& environment = source_->levels.environment();
+  const std::size_t around = environment ? source_->files.back()->count() : 0;
+  const double enough = views.empty() ? std::numeric_limits<double>::infinity() : need.apart_px / focal;
+  const std::span<const std::size_t> before = seen_ ? std::span(chosen_) : std::span<std::size_t>();
+  chosen_ = choose_levels(leaves_, eyes, need.most - std::min(need.most, around), enough, before);
+  seen_ = !views.empty();
+  return chosen_ != levels_;
+}
+
+std::vector<Taken> StreamedSog::Source::wanted(const std::function<int(std::size_t)>& level_of,
+                                               std::size_t leaves) const {
+  std::vector<Taken> taken = levels.taken(level_of);
+  if (levels.environment()) taken.emplace_back().push_back({leaves, {0, files.back()->count(), 0}});
+  return taken;
+}
+
+Model StreamedSog::empty_model() const {
+  Model model;
+  model.name = model_.name;
+  model.format = model_.format;
+  model.degree = degree_;
+  model.antialiased = model_.antialiased;
+  return model;
+}
+
+Model StreamedSog::read() {
+  const auto level_of = [&](std::size_t leaf) {
+    return leaves_[leaf].levels.empty() ? no_level : leaves_[leaf].levels[chosen_[leaf]].number;
+  };
+  std::vector<Taken> taken = source_->wanted(level_of, leaves_.size());
+  std::vector<Span> spans(leaves_.size() + 1);
+  std::size_t total = 0;
+  for (Taken& of_file : taken) {
+    for (SogLevels::Taken& of_leaf : of_file) {
+      of_leaf.range.slot = total;
+      total += of_leaf.range.count;
+      spans[of_leaf.leaf] = {of_leaf.range.slot, of_leaf.range.count};
+    }
+  }
+  if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), model_.format);
+  Model model = empty_model();
+  model.resize(total);
+  std::vector<std::uint8_t> kept(total);
+  tbb::parallel_for(std::size_t{0}, taken.size(), [&](std::size_t i) { fill(model, kept, taken[i], i); });
+  close_gaps(spans, kept);
+  keep_only(model, kept);
+  model_ = model;
+  levels_ = chosen_;
+  spans_ = std::move(spans);
+  return model;
+}
+
+void StreamedSog::fill(Model& model, std::vector<std::uint8_t>& kept, std::span<const SogLevels::Taken> taken,
+                       std::size_t file) const {
+  std::vector<SogSource::Range> changed;
+  for (const SogLevels::Taken& of_leaf : taken) {
+    const std::size_t leaf = of_leaf.leaf;
+    if (spans_.empty() || (leaf < leaves_.size() && chosen_[leaf] != levels_[leaf])) {
+      changed.push_back(of_leaf.range);
+      continue;
+    }
+    const Span& before = spans_[leaf];
+    copy(model_, before.first, before.count, model, of_leaf.range.slot);
+    std::fill_n(kept.begin() + static_cast<std::ptrdiff_t>(of_leaf.range.slot), before.count, 1);
+  }
+  if (changed.empty()) return;
+  const bool around = file == source_->levels.files().size();
+  const fs::path& name = around ? *source_->levels.environment() : source_->levels.files()[file];
+  check_taken(source_->path, name, *source_->files[file], taken);
+  source_->files[file]->decode(model, changed, kept);
+}
+
+// Where leaves lie once keep_only has left out what is not kept.
+void StreamedSog::close_gaps(std::vector<Span>& spans, const std::vector<std::uint8_t>& kept) {
+  std::vector<std::size_t> before(kept.size() + 1, 0);
+  for (std::size_t i = 0; i < kept.size(); ++i) before[i + 1] = before[i] + kept[i];
+  for (Span& span : spans) {
+    const std::size_t first = before[span.first];
+    span = {first, before[span.first + span.count] - first};
+  }
+}
+
+}  // namespace binosplat

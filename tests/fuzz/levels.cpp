@@ -1,0 +1,52 @@
+// A streamed SOG's lod-meta.json: its tree, which Gaussians of which files it takes, and what is chosen of
+// it.
+
+#include <algorithm>
+
+#include "formats/content.h"
+#include "formats/sog_levels.h"
+#include "fuzz/input.h"
+
+namespace binosplat::fuzz {
+
+namespace {
+
+void check(const SogLevels& levels) {
+  std::vector<DetailPart> leaves = levels.leaves();
+  for (int level = 0; level < std::min(levels.count(), 3); ++level) {
+    const auto taken = levels.taken(level);
+    demand(taken.size() == levels.files().size(), "a file without a list");
+    for (const auto& of_file : taken) {
+      for (std::size_t k = 0; k < of_file.size(); ++k) {
+        demand(of_file[k].leaf < leaves.size(), "a leaf that there is not");
+        const SogSource::Range& range = of_file[k].range;
+        demand(range.count > 0, "nothing taken");
+        demand(k == 0 || of_file[k - 1].range.first + of_file[k - 1].range.count <= range.first,
+               "taken twice");
+      }
+    }
+  }
+  // Its files are not there; as if they were:
+  for (DetailPart& leaf : leaves) leaf.levels = {{0, 1000}, {1, 100}, {2, 10}};
+  std::vector<std::size_t> before;
+  for (const double x : {0.0, 10.0, 1e9}) {
+    const std::size_t most = 500 * leaves.size();
+    const std::vector<std::size_t> chosen = choose_levels(leaves, {{x, 0, 0}}, most, 0.01, before);
+    std::size_t total = 0;
+    demand(chosen.size() == leaves.size(), "a leaf without a choice");
+    for (std::size_t i = 0; i < leaves.size(); ++i) total += leaves[i].levels.at(chosen[i]).count;
+    demand(total <= most, "more than there is room for");
+    before = chosen;
+  }
+}
+
+}  // namespace
+
+void target(std::span<const std::byte> bytes) {
+  feed(bytes, [&](const std::filesystem::path& path) {
+    const nlohmann::json json = parse_json(path.string(), as_text(bytes));
+    check(SogLevels(path, json));
+  });
+}
+
+}  // namespace binosplat::fuzz
