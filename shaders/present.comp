@@ -15,6 +15,7 @@ uniform uint columns, rows;   // of the picture
 uniform uint left, bottom;    // of it in the image
 uniform uint background_r, background_g, background_b;  // bits of floats
 uniform uint keeps_alpha;     // 1: no background, but associated alpha
+uniform uint steps;           // that the image's colours have above 0; 0: they are floats
 
 vec4 over(vec4 colour) {
   if (keeps_alpha != 0u) return vec4(colour.rgb, 1.0 - colour.a);
@@ -37,5 +38,8 @@ void main() {
   uint group = group_index();
   uvec2 at = uvec2(group % across, group / across) * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy;
   if (at.x >= columns || at.y >= rows) return;
-  imageStore(shown, ivec2(left + at.x, bottom + rows - 1u - at.y), pixel_at(at));
+  vec4 pixel = pixel_at(at);
+  // GPUs may round by themselves to within 0.6 of a step; files hold the nearest.
+  if (steps != 0u) pixel.rgb = floor(clamp(pixel.rgb, 0.0, 1.0) * float(steps) + 0.5) / float(steps);
+  imageStore(shown, ivec2(left + at.x, bottom + rows - 1u - at.y), pixel);
 }

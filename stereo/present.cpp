@@ -19,6 +19,37 @@ struct InPlace {
   bool by_view = false;  // of another format than its own
 };
 
+/// What a framebuffer shows if that is one texture and no more: written without a copy, which servers' GPUs
+/// make slowly.
+Target texture_behind(const gl::Functions& gl, const Target& target) {
+  if (target.texture != 0 || target.framebuffer == 0) return target;
+  const auto attached = [&](GLenum place, GLenum what) {
+    GLint value = 0;
+    gl.GetNamedFramebufferAttachmentParameteriv(target.framebuffer, place, what, &value);
+    return value;
+  };
+  for (GLenum other = 1; other < 8; ++other) {  // every driver has so many
+    if (attached(GL_COLOR_ATTACHMENT0 + other, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) != GL_NONE)
+      return target;
+  }
+  constexpr GLenum first = GL_COLOR_ATTACHMENT0;
+  if (attached(first, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) != GL_TEXTURE ||
+      attached(first, GL_FRAMEBUFFER_ATTACHMENT_LAYERED) != 0)
+    return target;
+  return {.texture = static_cast<std::uint32_t>(attached(first, GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME)),
+          .level = attached(first, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL),
+          .layer = attached(first, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER),
+          .x = target.x,
+          .y = target.y};
+}
+
+/// Values above 0 of such an image's colours; 0: they are floats.
+std::uint32_t steps_of(GLenum format) {
+  if (format == GL_RGBA8) return 255;
+  if (format == GL_RGB10_A2) return 1023;
+  return format == GL_RGBA16 ? 65535 : 0;
+}
+
 InPlace in_place(const gl::Functions& gl, const Target& target) {
   if (target.texture == 0) return {};
   GLint kind = 0, format = 0, immutable = 0;
@@ -137,20 +168,22 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
                        {"background_r", std::bit_cast<std::uint32_t>(behind.r)},
                        {"background_g", std::bit_cast<std::uint32_t>(behind.g)},
                        {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
-                       {"keeps_alpha", background ? 0u : 1u}});
+                       {"keeps_alpha", background ? 0u : 1u},
+                       {"steps", steps_of(format)}});
     context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the picture is read next
   };
   const std::uint32_t framebuffer = framebuffer_of(target);
-  const auto [format, by_view] = in_place(context.gl(), target);
+  const Target texture = texture_behind(context.gl(), target);
+  const auto [format, by_view] = in_place(context.gl(), texture);
   if (format == GL_NONE) {
     const gl::Texture& picture = scratch(size, copied_from(context.gl(), framebuffer));
     write({.texture = picture.id()}, picture.format());
     copy(size, framebuffer, {target.x, target.y});
   } else if (by_view) {
-    const gl::Texture view(context, format, target.texture, target.level, std::max(target.layer, 0));
+    const gl::Texture view(context, format, texture.texture, texture.level, std::max(texture.layer, 0));
     write({.texture = view.id(), .x = target.x, .y = target.y}, format);
   } else {
-    write(target, format);
+    write(texture, format);
   }
   // What is the caller's to delete is not held on to.
   if (target.texture != 0)

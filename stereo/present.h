@@ -19,9 +19,9 @@ namespace binosplat::stereo {
 
 /// Where a picture goes: a texture of any colour-renderable format, or a framebuffer. A 2D texture, or a
 /// layer of an array, is written without a copy where its format is GL_RGBA8, RGBA16, RGBA16F, RGBA32F or
-/// RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and its like); all else takes a
-/// picture of the presenter's own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a
-/// colour.
+/// RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and its like), and so is a
+/// framebuffer that has one such texture and no other colours; all else takes a picture of the presenter's
+/// own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a colour.
 struct Target {
   std::uint32_t texture = 0;      // 2D, or 2D array with a layer; 0: the framebuffer below
   int level = 0;                  // of the texture

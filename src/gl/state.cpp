@@ -14,6 +14,7 @@ KeptState::KeptState(const Context& context) : gl_(context.gl()) {
   gl_.GetIntegeri_v(GL_IMAGE_BINDING_FORMAT, 0, &image_.format);
   scissors_ = gl_.IsEnabledi(GL_SCISSOR_TEST, 0);
   encodes_ = gl_.IsEnabled(GL_FRAMEBUFFER_SRGB);
+  discards_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
   for (GLuint i = 0; i < storage_blocks_needed; ++i) {
     gl_.GetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, i, &storages_[i].buffer);
     gl_.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, i, &storages_[i].offset);
@@ -24,6 +25,7 @@ KeptState::KeptState(const Context& context) : gl_(context.gl()) {
 void KeptState::set_plain() const {
   gl_.Disablei(GL_SCISSOR_TEST, 0);
   gl_.Disable(GL_FRAMEBUFFER_SRGB);
+  gl_.Disable(GL_RASTERIZER_DISCARD);
 }
 
 KeptState::~KeptState() {
@@ -42,6 +44,7 @@ KeptState::~KeptState() {
                        image_.layer, static_cast<GLenum>(image_.access), static_cast<GLenum>(image_.format));
   if (scissors_ != GL_FALSE) gl_.Enablei(GL_SCISSOR_TEST, 0);
   if (encodes_ != GL_FALSE) gl_.Enable(GL_FRAMEBUFFER_SRGB);
+  if (discards_ != GL_FALSE) gl_.Enable(GL_RASTERIZER_DISCARD);
   gl_.UseProgram(static_cast<GLuint>(program_));
 }
 

@@ -11,8 +11,8 @@ namespace binosplat::gl {
 
 /// Remembers all state that a frame, and pictures written into a texture or framebuffer, change, and sets it
 /// again when it goes: the program; storage buffers, those of the first storage_blocks_needed bindings and
-/// the general one; the buffer of indirect dispatches; the image of unit 0; the scissor test of index 0 and
-/// the conversion to sRGB.
+/// the general one; the buffer of indirect dispatches; the image of unit 0; the scissor test of index 0, the
+/// conversion to sRGB and the rasterizer's discarding.
 ///
 /// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers,
 /// uniform buffers), and neither are other images, pixel store, clear values, viewports, masks, tests,
@@ -25,7 +25,8 @@ class KeptState {
   KeptState(const KeptState&) = delete;
   KeptState& operator=(const KeptState&) = delete;
 
-  /// What a copy reaches a framebuffer whole and unchanged with: no scissors, no conversion to sRGB.
+  /// What a copy reaches a framebuffer whole and unchanged with: no scissors, no conversion to sRGB, nothing
+  /// discarded (NVIDIA's driver discards copies, too).
   void set_plain() const;
 
  private:
@@ -40,7 +41,7 @@ class KeptState {
   const Functions& gl_;
   GLint program_ = 0, storage_ = 0, indirect_ = 0;
   Image image_;
-  GLboolean scissors_ = 0, encodes_ = 0;
+  GLboolean scissors_ = 0, encodes_ = 0, discards_ = 0;
   std::array<Storage, storage_blocks_needed> storages_;
 };
 

@@ -73,6 +73,12 @@ struct Numbers {
   std::vector<double> gaussians, frame_ms, read_ms, upload_ms, finest_db, switch_db;
 };
 
+// Draws for a while: a GPU's clock falls while the model is read. A viewer draws on meanwhile.
+void wake(render::Frame& frame, const Views& views) {
+  const auto start = Clock::now();
+  while (ms_since(start) < 150) frame.draw(views);
+}
+
 // Along the path; what a switch changes is seen in the exact pair before and after it.
 Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& path, double detail,
             const std::vector<std::vector<Picture>>& finest) {
@@ -81,7 +87,7 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
   scene.choose(path[0], {detail});
   Model model = scene.read();
   render::Frame frame(context, model);
-  for (int n = 0; n < 5; ++n) frame.draw(path[0]);
+  wake(frame, path[0]);
   for (std::size_t n = 0; n < path.size(); ++n) {
     std::optional<study::SquaredError> before;
     const bool switches = scene.choose(path[n], {detail});
@@ -96,6 +102,7 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
       start = Clock::now();
       frame.reload();
       numbers.upload_ms.push_back(ms_since(start));
+      wake(frame, path[n]);
     }
     numbers.frame_ms.push_back(frame.draw(path[n]).total_ms);
     numbers.gaussians.push_back(static_cast<double>(model.count()));
@@ -103,6 +110,7 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
     for (std::size_t k = 0; k < finest.size(); ++k) {
       if (n != path.size() * k / finest.size()) continue;
       numbers.finest_db.push_back(study::SquaredError(context, finest[k]).psnr(frame.colours()));
+      wake(frame, path[n]);
     }
   }
   return numbers;

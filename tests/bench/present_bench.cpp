@@ -66,6 +66,17 @@ struct Bench {
     }
   }
 
+  // As into a window of full HD, which no shader can write.
+  void copied(const Model& model, const Camera& head) {
+    render::Frame frame(*context, model);
+    frame.draw(stereo::make_rig(resized(head, 960, 1080), {}).views);
+    const std::uint32_t framebuffer = target({1920, 1080}, GL_RGB8).second;  // no image has this format
+    stereo::Presenter presenter(*context);
+    const double ms = time(dispatcher, frames,
+                           [&] { presenter.draw(frame, 0, LAYOUT_PARALLEL, {.framebuffer = framebuffer}); });
+    fmt::print("\nparallel into a framebuffer of 1920 x 1080 px, copied: {:.3f} ms\n", ms);
+  }
+
   // The widgets in a window of full HD; the session's frames are small.
   void widgets(Model model, const Camera& head) {
     preview::Choices choices;
@@ -103,6 +114,7 @@ void run(int frames, int shrink) {
   const Camera headset = stereo::apply_preset(demo.cameras.at(0), "headset");
   const Camera head = resized(headset, headset.width / shrink / 2 * 2, headset.height / shrink);
   bench.layouts(demo.model, head);
+  bench.copied(demo.model, headset);
   bench.widgets(std::move(demo.model), head);
 }
 

@@ -88,6 +88,7 @@ struct State : testing::Test {
     add(
         "sRGB framebuffer", [this] { gl.Enable(GL_FRAMEBUFFER_SRGB); },
         [this] { return Values{double(gl.IsEnabled(GL_FRAMEBUFFER_SRGB))}; });
+    add_enabled("rasterizer discard", GL_RASTERIZER_DISCARD);
     for (GLuint i = 0; i < gl::storage_blocks_needed; ++i) {
       // Some bound as a range, some as a whole, and the general binding must survive both.
       const auto set = [this, i] {
@@ -140,7 +141,6 @@ struct State : testing::Test {
          std::vector<std::pair<const char*, GLenum>>{{"depth test", GL_DEPTH_TEST},
                                                      {"stencil test", GL_STENCIL_TEST},
                                                      {"culling", GL_CULL_FACE},
-                                                     {"rasterizer discard", GL_RASTERIZER_DISCARD},
                                                      {"logic operation", GL_COLOR_LOGIC_OP},
                                                      {"dithering", GL_DITHER},
                                                      {"alpha to coverage", GL_SAMPLE_ALPHA_TO_COVERAGE},
@@ -243,7 +243,7 @@ struct Targets {
   std::array<Target, 2> both;
 
   explicit Targets(const test::Caller& caller)
-      : textures{caller.texture(GL_RGBA32F, 40, 32), caller.texture(GL_RGBA8, 40, 32)} {
+      : textures{caller.texture(GL_RGBA32F, 40, 32), caller.texture(GL_RGB8, 40, 32)} {
     both[0].texture = textures[0];
     caller.gl.CreateFramebuffers(1, &both[1].framebuffer);
     caller.gl.NamedFramebufferTexture(both[1].framebuffer, GL_COLOR_ATTACHMENT0, textures[1], 0);
