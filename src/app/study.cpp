@@ -176,8 +176,9 @@ ExitCode study_scene(const StudyOptions& options) {
       int{options.stability} + int{options.eyes} + int{options.rules} + int{!options.scene.path.empty()};
   if (chosen > 1) fail("study: --stability, --eyes, --rules and --path FILE are studies of their own");
   if (chosen == 0) {
-    if (!options.json.empty() || options.scene.loss || options.scene.quality || !options.cases.empty())
-      fail("study: --json, --loss, --quality and --case go with --stability, --eyes, --rules or --path FILE");
+    if (!options.not_for_analyses.empty())
+      fail("study: {} {} with --stability, --eyes, --rules or --path FILE",
+           fmt::join(options.not_for_analyses, ", "), options.not_for_analyses.size() > 1 ? "go" : "goes");
     return analyse_scene({options.scene, options.test, options.frames.value_or(24),
                           options.output.empty() ? "out/study" : options.output});
   }
@@ -277,7 +278,13 @@ void add_study(CLI::App& program, Command& command) {
       "  binosplat study garden.ply --photos images -o out/garden\n"
       "  binosplat study garden.ply --rules --preset headset\n"
       "  binosplat study garden.ply --stability --size 320x320");
-  sub->callback([options, &command] { command = [options] { return study_scene(*options); }; });
+  sub->callback([options, sub, &command] {
+    for (const char* name : {"--case", "--target", "--loss", "--quality", "--th", "--transmittance",
+                             "--contrast", "--th-eyes", "--mono", "--json"}) {
+      if (sub->count(name) > 0) options->not_for_analyses.emplace_back(name);
+    }
+    command = [options] { return study_scene(*options); };
+  });
 }
 
 }  // namespace binosplat::app

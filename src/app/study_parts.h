@@ -26,6 +26,7 @@ struct StudyOptions {
   double target = 40.0;  // dB
   std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
   std::string json;
+  std::vector<std::string> not_for_analyses;  // options given that these know nothing of
 };
 
 /// What is there to study, and the shots of it that the options ask for.

@@ -59,7 +59,8 @@ std::vector<std::byte> zip_of(const ZipEntries& entries) {
 
 void ZipFile::Close::operator()(zip* archive) const { zip_discard(archive); }
 
-ZipFile::ZipFile(std::string source, std::span<const std::byte> bytes) : source_(std::move(source)) {
+ZipFile::ZipFile(std::string source, std::span<const std::byte> bytes)
+    : source_(std::move(source)), bytes_(bytes.size()) {
   zip_error_t error;
   zip_error_init(&error);
   zip_source_t* data = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
@@ -118,6 +119,10 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
   }
   if (status.size > bytes_max) {
     fail_entry(name, fmt::format("promises {} bytes; expected at most {}", status.size, bytes_max));
+  }
+  if (status.comp_size > bytes_) {
+    fail_entry(name, fmt::format("promises {} compressed bytes in an archive of {}; it is damaged",
+                                 status.comp_size, bytes_));
   }
   if (status.size / most_growth > status.comp_size) {
     fail_entry(name, fmt::format("promises {} bytes, which {} compressed ones cannot hold; it is damaged",

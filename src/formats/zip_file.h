@@ -48,6 +48,7 @@ class ZipFile {
     void operator()(zip* archive) const;
   };
   std::string source_;
+  std::uint64_t bytes_;  // of the archive
   std::unique_ptr<zip, Close> archive_;
 };
 

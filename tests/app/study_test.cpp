@@ -149,7 +149,9 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--json", folder / "s.json"}, "--json, --loss, --quality and --case go with --stability"},
+      {{"--json", folder / "s.json"}, "--json goes with --stability"},
+      {{"--th", "squared", "--transmittance", "last"}, "--th, --transmittance go with --stability"},
+      {{"--target", "45"}, "--target goes with --stability"},
       {{"--stability", "--path", "x.json"}, "are studies of their own"},
       {{"--stability", "--photos", folder / "."}, "--test and --photos are for the analyses"},
       {{"--test", "no-such"}, "--view no-such"},
