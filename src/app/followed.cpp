@@ -1,11 +1,10 @@
 #include "app/followed.h"
 
-#include <chrono>
-#include <cmath>
 #include <utility>
 
 #include "app/detail.h"
 #include "app/open_scene.h"
+#include "base/clock.h"
 #include "formats/model_file.h"
 #include "measure/metrics.h"
 
@@ -13,22 +12,8 @@ namespace binosplat::app {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-// Over all views together.
 double psnr(const RenderOptions& options, std::span<const Picture> a, std::span<const Picture> b) {
-  const glm::vec3 behind = options.background.value_or(glm::vec3(0.0f));
-  double error = 0.0, pixels = 0.0;
-  for (std::size_t v = 0; v < a.size(); ++v) {
-    const double each = static_cast<double>(a[v].width) * a[v].height;
-    error += each * std::pow(10.0, -0.1 * measure::psnr(composite(a[v], behind), composite(b[v], behind)));
-    pixels += each;
-  }
-  return -10.0 * std::log10(error / pixels);
+  return measure::psnr(a, b, options.background.value_or(glm::vec3(0.0f)));
 }
 
 std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views, int tile_size) {
@@ -55,7 +40,10 @@ Model FollowedLevels::coarsest() {
 }
 
 void FollowedLevels::bring(Model& model, std::span<const shared::View> views) {
-  if (!scene_.choose(views, detail_need(options_, scene_, views))) return;
+  if (scene_.choose(views, detail_need(options_, scene_, views))) read(model);
+}
+
+void FollowedLevels::read(Model& model) {
   const auto start = Clock::now();
   model = scene_.read();
   set_as_asked(options_, model);
@@ -70,7 +58,7 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
     levels.switched = true;
     std::vector<Picture> before;
     if (options_.detail_report) before = exact(frame, views, settings.tile_size);
-    bring(model, views);
+    read(model);
     show.release();
     const auto start = Clock::now();
     frame.reload();

@@ -48,6 +48,8 @@ class FollowedLevels {
                         std::span<const Picture> pictures, const render::FrameSettings& settings);
 
  private:
+  void read(Model& model);
+
   const RenderOptions& options_;
   StreamedSog scene_;
   double read_ms_ = 0.0;  // since the last shot

@@ -84,16 +84,32 @@ double ssim_row(const Image& a, const Image& b, int y, int channel,
   return sum;
 }
 
-}  // namespace
-
-double psnr(const Image& a, const Image& b) {
+// Summed over pixels and channels.
+double squared_error(const Image& a, const Image& b) {
   require_comparable(a, b);
   double sum = 0.0;
   for (std::size_t k = 0; k < a.data.size(); ++k) {
     const double error = shown(a.data[k]) - shown(b.data[k]);
     sum += std::isnan(error) ? std::numeric_limits<double>::infinity() : error * error;
   }
-  return -10.0 * std::log10(sum / static_cast<double>(a.data.size()));
+  return sum;
+}
+
+}  // namespace
+
+double psnr(const Image& a, const Image& b) {
+  return -10.0 * std::log10(squared_error(a, b) / static_cast<double>(a.data.size()));
+}
+
+double psnr(std::span<const Picture> a, std::span<const Picture> b, const Background& background) {
+  if (a.size() != b.size()) fail("{} pictures cannot be compared with {}", a.size(), b.size());
+  double sum = 0.0, values = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    const Image image = composite(a[n], background);
+    sum += squared_error(image, composite(b[n], background));
+    values += static_cast<double>(image.data.size());
+  }
+  return -10.0 * std::log10(sum / values);
 }
 
 double ssim(const Image& a, const Image& b) {

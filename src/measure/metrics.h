@@ -3,6 +3,8 @@
 // one, counts as a channel like the others. Pictures of 8 bits are compared by quantising both first
 // (base/image.h).
 
+#include <span>
+
 #include "base/image.h"
 
 namespace binosplat::measure {
@@ -10,6 +12,9 @@ namespace binosplat::measure {
 /// Peak signal-to-noise ratio in dB: -10 log10 of the mean squared error over pixels and channels, of values
 /// clamped to [0, 1] and not rounded. Infinite for equal pictures; -infinity if a value is not a number.
 double psnr(const Image& a, const Image& b);
+
+/// The same of several pictures over a background, such as both eyes', taken together; as many on both sides.
+double psnr(std::span<const Picture> a, std::span<const Picture> b, const Background& background);
 
 /// Structural similarity (Wang et al. 2004): Gaussian window of 11 x 11 px, sigma 1.5, K1 0.01, K2 0.03,
 /// range 1, of values clamped to [0, 1]; the mean over channels and the positions where the window lies

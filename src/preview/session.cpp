@@ -1,7 +1,6 @@
 #include "preview/session.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -237,13 +236,7 @@ void Session::save_pose(const std::filesystem::path& path) const {
 double Session::psnr_against_exact() {
   const std::vector<Picture> shown = frame_.read_pictures();
   const std::vector<Picture> right = show_.exact(views(), choices.settings);
-  double error = 0.0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double psnr =
-        measure::psnr(composite(shown[k], choices.background), composite(right[k], choices.background));
-    error += 0.5 * std::pow(10.0, -0.1 * psnr);
-  }
-  return -10.0 * std::log10(error);
+  return measure::psnr(shown, right, choices.background);
 }
 
 }  // namespace binosplat::preview

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "base/error.h"
 
@@ -36,6 +38,16 @@ TEST(Psnr, ByHand) {
   // Eight bits: one level of error everywhere is 20 log10(255).
   const Image grey = quantised(filled(8, 8, 3, 0.4f));
   EXPECT_NEAR(psnr(grey, filled(8, 8, 3, grey.data[0] + 1.0f / 255)), 48.1308, 1e-4);
+}
+
+TEST(Psnr, OfSeveralIsThatOfTheirMeanSquaredError) {
+  // A pair of which one picture has a third of the pixels, and an error of 0.1 in all of them: 0.01 / 4.
+  const std::vector<Picture> black = {Picture(4, 3), Picture(4, 1)};
+  std::vector<Picture> other = black;
+  for (glm::vec4& colour : other[1].colour) colour = {0.1f, 0.1f, 0.1f, 1.0f};
+  EXPECT_NEAR(psnr(black, other, glm::vec3(0.0f)), 20.0 + 10.0 * std::log10(4.0), 1e-4);
+  EXPECT_EQ(psnr(black, black, glm::vec3(0.0f)), infinite);
+  EXPECT_THROW(psnr(black, std::span(other).first(1), glm::vec3(0.0f)), Error);
 }
 
 TEST(Psnr, EqualIsInfinite) {
