@@ -27,7 +27,7 @@ void load(uint at) {
     stage_nothing(self);
     return;
   }
-  stage(self, splats[values[at]]);
+  stage(self, SPLAT(values[at]));
 #if SHOW == SHOW_LIGHT
   batch_light[self] = uintBitsToFloat(measured[values[at]]);
 #endif
@@ -51,7 +51,7 @@ void main() {
     size = min(end - batch, uint(BATCH));
     uint next = 0u;
     for (; next < size && !are_done(); next += BLEND_UNROLL) {
-      for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) blend(next + i);
+      for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) blend_from(next + i);
     }
     cut = cut || (!are_done() && next < size);
 #if RECORDS || WEIGHS

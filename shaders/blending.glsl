@@ -2,11 +2,16 @@
 //   COLUMN      pixels of an invocation, one below the other
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
-//   LONG_LISTS  1: only tiles of more than LONG_LIST pairs; 0: only the others
+//   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others; LISTS_ALL
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "splats.glsl"  // binding 12
+
+#define LISTS_SHORT 0
+#define LISTS_LONG 1
+#define LISTS_ALL 2
 
 #ifndef SHOW
 #define SHOW SHOW_PICTURE
@@ -15,15 +20,14 @@
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
 layout(std430, binding = 2) readonly buffer Values { uint values[]; };
-layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
-#if LONG_LISTS
+#if LISTS == LISTS_LONG
 layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  // tiles
 #endif
 #if RECORDS || WEIGHS
-layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (view, slot): bits of floats, or two words of a sum
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (slot, view): bits of floats, or two words of a sum
 shared uint batch_measured[BATCH];
 #endif
 #if RECORDS
@@ -45,14 +49,14 @@ uniform uint view_count;
 uniform uint tile_count;
 uniform uint list_per_view;  // 1 with --tiles all: a view's tiles share one list
 
-// alpha = sigma 2^-|L^T d|^2, d = pixel - mean: L is the lower Cholesky factor of Q log2(e) / 2. Sums of Q's own products can
-// turn negative, these squares cannot.
-shared vec4 batch_place[BATCH];   // mean, L.xx, L.yx
-shared vec2 batch_rest[BATCH];    // L.yy, opacity
+// -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage().
+shared vec4 batch_across[BATCH];  // a, u, 2 b, s
+shared vec2 batch_down[BATCH];    // v, c
 shared vec4 batch_colour[BATCH];  // rgb, depth
 
 uvec2 first_pixel;  // of the column
-vec2 pixel;         // the same
+vec2 pixel;         // the same, from the middle of the cell
+vec2 middle;        // of the cell
 uint size;          // splats of the batch
 vec3 colour[COLUMN];
 float z_sum[COLUMN];
@@ -98,26 +102,25 @@ bool are_done() {
   return all;
 }
 
-// AHEAD splats at once: their alphas do not wait for one another, only what they leave of T does.
-void blend(uint at) {
+// AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
+void blend(uint at[AHEAD]) {
   float alpha[AHEAD][COLUMN];
   for (uint k = 0u; k < AHEAD; ++k) {
-    vec4 place = batch_place[at + k];
-    vec2 rest = batch_rest[at + k];
-    precise float dx = pixel.x - place.x;
-    precise float x = place.z * dx;
+    vec4 across = batch_across[at[k]];
+    vec2 down = batch_down[at[k]];
+    precise float t = fma(across.x, pixel.x, across.y);
+    precise float level = fma(t, t, across.w);
+    precise float slope = fma(t, across.z, down.x);
     for (uint p = 0u; p < COLUMN; ++p) {
-      precise float dy = pixel.y + float(p) - place.y;
-      precise float u = fma(place.w, dy, x);
-      precise float v = rest.x * dy;
-      precise float square = fma(u, u, v * v);
-      precise float a = min(float(ALPHA_MAX), rest.y * exp2(-square));
-      alpha[k][p] = a >= float(ALPHA_MIN) ? a : 0.0;
+      precise float y = pixel.y + float(p);
+      precise float exponent = fma(y, fma(y, down.y, slope), level);
+      precise float a = exp2(-exponent);
+      alpha[k][p] = a >= float(ALPHA_MIN) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
     }
   }
   for (uint p = 0u; p < COLUMN; ++p) {
 #if SHOW == SHOW_ALPHAS
-    uint asked = min(uint(AHEAD), size - min(at, size));
+    uint asked = min(uint(AHEAD), size - min(at[0], size));
     if (!is_done(p)) told[p] += float(asked);
 #endif
     precise float left = transmittance[p];
@@ -139,14 +142,14 @@ void blend(uint at) {
 #endif
         }
         weights[k] = is_done(p) ? 0.0 : weight;
-        if (!is_done(p)) left = next;
+        left = is_done(p) ? 0.0 : next;
       }
     }
     for (uint k = 0u; k < AHEAD; ++k) {
-      vec4 c = batch_colour[at + k];
+      vec4 c = batch_colour[at[k]];
       float weight = weights[k];
 #if RECORDS || WEIGHS
-      if (weight > 0.0) measure(at + k, p, alpha[k][p]);
+      if (weight > 0.0) measure(at[k], p, alpha[k][p]);
       transmittance[p] -= weight;
 #endif
       precise float r = fma(weight, c.r, colour[p].r);
@@ -156,27 +159,47 @@ void blend(uint at) {
 #if SHOW == SHOW_VISIBLE
       if (weight > 0.0) told[p] += 1.0;
 #elif SHOW == SHOW_LIGHT
-      told[p] += weight * batch_light[at + k];
+      told[p] += weight * batch_light[at[k]];
 #endif
       colour[p] = vec3(r, g, b);
       z_sum[p] = z;
     }
-    transmittance[p] = is_done(p) ? 0.0 : left;
+    transmittance[p] = left;
   }
 }
 
+// Those that follow one another.
+void blend_from(uint first) {
+  uint at[AHEAD];
+  for (uint k = 0u; k < AHEAD; ++k) at[k] = first + k;
+  blend(at);
+}
+
 // A splat for the batch, and one that leaves no mark.
+//
+// alpha = sigma 2^-|L^T d|^2, d = pixel - mean, L the lower Cholesky factor of Q log2(e) / 2, as a polynomial of the pixel's
+// place from the middle of its cell. No splat is thinner than the low-pass, and where alpha can be seen the mean is no further
+// than a few of its widths: no term is large there, and their sum exact to 1e-4. Cells do not depend on the tiles' size.
 void stage(uint at, Splat splat) {
   const float scale = 0.72134752044448170;  // log2(e) / 2
-  float xx = sqrt(scale * splat.conic.x);
-  batch_place[at] = vec4(splat.mean, xx, scale * splat.conic.y / xx);
-  batch_rest[at] = vec2(scale / (splat.conic.w * xx), splat.opacity);
+  precise vec2 mean = splat.mean - middle;
+  precise float xx = sqrt(scale * splat.conic.x);
+  precise float yx = scale * splat.conic.y / xx;
+  precise float yy = scale / (splat.conic.w * xx);
+  precise float u = -fma(xx, mean.x, yx * mean.y);
+  precise float v = -yy * mean.y;
+  precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;
+  precise float level = fma(v, v, -bits);
+  precise float slope = 2.0 * v * yy;
+  precise float bend = fma(yx, yx, yy * yy);
+  batch_across[at] = vec4(xx, u, 2.0 * yx, level);
+  batch_down[at] = vec2(slope, bend);
   batch_colour[at] = vec4(splat.colour.rgb, splat.depth);
 }
 
 void stage_nothing(uint at) {
-  batch_place[at] = vec4(0.0);
-  batch_rest[at] = vec2(0.0);
+  batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
+  batch_down[at] = vec2(0.0);
   batch_colour[at] = vec4(0.0);
 }
 
@@ -189,7 +212,7 @@ uint begin = 0u, end = 0u;  // its list
 bool find_tile() {
   // A frame that is to be drawn again must leave the last one's colours, which contrast is measured against.
   if (counters.overflow != 0u) return false;
-#if LONG_LISTS
+#if LISTS == LISTS_LONG
   if (group_index() >= counters.long_lists) return false;
   tile = long_lists[group_index()];
 #else
@@ -200,15 +223,17 @@ bool find_tile() {
   uint list = list_per_view != 0u ? view_index : tile;
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];
-  return LONG_LISTS != 0 || end - begin <= LONG_LIST || list_per_view != 0u;
+  return LISTS != LISTS_SHORT || end - begin <= LONG_LIST || list_per_view != 0u;
 }
 
 // The pixels of this invocation, of which the first lies `in_tile`.
 void begin_pixels(uvec2 in_tile) {
   View view = views[view_index];
   uint nth = tile - view.tile_offset;
-  first_pixel = uvec2(nth % view.tiles_x, nth / view.tiles_x) * uint(TILE_SIZE) + in_tile;
-  pixel = vec2(first_pixel);
+  uvec2 corner = uvec2(nth % view.tiles_x, nth / view.tiles_x) * uint(TILE_SIZE);
+  middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
+  first_pixel = corner + in_tile;
+  pixel = vec2(first_pixel) - middle;
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x < view.width && first_pixel.y + p < view.height;
     colour[p] = vec3(0.0);

@@ -6,15 +6,15 @@
 #include "shared/saturate.glsl"
 #include "primitives/scan_block.glsl"
 #include "tiles/tiles.glsl"
+#include "splats.glsl"  // binding 12
 
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
-layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats: view * slots + slot
-layout(std430, binding = 3) readonly buffer Splats { Splat splats[]; };
+layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats: slot * view_count + view
 layout(std430, binding = 4) writeonly buffer TileCounts { uint tile_counts[]; };
-uniform uint slots;  // of one view
+uniform uint view_count;  // of the frame
 
 shared uvec4 box_at[TALL_EACH];
 shared uint tiles_at[TALL_EACH];
@@ -28,7 +28,7 @@ void main() {
   uint rows = 0u;
   if (has_one) {
     uint splat = tall[first + self];
-    uvec4 box = tile_box(splats[splat], views[splat / slots]);
+    uvec4 box = tile_box(SPLAT(splat), views[splat % view_count]);
     box_at[self] = box;
     tiles_at[self] = 0u;
     rows = box.w - box.y;
@@ -39,7 +39,7 @@ void main() {
     LAST_BEFORE(rows_before, nth, at)
     uint splat = tall[first + at];
     uvec4 box = box_at[at];
-    uvec2 columns = tile_row(splats[splat], views[splat / slots], box, box.y + nth - rows_before[at]);
+    uvec2 columns = tile_row(SPLAT(splat), views[splat % view_count], box, box.y + nth - rows_before[at]);
     atomicAdd(tiles_at[at], columns.y - columns.x);
   }
   barrier();

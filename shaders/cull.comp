@@ -37,17 +37,20 @@ void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 
 // The Gaussian's key, if any view of this invocation draws it: the same in all views of an order group.
 uint key_of(uint i) {
-  Gaussian g = gaussians[i];
+  Gaussian g = GAUSSIAN(i);
   mat3 axes = scaled_axes(g);
   uint key = DEPTH_KEY_NONE;
   for (uint v = view_begin + gl_LocalInvocationID.y; v < view_end; v += EYES) {
 #if OFFSETS > 0
-    g = gaussians[place_of(i, v)];
+    g = GAUSSIAN(place_of(i, v));
     axes = scaled_axes(g);
 #endif
     Splat splat;
     bool projected = is_kept(i, v) && project(views[v], g, axes, splat);
     if (projected) splat.colour.w = tile_level(v, page_first + i, g, axes, splat);
+#if HALF
+    if (projected) splat = rounded(splat);  // or an eye could get what it has not alone
+#endif
     bool drawn = projected && touches_a_tile(splat, views[v]);
     if (drawn) key = floatBitsToUint(splat.depth);
 #if RECORDS

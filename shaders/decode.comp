@@ -13,8 +13,14 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Anchors { Anchor anchors[]; };             // of the page
 layout(std430, binding = 2) readonly buffer Offsets { float offsets[]; };              // (anchor, k, 3)
 #include "networks.glsl"                                                               // bindings 3 and 4
+#if HALF
+#include "halves.glsl"
+layout(std430, binding = 5) writeonly buffer Gaussians { uvec4 gaussians[]; };   // (decoding, anchor, k), two each
+layout(std430, binding = 6) writeonly buffer Harmonics { uvec4 harmonics[]; };   // of degree 0, likewise
+#else
 layout(std430, binding = 5) writeonly buffer Gaussians { Gaussian gaussians[]; };      // (decoding, anchor, k)
 layout(std430, binding = 6) writeonly buffer Harmonics { vec4 harmonics[]; };          // of degree 0, likewise
+#endif
 layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decoding, anchor), bit k; KEPT_HIDDEN
 #if REUSE == 1
 #include "threshold/threshold.glsl"                                          // binding 7
@@ -75,30 +81,40 @@ bool decode(Anchor anchor, uint n, uint k, float logit, Hidden covariance, Hidde
   g.position = vec4(mean_of(anchor, n, k), 1.0 - 2.0 / (exp(2.0 * logit) + 1.0));  // tanh
   g.rotation = rotation / max(length(rotation), 1e-12);
   g.scale = vec4(anchor.scale.xyz * sigmoid(scale), 0.0);
+  vec3 coefficients = (rgb - 0.5) / 0.28209479177387814;
+#if HALF
+  gaussians[2u * to] = packed_place(g);
+  gaussians[2u * to + 1u] = packed_shape(g);
+  harmonics[to] = uvec4(packHalf2x16(coefficients.rg), packHalf2x16(vec2(coefficients.b, 0.0)), 0u, 0u);
+#else
   gaussians[to] = g;
-  harmonics[to] = vec4((rgb - 0.5) / 0.28209479177387814, 0.0);
+  harmonics[to] = vec4(coefficients, 0.0);
+#endif
   float sum = dot(g.rotation, vec4(1.0)) + dot(g.scale.xyz, vec3(1.0)) + dot(rgb, vec3(1.0));
   return abs(sum) < 1e38;
 }
 
-// Bits of the Gaussians kept; `to` is the place of the anchor's first.
+// Bits of the Gaussians kept; `to` is the place of the anchor's first. Opacities first: so many hidden units less are held
+// while the others are found.
 uint decode_anchor(Anchor anchor, uint n, vec3 towards, uint to) {
   float away = length(towards);
   vec4 sight = vec4(towards / away, away);
   vec3 mixed = bank_mix(sight);
+  float logits[OFFSETS];
   Hidden opacity = hidden_of(OPACITY, n, sight, mixed);
+  // Up to a uniform, not OFFSETS: unrolled, it takes compilers minutes.
+  for (uint k = 0u; k < offset_count; ++k) logits[k] = output_of(OPACITY_ROW + k, opacity);
   Hidden covariance = hidden_of(COVARIANCE, n, sight, mixed);
   Hidden colour = hidden_of(COLOUR, n, sight, mixed);
   uint bits = 0u;
-  // Up to a uniform, not OFFSETS: unrolled, it takes compilers minutes.
   for (uint k = 0u; k < offset_count; ++k) {
-    float logit = output_of(OPACITY_ROW + k, opacity);
-    if (logit > 0.0 && decode(anchor, n, k, logit, covariance, colour, to + k)) bits |= 1u << k;
+    if (logits[k] > 0.0 && decode(anchor, n, k, logits[k], covariance, colour, to + k)) bits |= 1u << k;
   }
   return bits;
 }
 
 void main() {
+  take_weights();
   uint at = thread_index();
   uint decoding = at / anchor_count;
   uint first = decoding * views_per_decoding;

@@ -1,8 +1,16 @@
 // The Gaussians of a page of the model. Those of Scaffold-GS depend on the eye: a view has those of its decoding, as far as
 // the networks keep them.
 //   OFFSETS   K of Scaffold-GS, 0 for other models
+//   HALF      1: in half precision
 
+#if HALF
+#include "halves.glsl"
+layout(std430, binding = 1) readonly buffer Gaussians { uvec4 gaussians[]; };  // (decoding, Gaussian), two each
+#define GAUSSIAN(at) unpack_gaussian(gaussians[2u * (at)], gaussians[2u * (at) + 1u])
+#else
 layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // (decoding, Gaussian)
+#define GAUSSIAN(at) gaussians[at]
+#endif
 uniform uint page_first;
 uniform uint page_count;
 

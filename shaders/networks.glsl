@@ -1,6 +1,7 @@
 // The networks of Scaffold-GS (Lu et al. 2024): two layers each. Of the first, what depends on the anchor's feature alone is
 // computed once a model (ViewFree); what the eye adds is left: direction and distance. Hidden units stand in quads.
 //   HIDDEN   hidden units, a multiple of 4     OFFSETS   K, Gaussians of an anchor     BANK   1 with a feature bank
+//   WEIGHTS  vec4s of all weights, if they go into shared memory; else 0
 
 #define QUADS (HIDDEN / 4)
 
@@ -23,6 +24,20 @@ layout(std430, binding = 4) readonly buffer ViewFree { vec4 view_free[]; };
 
 uniform uint anchor_count;  // of the page
 
+// All invocations call it before anything else.
+#if WEIGHTS > 0
+shared vec4 weights[WEIGHTS];
+
+void take_weights() {
+  for (uint i = gl_LocalInvocationIndex; i < WEIGHTS; i += THREADS) weights[i] = networks[i];
+  barrier();
+}
+#else
+#define weights networks
+
+void take_weights() {}
+#endif
+
 struct Hidden {
   vec4 quads[QUADS];
 };
@@ -30,14 +45,14 @@ struct Hidden {
 vec4 from_sight(uint network, uint quad, vec4 sight) {
   uint at = network * uint(QUADS + HIDDEN);
   uint row = at + uint(QUADS) + 4u * quad;
-  return networks[at + quad] + vec4(dot(networks[row], sight), dot(networks[row + 1u], sight),
-                                    dot(networks[row + 2u], sight), dot(networks[row + 3u], sight));
+  return weights[at + quad] + vec4(dot(weights[row], sight), dot(weights[row + 1u], sight),
+                                    dot(weights[row + 2u], sight), dot(weights[row + 3u], sight));
 }
 
 float output_of(uint row, Hidden hidden) {
   uint at = uint((3 + BANK) * (QUADS + HIDDEN)) + row * uint(QUADS + 1);
-  vec4 sum = vec4(networks[at + uint(QUADS)].x, 0.0, 0.0, 0.0);
-  for (int q = 0; q < QUADS; ++q) sum += networks[at + uint(q)] * hidden.quads[q];
+  vec4 sum = vec4(weights[at + uint(QUADS)].x, 0.0, 0.0, 0.0);
+  for (int q = 0; q < QUADS; ++q) sum += weights[at + uint(q)] * hidden.quads[q];
   return (sum.x + sum.y) + (sum.z + sum.w);
 }
 

@@ -7,6 +7,7 @@
 #include "shared/saturate.glsl"
 #include "primitives/scan_block.glsl"
 #include "tiles/tiles.glsl"
+#include "splats.glsl"  // binding 12
 
 layout(local_size_x = THREADS) in;
 
@@ -16,10 +17,9 @@ layout(std430, binding = 2) readonly buffer Views { View views[]; };
 layout(std430, binding = 3) readonly buffer Order { uint order[]; };
 layout(std430, binding = 4) readonly buffer PairOffsets { uint pair_offsets[]; };  // scanned
 layout(std430, binding = 5) readonly buffer TileCounts { uint tile_counts[]; };
-layout(std430, binding = 6) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 7) writeonly buffer Keys { uint keys[]; };      // tile, counted over all views
-layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // splat: view * slots + slot
-uniform uint slots;  // of one view
+layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // splat: slot * view_count + view
+uniform uint view_count;  // of the frame
 uniform uint view_begin;
 uniform uint view_end;
 
@@ -58,9 +58,9 @@ uint take_splat(uint rank, uint nth) {
   rank += nth / in_views;
   if (rank >= order_amounts[0].count) return 0u;
   uint v = view_begin + nth % in_views;
-  uint splat = v * slots + order[rank];
+  uint splat = order[rank] * view_count + v;
   if (tile_counts[splat] == 0u) return 0u;
-  uvec4 box = tile_box(splats[splat], views[v]);
+  uvec4 box = tile_box(SPLAT(splat), views[v]);
   splat_at[self] = splat;
   box_at[self] = box.xy | box.zw << 16;
   return box.w - box.y;
@@ -71,11 +71,11 @@ uint take_row(uint nth) {
   LAST_BEFORE(rows_before, nth, at)
   uint self = gl_LocalInvocationIndex;
   uint splat = splat_at[at];
-  uint v = splat / slots;
+  uint v = splat % view_count;
   View view = views[v];
   uvec4 box = uvec4(box_at[at] & 0xFFFFu, box_at[at] >> 16);
   uint row = box.y + nth - rows_before[at];
-  uvec2 columns = tile_row(splats[splat], view, box, row);
+  uvec2 columns = tile_row(SPLAT(splat), view, box, row);
   row_splat[self] = splat;
 #if TILES == TILES_ALL
   row_tile[self] = v;  // one list a view

@@ -9,7 +9,7 @@ layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 1) readonly buffer Order { uint order[]; };
 layout(std430, binding = 2) readonly buffer TileCounts { uint tile_counts[]; };
 layout(std430, binding = 3) writeonly buffer PairOffsets { uint pair_offsets[]; };
-uniform uint slots;  // of one view
+uniform uint view_count;  // of the frame
 uniform uint view_begin;
 uniform uint view_end;
 
@@ -17,6 +17,6 @@ void main() {
   uint rank = thread_index();
   if (rank >= amounts[0].count) return;
   uint sum = 0u;
-  for (uint v = view_begin; v < view_end; ++v) sum += tile_counts[v * slots + order[rank]];
+  for (uint v = view_begin; v < view_end; ++v) sum += tile_counts[order[rank] * view_count + v];
   pair_offsets[rank] = sum;
 }

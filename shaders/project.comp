@@ -1,29 +1,30 @@
 // Stage 1, project, last part: the splats of the Gaussians that cull.comp found, side by side in index order. One invocation
-// a Gaussian and eye.
+// a Gaussian, for all views of the order group.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "projection.glsl"
 #include "tiles/tiles.glsl"
 
-layout(local_size_x = THREADS, local_size_y = EYES) in;
+layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "gaussians.glsl"            // bindings 1 and 9
 #include "threshold/threshold.glsl"  // binding 7
 #include "sh.glsl"  // binding 2, of the page
+#define SPLATS_WRITTEN
+#include "splats.glsl"  // binding 12
 layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
-layout(std430, binding = 5) writeonly buffer Splats { Splat splats[]; };          // (view, slot)
-layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };  // (view, slot)
+layout(std430, binding = 6) writeonly buffer TileCounts { uint tile_counts[]; };  // (slot, view)
 #if RECORDS || WEIGHS
-layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (view, slot), of one word or two
+layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (slot, view), of one word or two
 #endif
 layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for count_tall.comp, in any order
 uniform uint view_begin;
 uniform uint view_end;
-uniform uint slots;  // of one view
+uniform uint view_count;  // of the frame
 
 void leave_aside(uint splat) {
   uint place = atomicAdd(counters.tall, 1u);
@@ -38,33 +39,43 @@ void main() {
   if (slot >= amounts[0].count) return;
   uint i = indices[slot] - page_first;  // wraps, and is too large, before the page
   if (i >= page_count) return;
-  Gaussian g = gaussians[i];
+  Gaussian g = GAUSSIAN(i);
   mat3 axes = scaled_axes(g);
-  for (uint v = view_begin + gl_LocalInvocationID.y; v < view_end; v += EYES) {
+#if SH_DEGREE == 0 && OFFSETS == 0
+  vec3 colour = sh_colour(i, vec3(0.0));  // the same for every eye
+#endif
+  for (uint v = view_begin; v < view_end; ++v) {
     View view = views[v];
 #if OFFSETS > 0
-    g = gaussians[place_of(i, v)];
+    g = GAUSSIAN(place_of(i, v));
     axes = scaled_axes(g);
 #endif
     Splat splat;
     uint tiles = 0u;
     if (is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(v, indices[slot], g, axes, splat);
+#if HALF
+      splat = rounded(splat);  // as `pairs` will find it
+#endif
       uvec4 box = tile_box(splat, view);
       bool is_tall = box.w - box.y > TALL_ROWS;
       tiles = is_tall ? 1u : tile_count(splat, view, box);  // not known yet
-      if (is_tall) leave_aside(v * slots + slot);
+      if (is_tall) leave_aside(slot * view_count + v);
     }
-    tile_counts[v * slots + slot] = tiles;
+    tile_counts[slot * view_count + v] = tiles;
 #if WEIGHS
-    measured[2u * (v * slots + slot)] = 0u;
-    measured[2u * (v * slots + slot) + 1u] = 0u;
+    measured[2u * (slot * view_count + v)] = 0u;
+    measured[2u * (slot * view_count + v) + 1u] = 0u;
 #elif RECORDS
-    measured[v * slots + slot] = 0u;
+    measured[slot * view_count + v] = 0u;
 #endif
     if (tiles > 0u) {
+#if SH_DEGREE == 0 && OFFSETS == 0
+      splat.colour.rgb = colour;
+#else
       splat.colour.rgb = sh_colour(place_of(i, v), normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
-      splats[v * slots + slot] = splat;
+#endif
+      write_splat(slot * view_count + v, splat);
     }
   }
 }

@@ -1,16 +1,31 @@
 // Spherical harmonics of 3D-GS (real, with Condon-Shortley signs), evaluated along a unit direction in world axes.
 // SH_DEGREE is the model's. Coefficients are packed without gaps: coefficient k is floats 3k to 3k + 2.
 
+//   HALF   1: eight coefficients in four words
 #define SH_VEC4S ((3 * (SH_DEGREE + 1) * (SH_DEGREE + 1) + 3) / 4)
 
+#if HALF
+#define SH_UVEC4S ((SH_VEC4S + 1) / 2)
+layout(std430, binding = 2) readonly buffer Harmonics { uvec4 harmonics[]; };
+#else
 layout(std430, binding = 2) readonly buffer Harmonics { vec4 harmonics[]; };
+#endif
 
 #define SH_FLOAT(i) coefficients[(i) / 4][(i) % 4]
 #define SH(k) vec3(SH_FLOAT(3 * (k)), SH_FLOAT(3 * (k) + 1), SH_FLOAT(3 * (k) + 2))
 
 vec3 sh_colour(uint gaussian, vec3 d) {
+#if HALF
+  vec4 coefficients[2 * SH_UVEC4S];
+  for (int i = 0; i < SH_UVEC4S; ++i) {
+    uvec4 eight = harmonics[gaussian * uint(SH_UVEC4S) + uint(i)];
+    coefficients[2 * i] = vec4(unpackHalf2x16(eight.x), unpackHalf2x16(eight.y));
+    coefficients[2 * i + 1] = vec4(unpackHalf2x16(eight.z), unpackHalf2x16(eight.w));
+  }
+#else
   vec4 coefficients[SH_VEC4S];
   for (int i = 0; i < SH_VEC4S; ++i) coefficients[i] = harmonics[gaussian * uint(SH_VEC4S) + uint(i)];
+#endif
 
   precise vec3 c = 0.28209479177387814 * SH(0) + 0.5;
 #if SH_DEGREE >= 1

@@ -27,7 +27,7 @@ uniform uint shift;
 #define ROUNDS (SORT_BLOCK / THREADS)
 // At first a counter of each subgroup and digit: how many keys so far, then where they begin in the block. Later the
 // block's keys, then its values, in their new order. In one array, for more groups at a time.
-shared uint board[SORT_BLOCK];
+shared uint board[max(SORT_BLOCK, SUBGROUPS << DIGIT_BITS)];
 shared uint moves[DIGITS];  // from a place in the block to the place in the buffer, modulo 2^32
 
 uint digit_of(uint key) { return (key >> shift) % DIGITS; }

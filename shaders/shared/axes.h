@@ -35,6 +35,10 @@
 #define DECODE_EYES 0
 #define DECODE_CYCLOPEAN 1
 
+// --precision: of what a frame keeps of Gaussians and splats.
+#define PRECISION_FULL 0
+#define PRECISION_HALF 1
+
 // --layout: how both eyes are shown. Those from LAYOUT_ANAGLYPH on mix their colours.
 #define LAYOUT_SEPARATE 0
 #define LAYOUT_MULTI_VIEW 1
@@ -115,6 +119,11 @@ inline constexpr Choice th_eyes_choices[] = {
 inline constexpr Choice decode_choices[] = {
     {"eyes", "each eye its own: exact"},
     {"cyclopean", "both eyes of a pair share those of an eye between them"},
+};
+
+inline constexpr Choice precision_choices[] = {
+    {"full", "fp32: 68 dB and more against float64"},
+    {"half", "fp16 where it can be had for 60 dB: less memory, faster"},
 };
 
 inline constexpr Choice layout_choices[] = {

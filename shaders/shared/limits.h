@@ -18,8 +18,9 @@
 // J is evaluated at most this share of the picture's size beyond its edges; 0.15 a side is INRIA's 1.3
 // (METHOD 2).
 #define CLAMP_MARGIN 0.15
-// Side of a tile in px unless --tile says otherwise.
+// Side of a tile in px where nothing else is known; and what leaves it to the frame.
 #define TILE_SIZE_DEFAULT 16
+#define TILE_SIZE_AUTO 0
 // Side of the tiles in px that an anchor of Scaffold-GS must touch, as trained.
 #define ANCHOR_TILE 16
 
@@ -46,16 +47,23 @@
 // Pixels that a work group of `present` writes: each row of them is read as 512 bytes on end.
 #define PRESENT_COLUMNS 32u
 #define PRESENT_ROWS 8u
-// Elements that one work group scans, compacts or sorts: several rounds of THREADS.
+// Elements that one work group scans, compacts or sorts: several rounds of THREADS. A sort of few has smaller
+// blocks, or they would not fill a GPU; its programs define theirs (primitives/radix_sort.h).
 #define SCAN_BLOCK 2048
 #define COMPACT_BLOCK 2048
+#define SORT_FEW 524288
+#define SORT_BLOCK_FEW 1024
+#ifndef SORT_BLOCK
 #define SORT_BLOCK 4096
+#endif
 // Bits of a radix sort's digit: at most so many, where that saves a pass over 8 (primitives/radix_sort.h).
 #define SORT_BITS_MAX 9
 // Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
 // of lanes together), so a tile's list may have 8 times as many entries before it is cut; and then it is
 // reported.
 #define BLEND_UNROLL 8
+// Side in px of the cells that the blend counts a pixel's place in: that of the largest tiles.
+#define BLEND_CELL 32u
 // A tile with more pairs than this is drawn by more invocations, of a launch that starts before the others'.
 #ifndef LONG_LIST
 #define LONG_LIST 2048

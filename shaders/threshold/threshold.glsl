@@ -21,7 +21,7 @@ float threshold_in(uint v, uint gaussian, Gaussian g, mat3 axes, Splat splat) {
   // The other eye's own, where it has it.
   uint i = gaussian - page_first;
   if (!is_kept(i, v ^ 1u)) return own;
-  g = gaussians[place_of(i, v ^ 1u)];
+  g = GAUSSIAN(place_of(i, v ^ 1u));
   axes = scaled_axes(g);
 #endif
   Splat other;

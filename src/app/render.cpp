@@ -97,7 +97,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
               Model& model, std::optional<FollowedLevels>& followed, RenderReport& report) {
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
-  render::Frame frame(context, report.model);
+  render::Frame frame(context, report.model, settings.precision);
   stereo::Show show(context, report.model);
   const CalibratedSettings calibrated(options, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && options.calibration.empty())

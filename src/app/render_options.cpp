@@ -219,9 +219,13 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
   choose(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
          decode_choices)
       ->group(group);
-  sub.add_option("--tile", o.tile, "Side of a tile in px (16)")
-      ->check(one_of({8, 16, 32}))
-      ->type_name("8|16|32")
+  sub.add_option("--tile", o.tile,
+                 "Side of a tile in px (auto: 16, and for exact pictures 32\nwhere that is faster)")
+      ->check(one_of<std::string>({"auto", "8", "16", "32"}))
+      ->type_name("auto|8|16|32")
+      ->group(group);
+  choose(sub, "--precision", o.precision, "What is kept of the model and of a frame (full)",
+         precision_choices)
       ->group(group);
   sub.add_option(
          "--reference-until", o.reference_until,

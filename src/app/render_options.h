@@ -70,7 +70,8 @@ struct RenderOptions {
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
   std::string decode;            // of a Scaffold-GS model; empty: eyes
-  int tile = TILE_SIZE_DEFAULT;
+  std::string tile = "auto";     // px
+  std::string precision = "full";
   std::string reference_until;
   std::string backend = "auto";
   int device = -1;

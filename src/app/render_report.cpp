@@ -148,6 +148,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   json["visible"] = drawn.report.visible;
   json["pairs"] = drawn.report.pairs;
   json["gpu_ms"] = drawn.report.total_ms;
+  json["tile"] = drawn.report.tile_size;
   json["depth_orders"] = drawn.report.order_groups;
   json["drawn_again"] = drawn.report.redrawn;
   if (options.quality || !options.calibration.empty()) json["loss"] = drawn.report.loss;
@@ -163,7 +164,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
 ordered_json settings_json(const RenderReport& report) {
   const RenderOptions& o = report.options;
   ordered_json json = {{"tiles", o.tiles},
-                       {"tile", o.tile},
+                       {"tile", o.tile == "auto" ? ordered_json(o.tile) : ordered_json(std::stoi(o.tile))},
+                       {"precision", o.precision},
                        {"near", report.near_plane},
                        {"antialiased", report.model.antialiased},
                        {"kernel_px2", report.model.kernel_px2},

@@ -64,7 +64,7 @@ Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras,
       cameras_(std::move(cameras)),
       up_(up),
       folder_(std::move(folder)),
-      frame_(context, model_),
+      frame_(context, model_, choices.settings.precision),
       presenter_(context),
       show_(context, model_),
       shown_colours_(context, "pixels to show") {}

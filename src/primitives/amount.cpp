@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "shared/limits.h"
-
 namespace binosplat::primitives {
 
 namespace {
@@ -21,18 +19,19 @@ void split(std::uint32_t groups, std::uint32_t groups_max, std::uint32_t& x, std
 
 }  // namespace
 
-shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max) {
+shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max, std::uint32_t block) {
   shared::Amount a{};
   a.count = count;
   split(blocks_of(count, THREADS), groups_max, a.threads_x, a.threads_y, a.threads_z);
   split(std::max(1u, blocks_of(count, SCAN_BLOCK)), groups_max, a.scan_x, a.scan_y, a.scan_z);
-  split(blocks_of(count, SORT_BLOCK), groups_max, a.sort_x, a.sort_y, a.sort_z);
+  split(blocks_of(count, block), groups_max, a.sort_x, a.sort_y, a.sort_z);
   return a;
 }
 
-SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t digit_bits, std::uint32_t groups_max) {
-  return {make_amount(count, groups_max),
-          make_amount(blocks_of(count, SORT_BLOCK) << digit_bits, groups_max)};
+SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t digit_bits, std::uint32_t groups_max,
+                              std::uint32_t block) {
+  return {make_amount(count, groups_max, block),
+          make_amount(blocks_of(count, block) << digit_bits, groups_max)};
 }
 
 }  // namespace binosplat::primitives

@@ -18,8 +18,10 @@ void PairBuffers::reserve(std::int64_t count) {
   for (gl::Buffer* buffer : {&keys_, &keys_other_, &values_, &values_other_}) buffer->reserve(count * 4);
 }
 
-void RadixSort::reserve(std::int64_t count) {
-  const std::int64_t counters = (count / SORT_BLOCK + 1) << SORT_BITS_MAX;
+std::uint32_t PairBuffers::block() const { return capacity() <= SORT_FEW ? SORT_BLOCK_FEW : SORT_BLOCK; }
+
+void RadixSort::reserve(const PairBuffers& pairs) {
+  const std::int64_t counters = (pairs.capacity() / pairs.block() + 1) << SORT_BITS_MAX;
   histogram_.reserve(counters * 4);
   scan_.reserve(counters);
 }
@@ -31,7 +33,8 @@ std::uint32_t RadixSort::passes(std::uint32_t bits) { return (bits + SORT_BITS_M
 void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs,
                     std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
-  const gl::Defines defines = {{"DIGIT_BITS", std::to_string(digit_bits(bits))}};
+  gl::Defines defines = pairs.block_define();
+  defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
   const gl::Program& count = context.program("primitives/sort_count.comp", defines);
   const gl::Program& scatter =
       context.program(context.limits().subgroups_of_32 ? "primitives/sort_scatter_subgroups.comp"

@@ -1,6 +1,7 @@
 #pragma once
 // Stable radix sort of (key, value) pairs on the GPU, least significant digit first, 8 or 9 bits a pass.
 
+#include <string>
 #include <utility>
 
 #include "gl/dispatch.h"
@@ -14,6 +15,11 @@ class PairBuffers {
   PairBuffers(gl::Context& context, const std::string& label);
   void reserve(std::int64_t count);
   std::int64_t capacity() const { return keys_.bytes() / 4; }
+
+  /// Pairs that a work group of the sort has: fewer where there is room for few. Who fills SortAmounts for
+  /// them needs it, programs as the define SORT_BLOCK.
+  std::uint32_t block() const;
+  gl::Defines block_define() const { return {{"SORT_BLOCK", std::to_string(block())}}; }
 
   /// Where the pairs are now.
   gl::Buffer& keys() { return flipped_ ? keys_other_ : keys_; }
@@ -33,8 +39,8 @@ class RadixSort {
   explicit RadixSort(gl::Context& context)
       : histogram_(context, "counters of the radix sort"), scan_(context) {}
 
-  /// Room for `count` pairs.
-  void reserve(std::int64_t count);
+  /// Room to sort as many pairs as they have room for.
+  void reserve(const PairBuffers& pairs);
 
   /// Bits that each pass of a sort by `bits` bits takes: 8, or 9 where that makes a pass less; and the
   /// passes.

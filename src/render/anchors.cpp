@@ -128,7 +128,9 @@ std::int64_t anchor_bytes(const Scaffold& scaffold) {
 }
 
 void NetworkBuffers::upload(const Scaffold& scaffold) {
-  weights.upload(pack_networks(scaffold));
+  const std::vector<glm::vec4> packed = pack_networks(scaffold);
+  weights.upload(packed);
+  bytes = static_cast<std::int64_t>(packed.size() * sizeof(glm::vec4));
   hidden = static_cast<std::uint32_t>(padded_hidden(scaffold));
   bank = scaffold.bank.has_value();
 }

@@ -1,5 +1,6 @@
 #include <bit>
 #include <cstddef>
+#include <string_view>
 
 #include "render/stages.h"
 
@@ -14,6 +15,9 @@ struct Variant {
   int show = SHOW_PICTURE;
 };
 
+// LISTS of blending.glsl.
+enum class Lists { of_short, of_long, all };
+
 // Who measures or counts has the tile's splats before all its pixels; and what tests nothing shows what tests
 // lose.
 bool by_blocks(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
@@ -22,28 +26,33 @@ bool by_blocks(const gl::Context& context, const FrameShape& shape, const Varian
 }
 
 // The tile test is no part of these programs: with every test the same lists give the same bits. Nor does a
-// pixel's colour depend on how many of them an invocation draws.
+// pixel's colour depend on how many of them an invocation draws, or on the tiles' size.
 const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
-                           bool long_lists) {
-  const bool blocks = by_blocks(context, shape, variant);
-  const int column = blocks && shape.settings.tile_size > 8 ? 4 : 2;
-  return context.program(blocks ? "blend_blocks.comp" : "blend.comp",
-                         {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-                          {"LONG_LISTS", long_lists ? "1" : "0"},
-                          {"COLUMN", std::to_string(long_lists ? 1 : column)},
-                          {"AHEAD", long_lists ? "8" : "4"},
-                          {"RECORDS", variant.records ? "1" : "0"},
-                          {"WEIGHS", variant.weighs ? "1" : "0"},
-                          {"CONTRAST", std::to_string(variant.contrast)},
-                          {"SHOW", std::to_string(variant.show)}});
+                           const char* name, Lists lists) {
+  const bool wide = std::string_view(name) != "blend.comp" && shape.settings.tile_size > 8;
+  const bool is_long = lists == Lists::of_long;
+  const bool together = lists == Lists::all;
+  return context.program(name, {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+                                {"LISTS", std::to_string(static_cast<int>(lists))},
+                                {"COLUMN", std::to_string(is_long ? 1
+                                                          : wide  ? 4
+                                                                  : 2)},
+                                {"AHEAD", is_long    ? "8"
+                                          : together ? "2"
+                                                     : "4"},
+                                {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
+                                {"RECORDS", variant.records ? "1" : "0"},
+                                {"WEIGHS", variant.weighs ? "1" : "0"},
+                                {"CONTRAST", std::to_string(variant.contrast)},
+                                {"SHOW", std::to_string(variant.show)}});
 }
 
 void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,
          const gl::Buffer& measured) {
   gl::Context& context = dispatcher.context();
   const glm::vec3& background = shape.settings.background;
-  const auto draw = [&](bool long_lists, const gl::Work& work) {
-    dispatcher.start(program(context, shape, variant, long_lists), work,
+  const auto draw = [&](const char* name, Lists lists, const gl::Work& work) {
+    dispatcher.start(program(context, shape, variant, name, lists), work,
                      {{"Views", buffers.views},
                       {"Ranges", buffers.ranges},
                       {"Values", buffers.pairs.values()},
@@ -62,8 +71,14 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"tile_count", shape.tile_count},
                       {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
   };
-  draw(true, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
-  draw(false, gl::Work::of_groups(shape.tile_count));
+  const bool blocks = by_blocks(context, shape, variant);
+  if (blocks && shape.settings.tile_size == 32) {
+    draw("blend_together.comp", Lists::all, gl::Work::of_groups(shape.tile_count));
+  } else {
+    const char* name = blocks ? "blend_blocks.comp" : "blend.comp";
+    draw(name, Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
+    draw(name, Lists::of_short, gl::Work::of_groups(shape.tile_count));
+  }
   dispatcher.wait_for_writes();
 }
 

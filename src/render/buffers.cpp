@@ -7,21 +7,32 @@
 
 #include "base/error.h"
 #include "primitives/amount.h"
+#include "render/halves.h"
 
 namespace binosplat::render {
 
 namespace {
 
 // Of one Gaussian, with the padding that vec4s need.
-std::int64_t harmonic_bytes(int degree) { return (3 * sh_count(degree) + 3) / 4 * 16; }
+std::int64_t harmonic_bytes(int degree, int precision) {
+  const int in_a_word = precision == PRECISION_HALF ? 2 : 1;
+  return (3 * sh_count(degree) + 4 * in_a_word - 1) / (4 * in_a_word) * 16;
+}
+
+std::int64_t gaussian_bytes(int precision) {
+  return precision == PRECISION_HALF ? sizeof(Halves) : sizeof(shared::Gaussian);
+}
+
+std::int64_t splat_bytes(int precision) {
+  return precision == PRECISION_HALF ? sizeof(Halves) : sizeof(shared::Splat);
+}
+
+shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
+  return {glm::vec4(model.position[i], model.opacity[i]), model.rotation[i], glm::vec4(model.scale[i], 0.0f)};
+}
 
 void pack_gaussians(const Model& model, std::size_t first, std::span<shared::Gaussian> packed) {
-  for (std::size_t k = 0; k < packed.size(); ++k) {
-    const std::size_t i = first + k;
-    packed[k].position = glm::vec4(model.position[i], model.opacity[i]);
-    packed[k].rotation = model.rotation[i];
-    packed[k].scale = glm::vec4(model.scale[i], 0.0f);
-  }
+  for (std::size_t k = 0; k < packed.size(); ++k) packed[k] = gaussian_of(model, first + k);
 }
 
 // `padded` is zero between the coefficients of two Gaussians.
@@ -31,13 +42,33 @@ void pad_harmonics(const Model& model, std::size_t first, std::span<float> padde
     std::copy_n(&model.sh[(first + k) * floats], floats, &padded[k * stride]);
 }
 
-// A page of a model, in pieces: switches of levels must not wait for memory that is touched once.
-void upload_page(const Model& model, const ModelBuffers::Page& page) {
-  constexpr std::size_t piece = 1 << 15;
-  const std::size_t stride = static_cast<std::size_t>(harmonic_bytes(model.degree)) / sizeof(float);
+// Gaussians of a page that are uploaded at a time: switches of levels must not wait for memory that is
+// touched once.
+constexpr std::size_t piece = 1 << 15;
+
+void upload_halves(const Model& model, const ModelBuffers::Page& page) {
   const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  page.gaussians->reserve(page.count * static_cast<std::int64_t>(sizeof(shared::Gaussian)));
-  page.harmonics->reserve(page.count * harmonic_bytes(model.degree));
+  const std::size_t words = static_cast<std::size_t>(harmonic_bytes(model.degree, PRECISION_HALF)) / 4;
+  std::vector<Halves> gaussians;
+  std::vector<std::uint32_t> harmonics;
+  for (std::size_t at = 0; at < page.count; at += piece) {
+    const std::size_t count = std::min<std::size_t>(piece, page.count - at);
+    gaussians.resize(count);
+    harmonics.resize(count * words);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = page.first + at + k;
+      gaussians[k] = pack(gaussian_of(model, i));
+      pack(std::span(model.sh).subspan(i * floats, floats), std::span(harmonics).subspan(k * words, words));
+    }
+    page.gaussians->upload_part<Halves>(gaussians, at);
+    page.harmonics->upload_part<std::uint32_t>(harmonics, at * words);
+  }
+}
+
+void upload_floats(const Model& model, const ModelBuffers::Page& page) {
+  const std::size_t stride =
+      static_cast<std::size_t>(harmonic_bytes(model.degree, PRECISION_FULL)) / sizeof(float);
+  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
   std::vector<shared::Gaussian> packed(std::min<std::size_t>(piece, page.count));
   std::vector<float> padded(stride == floats ? 0 : packed.size() * stride);
   for (std::size_t at = 0; at < page.count; at += piece) {
@@ -57,13 +88,15 @@ void upload_page(const Model& model, const ModelBuffers::Page& page) {
 
 }  // namespace
 
-ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
+ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, int precision,
+                           std::uint32_t page_gaussians)
     : networks(context), page_gaussians_(page_gaussians) {
-  upload(context, model);
+  upload(context, model, precision);
 }
 
-void ModelBuffers::upload(gl::Context& context, const Model& model) {
-  const std::int64_t each = std::max<std::int64_t>(sizeof(shared::Gaussian), harmonic_bytes(model.degree));
+void ModelBuffers::upload(gl::Context& context, const Model& model, int precision) {
+  precision_ = precision;
+  const std::int64_t each = std::max(gaussian_bytes(precision), harmonic_bytes(model.degree, precision));
   const std::int64_t reach = context.limits().storage_block_bytes / each;
   const std::size_t step = page_gaussians_ != 0 ? page_gaussians_ : static_cast<std::size_t>(reach);
   box.reset();
@@ -85,7 +118,13 @@ void ModelBuffers::upload_pages(gl::Context& context, const Model& model, std::s
     page.anchors.reset();
     if (!page.gaussians) page.gaussians = std::make_unique<gl::Buffer>(context, "Gaussians");
     if (!page.harmonics) page.harmonics = std::make_unique<gl::Buffer>(context, "SH coefficients");
-    upload_page(model, page);
+    page.gaussians->reserve(page.count * gaussian_bytes(precision_));
+    page.harmonics->reserve(page.count * harmonic_bytes(model.degree, precision_));
+    if (precision_ == PRECISION_HALF) {
+      upload_halves(model, page);
+    } else {
+      upload_floats(model, page);
+    }
   }
 }
 
@@ -108,8 +147,8 @@ void ModelBuffers::reserve(const FrameShape& shape) {
   if (shape.offset_count == 0) return;
   for (Page& page : pages) {
     const std::int64_t gaussians = std::int64_t{shape.decoding_count()} * page.count;
-    page.gaussians->reserve(gaussians * static_cast<std::int64_t>(sizeof(shared::Gaussian)));
-    page.harmonics->reserve(gaussians * harmonic_bytes(0));
+    page.gaussians->reserve(gaussians * gaussian_bytes(precision_));
+    page.harmonics->reserve(gaussians * harmonic_bytes(0, precision_));
     for (gl::Buffer* kept : {page.anchors->kept.get(), page.anchors->kept_last.get()})
       kept->reserve(std::int64_t{shape.decoding_count()} * page.anchors->count * 4);
   }
@@ -130,15 +169,17 @@ std::int64_t starting_pairs(const FrameShape& shape) {
 MemoryNeeds memory_needs(const FrameShape& shape) {
   MemoryNeeds needs;
   const std::uint32_t decodings = shape.offset_count == 0 ? 1 : shape.decoding_count();
+  const int precision = shape.settings.precision;
   needs.model =
       shape.anchor_bytes + std::int64_t{decodings} * shape.gaussian_count *
-                               (std::int64_t{sizeof(shared::Gaussian)} + harmonic_bytes(shape.degree));
+                               (gaussian_bytes(precision) + harmonic_bytes(shape.degree, precision));
   const bool measured = measures(shape.settings.transmittance);
-  const std::int64_t splat_bytes = sizeof(shared::Splat) + sizeof(std::uint32_t) * (measured ? 3 : 2);
-  const std::int64_t gaussian_bytes = 4 + (measured ? shape.asked * 8 : 0);
-  const std::int64_t pair_bytes = 4 * 4;                                     // tile and splat, twice
-  const std::int64_t slot_bytes = shape.view_count() * splat_bytes + 6 * 4;  // indices, order twice, offsets
-  needs.frame = shape.gaussian_count * gaussian_bytes + shape.slots * slot_bytes + shape.pixel_count * 20 +
+  const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
+  const std::int64_t bytes_a_gaussian = 4 + (measured ? shape.asked * 8 : 0);
+  const std::int64_t pair_bytes = 4 * 4;  // tile and splat, twice
+  const std::int64_t slot_bytes =
+      shape.view_count() * bytes_a_splat + 6 * 4;  // indices, order twice, offsets
+  needs.frame = shape.gaussian_count * bytes_a_gaussian + shape.slots * slot_bytes + shape.pixel_count * 20 +
                 shape.tile_count * 12LL + starting_pairs(shape) * pair_bytes;
   return needs;
 }
@@ -201,7 +242,7 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) 
   if (shape.settings.weigh) measured.reserve(slots * shape.view_count() * 8);
   order.reserve(slots);
   pair_offsets.reserve(slots * 4);
-  splats.reserve(slots * shape.view_count() * static_cast<std::int64_t>(sizeof(shared::Splat)));
+  splats.reserve(slots * shape.view_count() * splat_bytes(shape.settings.precision));
   tile_counts.reserve(slots * shape.view_count() * 4);
   tall.reserve(slots * shape.view_count() * 4);
   pair_amounts.reserve(sizeof(primitives::SortAmounts));
@@ -211,7 +252,8 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) 
   colours.reserve(shape.pixel_count * 16);
   z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));
-  sort.reserve(std::max(slots, pair_capacity));
+  sort.reserve(order);
+  sort.reserve(pairs);
 }
 
 }  // namespace binosplat::render

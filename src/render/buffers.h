@@ -22,16 +22,20 @@ struct ModelBuffers {
   struct Page {
     std::uint32_t first = 0;  // Gaussian of the model
     std::uint32_t count = 0;
-    std::unique_ptr<gl::Buffer> gaussians;  // Gaussian
-    std::unique_ptr<gl::Buffer> harmonics;  // packed vec4s, see sh.glsl
+    std::unique_ptr<gl::Buffer> gaussians;  // Gaussian, or Halves
+    std::unique_ptr<gl::Buffer> harmonics;  // packed vec4s, or as many halves (sh.glsl)
     std::unique_ptr<AnchorBuffers> anchors;
   };
 
   /// Uploads; `page_gaussians` limits a page for tests, 0: what the driver reaches.
-  ModelBuffers(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
+  ModelBuffers(gl::Context& context, const Model& model, int precision = PRECISION_FULL,
+               std::uint32_t page_gaussians = 0);
 
-  /// Another model in the place of this one, in the buffers that there are where they are large enough.
-  void upload(gl::Context& context, const Model& model);
+  /// Another model in the place of this one, or the same in another precision, in the buffers that there are
+  /// where they are large enough.
+  void upload(gl::Context& context, const Model& model, int precision);
+
+  int precision() const { return precision_; }
 
   /// Room for what a frame of this shape decodes.
   void reserve(const FrameShape& shape);
@@ -48,6 +52,7 @@ struct ModelBuffers {
   void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 
   std::uint32_t page_gaussians_;
+  int precision_ = PRECISION_FULL;
 };
 
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
@@ -94,12 +99,12 @@ struct FrameBuffers {
   // while the last frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> upper;
   std::unique_ptr<gl::Buffer> upper_next;
-  gl::Buffer measured;     // uint (view, slot), bits of the largest float; two, low first, where weighed
+  gl::Buffer measured;     // uint (slot, view), bits of the largest float; two, low first, where weighed
   gl::Buffer depth_table;  // float by bin
 
   // Of all views.
-  gl::Buffer splats;              // Splat (view, slot)
-  gl::Buffer tile_counts;         // uint (view, slot)
+  gl::Buffer splats;              // Splat, or Halves (slot, view)
+  gl::Buffer tile_counts;         // uint (slot, view)
   gl::Buffer tall;                // splats over many rows of tiles
   gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
   primitives::PairBuffers pairs;  // tile (view with --tiles all), splat
@@ -111,7 +116,7 @@ struct FrameBuffers {
 
   // Of show().
   gl::Buffer shown;        // float by pixel
-  gl::Buffer shown_light;  // uint (view, slot), bits of the largest T
+  gl::Buffer shown_light;  // uint (slot, view), bits of the largest T
 
   primitives::Scan scan;
   primitives::RadixSort sort;

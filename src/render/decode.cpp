@@ -12,6 +12,9 @@ bool reuses(const FrameShape& shape) {
          !shape.probe && shape.kernel_px2 == KERNEL_PX2;
 }
 
+// Of shared memory: what every driver has.
+constexpr std::int64_t shared_bytes = 32768;
+
 // The anchor cull goes by 3D-GS's own tiles.
 gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networks) {
   const FrameSettings& s = shape.settings;
@@ -27,6 +30,8 @@ gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networ
           {"HIDDEN", std::to_string(networks.hidden)},
           {"BANK", networks.bank ? "1" : "0"},
           {"OFFSETS", std::to_string(shape.offset_count)},
+          {"WEIGHTS", std::to_string(networks.bytes <= shared_bytes ? networks.bytes / 16 : 0)},
+          {"HALF", s.precision == PRECISION_HALF ? "1" : "0"},
           {"REUSE", reuse ? "1" : "0"}};
 }
 

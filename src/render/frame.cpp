@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "primitives/amount.h"
@@ -20,20 +20,23 @@ constexpr int attempts_max = 8;
 
 }  // namespace
 
-Frame::Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians)
+Frame::Frame(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians)
     : dispatcher_(context),
       model_(model),
-      model_buffers_(context, model, page_gaussians),
+      model_buffers_(context, model, precision, page_gaussians),
       buffers_(context) {}
 
 void Frame::reload() {
-  model_buffers_.upload(dispatcher_.context(), model_);
+  model_buffers_.upload(dispatcher_.context(), model_, model_buffers_.precision());
   recorded_shape_ = {};
   last_shape_.gaussian_count = static_cast<std::uint32_t>(model_.count());
 }
 
-FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
+FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& asked) {
+  const FrameSettings settings = tile_choice_.resolve(asked, dispatcher_.context().limits().subgroups_of_32);
   shape_ = make_shape(views, settings, model_);
+  if (settings.precision != model_buffers_.precision())
+    model_buffers_.upload(dispatcher_.context(), model_, settings.precision);
   if (settings.quality > 0.0f) {
     const bool cut = !continues(last_shape_, shape_, last_median_depth_);
     shape_ = make_shape(views, settings, model_, loss_control_.next_probe(views, settings));
@@ -77,6 +80,9 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
   report.order_passes = primitives::RadixSort::passes(shape_.groups.front().key_bits);
   report.tile_sort_passes = primitives::RadixSort::passes(shape_.list_bits());
+  report.tile_size = settings.tile_size;
+  tile_choice_.drew(settings.tile_size, report.pairs,
+                    report.visible * shape_.view_count() / report.order_groups);
   report.gpu_bytes = dispatcher_.context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
   return report;
@@ -90,7 +96,7 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     reference_pictures_ =
         fill_from_reference(model_, shape_, dispatcher_.context().limits().groups, model_buffers_, buffers_);
   }
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   dispatcher_.begin_frame();
   if (shape_.offset_count > 0 && !twin(Stage::decode)) {
     dispatcher_.begin_stage("decode");
@@ -126,8 +132,7 @@ shared::Counters Frame::draw_once(FrameReport& report) {
     probe(dispatcher_, shape_, buffers_);
   }
   dispatcher_.end_frame();
-  report.submit_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  report.submit_ms = ms_since(start);
   report.stages = dispatcher_.wait_and_time();
   return buffers_.counters.read<shared::Counters>(1).front();
 }
@@ -213,11 +218,11 @@ void Frame::read_drawn(std::uint32_t v, const Take& take) const {
   const DrawnBuffers& drawn = *buffers_.drawn[shape_.views.at(v).order_group];
   const auto count = drawn.amounts.read<shared::Amount>(1).front().count;
   const auto indices = drawn.indices.read<std::uint32_t>(count);
-  const std::size_t first = std::size_t{v} * shape_.slots;
-  const auto tiles = buffers_.tile_counts.read<std::uint32_t>(count, first);
-  const auto measured = buffers_.measured.read<T>(count, first);
+  const std::size_t views = shape_.view_count();
+  const auto tiles = buffers_.tile_counts.read<std::uint32_t>(count * views);
+  const auto measured = buffers_.measured.read<T>(count * views);
   for (std::size_t slot = 0; slot < count; ++slot) {
-    if (tiles[slot] != 0) take(indices[slot], measured[slot]);
+    if (tiles[slot * views + v] != 0) take(indices[slot], measured[slot * views + v]);
   }
 }
 

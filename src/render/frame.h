@@ -10,6 +10,7 @@
 #include "render/buffers.h"
 #include "render/loss_control.h"
 #include "render/settings.h"
+#include "render/tile_choice.h"
 
 namespace binosplat::render {
 
@@ -26,6 +27,7 @@ struct FrameReport {
   double total_ms = 0;                 // their sum
   double submit_ms = 0;                // CPU time of handing the last drawing to the driver
   std::int64_t gpu_bytes = 0;          // in buffers, the model's included
+  int tile_size = 0;                   // px: settings.tile_size, or what the frame chose
   float loss = 0.0f;                   // K or kappa that the frame went by
   bool remembered = false;             // it went by what an earlier frame measured
   bool recorded = false;               // it measured for later ones
@@ -47,9 +49,11 @@ struct WeighedGaussian {
 
 class Frame {
  public:
-  /// Uploads the model; it must outlive the frame, and the context must be current in every call.
-  /// `page_gaussians` is for tests (see ModelBuffers). Throws Error(out_of_memory) if the GPU has no room.
-  Frame(gl::Context& context, const Model& model, std::uint32_t page_gaussians = 0);
+  /// Uploads the model; it must outlive the frame, and the context must be current in every call. Frames of
+  /// another precision than PRECISION_FULL upload it again; `precision` saves them that. `page_gaussians` is
+  /// for tests (see ModelBuffers). Throws Error(out_of_memory) if the GPU has no room.
+  Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL,
+        std::uint32_t page_gaussians = 0);
 
   /// Uploads the model again, which has changed since: it is the same scene at other levels of detail, so
   /// that a loss that was found stays, but no measured transmittance. Buffers are used again where they are
@@ -106,6 +110,7 @@ class Frame {
   int since_recorded_ = 0;     // frames
   LossControl loss_control_;
   double last_median_depth_ = 0;
+  TileChoice tile_choice_;
   std::int64_t slots_ = 0;
   std::int64_t pair_capacity_ = 0;
   std::vector<Picture> reference_pictures_;  // with --reference-until blend

@@ -17,9 +17,9 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Order", buffers.order.values()},
                   {"TileCounts", buffers.tile_counts},
                   {"PairOffsets", buffers.pair_offsets}},
-                 {{"slots", shape.slots}, {"view_begin", views.begin}, {"view_end", views.end}});
+                 {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
   buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
-  dispatcher.run(context.program("amount.comp"), gl::Work::of_groups(1),
+  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define()), gl::Work::of_groups(1),
                  {{"Amounts", buffers.pair_amounts},
                   {"Total", buffers.scan.total()},
                   {"FrameCounters", buffers.counters}},
@@ -38,7 +38,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Splats", buffers.splats},
                   {"Keys", buffers.pairs.keys()},
                   {"Values", buffers.pairs.values()}},
-                 {{"slots", shape.slots}, {"view_begin", views.begin}, {"view_end", views.end}});
+                 {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
 }
 
 }  // namespace binosplat::render

@@ -16,12 +16,9 @@ const gl::Buffer& kept_of(const ModelBuffers::Page& page) {
 
 constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what an H200 has in work
 
-// An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
-// invocation asks both where one eye's answer makes the other's unnecessary.
-gl::Defines projecting(const FrameShape& shape, OrderGroup views, bool asks_both) {
+gl::Defines projecting(const FrameShape& shape) {
   gl::Defines defines = pair_defines(shape);
   defines.emplace_back("RECORDS", shape.records ? "1" : "0");
-  defines.emplace_back("EYES", views.end - views.begin > 1 && !asks_both ? "2" : "1");
   return defines;
 }
 
@@ -29,8 +26,12 @@ gl::Defines projecting(const FrameShape& shape, OrderGroup views, bool asks_both
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
+  // An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
+  // invocation asks both where one eye's answer makes the other's unnecessary.
   const bool asks_both = !shape.records && shape.gaussian_count >= fills_a_gpu;
-  const gl::Program& program = dispatcher.context().program("cull.comp", projecting(shape, views, asks_both));
+  gl::Defines defines = projecting(shape);
+  defines.emplace_back("EYES", views.end - views.begin > 1 && !asks_both ? "2" : "1");
+  const gl::Program& program = dispatcher.context().program("cull.comp", defines);
   for (const ModelBuffers::Page& page : model.pages) {
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
                    {{"Views", buffers.views},
@@ -65,7 +66,7 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
                  {{"gaussian_count", shape.gaussian_count}});
   buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
   dispatcher.run(
-      context.program("amount.comp"), gl::Work::of_groups(1),
+      context.program("amount.comp", buffers.order.block_define()), gl::Work::of_groups(1),
       {{"Amounts", drawn.amounts}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
       {{"kind", AMOUNT_ORDER},
        {"capacity", shape.slots},
@@ -93,6 +94,7 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
+                         {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"OFFSETS", std::to_string(shape.offset_count)}};
   if (shape.kernel_px2 != KERNEL_PX2)
     defines.emplace_back("KERNEL_PX2", fmt::format("{:.9g}", shape.kernel_px2));
@@ -105,7 +107,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   cull(dispatcher, shape, views, model, buffers);
   const DrawnBuffers& drawn = *buffers.drawn[group];
   compact(dispatcher, shape, views, drawn, buffers);
-  gl::Defines defines = projecting(shape, views, false);
+  gl::Defines defines = projecting(shape);
   defines.emplace_back("SH_DEGREE", std::to_string(shape.degree));
   defines.emplace_back("WEIGHS", shape.settings.weigh ? "1" : "0");
   const gl::Program& program = dispatcher.context().program("project.comp", defines);
@@ -131,7 +133,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"asked", shape.asked},
                     {"view_begin", views.begin},
                     {"view_end", views.end},
-                    {"slots", shape.slots},
+                    {"view_count", shape.view_count()},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
                     {"exact_from", shape.asked},
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
@@ -146,7 +148,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                   {"Tall", buffers.tall},
                   {"Splats", buffers.splats},
                   {"TileCounts", buffers.tile_counts}},
-                 {{"slots", shape.slots}});
+                 {{"view_count", shape.view_count()}});
 }
 
 }  // namespace binosplat::render

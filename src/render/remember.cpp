@@ -23,7 +23,7 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
                     {"gaussian_count", shape.gaussian_count},
                     {"view_begin", shape.groups[group].begin},
                     {"view_end", std::min(shape.groups[group].end, shape.asked)},
-                    {"slots", shape.slots}});
+                    {"view_count", shape.view_count()}});
   }
 }
 

@@ -55,8 +55,11 @@ struct FrameSettings {
   /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
   /// become, is not decoded. With a measured transmittance, each eye's own Th, and no quality to probe.
   bool anchor_reuse = true;
-  int tile_size = TILE_SIZE_DEFAULT;  // px: 8, 16 or 32; the picture does not depend on it
-  glm::vec3 background{0.0f};         // behind the scene, for contrast only: the pictures are without
+  /// px: 8, 16 or 32, on which an exact picture does not depend. Or TILE_SIZE_AUTO: 16, and for exact frames
+  /// 32 once one has shown that this is faster.
+  int tile_size = TILE_SIZE_DEFAULT;
+  int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
+  glm::vec3 background{0.0f};      // behind the scene, for contrast only: the pictures are without
   /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong
   /// picture is bisected to its stage.
   std::optional<Stage> reference_until;

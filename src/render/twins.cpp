@@ -10,6 +10,7 @@
 #include "primitives/amount.h"
 #include "reference/render.h"
 #include "reference/threshold.h"
+#include "render/halves.h"
 
 namespace binosplat::render {
 
@@ -39,6 +40,23 @@ reference::Settings reference_settings(const FrameShape& shape, std::uint32_t v)
           .th = s.th,
           .loss = s.loss,
           .decoding = decoding_for(shape, v)};
+}
+
+// Into a buffer of Gaussians or splats, in the precision that the shaders expect there.
+template <typename T>
+void upload_in(int precision, const std::vector<T>& things, gl::Buffer& buffer) {
+  if (precision == PRECISION_FULL) return buffer.upload(things);
+  std::vector<Halves> packed;
+  for (const T& thing : things) packed.push_back(pack(thing));
+  buffer.upload(packed);
+}
+
+void upload_harmonics(int precision, const std::vector<glm::vec4>& harmonics, gl::Buffer& buffer) {
+  if (precision == PRECISION_FULL) return buffer.upload(harmonics);
+  std::vector<std::uint32_t> packed(4 * harmonics.size());
+  for (std::size_t k = 0; k < harmonics.size(); ++k)
+    pack(std::span(&harmonics[k].x, 4), std::span(packed).subspan(4 * k, 4));
+  buffer.upload(packed);
 }
 
 // Gaussians, colours and bits of one decoding of a page, as the stage decode leaves them.
@@ -74,8 +92,8 @@ void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& m
         add(one, d * page.count + one.id - page.first, shape.offset_count, decoded);
       }
     }
-    page.gaussians->upload(decoded.gaussians);
-    page.harmonics->upload(decoded.harmonics);
+    upload_in(shape.settings.precision, decoded.gaussians, *page.gaussians);
+    upload_harmonics(shape.settings.precision, decoded.harmonics, *page.harmonics);
     page.anchors->kept->upload(decoded.kept);
   }
 }
@@ -144,7 +162,7 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
         const std::uint32_t i = lists.gaussians[k];
         ranked.push_back(
-            {std::uint64_t{group} << 32 | rank[i], {first + t, v * shape.slots + slots[group].of[i]}});
+            {std::uint64_t{group} << 32 | rank[i], {first + t, slots[group].of[i] * shape.view_count() + v}});
       }
     }
   }
@@ -166,10 +184,11 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t digit_bits, std:
   }
   const auto count = static_cast<std::uint32_t>(pairs.size());
   buffers.pairs.reserve(count);
-  buffers.sort.reserve(count);
+  buffers.sort.reserve(buffers.pairs);
   buffers.pairs.keys().upload(keys);
   buffers.pairs.values().upload(values);
-  buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(count, digit_bits, groups_max)});
+  buffers.pair_amounts.upload(
+      std::vector{primitives::make_sort_amounts(count, digit_bits, groups_max, buffers.pairs.block())});
 }
 
 void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
@@ -179,11 +198,11 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
     const std::vector<std::uint32_t>& indices = slots[shape.views[v].order_group].indices;
     for (std::size_t slot = 0; slot < indices.size(); ++slot) {
-      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]]);
-      tile_counts[std::size_t{v} * shape.slots + slot] = results[v].tile_counts[indices[slot]];
+      splats[slot * shape.view_count() + v] = to_shared(results[v].splats[indices[slot]]);
+      tile_counts[slot * shape.view_count() + v] = results[v].tile_counts[indices[slot]];
     }
   }
-  buffers.splats.upload(splats);
+  upload_in(shape.settings.precision, splats, buffers.splats);
   buffers.tile_counts.upload(tile_counts);
 }
 
@@ -208,8 +227,8 @@ void upload_order(const OrderGroup& group, const Slots& slots, const std::vector
   buffers.order.keys().upload(keys);
   buffers.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
-  buffers.drawn.front()->amounts.upload(std::vector{
-      primitives::make_sort_amounts(count, primitives::RadixSort::digit_bits(group.key_bits), groups_max)});
+  buffers.drawn.front()->amounts.upload(std::vector{primitives::make_sort_amounts(
+      count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.order.block())});
 }
 
 void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {

@@ -99,6 +99,7 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
       choice("contrast", &S::contrast, contrast_choices),
       choice("th_eyes", &S::th_eyes, th_eyes_choices),
       choice("tiles", &S::tiles, tiles_choices),
+      choice("precision", &S::precision, precision_choices),
       {"tile", TILE_SIZE_DEFAULT, [&block](S& s, const json& v) { s.tile_size = tile_of(block, v); }},
       {"loss", 0.0, [&block](S& s, const json& v) { s.loss = block.loss(v); }},
   };
@@ -150,7 +151,7 @@ Axes parse_axes(const std::string& name, const std::string& text) {
   int number = 0;
   for (const json& object : root["settings"]) {
     const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
-                      {"tiles", "tile", "th", "transmittance", "contrast", "th_eyes", "loss"});
+                      {"tiles", "tile", "th", "precision", "transmittance", "contrast", "th_eyes", "loss"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);
     for (std::size_t i = before; i < axes.settings.size(); ++i)

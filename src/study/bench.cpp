@@ -24,7 +24,7 @@ namespace {
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double reference_db = 60.0;  // fp32 against float64: the bar below which a driver draws wrongly
+constexpr double reference_db = 60.0;  // against float64: the bar below which a driver draws wrongly
 // A pair at its very threshold may fall either way, and calibrated losses lie at such thresholds, where the
 // search ends; at most half of what the loss costs may come from that.
 constexpr double share_db = 3.0;
@@ -164,7 +164,7 @@ const render::DepthTable& Bench::depth_table() {
 // What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
 // with all others.
 std::string Bench::verify(const render::FrameSettings& settings) {
-  render::Frame frame(context_, model_);
+  render::Frame frame(context_, model_, settings.precision);
   if (settings.transmittance == TRANSMITTANCE_ONE) {
     frame.draw(std::span(&small_, 1), settings);
     const Image drawn = composite(frame.read_pictures().front(), black);
@@ -224,7 +224,7 @@ ordered_json Bench::compare(const BenchView& view, const Exact& exact,
 }
 
 void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
-  render::Frame frame(context_, model_);
+  render::Frame frame(context_, model_, settings.precision);
   Times all;
   render::FrameReport report;
   std::vector<double> repeats;  // means over the views
@@ -261,10 +261,10 @@ void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
 }
 
 void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
-  render::Frame frame(context_, model_);
+  render::Frame frame(context_, model_, settings.precision);
   ordered_json views = ordered_json::array();
   ordered_json photographed = ordered_json::array();
-  FrameWork work;
+  FrameWork work{.precision = settings.precision};
   for (std::size_t v = 0; v < views_.size(); ++v) {
     render::FrameReport report;
     for (int n = 0; n < render::settling_frames; ++n) report = frame.draw(views_[v].eyes, settings);

@@ -67,7 +67,9 @@ std::vector<Chart> charts_of(const ordered_json& points) {
 
 const ordered_json* exact_of(const Chart& chart) {
   for (const ordered_json* point : chart.measured) {
-    if ((*point)["settings"]["th"] == "tau" && (*point)["settings"]["tiles"] == "ellipse") return point;
+    const ordered_json& settings = (*point)["settings"];
+    const bool full = !settings.contains("precision");
+    if (full && settings["th"] == "tau" && settings["tiles"] == "ellipse") return point;
   }
   return nullptr;
 }

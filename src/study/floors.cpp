@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "render/halves.h"
 #include "scene/model.h"
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -86,18 +87,21 @@ Peaks measure_peaks(gl::Context& context) {
 
 ordered_json profile(const FrameWork& work, const Peaks& peaks) {
   const double harmonics = 3.0 * sh_count(work.degree);
+  const bool half = work.precision == PRECISION_HALF;
+  const double gaussian_bytes = half ? sizeof(render::Halves) : sizeof(shared::Gaussian);
+  const double splat_bytes = half ? sizeof(render::Halves) : sizeof(shared::Splat);
   std::map<std::string, Least> least;
   // Every Gaussian once, and its key; of what is in view the harmonics, and its splats with their counts.
   least["project"] = {
-      work.gaussians * (sizeof(shared::Gaussian) + 4) + work.in_view * 4 * harmonics +
-          work.splats * (sizeof(shared::Splat) + 4),
+      work.gaussians * (gaussian_bytes + 4) + work.in_view * (half ? 2 : 4) * harmonics +
+          work.splats * (splat_bytes + 4),
       (work.gaussians + work.splats) * projection_fmas + work.splats * (basis_fmas + harmonics)};
   least["project"].seconds = least["project"].operations / peaks.fmas;
   least["order"] = {sort_bytes(work.in_view, work.order_passes)};
-  least["pairs"] = {work.splats * (sizeof(shared::Splat) + 4) + work.pairs * 8};
+  least["pairs"] = {work.splats * (splat_bytes + 4) + work.pairs * 8};
   least["tile_sort"] = {sort_bytes(work.pairs, work.tile_sort_passes)};
   least["ranges"] = {work.pairs * 4 + work.tiles * 8};
-  least["blend"] = {work.pairs * (sizeof(shared::Splat) + 4) + work.pixels * 20, work.alphas};
+  least["blend"] = {work.pairs * (splat_bytes + 4) + work.pixels * 20, work.alphas};
   least["blend"].seconds = least["blend"].operations / peaks.alphas;
   ordered_json stages = ordered_json::array();
   for (const gl::StageTime& stage : work.stages) {

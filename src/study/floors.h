@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gl/dispatch.h"
+#include "shared/axes.h"
 
 namespace binosplat::study {
 
@@ -22,8 +23,9 @@ Peaks measure_peaks(gl::Context& context);
 struct FrameWork {
   double gaussians = 0.0;  // of the model
   int degree = 0;          // of its SH
-  double in_view = 0.0;    // Gaussians, summed over the order groups
-  double splats = 0.0;     // of those, one a view
+  int precision = PRECISION_FULL;
+  double in_view = 0.0;  // Gaussians, summed over the order groups
+  double splats = 0.0;   // of those, one a view
   double pairs = 0.0;
   double tiles = 0.0;   // of all views
   double pixels = 0.0;  // likewise

@@ -25,6 +25,7 @@ int find_choice(const std::string& place, const std::string& name, std::span<con
 nlohmann::ordered_json to_json(const render::FrameSettings& s) {
   nlohmann::ordered_json json = {
       {"tiles", tiles_choices[s.tiles].name}, {"tile", s.tile_size}, {"th", th_choices[s.th].name}};
+  if (s.precision != PRECISION_FULL) json["precision"] = precision_choices[s.precision].name;
   if (s.th == TH_TAU) return json;
   json["transmittance"] = transmittance_choices[s.transmittance].name;
   if (s.th == TH_SQUARED) json["contrast"] = contrast_choices[s.contrast].name;
@@ -43,6 +44,7 @@ std::string describe_family(const render::FrameSettings& s) {
     if (s.th_eyes != TH_EYES_PER_EYE) words.emplace_back(th_eyes_choices[s.th_eyes].name);
   }
   if (s.tile_size != TILE_SIZE_DEFAULT) words.push_back(fmt::format("tile {}", s.tile_size));
+  if (s.precision != PRECISION_FULL) words.emplace_back(precision_choices[s.precision].name);
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
@@ -65,7 +67,8 @@ void check(const std::string& place, const render::FrameSettings& s, int eyes) {
 }
 
 bool is_exact(const render::FrameSettings& s) {
-  return s.th == TH_TAU && (s.tiles == TILES_ELLIPSE || s.tiles == TILES_SNUG || s.tiles == TILES_ALL);
+  return s.precision == PRECISION_FULL && s.th == TH_TAU &&
+         (s.tiles == TILES_ELLIPSE || s.tiles == TILES_SNUG || s.tiles == TILES_ALL);
 }
 
 }  // namespace binosplat::study

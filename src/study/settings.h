@@ -16,8 +16,8 @@ constexpr double equal_db = 100.0;
 /// name that is not in it; the text lists those that are.
 int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices);
 
-/// What decides the picture and its time: tiles, tile, th and, where they matter, transmittance, contrast,
-/// th_eyes and loss.
+/// What decides the picture and its time: tiles, tile, th and, where they matter, precision, transmittance,
+/// contrast, th_eyes and loss.
 nlohmann::ordered_json to_json(const render::FrameSettings& settings);
 
 /// One line for legends: "ellipse", "peripheral, last, 0.5", "squared, last, final, 0.01"; tiles are named
@@ -32,7 +32,7 @@ std::string describe_family(const render::FrameSettings& settings);
 /// one.
 void check(const std::string& place, const render::FrameSettings& settings, int eyes);
 
-/// Whether the picture is exact by definition: no pair that could be seen is left out.
+/// Whether the picture is exact by definition: no pair that could be seen is left out, nothing is in fp16.
 bool is_exact(const render::FrameSettings& settings);
 
 }  // namespace binosplat::study

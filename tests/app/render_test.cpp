@@ -179,6 +179,19 @@ TEST_F(Render, BackgroundBitsAndExr) {
   EXPECT_NE(read_text(folder / "none.png").find("binosplatUnitsPerMetre"), std::string::npos);
 }
 
+TEST_F(Render, HalfPrecisionIsNearButNotTheSame) {
+  add_cameras();
+  ASSERT_TRUE(good(render({"-o", folder / "full.exr", "--mono", "--exr", "float"})));
+  ASSERT_TRUE(good(render({"-o", folder / "half.exr", "--mono", "--exr", "float", "--precision", "half",
+                           "--json", folder / "r.json"})));
+  EXPECT_TRUE(alike("full.exr", "half.exr", 60));
+  EXPECT_FALSE(alike("full.exr", "half.exr", 110));
+  const nlohmann::json report = json("r.json");
+  EXPECT_EQ(report["settings"]["precision"], "half");
+  EXPECT_EQ(report["settings"]["tile"], "auto");
+  EXPECT_EQ(report["views"][0]["tile"], 16) << "of one frame";
+}
+
 TEST_F(Render, JsonHasWhatWasPrinted) {
   add_cameras();
   const Outcome outcome =
@@ -190,6 +203,7 @@ TEST_F(Render, JsonHasWhatWasPrinted) {
   EXPECT_EQ(report["scene"]["gaussians"], 300);
   EXPECT_EQ(report["settings"]["tiles"], "aabb");
   EXPECT_EQ(report["settings"]["tile"], 8);
+  EXPECT_EQ(report["settings"]["precision"], "full");
   EXPECT_FALSE(report["device"]["renderer"].get<std::string>().empty());
   EXPECT_EQ(report["frames"], 3) << "the first of several compiles shaders and is left out";
   EXPECT_NE(outcome.out.find("3 frames"), std::string::npos) << outcome.out;

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
 #include "formats/cameras_file.h"
@@ -24,11 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 struct Case {
   std::string name;     // scene, and how often it is repeated
@@ -98,12 +93,20 @@ Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int sh
   return loaded;
 }
 
+// How a case is drawn and timed.
+struct How {
+  render::FrameSettings settings = {.tile_size = TILE_SIZE_AUTO};
+  fs::path shaders;
+  int frames = 20;  // that the medians are of
+  int shrink = 1;   // pictures so many times smaller
+};
+
 // Each eye must have the same bits drawn with the other and alone, and must not be empty.
-void check(render::Frame& frame, const Shot& shot) {
-  frame.draw(shot.eyes);
+void check(render::Frame& frame, const Shot& shot, const How& how) {
+  frame.draw(shot.eyes, how.settings);
   const std::vector<Picture> both = frame.read_pictures();
   for (std::size_t eye = 0; eye < 2; ++eye) {
-    frame.draw(std::span(&shot.eyes[eye], 1));
+    frame.draw(std::span(&shot.eyes[eye], 1), how.settings);
     const std::span picture(&both[eye], 1);
     if (!same_bits(frame.read_pictures(), picture))
       fail("{}: eye {} differs from itself alone", shot.name, eye);
@@ -115,24 +118,24 @@ void check(render::Frame& frame, const Shot& shot) {
 }
 
 // Draws until the GPU's clock, which falls while pictures are read, has risen again.
-void wake(render::Frame& frame, std::span<const shared::View> views) {
+void wake(render::Frame& frame, std::span<const shared::View> views, const How& how) {
   const Clock::time_point start = Clock::now();
   std::vector<double> before, now;
   do {
     before = std::exchange(now, {});
-    for (int n = 0; n < 20; ++n) now.push_back(frame.draw(views).total_ms);
+    for (int n = 0; n < 20; ++n) now.push_back(frame.draw(views, how.settings).total_ms);
   } while (before.empty() || ms_since(start) < 200 ||
            (ms_since(start) < 2000 && std::abs(quantile(now, 0.5) / quantile(before, 0.5) - 1) > 0.01));
 }
 
 // Medians of the stages and of the whole frame, with the quartiles.
-Json time(render::Frame& frame, std::span<const shared::View> views, int frames) {
+Json time(render::Frame& frame, std::span<const shared::View> views, const How& how) {
   std::map<std::string, std::vector<double>> stages;
   std::vector<std::string> names;
   render::FrameReport report;
-  if (frames > 1) wake(frame, views);
-  for (int n = 0; n < frames; ++n) {
-    report = frame.draw(views);
+  if (how.frames > 1) wake(frame, views, how);
+  for (int n = 0; n < how.frames; ++n) {
+    report = frame.draw(views, how.settings);
     for (const gl::StageTime& stage : report.stages) {
       if (stages.find(stage.name) == stages.end()) names.push_back(stage.name);
       stages[stage.name].push_back(stage.ms);
@@ -145,6 +148,7 @@ Json time(render::Frame& frame, std::span<const shared::View> views, int frames)
   json["quartiles"] = {quantile(stages["frame"], 0.25), quantile(stages["frame"], 0.75)};
   json["visible_count"] = report.visible;
   json["pair_count"] = report.pairs;
+  json["tile"] = report.tile_size;
   json["gpu_mb"] = report.gpu_bytes / 1e6;
   return json;
 }
@@ -159,30 +163,32 @@ void print_row(const std::string& scene, const std::string& view, const char* wh
   std::fflush(stdout);
 }
 
-Json run(const Case& c, const fs::path& scenes, const fs::path& views, const fs::path& shaders, int frames,
-         int shrink) {
+Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How& how) {
   const Clock::time_point start = Clock::now();
   const auto context = gl::Context::open();
-  context->set_shader_folder(shaders);
-  Json json = {{"scene", c.name}, {"gpu", context->renderer()}, {"driver", context->version()}};
+  context->set_shader_folder(how.shaders);
+  Json json = {{"scene", c.name},
+               {"precision", precision_choices[how.settings.precision].name},
+               {"gpu", context->renderer()},
+               {"driver", context->version()}};
   json["context_ms"] = ms_since(start);
   Clock::time_point phase = Clock::now();
-  const Loaded loaded = load(c, scenes, views, shrink);
+  const Loaded loaded = load(c, scenes, views, how.shrink);
   json["gaussians"] = loaded.model.count();
   json["load_ms"] = ms_since(phase);
   phase = Clock::now();
-  render::Frame frame(*context, loaded.model);
-  frame.draw(loaded.shots.front().eyes);
+  render::Frame frame(*context, loaded.model, how.settings.precision);
+  frame.draw(loaded.shots.front().eyes, how.settings);
   const std::vector<Picture> first = frame.read_pictures();
   json["upload_draw_read_ms"] = ms_since(phase);
   json["first_picture_ms"] = ms_since(start);
   for (const Shot& shot : loaded.shots) {
-    check(frame, shot);
+    check(frame, shot, how);
     Json row = {{"view", shot.name}};
-    row["pair"] = time(frame, shot.eyes, frames);
-    row["left"] = time(frame, std::span(&shot.eyes[0], 1), frames);
-    row["right"] = time(frame, std::span(&shot.eyes[1], 1), frames);
-    row["large"] = time(frame, std::span(&shot.large, 1), frames);
+    row["pair"] = time(frame, shot.eyes, how);
+    row["left"] = time(frame, std::span(&shot.eyes[0], 1), how);
+    row["right"] = time(frame, std::span(&shot.eyes[1], 1), how);
+    row["large"] = time(frame, std::span(&shot.large, 1), how);
     for (const char* what : {"pair", "left", "right", "large"}) print_row(c.name, shot.name, what, row[what]);
     const auto front = [&](const char* what) {
       return row[what]["project"].get<double>() + row[what]["order"].get<double>();
@@ -212,21 +218,23 @@ int main(int argc, char** argv) {
   std::string name;
   std::string scenes;
   std::string views;
-  std::string shaders;
   std::string json;
-  int frames = 20;
-  int shrink = 1;
+  std::string precision = "full";
+  How how;
   bool list = false;
   app.add_flag("--list", list, "Print the names of the cases and end");
   app.add_option("case", name, "A name from --list");
   app.add_option("--scenes", scenes, "Folder of the unpacked scenes");
   app.add_option("--views", views, "Folder of the bench views (SCENE_bench.json)");
-  app.add_option("--shader-dir", shaders, "Read shaders from this folder, not the built-in ones");
+  app.add_option("--shader-dir", how.shaders, "Read shaders from this folder, not the built-in ones");
   app.add_option("--json", json, "Append the result to this file, one line");
-  app.add_option("--frames", frames, "Frames that the medians are of");
-  app.add_option("--shrink", shrink,
+  app.add_option("--frames", how.frames, "Frames that the medians are of");
+  app.add_option("--shrink", how.shrink,
                  "Pictures so many times smaller: tries the benchmark itself where there is no GPU");
+  app.add_option("--tile", how.settings.tile_size, "Side of a tile in px; without: what the frame chooses");
+  app.add_option("--precision", precision, "full or half")->check(CLI::IsMember({"full", "half"}));
   CLI11_PARSE(app, argc, argv);
+  how.settings.precision = number_of(precision, precision_choices);
   try {
     for (const Case& c : cases) {
       if (list) fmt::print("{}\n", c.name);
@@ -235,7 +243,7 @@ int main(int argc, char** argv) {
         fmt::print("{} left out: there is no {}\n", c.name, (fs::path(scenes) / c.model).string());
         return 0;
       }
-      const Json result = run(c, scenes, views, shaders, frames, shrink);
+      const Json result = run(c, scenes, views, how);
       if (!json.empty()) std::ofstream(json, std::ios::app) << result.dump() << "\n";
       return 0;
     }

@@ -17,20 +17,21 @@ namespace {
 using Keys = std::vector<std::uint32_t>;
 
 // Values are 0, 1, 2, ...: where equal keys keep their order, values of equal keys ascend.
-std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits) {
+// `room` for more than SORT_FEW makes large blocks of any number of keys.
+std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits, std::int64_t room = 0) {
   gl::Context& context = test::gl_context();
   const auto count = static_cast<std::uint32_t>(keys.size());
-  const SortAmounts sizes = make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups);
-  gl::Buffer amounts(context, "amounts");
-  amounts.upload(std::vector{sizes});
   PairBuffers pairs(context, "pairs");
-  pairs.reserve(count);
+  pairs.reserve(std::max<std::int64_t>(count, room));
+  gl::Buffer amounts(context, "amounts");
+  amounts.upload(std::vector{
+      make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block())});
   Keys values(count);
   std::iota(values.begin(), values.end(), 0u);
   pairs.keys().upload(keys);
   pairs.values().upload(values);
   RadixSort sort(context);
-  sort.reserve(count);
+  sort.reserve(pairs);
   gl::Dispatcher dispatcher(context);
   sort.run(dispatcher, amounts, pairs, bits);
   return {pairs.keys().read<std::uint32_t>(count), pairs.values().read<std::uint32_t>(count)};
@@ -55,12 +56,11 @@ Keys random_keys(std::size_t count, std::uint32_t mask) {
 }
 
 TEST(RadixSort, EqualsAStableSortAtEverySizeThatMatters) {
-  const std::size_t block = SORT_BLOCK;
-  for (const std::size_t size :
-       {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{255}, std::size_t{257}, block - 1, block,
-        block + 1, 5 * block + 33, std::size_t{200000}}) {
-    const Keys keys = random_keys(size, ~0u);
-    EXPECT_EQ(sort_on_gpu(keys, 32), sort_on_cpu(keys, 32)) << size;
+  for (const auto& [block, room] : {std::pair{SORT_BLOCK_FEW, 0}, {SORT_BLOCK, SORT_FEW + 1}}) {
+    for (const int size : {0, 1, 2, 255, 257, block - 1, block, block + 1, 5 * block + 33, 200000}) {
+      const Keys keys = random_keys(static_cast<std::size_t>(size), ~0u);
+      EXPECT_EQ(sort_on_gpu(keys, 32, room), sort_on_cpu(keys, 32)) << size << ", blocks of " << block;
+    }
   }
 }
 
@@ -105,10 +105,12 @@ TEST(RadixSort, IsTheSameWithoutSubgroups) {
   gl::Context& context = test::gl_context();
   const Keys keys = random_keys(200003, ~0u);
   for (const std::uint32_t bits : {17u, 32u}) {
-    const auto with = sort_on_gpu(keys, bits);
-    context.use_subgroups(false);
-    EXPECT_EQ(sort_on_gpu(keys, bits), with);
-    context.use_subgroups(true);
+    for (const int room : {0, SORT_FEW + 1}) {
+      const auto with = sort_on_gpu(keys, bits, room);
+      context.use_subgroups(false);
+      EXPECT_EQ(sort_on_gpu(keys, bits, room), with);
+      context.use_subgroups(true);
+    }
   }
 }
 

@@ -175,7 +175,7 @@ TEST(DecodeStage, PagesMakeNoDifference) {
   const std::vector<shared::View> views{front_view(-0.1), front_view(0.1)};
   test::StageRun run(model, views);
   run.run_until(render::Stage::decode);
-  render::ModelBuffers pages(test::gl_context(), model, 75);
+  render::ModelBuffers pages(test::gl_context(), model, PRECISION_FULL, 75);
   ASSERT_EQ(pages.pages.size(), 15u);  // 7 anchors each
   std::swap(run.model_buffers.pages, pages.pages);
   run.model_buffers.reserve(run.shape);

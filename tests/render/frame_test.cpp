@@ -201,7 +201,7 @@ TEST(Frame, AModelInPagesGivesTheSamePicture) {
   const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
   const std::vector<Picture> whole = draw(model, std::vector(rig.views.begin(), rig.views.end()));
   for (const std::uint32_t page_gaussians : {1000u, 1024u, 2999u}) {
-    render::Frame frame(test::gl_context(), model, page_gaussians);
+    render::Frame frame(test::gl_context(), model, PRECISION_FULL, page_gaussians);
     frame.draw(rig.views);
     const std::vector<Picture> paged = frame.read_pictures();
     EXPECT_TRUE(same_bits(whole[0], paged[0])) << page_gaussians;
@@ -215,7 +215,7 @@ TEST(Frame, APageInPiecesGivesTheSamePicture) {
   for (const int degree : {0, 1, 2}) {  // with and without padding between Gaussians
     Model model = test::random_model(76, 70000, degree);
     for (std::size_t i = 0; i < 65600; ++i) model.opacity[i] = 0.0f;  // seen is the last piece
-    render::Frame frame(test::gl_context(), model, 20000);
+    render::Frame frame(test::gl_context(), model, PRECISION_FULL, 20000);
     frame.draw(std::vector{view});
     const Picture paged = frame.read_pictures().front();
     EXPECT_TRUE(same_bits(draw(model, view), paged)) << degree;

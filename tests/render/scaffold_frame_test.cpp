@@ -87,7 +87,7 @@ TEST(ScaffoldFrame, PagesMakeNoDifference) {
   const Model model = test::scaffold_model(24, four_hundred);
   const std::vector<shared::View> views = eyes();
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
-    render::Frame frame(test::gl_context(), model, 70);
+    render::Frame frame(test::gl_context(), model, PRECISION_FULL, 70);
     frame.draw(views, {.decode = decode});
     const std::vector<Picture> whole = draw(model, views, {.decode = decode});
     for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(frame.read_pictures()[v], whole[v]));

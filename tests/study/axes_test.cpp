@@ -32,6 +32,16 @@ TEST(Axes, AreEveryCombination) {
       R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","contrast":"off","loss":2.0})");
 }
 
+TEST(Axes, HalfPrecisionIsOneAndNotExact) {
+  const Axes axes = parse_axes("a", R"({"settings": [{"precision": ["full", "half"]}]})");
+  ASSERT_EQ(axes.settings.size(), 2);
+  EXPECT_TRUE(is_exact(axes.settings[0]));
+  EXPECT_FALSE(is_exact(axes.settings[1]));
+  EXPECT_EQ(describe(axes.settings[1]), "ellipse, half");
+  EXPECT_EQ(to_json(axes.settings[1]).dump(),
+            R"({"tiles":"ellipse","tile":16,"th":"tau","precision":"half"})");
+}
+
 TEST(Axes, OnesThatAreLeftOut) {
   const Axes axes = parse_axes("a", R"({"settings": [{}]})");
   EXPECT_EQ(axes.settings.size(), 1);

@@ -1,0 +1,24 @@
+#pragma once
+// --precision half on the CPU's side: Gaussians and splats in 32 bytes as halves.glsl unpacks them, SH
+// coefficients in fp16. Numbers beyond fp16 become its largest.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "shared/types.h"
+
+namespace binosplat::render {
+
+using Halves = std::array<std::uint32_t, 8>;
+
+/// Position and largest scale in fp32; the scales as shares of it, opacity and rotation in fp16.
+Halves pack(const shared::Gaussian& gaussian);
+
+/// Mean, depth and rho in fp32; the lower Cholesky factor of the conic, opacity and colour in fp16.
+Halves pack(const shared::Splat& splat);
+
+/// Two to a word, the first in the low half; `packed` has room for all of them and zeros beyond.
+void pack(std::span<const float> numbers, std::span<std::uint32_t> packed);
+
+}  // namespace binosplat::render

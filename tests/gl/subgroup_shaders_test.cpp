@@ -1,0 +1,67 @@
+// Shaders that llvmpipe never compiles, because it has no subgroups, through Khronos's reference compiler.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "gl/shader_source.h"
+#include "support/program.h"
+
+namespace binosplat::gl {
+namespace {
+
+// What the compiler says of a shader; empty if it is good.
+std::string said_of(const std::string& name, const Defines& defines, const std::filesystem::path& shaders) {
+  const test::TempFolder folder;
+  test::write_text(folder / "shader.comp", ShaderSource(name, defines, shaders).text());
+  const std::string said = folder / "said";
+  const std::string command = "glslangValidator " + (folder / "shader.comp").string() + " > " + said;
+  return std::system(command.c_str()) == 0 ? "" : test::read_text(said);
+}
+
+struct Blend {
+  const char* name;
+  const char* tile;
+  const char* column;
+  const char* ahead;
+  const char* lists;
+};
+
+class SubgroupShaders : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("command -v glslangValidator > /dev/null") != 0)
+      GTEST_SKIP() << "no glslangValidator: apt install glslang-tools";
+  }
+};
+
+TEST_F(SubgroupShaders, Compile) {
+  for (const char* half : {"0", "1"}) {
+    for (const Blend& b : {Blend{"blend_blocks.comp", "16", "4", "4", "0"},
+                           {"blend_blocks.comp", "16", "1", "8", "1"},
+                           {"blend_blocks.comp", "8", "2", "4", "0"},
+                           {"blend_blocks.comp", "8", "1", "8", "1"},
+                           {"blend_together.comp", "32", "4", "2", "2"}}) {
+      const Defines defines = {{"TILE_SIZE", b.tile}, {"COLUMN", b.column}, {"AHEAD", b.ahead},
+                               {"LISTS", b.lists},    {"HALF", half},       {"RECORDS", "0"},
+                               {"WEIGHS", "0"},       {"CONTRAST", "0"},    {"SHOW", "0"}};
+      EXPECT_EQ(said_of(b.name, defines, {}), "") << b.name << ", tiles of " << b.tile << ", half " << half;
+    }
+  }
+  for (const char* block : {"1024", "4096"}) {
+    for (const char* bits : {"8", "9"}) {
+      EXPECT_EQ(said_of("primitives/sort_scatter_subgroups.comp",
+                        {{"SORT_BLOCK", block}, {"DIGIT_BITS", bits}}, {}),
+                "");
+    }
+  }
+}
+
+TEST_F(SubgroupShaders, AWordThatIsNotThereIsNoticed) {
+  const test::TempFolder shaders;
+  test::write_text(shaders / "a.comp", "layout(local_size_x = 1) in;\nvoid main() { subgroupBarrier(); }\n");
+  EXPECT_NE(said_of("a.comp", {}, shaders.path()), "");
+}
+
+}  // namespace
+}  // namespace binosplat::gl

@@ -1,0 +1,106 @@
+// --precision half: what is kept of Gaussians and splats in fp16, and what that costs.
+
+#include "render/halves.h"
+
+#include <bit>
+#include <glm/gtc/packing.hpp>
+
+#include "render/support.h"
+
+namespace binosplat {
+namespace {
+
+constexpr render::FrameSettings half = {.precision = PRECISION_HALF};
+
+std::vector<shared::View> eyes() {
+  const Camera camera = test::front_camera(97, 81, 90);
+  Camera right = camera;
+  right.position.x += 0.06;
+  return {make_view(camera), make_view(right)};
+}
+
+TEST(Half, IsOf60DbAndNotFull) {
+  for (const int degree : {0, 1, 3}) {
+    const Model model = test::random_model(41, 3000, degree);
+    for (const shared::View& view : eyes()) {
+      const double db = test::psnr(test::draw(model, view, half), reference::render(model, view));
+      EXPECT_GE(db, 60.0) << degree;
+      EXPECT_LT(db, 100.0) << degree;
+    }
+  }
+}
+
+TEST(Half, IsTheSameInEveryTileTestAndSize) {
+  const Model model = test::random_model(42, 2000, 2);
+  const std::vector<Picture> expected = test::draw(model, eyes(), half);
+  for (const int tiles : {TILES_ALL, TILES_SNUG, TILES_ELLIPSE}) {
+    for (const int size : {8, 16, 32}) {
+      render::FrameSettings settings = half;
+      settings.tiles = tiles;
+      settings.tile_size = size;
+      const std::vector<Picture> drawn = test::draw(model, eyes(), settings);
+      for (std::size_t eye = 0; eye < 2; ++eye)
+        EXPECT_TRUE(test::same_bits(drawn[eye], expected[eye])) << tiles << ", " << size;
+    }
+  }
+}
+
+TEST(Half, TheBarCatchesScalesOfEightBits) {
+  Model model = test::random_model(43, 3000, 0);
+  const Picture right = reference::render(model, eyes()[0]);
+  for (glm::vec3& scale : model.scale) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto bits = std::bit_cast<std::uint32_t>(scale[axis]);
+      scale[axis] = std::bit_cast<float>(bits & 0xFFF80000u);  // five of fp16's eleven
+    }
+  }
+  EXPECT_LT(test::psnr(test::draw(model, eyes()[0], half), right), 60.0);
+}
+
+TEST(Half, AFrameDrawsInEitherPrecision) {
+  const Model model = test::random_model(44, 1000, 1);
+  render::Frame frame(test::gl_context(), model);
+  frame.draw(eyes());
+  const std::vector<Picture> full = frame.read_pictures();
+  frame.draw(eyes(), half);
+  EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, eyes(), half)[0]));
+  EXPECT_FALSE(test::same_bits(frame.read_pictures()[0], full[0]));
+  frame.draw(eyes());
+  EXPECT_TRUE(test::same_bits(frame.read_pictures()[1], full[1]));
+}
+
+TEST(Half, TakesTheReferencesStages) {
+  const Model model = test::random_model(45, 500, 1);
+  const shared::View view = eyes()[0];
+  const Picture right = reference::render(model, view);
+  for (const render::Stage until : {render::Stage::project, render::Stage::order, render::Stage::ranges}) {
+    render::FrameSettings settings = half;
+    settings.reference_until = until;
+    EXPECT_GE(test::psnr(test::draw(model, view, settings), right), 60.0);
+  }
+}
+
+TEST(Half, NeedsLessMemory) {
+  const Model model = test::random_model(46, 1000, 3);
+  const auto needs = [&](int precision) {
+    return render::memory_needs(render::make_shape(eyes(), {.precision = precision}, model));
+  };
+  EXPECT_EQ(needs(PRECISION_FULL).model, 1000 * (48 + 192));
+  EXPECT_EQ(needs(PRECISION_HALF).model, 1000 * (32 + 96));
+  EXPECT_LT(needs(PRECISION_HALF).frame, needs(PRECISION_FULL).frame);
+}
+
+TEST(Half, NumbersBeyondItBecomeItsLargest) {
+  std::array<std::uint32_t, 2> words{};
+  render::pack(std::vector{1e9f, -1e9f, 0.5f}, words);
+  EXPECT_EQ(glm::unpackHalf2x16(words[0]), glm::vec2(65504.0f, -65504.0f));
+  EXPECT_EQ(glm::unpackHalf2x16(words[1]), glm::vec2(0.5f, 0.0f));
+  // A splat wider than any picture still has a Cholesky factor above 0.
+  const render::Halves wide =
+      render::pack(shared::Splat{.opacity = 1.0f, .conic = {1e-20f, 0.0f, 1e-20f, 1e20f}});
+  EXPECT_GT(glm::unpackHalf2x16(wide[4]).x, 0.0f);
+  EXPECT_GT(glm::unpackHalf2x16(wide[5]).x, 0.0f);
+}
+
+}  // namespace
+}  // namespace binosplat
