@@ -35,8 +35,10 @@ void Frame::reload() {
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& asked) {
   const FrameSettings settings = tile_choice_.resolve(asked, dispatcher_.context().limits().subgroups_of_32);
   shape_ = make_shape(views, settings, model_);
-  if (settings.precision != model_buffers_.precision())
+  if (settings.precision != model_buffers_.precision()) {
     model_buffers_.upload(dispatcher_.context(), model_, settings.precision);
+    recorded_shape_ = {};  // of Scaffold-GS what was kept is gone
+  }
   if (settings.quality > 0.0f) {
     const bool cut = !continues(last_shape_, shape_, last_median_depth_);
     shape_ = make_shape(views, settings, model_, loss_control_.next_probe(views, settings));

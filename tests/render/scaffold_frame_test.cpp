@@ -55,6 +55,26 @@ TEST(ScaffoldFrame, EqualsTheReference) {
   }
 }
 
+TEST(ScaffoldFrame, IsDecodedIntoHalfPrecision) {
+  const Model model = test::scaffold_model(21, four_hundred);
+  const std::vector<Picture> half = draw(model, eyes(), {.precision = PRECISION_HALF});
+  for (std::size_t v = 0; v < 2; ++v) {
+    const double db = test::psnr(half[v], reference::render(model, eyes()[v]));
+    EXPECT_GE(db, 60.0) << v;
+    EXPECT_LT(db, 100.0) << v;
+  }
+}
+
+TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
+  const Model model = test::scaffold_model(21, four_hundred);
+  FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
+  render::Frame frame(test::gl_context(), model);
+  for (int n = 0; n < 2; ++n) frame.draw(eyes(), settings);
+  settings.precision = PRECISION_HALF;
+  EXPECT_FALSE(frame.draw(eyes(), settings).remembered);
+  EXPECT_TRUE(frame.draw(eyes(), settings).remembered);
+}
+
 TEST(ScaffoldFrame, TileTestsAgreeBitForBit) {
   const Model model = test::scaffold_model(22, four_hundred);
   const std::vector<shared::View> views = eyes();
