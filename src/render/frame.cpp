@@ -32,24 +32,24 @@ void Frame::reload() {
   last_shape_.gaussian_count = static_cast<std::uint32_t>(model_.count());
 }
 
-FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& asked) {
-  const FrameSettings settings = tile_choice_.resolve(asked, dispatcher_.context().limits().subgroups_of_32);
-  shape_ = make_shape(views, settings, model_);
-  if (settings.precision != model_buffers_.precision()) {
-    model_buffers_.upload(dispatcher_.context(), model_, settings.precision);
+FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
+  const FrameSettings chosen = tile_choice_.resolve(settings, dispatcher_.context().limits().subgroups_of_32);
+  shape_ = make_shape(views, chosen, model_);
+  if (chosen.precision != model_buffers_.precision()) {
+    model_buffers_.upload(dispatcher_.context(), model_, chosen.precision);
     recorded_shape_ = {};  // of Scaffold-GS what was kept is gone
   }
-  if (settings.quality > 0.0f) {
+  if (chosen.quality > 0.0f) {
     const bool cut = !continues(last_shape_, shape_, last_median_depth_);
-    shape_ = make_shape(views, settings, model_, loss_control_.next_probe(views, settings));
-    shape_.settings.loss = loss_control_.next_loss(settings, cut);
+    shape_ = make_shape(views, chosen, model_, loss_control_.next_probe(views, chosen));
+    shape_.settings.loss = loss_control_.next_loss(chosen, cut);
   }
   decide_measuring();
   if (model_buffers_.box) limit_keys(shape_, *model_buffers_.box);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
-  if (settings.order_capacity > 0) slots_ = settings.order_capacity;
+  if (chosen.order_capacity > 0) slots_ = chosen.order_capacity;
   pair_capacity_ =
-      settings.pair_capacity > 0 ? settings.pair_capacity : std::max(pair_capacity_, starting_pairs(shape_));
+      chosen.pair_capacity > 0 ? chosen.pair_capacity : std::max(pair_capacity_, starting_pairs(shape_));
 
   buffers_.upload(shape_);
   const std::uint32_t groups_max = dispatcher_.context().limits().groups;
@@ -82,8 +82,8 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
   report.order_passes = primitives::RadixSort::passes(shape_.groups.front().key_bits);
   report.tile_sort_passes = primitives::RadixSort::passes(shape_.list_bits());
-  report.tile_size = settings.tile_size;
-  tile_choice_.drew(settings.tile_size, report.pairs,
+  report.tile_size = chosen.tile_size;
+  tile_choice_.drew(chosen.tile_size, report.pairs,
                     report.visible * shape_.view_count() / report.order_groups);
   report.gpu_bytes = dispatcher_.context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;

@@ -78,9 +78,9 @@ struct Drawn {
       if (camera.name == c.view) view = make_view(camera);
     }
   }
-  render::FrameReport draw(int tiles) {
-    render::Frame frame(test::gl_context(), model);
-    auto report = frame.draw(std::vector{view}, {.tiles = tiles});
+  render::FrameReport draw(int tiles, int precision = PRECISION_FULL) {
+    render::Frame frame(test::gl_context(), model, precision);
+    auto report = frame.draw(std::vector{view}, {.tiles = tiles, .precision = precision});
     picture = frame.read_pictures().front();
     return report;
   }
@@ -173,6 +173,8 @@ TEST_P(Scenes, ExactEqualsTheReference) {
     thinned.gaussians[k] = thinned.gaussians[k == 0 ? 1 : k - 1];
   }
   EXPECT_LT(measure::psnr(image, over_black(reference::blend(splats, thinned, drawn.view))), 68.0);
+  drawn.draw(TILES_ELLIPSE, PRECISION_HALF);
+  EXPECT_GE(measure::psnr(over_black(drawn.picture), expected), 60.0) << "half";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases),
