@@ -31,58 +31,47 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
   return {glm::vec4(model.position[i], model.opacity[i]), model.rotation[i], glm::vec4(model.scale[i], 0.0f)};
 }
 
-void pack_gaussians(const Model& model, std::size_t first, std::span<shared::Gaussian> packed) {
-  for (std::size_t k = 0; k < packed.size(); ++k) packed[k] = gaussian_of(model, first + k);
+// Fills a buffer with `stride` numbers of each Gaussian of a page, which pack(Gaussian, room) makes; in
+// pieces: switches of levels must not wait for memory that is touched once. The room is zero where it leaves
+// it alone.
+template <typename T, typename Pack>
+void upload_in_pieces(const ModelBuffers::Page& page, std::size_t stride, gl::Buffer& buffer,
+                      const Pack& pack_one) {
+  constexpr std::size_t piece = 1 << 15;
+  std::vector<T> packed(std::min<std::size_t>(piece, page.count) * stride);
+  for (std::size_t at = 0; at < page.count; at += piece) {
+    const std::size_t count = std::min<std::size_t>(piece, page.count - at);
+    for (std::size_t k = 0; k < count; ++k)
+      pack_one(page.first + at + k, std::span(packed).subspan(k * stride, stride));
+    buffer.upload_part<T>(std::span(packed).first(count * stride), at * stride);
+  }
 }
-
-// `padded` is zero between the coefficients of two Gaussians.
-void pad_harmonics(const Model& model, std::size_t first, std::span<float> padded, std::size_t stride) {
-  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  for (std::size_t k = 0; k < padded.size() / stride; ++k)
-    std::copy_n(&model.sh[(first + k) * floats], floats, &padded[k * stride]);
-}
-
-// Gaussians of a page that are uploaded at a time: switches of levels must not wait for memory that is
-// touched once.
-constexpr std::size_t piece = 1 << 15;
 
 void upload_halves(const Model& model, const ModelBuffers::Page& page) {
   const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
   const std::size_t words = static_cast<std::size_t>(harmonic_bytes(model.degree, PRECISION_HALF)) / 4;
-  std::vector<Halves> gaussians;
-  std::vector<std::uint32_t> harmonics;
-  for (std::size_t at = 0; at < page.count; at += piece) {
-    const std::size_t count = std::min<std::size_t>(piece, page.count - at);
-    gaussians.resize(count);
-    harmonics.resize(count * words);
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t i = page.first + at + k;
-      gaussians[k] = pack(gaussian_of(model, i));
-      pack(std::span(model.sh).subspan(i * floats, floats), std::span(harmonics).subspan(k * words, words));
-    }
-    page.gaussians->upload_part<Halves>(gaussians, at);
-    page.harmonics->upload_part<std::uint32_t>(harmonics, at * words);
-  }
+  upload_in_pieces<Halves>(page, 1, *page.gaussians, [&](std::size_t i, std::span<Halves> room) {
+    room[0] = pack(gaussian_of(model, i));
+  });
+  upload_in_pieces<std::uint32_t>(page, words, *page.harmonics,
+                                  [&](std::size_t i, std::span<std::uint32_t> room) {
+                                    pack(std::span(model.sh).subspan(i * floats, floats), room);
+                                  });
 }
 
 void upload_floats(const Model& model, const ModelBuffers::Page& page) {
+  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
   const std::size_t stride =
       static_cast<std::size_t>(harmonic_bytes(model.degree, PRECISION_FULL)) / sizeof(float);
-  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  std::vector<shared::Gaussian> packed(std::min<std::size_t>(piece, page.count));
-  std::vector<float> padded(stride == floats ? 0 : packed.size() * stride);
-  for (std::size_t at = 0; at < page.count; at += piece) {
-    const std::size_t first = page.first + at, count = std::min<std::size_t>(piece, page.count - at);
-    const auto gaussians = std::span(packed).first(count);
-    pack_gaussians(model, first, gaussians);
-    page.gaussians->upload_part<shared::Gaussian>(gaussians, at);
-    if (padded.empty()) {
-      page.harmonics->upload_part(std::span(model.sh).subspan(first * floats, count * floats), at * stride);
-    } else {
-      const auto harmonics = std::span(padded).first(count * stride);
-      pad_harmonics(model, first, harmonics, stride);
-      page.harmonics->upload_part<float>(harmonics, at * stride);
-    }
+  upload_in_pieces<shared::Gaussian>(
+      page, 1, *page.gaussians,
+      [&](std::size_t i, std::span<shared::Gaussian> room) { room[0] = gaussian_of(model, i); });
+  if (stride == floats) {
+    page.harmonics->upload_part(std::span(model.sh).subspan(page.first * floats, page.count * floats), 0);
+  } else {
+    upload_in_pieces<float>(page, stride, *page.harmonics, [&](std::size_t i, std::span<float> room) {
+      std::copy_n(&model.sh[i * floats], floats, room.begin());
+    });
   }
 }
 
