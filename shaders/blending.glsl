@@ -2,16 +2,16 @@
 //   COLUMN      pixels of an invocation, one below the other
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
-//   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others; LISTS_ALL
+//   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "lists.glsl"
 #include "splats.glsl"  // binding 12
 
 #define LISTS_SHORT 0
 #define LISTS_LONG 1
-#define LISTS_ALL 2
 
 #ifndef SHOW
 #define SHOW SHOW_PICTURE
@@ -219,7 +219,7 @@ bool find_tile() {
   tile = group_index();
   if (tile >= tile_count) return false;
 #endif
-  while (view_index + 1u < view_count && tile >= views[view_index + 1u].tile_offset) ++view_index;
+  while (view_index + 1u < view_count && tile >= views[view_index + 1u].list_offset * LISTED) ++view_index;
   uint list = list_per_view != 0u ? view_index : tile;
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];
@@ -229,8 +229,7 @@ bool find_tile() {
 // The pixels of this invocation, of which the first lies `in_tile`.
 void begin_pixels(uvec2 in_tile) {
   View view = views[view_index];
-  uint nth = tile - view.tile_offset;
-  uvec2 corner = uvec2(nth % view.tiles_x, nth / view.tiles_x) * uint(TILE_SIZE);
+  uvec2 corner = tile_of(tile, view) * uint(TILE_SIZE);
   middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
   first_pixel = corner + in_tile;
   pixel = vec2(first_pixel) - middle;

@@ -1,4 +1,4 @@
-// Stage 1, project, last part: the tiles of splats of many rows, which project.comp left aside. A work group takes TALL_EACH
+// Stage 1, project, last part: the pairs of splats of many rows, which project.comp left aside. A work group takes TALL_EACH
 // of them and its invocations share their rows, so that none waits for the one with the tallest.
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -13,11 +13,11 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
 layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats: slot * view_count + view
-layout(std430, binding = 4) writeonly buffer TileCounts { uint tile_counts[]; };
+layout(std430, binding = 4) writeonly buffer PairCounts { uint pair_counts[]; };
 uniform uint view_count;  // of the frame
 
 shared uvec4 box_at[TALL_EACH];
-shared uint tiles_at[TALL_EACH];
+shared uint pairs_at[TALL_EACH];
 shared uint rows_before[THREADS];
 
 void main() {
@@ -30,8 +30,8 @@ void main() {
     uint splat = tall[first + self];
     uvec4 box = tile_box(SPLAT(splat), views[splat % view_count]);
     box_at[self] = box;
-    tiles_at[self] = 0u;
-    rows = box.w - box.y;
+    pairs_at[self] = 0u;
+    rows = list_rows(box).y - list_rows(box).x;
   }
   rows_before[self] = scan_group(rows);
   barrier();
@@ -39,9 +39,10 @@ void main() {
     LAST_BEFORE(rows_before, nth, at)
     uint splat = tall[first + at];
     uvec4 box = box_at[at];
-    uvec2 columns = tile_row(SPLAT(splat), views[splat % view_count], box, box.y + nth - rows_before[at]);
-    atomicAdd(tiles_at[at], columns.y - columns.x);
+    uint row = list_rows(box).x + nth - rows_before[at];
+    uvec2 columns = list_row(SPLAT(splat), views[splat % view_count], box, row).columns;
+    atomicAdd(pairs_at[at], columns.y - columns.x);
   }
   barrier();
-  if (has_one) tile_counts[tall[first + self]] = tiles_at[self];
+  if (has_one) pair_counts[tall[first + self]] = pairs_at[self];
 }

@@ -1,6 +1,6 @@
-// Stage 3, pairs: (tile, splat) for every tile that a splat touches, in depth order. A work group makes SCAN_BLOCK pairs, and
-// its invocations share what leads to them: first each takes a splat and counts its rows, then a row and finds its tiles,
-// then pairs. However many rows and tiles a Gaussian covers, the work is spread evenly.
+// Stage 3, pairs: (list, splat) for every list of a tile that a splat touches, in depth order. A work group makes SCAN_BLOCK
+// pairs, and its invocations share what leads to them: first each takes a splat and counts its rows of lists, then a row and
+// finds its tiles, then pairs. However many rows and tiles a Gaussian covers, the work is spread evenly.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -16,22 +16,22 @@ layout(std430, binding = 1) readonly buffer PairAmounts { Amount pair_amounts[];
 layout(std430, binding = 2) readonly buffer Views { View views[]; };
 layout(std430, binding = 3) readonly buffer Order { uint order[]; };
 layout(std430, binding = 4) readonly buffer PairOffsets { uint pair_offsets[]; };  // scanned
-layout(std430, binding = 5) readonly buffer TileCounts { uint tile_counts[]; };
-layout(std430, binding = 7) writeonly buffer Keys { uint keys[]; };      // tile, counted over all views
-layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // splat: slot * view_count + view
+layout(std430, binding = 5) readonly buffer PairCounts { uint pair_counts[]; };
+layout(std430, binding = 7) writeonly buffer Keys { uint keys[]; };      // list, counted over all views
+layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // lists.glsl, of the splat slot * view_count + view
 uniform uint view_count;  // of the frame
 uniform uint view_begin;
 uniform uint view_end;
 
 shared uint found;
-// Of the splats at hand: which, their tile boxes (two numbers of 16 bits a word), and the rows before each.
+// Of the splats at hand: which, their tile boxes (here and below two numbers of 16 bits a word), and the rows before each.
 shared uint splat_at[THREADS];
 shared uvec2 box_at[THREADS];
 shared uint rows_before[THREADS];
-// Of the rows at hand: splat, first tile, and the tiles before each.
-shared uint row_splat[THREADS];
-shared uint row_tile[THREADS];
-shared uint tiles_before[THREADS];
+// Of the rows at hand: the place of their splats above, and the columns of tiles in their one or two rows of tiles. Each array
+// less leaves room for more groups at a time, so what can be found again is not kept (README.md).
+shared uint row_place[THREADS];
+shared uint row_tiles[LIST_TILES][THREADS];
 
 // The last rank whose pairs begin at or before `pair`, looked for by all invocations together.
 uint rank_of(uint pair) {
@@ -59,30 +59,50 @@ uint take_splat(uint rank, uint nth) {
   if (rank >= order_amounts[0].count) return 0u;
   uint v = view_begin + nth % in_views;
   uint splat = order[rank] * view_count + v;
-  if (tile_counts[splat] == 0u) return 0u;
+  if (pair_counts[splat] == 0u) return 0u;
   uvec4 box = tile_box(SPLAT(splat), views[v]);
   splat_at[self] = splat;
   box_at[self] = box.xy | box.zw << 16;
-  return box.w - box.y;
+  uvec2 rows = list_rows(box);
+  return rows.y - rows.x;
 }
 
-// The tiles of the nth row of the splats at hand.
+uvec4 box_of(uint place) { return uvec4(box_at[place] & 0xFFFFu, box_at[place] >> 16); }
+
+// The pairs of the nth row of the splats at hand.
 uint take_row(uint nth) {
   LAST_BEFORE(rows_before, nth, at)
   uint self = gl_LocalInvocationIndex;
   uint splat = splat_at[at];
-  uint v = splat % view_count;
-  View view = views[v];
-  uvec4 box = uvec4(box_at[at] & 0xFFFFu, box_at[at] >> 16);
-  uint row = box.y + nth - rows_before[at];
-  uvec2 columns = tile_row(SPLAT(splat), view, box, row);
-  row_splat[self] = splat;
-#if TILES == TILES_ALL
-  row_tile[self] = v;  // one list a view
-#else
-  row_tile[self] = view.tile_offset + row * view.tiles_x + columns.x;
+  uvec4 box = box_of(at);
+  ListRow row = list_row(SPLAT(splat), views[splat % view_count], box, list_rows(box).x + nth - rows_before[at]);
+  row_place[self] = at;
+  row_tiles[0][self] = row.tiles.x | row.tiles.y << 16;
+#if LIST_TILES == 2
+  row_tiles[1][self] = row.tiles.z | row.tiles.w << 16;
 #endif
-  return columns.y - columns.x;
+  return row.columns.y - row.columns.x;
+}
+
+ListRow row_at(uint at) {
+  uvec2 tiles = uvec2(row_tiles[0][at], row_tiles[LIST_TILES - 1][at]);
+  return list_row_of(uvec4(tiles.x & 0xFFFFu, tiles.x >> 16, tiles.y & 0xFFFFu, tiles.y >> 16));
+}
+
+// The nth pair of the row whose place is `at`, the nth_row of the splats at hand.
+void make_pair(uint to, uint nth_row, uint at, uint nth) {
+  uint place = row_place[at];
+  uint splat = splat_at[place];
+  ListRow row = row_at(at);
+  uint column = row.columns.x + nth;
+#if TILES == TILES_ALL
+  keys[to] = splat % view_count;  // one list a view
+#else
+  uint v = splat % view_count;
+  uint row_in_view = list_rows(box_of(place)).x + nth_row - rows_before[place];
+  keys[to] = views[v].list_offset + row_in_view * lists_across(views[v]) + column;
+#endif
+  values[to] = value_of(splat, row, column);
 }
 
 void main() {
@@ -98,17 +118,15 @@ void main() {
     rows_before[self] = before;
     uint rows = take_group_total();
     for (uint row = 0u; row < rows && pair < end; row += THREADS) {
-      before = scan_group(row + self < rows ? take_row(row + self) : 0u);
-      tiles_before[self] = before;
-      uint tiles = take_group_total();
+      scan_group(row + self < rows ? take_row(row + self) : 0u);
+      uint pairs = take_group_total();
       uint skipped = first > pair ? first - pair : 0u;  // by the groups before
-      for (uint tile = skipped + self; tile < min(tiles, end - pair); tile += THREADS) {
-        LAST_BEFORE(tiles_before, tile, at)
-        uint to = pair_amounts[0].first + pair + tile;
-        keys[to] = row_tile[at] + tile - tiles_before[at];
-        values[to] = row_splat[at];
+      for (uint nth = skipped + self; nth < min(pairs, end - pair); nth += THREADS) {
+        FIRST_AFTER(scan_sums, nth, at)
+        make_pair(pair_amounts[0].first + pair + nth, row + at, at, at == 0u ? nth : nth - scan_sums[at - 1u]);
       }
-      pair += tiles;
+      pair += pairs;
+      memoryBarrierShared();
       barrier();
     }
   }

@@ -35,6 +35,11 @@ void scan_neighbours(uint before, inout uint mine[SCAN_EACH]) {
   uint at = 0u;                      \
   for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) at += sums[at + half_way] <= (value) ? half_way : 0u;
 
+// Of the sums that scan_group leaves, each with its own value, the first above `value`: `at`.
+#define FIRST_AFTER(sums, value, at) \
+  uint at = 0u;                      \
+  for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) at += sums[at + half_way - 1u] <= (value) ? half_way : 0u;
+
 // The sum over all invocations; after scan_group or scan_neighbours.
 uint group_total() { return scan_sums[THREADS - 1u]; }
 

@@ -26,6 +26,12 @@
 
 #define MAX_VIEWS 8
 
+// Where tiles share a list of pairs, so many bits of a pair's value are its splat; above, a bit for each
+// tile.
+#define LIST_SPLAT_BITS 28
+// Sorted pairs that a work group splits among their tiles.
+#define TILE_BLOCK 1024
+
 // What a frame remembers of a Gaussian (METHOD 5): never less than the floor, or a hidden one would divide by
 // zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be measured again.
 #define UPPER_FLOOR 0.01
@@ -48,11 +54,13 @@
 #define PRESENT_COLUMNS 32u
 #define PRESENT_ROWS 8u
 // Elements that one work group scans, compacts or sorts: several rounds of THREADS. A sort of few has smaller
-// blocks, or they would not fill a GPU; its programs define theirs (primitives/radix_sort.h).
+// blocks, or they would not fill a GPU, and one by digits of 8 bits, whose counters leave room for more
+// groups; its programs define theirs (primitives/radix_sort.h).
 #define SCAN_BLOCK 2048
 #define COMPACT_BLOCK 2048
 #define SORT_FEW 524288
 #define SORT_BLOCK_FEW 1024
+#define SORT_BLOCK_8_BITS 2048
 #ifndef SORT_BLOCK
 #define SORT_BLOCK 4096
 #endif
@@ -64,7 +72,8 @@
 #define BLEND_UNROLL 8
 // Side in px of the cells that the blend counts a pixel's place in: that of the largest tiles.
 #define BLEND_CELL 32u
-// A tile with more pairs than this is drawn by more invocations, of a launch that starts before the others'.
+// A tile with more pairs than this is drawn by more invocations, of a launch that starts
+// before the others'.
 #ifndef LONG_LIST
 #define LONG_LIST 2048
 #endif

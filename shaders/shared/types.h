@@ -29,7 +29,7 @@ struct View {
   uint height;  // px
   uint tiles_x;
   uint tiles_y;
-  uint tile_offset;   // this view's first tile in the frame's list of tiles
+  uint list_offset;   // this view's first list in the frame's lists of pairs
   uint pixel_offset;  // this view's first pixel in the frame's pixel buffers
   uint order_group;   // views of equal number share one depth order
   uint th_view;       // with --th-eyes cyclopean: the view between the eyes, which Th is taken from
@@ -65,7 +65,7 @@ struct Splat {
 struct Counters {
   uint visible;       // Gaussians in depth order, summed over the order groups
   uint order_wanted;  // the most Gaussians that one order group had
-  uint pairs;         // Gaussian-tile pairs wanted, all views
+  uint pairs;         // Gaussian-list pairs wanted, all views
   uint overflow;      // OVERFLOW_ bits
   uint loop_cut;      // tiles whose list the driver cut short: the picture is wrong and must not be used
   uint median_depth;  // bits of a float: of what the last order group drew, world units
@@ -75,6 +75,7 @@ struct Counters {
   uint long_x, long_y, long_z;
   uint tall;  // splats whose tiles are counted together, and the groups of that launch
   uint tall_x, tall_y, tall_z;
+  uint tile_pairs;  // Gaussian-tile pairs wanted where lists are of several tiles, all views
 };
 
 #define KEPT_HIDDEN 0x80000000u  // among the bits of an anchor's Gaussians: not decoded, the last frame's
@@ -86,6 +87,7 @@ struct Counters {
 #define AMOUNT_ALL_PAIRS 2u         // the pairs of all groups
 #define OVERFLOW_ORDER 1u
 #define OVERFLOW_PAIRS 2u
+#define OVERFLOW_TILE_PAIRS 4u
 
 // How many things there are, known to the GPU only, and the indirect dispatches that go over them. Group
 // counts are split into x and y for drivers that allow few along x.
@@ -103,7 +105,7 @@ static_assert(sizeof(View) == 144 && offsetof(View, slopes) == 96 && offsetof(Vi
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
-static_assert(sizeof(Counters) == 64 && offsetof(Counters, long_x) == 36 && offsetof(Counters, tall_x) == 52);
+static_assert(sizeof(Counters) == 68 && offsetof(Counters, long_x) == 36 && offsetof(Counters, tall_x) == 52);
 static_assert(sizeof(Amount) == 48 && offsetof(Amount, threads_x) == 8 && offsetof(Amount, sort_x) == 32);
 }  // namespace binosplat::shared
 #endif

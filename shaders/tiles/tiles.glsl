@@ -7,6 +7,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 
+#include "lists.glsl"
 #include "tiles/level.glsl"
 
 // First and one-past-last tile along an axis for pixels [low, high]; beyond the grid is cut off. Clamped as floats, since
@@ -52,10 +53,56 @@ bool holds_a_centre(Splat splat, View view, vec2 extent) {
 
 #include "tiles/{TILES_NAME}.glsl"
 
-uint tile_count(Splat splat, View view, uvec4 box) {
+// The rows of lists of a box of tiles: [x, y).
+uvec2 list_rows(uvec4 box) {
+  return box.w <= box.y ? uvec2(0u) : uvec2(box.y / uint(LIST_TILES), (box.w - 1u) / uint(LIST_TILES) + 1u);
+}
+
+// A row of lists: the columns of lists [x, y) that a splat is in, and the columns of tiles that it touches in the first row
+// of tiles [x, y) and in the second, if there is one, [z, w).
+struct ListRow {
+  uvec2 columns;
+  uvec4 tiles;
+};
+
+ListRow list_row_of(uvec4 tiles) {
+#if LIST_TILES == 1
+  return ListRow(tiles.xy, tiles);
+#else
+  uvec2 upper = tiles.x < tiles.y ? uvec2(tiles.x / 2u, (tiles.y + 1u) / 2u) : uvec2(0xFFFFFFFFu, 0u);
+  uvec2 lower = tiles.z < tiles.w ? uvec2(tiles.z / 2u, (tiles.w + 1u) / 2u) : uvec2(0xFFFFFFFFu, 0u);
+  uvec2 both = uvec2(min(upper.x, lower.x), max(upper.y, lower.y));
+  return ListRow(both.y == 0u ? uvec2(0u) : both, tiles);
+#endif
+}
+
+ListRow list_row(Splat splat, View view, uvec4 box, uint nth) {
+  uvec4 tiles = uvec4(0u);
+  uint row = nth * uint(LIST_TILES);
+  if (row >= box.y) tiles.xy = tile_row(splat, view, box, row);
+#if LIST_TILES == 2
+  if (row + 1u < box.w) tiles.zw = tile_row(splat, view, box, row + 1u);
+#endif
+  return list_row_of(tiles);
+}
+
+// A pair's value (lists.glsl).
+uint value_of(uint splat, ListRow row, uint column) {
+#if LIST_TILES == 1
+  return splat;
+#else
+  uvec2 tiles = uvec2(2u * column, 2u * column + 1u);
+  uvec2 upper = uvec2(greaterThanEqual(tiles, row.tiles.xx)) * uvec2(lessThan(tiles, row.tiles.yy));
+  uvec2 lower = uvec2(greaterThanEqual(tiles, row.tiles.zz)) * uvec2(lessThan(tiles, row.tiles.ww));
+  return splat | (upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3) << LIST_SPLAT_BITS;
+#endif
+}
+
+uint pair_count(Splat splat, View view, uvec4 box) {
   uint count = 0u;
-  for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = tile_row(splat, view, box, row);
+  uvec2 rows = list_rows(box);
+  for (uint nth = rows.x; nth < rows.y; ++nth) {
+    uvec2 columns = list_row(splat, view, box, nth).columns;
     count += columns.y - columns.x;
   }
   return count;

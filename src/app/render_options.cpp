@@ -220,7 +220,7 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
          decode_choices)
       ->group(group);
   sub.add_option("--tile", o.tile,
-                 "Side of a tile in px (auto: 16, and for exact pictures 32\nwhere that is faster)")
+                 "Side of a tile in px (auto: 16, sorted in lists of 2 x 2 tiles\nwhere that is faster)")
       ->check(one_of<std::string>({"auto", "8", "16", "32"}))
       ->type_name("auto|8|16|32")
       ->group(group);

@@ -1,5 +1,6 @@
 #include "primitives/radix_sort.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
@@ -18,10 +19,16 @@ void PairBuffers::reserve(std::int64_t count) {
   for (gl::Buffer* buffer : {&keys_, &keys_other_, &values_, &values_other_}) buffer->reserve(count * 4);
 }
 
-std::uint32_t PairBuffers::block() const { return capacity() <= SORT_FEW ? SORT_BLOCK_FEW : SORT_BLOCK; }
+std::uint32_t PairBuffers::block(std::uint32_t bits) const {
+  if (capacity() <= SORT_FEW) return SORT_BLOCK_FEW;
+  return RadixSort::digit_bits(bits) == 8 ? SORT_BLOCK_8_BITS : SORT_BLOCK;
+}
 
 void RadixSort::reserve(const PairBuffers& pairs) {
-  const std::int64_t counters = (pairs.capacity() / pairs.block() + 1) << SORT_BITS_MAX;
+  const auto counters_of = [&](std::uint32_t bits) {
+    return (pairs.capacity() / pairs.block(bits) + 1) << digit_bits(bits);
+  };
+  const std::int64_t counters = std::max(counters_of(8), counters_of(SORT_BITS_MAX));
   histogram_.reserve(counters * 4);
   scan_.reserve(counters);
 }
@@ -33,7 +40,7 @@ std::uint32_t RadixSort::passes(std::uint32_t bits) { return (bits + SORT_BITS_M
 void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs,
                     std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
-  gl::Defines defines = pairs.block_define();
+  gl::Defines defines = pairs.block_define(bits);
   defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
   const gl::Program& count = context.program("primitives/sort_count.comp", defines);
   const gl::Program& scatter =

@@ -16,10 +16,11 @@ class PairBuffers {
   void reserve(std::int64_t count);
   std::int64_t capacity() const { return keys_.bytes() / 4; }
 
-  /// Pairs that a work group of the sort has: fewer where there is room for few. Who fills SortAmounts for
-  /// them needs it, programs as the define SORT_BLOCK.
-  std::uint32_t block() const;
-  gl::Defines block_define() const { return {{"SORT_BLOCK", std::to_string(block())}}; }
+  /// Pairs that a work group of a sort by `bits` bits has: fewer where there is room for few, or where its
+  /// counters of 8 bits take less shared memory than more pairs would. Who fills SortAmounts for them needs
+  /// it, programs as the define SORT_BLOCK.
+  std::uint32_t block(std::uint32_t bits) const;
+  gl::Defines block_define(std::uint32_t bits) const { return {{"SORT_BLOCK", std::to_string(block(bits))}}; }
 
   /// Where the pairs are now.
   gl::Buffer& keys() { return flipped_ ? keys_other_ : keys_; }

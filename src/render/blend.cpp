@@ -1,6 +1,5 @@
 #include <bit>
 #include <cstddef>
-#include <string_view>
 
 #include "render/stages.h"
 
@@ -16,30 +15,27 @@ struct Variant {
 };
 
 // LISTS of blending.glsl.
-enum class Lists { of_short, of_long, all };
+enum class Lists { of_short, of_long };
 
-// Who measures or counts has the tile's splats before all its pixels; and what tests nothing shows what tests
-// lose.
-bool by_blocks(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
+// Who measures or counts has the tile's splats before all its pixels; what tests nothing shows what tests
+// lose; and other sizes of tiles are for comparing.
+bool by_subgroups(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
   const bool plain = !variant.records && !variant.weighs && variant.show == SHOW_PICTURE;
-  return context.limits().subgroups_of_32 && plain && shape.settings.tiles != TILES_ALL;
+  const bool usual = shape.settings.tiles != TILES_ALL && shape.settings.tile_size == TILE_SIZE_DEFAULT;
+  return context.limits().subgroups_of_32 && plain && usual;
 }
 
 // The tile test is no part of these programs: with every test the same lists give the same bits. Nor does a
 // pixel's colour depend on how many of them an invocation draws, or on the tiles' size.
 const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
-                           const char* name, Lists lists) {
-  const bool wide = std::string_view(name) != "blend.comp" && shape.settings.tile_size > 8;
+                           Lists lists) {
   const bool is_long = lists == Lists::of_long;
-  const bool together = lists == Lists::all;
+  const char* name = by_subgroups(context, shape, variant) ? "blend_subgroups.comp" : "blend.comp";
   return context.program(name, {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+                                {"LIST_TILES", std::to_string(shape.settings.list_tiles)},
                                 {"LISTS", std::to_string(static_cast<int>(lists))},
-                                {"COLUMN", std::to_string(is_long ? 1
-                                                          : wide  ? 4
-                                                                  : 2)},
-                                {"AHEAD", is_long    ? "8"
-                                          : together ? "2"
-                                                     : "4"},
+                                {"COLUMN", is_long ? "1" : "2"},
+                                {"AHEAD", is_long ? "8" : "4"},
                                 {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                                 {"RECORDS", variant.records ? "1" : "0"},
                                 {"WEIGHS", variant.weighs ? "1" : "0"},
@@ -51,11 +47,11 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
          const gl::Buffer& measured) {
   gl::Context& context = dispatcher.context();
   const glm::vec3& background = shape.settings.background;
-  const auto draw = [&](const char* name, Lists lists, const gl::Work& work) {
-    dispatcher.start(program(context, shape, variant, name, lists), work,
+  const auto draw = [&](Lists lists, const gl::Work& work) {
+    dispatcher.start(program(context, shape, variant, lists), work,
                      {{"Views", buffers.views},
-                      {"Ranges", buffers.ranges},
-                      {"Values", buffers.pairs.values()},
+                      {"Ranges", buffers.ranges_of_tiles(shape)},
+                      {"Values", buffers.values_of_tiles(shape)},
                       {"Splats", buffers.splats},
                       {"Colours", buffers.colours},
                       {"ZSums", buffers.z_sums},
@@ -68,17 +64,11 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"background_r", std::bit_cast<std::uint32_t>(background.r)},
                       {"background_g", std::bit_cast<std::uint32_t>(background.g)},
                       {"background_b", std::bit_cast<std::uint32_t>(background.b)},
-                      {"tile_count", shape.tile_count},
+                      {"tile_count", shape.tile_count()},
                       {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
   };
-  const bool blocks = by_blocks(context, shape, variant);
-  if (blocks && shape.settings.tile_size == 32) {
-    draw("blend_together.comp", Lists::all, gl::Work::of_groups(shape.tile_count));
-  } else {
-    const char* name = blocks ? "blend_blocks.comp" : "blend.comp";
-    draw(name, Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
-    draw(name, Lists::of_short, gl::Work::of_groups(shape.tile_count));
-  }
+  draw(Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
+  draw(Lists::of_short, gl::Work::of_groups(shape.tile_count()));
   dispatcher.wait_for_writes();
 }
 
@@ -86,10 +76,12 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
 
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   if (shape.settings.tiles != TILES_ALL) {
-    dispatcher.run(
-        dispatcher.context().program("long_lists.comp"), gl::Work::threads(shape.tile_count, THREADS),
-        {{"Ranges", buffers.ranges}, {"LongLists", buffers.long_lists}, {"FrameCounters", buffers.counters}},
-        {{"tile_count", shape.tile_count}});
+    dispatcher.run(dispatcher.context().program("long_lists.comp"),
+                   gl::Work::threads(shape.tile_count(), THREADS),
+                   {{"Ranges", buffers.ranges_of_tiles(shape)},
+                    {"LongLists", buffers.long_lists},
+                    {"FrameCounters", buffers.counters}},
+                   {{"tile_count", shape.tile_count()}});
   }
   const FrameSettings& settings = shape.settings;
   run(dispatcher, shape, buffers,

@@ -155,6 +155,10 @@ std::int64_t starting_pairs(const FrameShape& shape) {
                     std::int64_t{1} << 24);
 }
 
+std::uint32_t tile_blocks(std::int64_t pairs) {
+  return static_cast<std::uint32_t>((pairs + TILE_BLOCK - 1) / TILE_BLOCK);
+}
+
 MemoryNeeds memory_needs(const FrameShape& shape) {
   MemoryNeeds needs;
   const std::uint32_t decodings = shape.offset_count == 0 ? 1 : shape.decoding_count();
@@ -169,7 +173,7 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   const std::int64_t slot_bytes =
       shape.view_count() * bytes_a_splat + 6 * 4;  // indices, order twice, offsets
   needs.frame = shape.gaussian_count * bytes_a_gaussian + shape.slots * slot_bytes + shape.pixel_count * 20 +
-                shape.tile_count * 12LL + starting_pairs(shape) * pair_bytes;
+                shape.tile_count() * 12LL + starting_pairs(shape) * pair_bytes;
   return needs;
 }
 
@@ -186,11 +190,15 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       measured(context, "measured transmittance"),
       depth_table(context, "transmittance by depth"),
       splats(context, "splats"),
-      tile_counts(context, "tile counts"),
+      pair_counts(context, "pair counts"),
       tall(context, "tall splats"),
       pair_amounts(context, "amounts of pairs"),
       pairs(context, "Gaussian-tile pairs"),
       ranges(context, "tile ranges"),
+      tile_amount(context, "amount of the tiles' counts"),
+      tile_counts(context, "tiles' counts"),
+      tile_ranges(context, "ranges of tiles"),
+      tile_values(context, "lists of tiles"),
       long_lists(context, "tiles with long lists"),
       colours(context, "pixels"),
       z_sums(context, "depth of pixels"),
@@ -211,7 +219,8 @@ void FrameBuffers::upload(const FrameShape& shape) {
   depth_table.upload(table);
 }
 
-void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) {
+void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity,
+                           std::int64_t tile_pair_capacity) {
   const std::int64_t gaussians = shape.gaussian_count;
   const std::int64_t slots = shape.slots;
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
@@ -232,12 +241,19 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity) 
   order.reserve(slots);
   pair_offsets.reserve(slots * 4);
   splats.reserve(slots * shape.view_count() * splat_bytes(shape.settings.precision));
-  tile_counts.reserve(slots * shape.view_count() * 4);
+  pair_counts.reserve(slots * shape.view_count() * 4);
   tall.reserve(slots * shape.view_count() * 4);
   pair_amounts.reserve(sizeof(primitives::SortAmounts));
   pairs.reserve(pair_capacity);
-  ranges.reserve(std::max<std::int64_t>(shape.tile_count, shape.view_count()) * 8);
-  long_lists.reserve(shape.tile_count * 4LL);
+  ranges.reserve(std::max<std::int64_t>(shape.list_count, shape.view_count()) * 8);
+  if (shape.settings.list_tiles > 1) {
+    const int listed = shape.settings.list_tiles * shape.settings.list_tiles;
+    tile_counts.reserve(std::int64_t{tile_blocks(pairs.capacity())} * listed * 4);
+    scan.reserve(std::int64_t{tile_blocks(pairs.capacity())} * listed);
+    tile_ranges.reserve(shape.tile_count() * 8LL);
+    tile_values.reserve(tile_pair_capacity * 4);
+  }
+  long_lists.reserve(shape.tile_count() * 4LL);
   colours.reserve(shape.pixel_count * 16);
   z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));

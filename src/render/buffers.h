@@ -55,6 +55,9 @@ struct ModelBuffers {
   int precision_ = PRECISION_FULL;
 };
 
+/// Blocks that so many sorted pairs are split among their tiles in.
+std::uint32_t tile_blocks(std::int64_t pairs);
+
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
 std::int64_t starting_pairs(const FrameShape& shape);
 
@@ -80,8 +83,17 @@ struct FrameBuffers {
   /// What the CPU knows of a frame: its views and its table of depths.
   void upload(const FrameShape& shape);
 
-  /// Room for a frame of this shape and its slots, and so many pairs.
-  void reserve(const FrameShape& shape, std::int64_t pair_capacity);
+  /// Room for a frame of this shape and its slots, and so many pairs; and where lists are of several tiles,
+  /// so many of the tiles.
+  void reserve(const FrameShape& shape, std::int64_t pair_capacity, std::int64_t tile_pair_capacity);
+
+  /// What tiles are blended by: begin and end in the values, by tile; and those, splats.
+  gl::Buffer& ranges_of_tiles(const FrameShape& shape) {
+    return shape.settings.list_tiles == 1 ? ranges : tile_ranges;
+  }
+  gl::Buffer& values_of_tiles(const FrameShape& shape) {
+    return shape.settings.list_tiles == 1 ? pairs.values() : tile_values;
+  }
 
   gl::Buffer views;     // View, those between eyes last
   gl::Buffer counters;  // Counters
@@ -104,12 +116,17 @@ struct FrameBuffers {
 
   // Of all views.
   gl::Buffer splats;              // Splat, or Halves (slot, view)
-  gl::Buffer tile_counts;         // uint (slot, view)
+  gl::Buffer pair_counts;         // uint (slot, view)
   gl::Buffer tall;                // splats over many rows of tiles
   gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
-  primitives::PairBuffers pairs;  // tile (view with --tiles all), splat
+  primitives::PairBuffers pairs;  // list (view with --tiles all), splat (lists.glsl)
   gl::Buffer ranges;              // begin, end by list
-  gl::Buffer long_lists;          // tiles with long lists
+  // Where lists are of several tiles, in place of `ranges`.
+  gl::Buffer tile_amount;  // Amount of the counts below
+  gl::Buffer tile_counts;  // uint, pairs by tile of a list, then by block of TILE_BLOCK, scanned
+  gl::Buffer tile_ranges;  // begin, end by tile
+  gl::Buffer tile_values;  // splats by these
+  gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
 
   gl::Buffer colours;  // vec4 by pixel: C, T
   gl::Buffer z_sums;   // float by pixel

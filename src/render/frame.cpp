@@ -18,6 +18,17 @@ namespace {
 
 constexpr int attempts_max = 8;
 
+// What TILE_SIZE_AUTO stands for: with lists of several tiles where subgroups blend, which pass over what a
+// tile is not offered, and where a pair's value has room for the tiles.
+FrameSettings with_tiles(FrameSettings settings, std::uint64_t splats, bool has_subgroups) {
+  if (settings.tile_size != TILE_SIZE_AUTO) return settings;
+  settings.tile_size = TILE_SIZE_DEFAULT;
+  const bool has_room = splats <= std::uint64_t{1} << LIST_SPLAT_BITS;
+  const bool by_tiles = settings.tiles != TILES_ALL && !settings.reference_until;
+  settings.list_tiles = has_subgroups && has_room && by_tiles ? 2 : 1;
+  return settings;
+}
+
 }  // namespace
 
 Frame::Frame(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians)
@@ -33,7 +44,8 @@ void Frame::reload() {
 }
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
-  const FrameSettings chosen = tile_choice_.resolve(settings, dispatcher_.context().limits().subgroups_of_32);
+  const std::uint64_t splats = std::uint64_t{model_.count()} * (views.size() + 1);  // a probe is a view, too
+  const FrameSettings chosen = with_tiles(settings, splats, dispatcher_.context().limits().subgroups_of_32);
   shape_ = make_shape(views, chosen, model_);
   if (chosen.precision != model_buffers_.precision()) {
     model_buffers_.upload(dispatcher_.context(), model_, chosen.precision);
@@ -50,6 +62,8 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   if (chosen.order_capacity > 0) slots_ = chosen.order_capacity;
   pair_capacity_ =
       chosen.pair_capacity > 0 ? chosen.pair_capacity : std::max(pair_capacity_, starting_pairs(shape_));
+  tile_pair_capacity_ =
+      chosen.pair_capacity > 0 ? chosen.pair_capacity : std::max(tile_pair_capacity_, starting_pairs(shape_));
 
   buffers_.upload(shape_);
   const std::uint32_t groups_max = dispatcher_.context().limits().groups;
@@ -60,7 +74,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   shared::Counters counters{};
   for (;;) {
     shape_.slots = static_cast<std::uint32_t>(slots_);
-    buffers_.reserve(shape_, pair_capacity_);
+    buffers_.reserve(shape_, pair_capacity_, tile_pair_capacity_);
     model_buffers_.reserve(shape_);
     counters = draw_once(report);
     if (counters.overflow == 0) break;
@@ -78,13 +92,13 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   }
   keep_measurements(counters, report);
   report.visible = counters.visible;
-  report.pairs = counters.pairs;
+  report.pairs = chosen.list_tiles == 1 ? counters.pairs : counters.tile_pairs;
+  report.listed_pairs = counters.pairs;
   report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
   report.order_passes = primitives::RadixSort::passes(shape_.groups.front().key_bits);
   report.tile_sort_passes = primitives::RadixSort::passes(shape_.list_bits());
   report.tile_size = chosen.tile_size;
-  tile_choice_.drew(chosen.tile_size, report.pairs,
-                    report.visible * shape_.view_count() / report.order_groups);
+  report.list_tiles = chosen.list_tiles;
   report.gpu_bytes = dispatcher_.context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
   return report;
@@ -182,8 +196,13 @@ void Frame::grow(const shared::Counters& counters) {
     slots_ = std::min<std::int64_t>(larger(counters.order_wanted), shape_.gaussian_count);
   }
   if ((counters.overflow & OVERFLOW_PAIRS) != 0) {
-    log_info("drawn again: {} Gaussian-tile pairs, room for {}", counters.pairs, buffers_.pairs.capacity());
+    log_info("drawn again: {} Gaussian-{} pairs, room for {}", counters.pairs,
+             shape_.settings.list_tiles == 1 ? "tile" : "list", buffers_.pairs.capacity());
     pair_capacity_ = larger(counters.pairs);
+  }
+  if ((counters.overflow & OVERFLOW_TILE_PAIRS) != 0) {
+    log_info("drawn again: {} Gaussian-tile pairs, room for {}", counters.tile_pairs, tile_pair_capacity_);
+    tile_pair_capacity_ = larger(counters.tile_pairs);
   }
 }
 
@@ -221,7 +240,7 @@ void Frame::read_drawn(std::uint32_t v, const Take& take) const {
   const auto count = drawn.amounts.read<shared::Amount>(1).front().count;
   const auto indices = drawn.indices.read<std::uint32_t>(count);
   const std::size_t views = shape_.view_count();
-  const auto tiles = buffers_.tile_counts.read<std::uint32_t>(count * views);
+  const auto tiles = buffers_.pair_counts.read<std::uint32_t>(count * views);
   const auto measured = buffers_.measured.read<T>(count * views);
   for (std::size_t slot = 0; slot < count; ++slot) {
     if (tiles[slot * views + v] != 0) take(indices[slot], measured[slot * views + v]);

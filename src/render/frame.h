@@ -10,7 +10,6 @@
 #include "render/buffers.h"
 #include "render/loss_control.h"
 #include "render/settings.h"
-#include "render/tile_choice.h"
 
 namespace binosplat::render {
 
@@ -18,7 +17,8 @@ namespace binosplat::render {
 struct FrameReport {
   std::uint64_t visible =
       0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes, else 2)
-  std::uint64_t pairs = 0;  // Gaussian-tile pairs over all views, a probe's included
+  std::uint64_t pairs = 0;         // Gaussian-tile pairs over all views, a probe's included
+  std::uint64_t listed_pairs = 0;  // those that were sorted: fewer where lists are of several tiles
   std::uint32_t order_groups = 0;
   std::uint32_t order_passes = 0;      // of the radix sort by depth, of an order group
   std::uint32_t tile_sort_passes = 0;  // of that by tile
@@ -27,11 +27,12 @@ struct FrameReport {
   double total_ms = 0;                 // their sum
   double submit_ms = 0;                // CPU time of handing the last drawing to the driver
   std::int64_t gpu_bytes = 0;          // in buffers, the model's included
-  int tile_size = 0;                   // px: settings.tile_size, or what the frame chose
-  float loss = 0.0f;                   // K or kappa that the frame went by
-  bool remembered = false;             // it went by what an earlier frame measured
-  bool recorded = false;               // it measured for later ones
-  double quality = 0.0;                // with settings.quality: the PSNR in dB that its probes so far tell of
+  int tile_size = 0;                   // px
+  int list_tiles = 0;       // tiles along a side of a list: settings.list_tiles, or what the frame chose
+  float loss = 0.0f;        // K or kappa that the frame went by
+  bool remembered = false;  // it went by what an earlier frame measured
+  bool recorded = false;    // it measured for later ones
+  double quality = 0.0;     // with settings.quality: the PSNR in dB that its probes so far tell of
 };
 
 /// A Gaussian that a frame drew in a view, and the most light that reached it.
@@ -110,9 +111,9 @@ class Frame {
   int since_recorded_ = 0;     // frames
   LossControl loss_control_;
   double last_median_depth_ = 0;
-  TileChoice tile_choice_;
   std::int64_t slots_ = 0;
   std::int64_t pair_capacity_ = 0;
+  std::int64_t tile_pair_capacity_ = 0;
   std::vector<Picture> reference_pictures_;  // with --reference-until blend
 };
 

@@ -15,11 +15,12 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
   dispatcher.run(context.program("pairs_count.comp"), each(drawn),
                  {{"Amounts", drawn},
                   {"Order", buffers.order.values()},
-                  {"TileCounts", buffers.tile_counts},
+                  {"PairCounts", buffers.pair_counts},
                   {"PairOffsets", buffers.pair_offsets}},
                  {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
   buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
-  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define()), gl::Work::of_groups(1),
+  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define(shape.list_bits())),
+                 gl::Work::of_groups(1),
                  {{"Amounts", buffers.pair_amounts},
                   {"Total", buffers.scan.total()},
                   {"FrameCounters", buffers.counters}},
@@ -34,7 +35,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Views", buffers.views},
                   {"Order", buffers.order.values()},
                   {"PairOffsets", buffers.pair_offsets},
-                  {"TileCounts", buffers.tile_counts},
+                  {"PairCounts", buffers.pair_counts},
                   {"Splats", buffers.splats},
                   {"Keys", buffers.pairs.keys()},
                   {"Values", buffers.pairs.values()}},

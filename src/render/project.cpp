@@ -66,7 +66,7 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
                  {{"gaussian_count", shape.gaussian_count}});
   buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
   dispatcher.run(
-      context.program("amount.comp", buffers.order.block_define()), gl::Work::of_groups(1),
+      context.program("amount.comp", buffers.order.block_define(group.key_bits)), gl::Work::of_groups(1),
       {{"Amounts", drawn.amounts}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
       {{"kind", AMOUNT_ORDER},
        {"capacity", shape.slots},
@@ -93,6 +93,7 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TH_EYES", std::to_string(s.th_eyes)},
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},
+                         {"LIST_TILES", std::to_string(s.list_tiles)},
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"OFFSETS", std::to_string(shape.offset_count)}};
@@ -120,7 +121,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},
                     {"Splats", buffers.splats},
-                    {"TileCounts", buffers.tile_counts},
+                    {"PairCounts", buffers.pair_counts},
                     {"FrameCounters", buffers.counters},
                     {"Tall", buffers.tall},
                     {"Upper", *buffers.upper},
@@ -147,7 +148,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                   {"FrameCounters", buffers.counters},
                   {"Tall", buffers.tall},
                   {"Splats", buffers.splats},
-                  {"TileCounts", buffers.tile_counts}},
+                  {"PairCounts", buffers.pair_counts}},
                  {{"view_count", shape.view_count()}});
 }
 

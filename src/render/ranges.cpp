@@ -1,17 +1,59 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "primitives/amount.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
 
-void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+namespace {
+
+void clear(gl::Dispatcher& dispatcher, const gl::Buffer& ranges, std::uint32_t lists) {
+  dispatcher.run(dispatcher.context().program("ranges_clear.comp"), gl::Work::threads(2 * lists, THREADS),
+                 {{"Ranges", ranges}}, {{"count", 2 * lists}});
+}
+
+// Each tile's list out of the one that it shares.
+void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  const std::uint32_t bounds = 2 * std::max(shape.tile_count, shape.view_count());
-  dispatcher.run(context.program("ranges_clear.comp"), gl::Work::threads(bounds, THREADS),
-                 {{"Ranges", buffers.ranges}}, {{"count", bounds}});
+  clear(dispatcher, buffers.tile_ranges, shape.tile_count());
+  const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
+  const auto listed = static_cast<std::uint32_t>(shape.settings.list_tiles * shape.settings.list_tiles);
+  const auto program = [&](const char* writes) -> const gl::Program& {
+    return context.program("tile_lists.comp", {{"LIST_TILES", std::to_string(shape.settings.list_tiles)},
+                                               {"SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0"},
+                                               {"WRITES", writes}});
+  };
+  buffers.tile_amount.upload(std::vector{primitives::make_amount(listed * blocks, context.limits().groups)});
+  dispatcher.run(program("0"), gl::Work::of_groups(blocks),
+                 {{"Amounts", buffers.pair_amounts},
+                  {"Values", buffers.pairs.values()},
+                  {"TileCounts", buffers.tile_counts}},
+                 {{"blocks", blocks}});
+  buffers.scan.run(dispatcher, buffers.tile_amount, 0, buffers.tile_counts);
   dispatcher.run(
-      context.program("ranges.comp"),
+      program("1"), gl::Work::of_groups(blocks),
+      {{"Amounts", buffers.pair_amounts},
+       {"Values", buffers.pairs.values()},
+       {"TileCounts", buffers.tile_counts},
+       {"Total", buffers.scan.total()},
+       {"Keys", buffers.pairs.keys()},
+       {"TileRanges", buffers.tile_ranges},
+       {"TileValues", buffers.tile_values},
+       {"FrameCounters", buffers.counters}},
+      {{"blocks", blocks}, {"capacity", static_cast<std::uint32_t>(buffers.tile_values.bytes() / 4)}});
+}
+
+}  // namespace
+
+void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+  if (shape.settings.list_tiles > 1) {
+    split_lists(dispatcher, shape, buffers);
+    return;
+  }
+  clear(dispatcher, buffers.ranges, std::max(shape.list_count, shape.view_count()));
+  dispatcher.run(
+      dispatcher.context().program("ranges.comp"),
       gl::Work::indirect(buffers.pair_amounts, offsetof(shared::Amount, threads_x)),
       {{"Amounts", buffers.pair_amounts}, {"Keys", buffers.pairs.keys()}, {"Ranges", buffers.ranges}});
 }

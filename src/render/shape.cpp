@@ -84,11 +84,14 @@ void add_view(FrameShape& shape, shared::View view) {
     fail("a view of {} x {} px has no picture", view.width, view.height);
   view.tiles_x = (view.width + tile - 1) / tile;
   view.tiles_y = (view.height + tile - 1) / tile;
-  view.tile_offset = shape.tile_count;
+  view.list_offset = shape.list_count;
   view.pixel_offset = static_cast<std::uint32_t>(shape.pixel_count);
   shape.pixel_count += std::int64_t{view.width} * view.height;
   if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
-  shape.tile_count += view.tiles_x * view.tiles_y;
+  const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t tiles) {
+    return (tiles + side - 1) / side;
+  };
+  shape.list_count += lists(view.tiles_x) * lists(view.tiles_y);
   if (v == 0 || !same_depths(view, shape.views.back())) shape.groups.push_back({v, v});
   shape.groups.back().end = v + 1;
   view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
@@ -98,7 +101,7 @@ void add_view(FrameShape& shape, shared::View view) {
 }  // namespace
 
 std::uint32_t FrameShape::list_bits() const {
-  const std::uint32_t lists = settings.tiles == TILES_ALL ? view_count() : tile_count;
+  const std::uint32_t lists = settings.tiles == TILES_ALL ? view_count() : list_count;
   return static_cast<std::uint32_t>(std::bit_width(lists - 1));
 }
 
@@ -131,6 +134,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   const int tile = settings.tile_size == TILE_SIZE_AUTO ? TILE_SIZE_DEFAULT : settings.tile_size;
   if (tile != 8 && tile != 16 && tile != 32) fail("--tile {}: expected 8, 16 or 32", tile);
+  if (settings.list_tiles != 1 && settings.list_tiles != 2)
+    fail("lists of {} x {} tiles: expected 1 or 2", settings.list_tiles, settings.list_tiles);
   check_threshold(settings, views.size());
   FrameShape shape;
   shape.settings = settings;

@@ -44,7 +44,7 @@ struct FrameShape {
   std::optional<Probe> probe;
   std::vector<shared::View> between;  // the eyes of each pair, with TH_EYES_CYCLOPEAN; not drawn
   std::vector<OrderGroup> groups;
-  std::uint32_t tile_count = 0;  // over all views
+  std::uint32_t list_count = 0;  // lists of pairs, over all views
   std::int64_t pixel_count = 0;  // over all views
   // Of Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
@@ -52,7 +52,12 @@ struct FrameShape {
   std::int64_t anchor_bytes = 0;
 
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
-  /// Bits that tell the lists apart by which pairs are sorted: tiles, or views with --tiles all.
+  /// Tiles that the lists are of, over all views: a few more than the pictures have where lists are of
+  /// several.
+  std::uint32_t tile_count() const {
+    return list_count * static_cast<std::uint32_t>(settings.list_tiles * settings.list_tiles);
+  }
+  /// Bits that tell the lists apart by which pairs are sorted: of tiles, or views with --tiles all.
   std::uint32_t list_bits() const;
   /// How often each anchor is decoded. A probe shares the Gaussians of its view.
   std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }

@@ -4,7 +4,8 @@ namespace binosplat::render {
 
 void tile_sort(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define()), gl::Work::of_groups(1),
+  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define(shape.list_bits())),
+                 gl::Work::of_groups(1),
                  {{"Amounts", buffers.pair_amounts},
                   {"Total", buffers.scan.total()},
                   {"FrameCounters", buffers.counters}},

@@ -102,7 +102,7 @@ void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& m
 struct ViewResult {
   std::vector<reference::Splat> splats;
   reference::TileLists lists;
-  std::vector<std::uint32_t> tile_counts;
+  std::vector<std::uint32_t> pair_counts;
 };
 
 ViewResult reference_view(const Model& model, const FrameShape& shape, std::uint32_t v) {
@@ -122,8 +122,8 @@ ViewResult reference_view(const Model& model, const FrameShape& shape, std::uint
   } else {
     result.lists = reference::make_lists(result.splats, order, view, settings.tiles, settings.tile_size);
   }
-  result.tile_counts.resize(model.count());
-  for (const std::uint32_t i : result.lists.gaussians) ++result.tile_counts[i];
+  result.pair_counts.resize(model.count());
+  for (const std::uint32_t i : result.lists.gaussians) ++result.pair_counts[i];
   return result;
 }
 
@@ -137,7 +137,7 @@ Slots make_slots(const FrameShape& shape, OrderGroup group, const std::vector<Vi
   Slots slots;
   slots.of.resize(shape.gaussian_count);
   for (std::uint32_t i = 0; i < shape.gaussian_count; ++i) {
-    const auto draws = [&](const ViewResult& r) { return r.tile_counts[i] > 0; };
+    const auto draws = [&](const ViewResult& r) { return r.pair_counts[i] > 0; };
     if (!std::any_of(results.begin() + group.begin, results.begin() + group.end, draws)) continue;
     slots.of[i] = static_cast<std::uint32_t>(slots.indices.size());
     slots.indices.push_back(i);
@@ -157,7 +157,7 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
     std::vector<std::uint64_t> rank(shape.gaussian_count);
     for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
     const reference::TileLists& lists = results[v].lists;
-    const std::uint32_t first = shape.settings.tiles == TILES_ALL ? v : shape.views[v].tile_offset;
+    const std::uint32_t first = shape.settings.tiles == TILES_ALL ? v : shape.views[v].list_offset;
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
         const std::uint32_t i = lists.gaussians[k];
@@ -174,7 +174,7 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
   return pairs;
 }
 
-void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t digit_bits, std::uint32_t groups_max,
+void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t list_bits, std::uint32_t groups_max,
                   FrameBuffers& buffers) {
   std::vector<std::uint32_t> keys;
   std::vector<std::uint32_t> values;
@@ -187,23 +187,23 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t digit_bits, std:
   buffers.sort.reserve(buffers.pairs);
   buffers.pairs.keys().upload(keys);
   buffers.pairs.values().upload(values);
-  buffers.pair_amounts.upload(
-      std::vector{primitives::make_sort_amounts(count, digit_bits, groups_max, buffers.pairs.block())});
+  buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(
+      count, primitives::RadixSort::digit_bits(list_bits), groups_max, buffers.pairs.block(list_bits))});
 }
 
 void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
                        const std::vector<ViewResult>& results, FrameBuffers& buffers) {
   std::vector<shared::Splat> splats(std::size_t{shape.view_count()} * shape.slots);
-  std::vector<std::uint32_t> tile_counts(splats.size());
+  std::vector<std::uint32_t> pair_counts(splats.size());
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
     const std::vector<std::uint32_t>& indices = slots[shape.views[v].order_group].indices;
     for (std::size_t slot = 0; slot < indices.size(); ++slot) {
       splats[slot * shape.view_count() + v] = to_shared(results[v].splats[indices[slot]]);
-      tile_counts[slot * shape.view_count() + v] = results[v].tile_counts[indices[slot]];
+      pair_counts[slot * shape.view_count() + v] = results[v].pair_counts[indices[slot]];
     }
   }
   upload_in(shape.settings.precision, splats, buffers.splats);
-  buffers.tile_counts.upload(tile_counts);
+  buffers.pair_counts.upload(pair_counts);
 }
 
 // The slots as the stage project leaves them, or `sorted` as the stage order does.
@@ -227,12 +227,13 @@ void upload_order(const OrderGroup& group, const Slots& slots, const std::vector
   buffers.order.keys().upload(keys);
   buffers.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
-  buffers.drawn.front()->amounts.upload(std::vector{primitives::make_sort_amounts(
-      count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.order.block())});
+  buffers.drawn.front()->amounts.upload(
+      std::vector{primitives::make_sort_amounts(count, primitives::RadixSort::digit_bits(group.key_bits),
+                                                groups_max, buffers.order.block(group.key_bits))});
 }
 
 void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
-  std::vector<std::uint32_t> ranges(2 * std::size_t{std::max(shape.tile_count, shape.view_count())});
+  std::vector<std::uint32_t> ranges(2 * std::size_t{std::max(shape.list_count, shape.view_count())});
   for (std::uint32_t k = 0; k < sorted.size(); ++k) {
     const std::uint32_t list = sorted[k].first;
     if (k == 0 || sorted[k - 1].first != list) ranges[2 * list] = k;
@@ -281,7 +282,7 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return a.first < b.first; });
   }
-  upload_pairs(pairs, primitives::RadixSort::digit_bits(shape.list_bits()), groups_max, buffers);
+  upload_pairs(pairs, shape.list_bits(), groups_max, buffers);
   if (until == Stage::ranges) upload_ranges(shape, pairs, buffers);
   buffers.counters.upload(std::vector{shared::Counters{.pairs = static_cast<std::uint32_t>(pairs.size())}});
   return pictures;

@@ -100,6 +100,7 @@ void add_work(const render::Frame& frame, const render::FrameReport& report, std
   work.in_view += weight * static_cast<double>(report.visible);
   work.splats += weight * static_cast<double>(report.visible) * views_of_group;
   work.pairs += weight * static_cast<double>(report.pairs);
+  work.listed_pairs += weight * static_cast<double>(report.listed_pairs);
   work.order_passes += weight * report.order_passes;
   work.tile_sort_passes += weight * report.tile_sort_passes;
   for (const shared::View& view : frame.views()) {

@@ -19,14 +19,6 @@ std::string said_of(const std::string& name, const Defines& defines, const std::
   return std::system(command.c_str()) == 0 ? "" : test::read_text(said);
 }
 
-struct Blend {
-  const char* name;
-  const char* tile;
-  const char* column;
-  const char* ahead;
-  const char* lists;
-};
-
 class SubgroupShaders : public testing::Test {
  protected:
   void SetUp() override {
@@ -37,18 +29,25 @@ class SubgroupShaders : public testing::Test {
 
 TEST_F(SubgroupShaders, Compile) {
   for (const char* half : {"0", "1"}) {
-    for (const Blend& b : {Blend{"blend_blocks.comp", "16", "4", "4", "0"},
-                           {"blend_blocks.comp", "16", "1", "8", "1"},
-                           {"blend_blocks.comp", "8", "2", "4", "0"},
-                           {"blend_blocks.comp", "8", "1", "8", "1"},
-                           {"blend_together.comp", "32", "4", "2", "2"}}) {
-      const Defines defines = {{"TILE_SIZE", b.tile}, {"COLUMN", b.column}, {"AHEAD", b.ahead},
-                               {"LISTS", b.lists},    {"HALF", half},       {"RECORDS", "0"},
-                               {"WEIGHS", "0"},       {"CONTRAST", "0"},    {"SHOW", "0"}};
-      EXPECT_EQ(said_of(b.name, defines, {}), "") << b.name << ", tiles of " << b.tile << ", half " << half;
+    for (const char* list_tiles : {"1", "2"}) {
+      const Defines tiles = {{"TILE_SIZE", "16"}, {"LIST_TILES", list_tiles}, {"HALF", half}};
+      for (const char* lists : {"0", "1"}) {
+        Defines defines = {{"COLUMN", *lists == '1' ? "1" : "2"},
+                           {"AHEAD", *lists == '1' ? "8" : "4"},
+                           {"LISTS", lists},
+                           {"RECORDS", "0"},
+                           {"WEIGHS", "0"},
+                           {"CONTRAST", "0"},
+                           {"SHOW", "0"}};
+        defines.insert(defines.end(), tiles.begin(), tiles.end());
+        EXPECT_EQ(said_of("blend_subgroups.comp", defines, {}), "") << lists << list_tiles << half;
+      }
     }
   }
-  for (const char* block : {"1024", "4096"}) {
+  for (const char* writes : {"0", "1"})
+    EXPECT_EQ(said_of("tile_lists.comp", {{"LIST_TILES", "2"}, {"SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
+              "");
+  for (const char* block : {"1024", "2048", "4096"}) {
     for (const char* bits : {"8", "9"}) {
       EXPECT_EQ(said_of("primitives/sort_scatter_subgroups.comp",
                         {{"SORT_BLOCK", block}, {"DIGIT_BITS", bits}}, {}),

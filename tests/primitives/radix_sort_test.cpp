@@ -25,7 +25,7 @@ std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits, std::int
   pairs.reserve(std::max<std::int64_t>(count, room));
   gl::Buffer amounts(context, "amounts");
   amounts.upload(std::vector{
-      make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block())});
+      make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block(bits))});
   Keys values(count);
   std::iota(values.begin(), values.end(), 0u);
   pairs.keys().upload(keys);
@@ -56,10 +56,16 @@ Keys random_keys(std::size_t count, std::uint32_t mask) {
 }
 
 TEST(RadixSort, EqualsAStableSortAtEverySizeThatMatters) {
-  for (const auto& [block, room] : {std::pair{SORT_BLOCK_FEW, 0}, {SORT_BLOCK, SORT_FEW + 1}}) {
+  struct Case {
+    int block;
+    int room;
+    std::uint32_t bits;
+  };
+  for (const auto& [block, room, bits] :
+       {Case{SORT_BLOCK_FEW, 0, 32}, {SORT_BLOCK_8_BITS, SORT_FEW + 1, 32}, {SORT_BLOCK, SORT_FEW + 1, 27}}) {
     for (const int size : {0, 1, 2, 255, 257, block - 1, block, block + 1, 5 * block + 33, 200000}) {
       const Keys keys = random_keys(static_cast<std::size_t>(size), ~0u);
-      EXPECT_EQ(sort_on_gpu(keys, 32, room), sort_on_cpu(keys, 32)) << size << ", blocks of " << block;
+      EXPECT_EQ(sort_on_gpu(keys, bits, room), sort_on_cpu(keys, bits)) << size << ", blocks of " << block;
     }
   }
 }

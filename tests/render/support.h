@@ -63,7 +63,7 @@ struct StageRun {
     if (model_buffers.box) render::limit_keys(shape, *model_buffers.box);
     frame.upload(shape);
     frame.counters.upload(std::vector{shared::Counters{}});
-    frame.reserve(shape, 1 << 20);
+    frame.reserve(shape, 1 << 20, 1 << 20);
     model_buffers.reserve(shape);
     const std::uint32_t blocks = (shape.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
     frame.block_amount.upload(std::vector{primitives::make_amount(blocks, gl_context().limits().groups)});
@@ -95,7 +95,7 @@ struct StageRun {
   Projected projected(std::uint32_t view) const {
     const std::size_t all = std::size_t{shape.slots} * shape.view_count();
     const auto splats = frame.splats.read<shared::Splat>(all);
-    const auto tiles = frame.tile_counts.read<std::uint32_t>(all);
+    const auto tiles = frame.pair_counts.read<std::uint32_t>(all);
     Projected out{std::vector<shared::Splat>(shape.gaussian_count),
                   std::vector<std::uint32_t>(shape.gaussian_count)};
     const auto& drawn = indices[shape.views[view].order_group];

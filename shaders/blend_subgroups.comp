@@ -1,0 +1,104 @@
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_vote : require
+// Stage 6 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
+// next splats to shared memory and ask which blocks each reaches; then each subgroup blends those that reach its own. The bits
+// are those of blend.comp.
+#define BLOCK_WIDTH 8
+#define BLOCK_HEIGHT (4 * COLUMN)
+#define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
+#define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
+#define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)
+#define ROUND (COLUMN == 1 ? 128 : 64)  // splats at a time: with more in shared memory there is room for fewer groups
+#define WORDS (ROUND / 32)
+#define BATCH (ROUND + 1)  // and one that leaves no mark
+#include "blending.glsl"
+
+layout(local_size_x = 32, local_size_y = BLOCKS) in;
+
+shared uint reached[ROUND];                    // of the batch: a bit a block
+shared uint own_lists[BLOCKS][ROUND + AHEAD];  // by block: those of the batch that reach it
+shared uint blocks_done;
+
+// The blocks where alpha comes to ALPHA_MIN in a pixel: maybe some more, for rounding, none less. `mean` is seen from the
+// tile's first pixel.
+uint blocks_reached(Splat splat, vec2 mean) {
+  if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
+  float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;
+  float tallest = splat.conic.w * sqrt(rho * splat.conic.x);                // half the ellipse's height,
+  float widest = sqrt(rho / splat.conic.x);                                 // half its widest row,
+  float lean = -splat.conic.y / splat.conic.x;                              // of the line through its rows' middles,
+  float apex = -splat.conic.y * splat.conic.w * sqrt(rho / splat.conic.z);  // where it is furthest to the right
+  uint bits = 0u;
+  for (uint row = 0u; row < BLOCKS_DOWN; ++row) {
+    float low = float(row * BLOCK_HEIGHT) - mean.y;
+    float high = low + float(BLOCK_HEIGHT - 1);
+    if (low > tallest || high < -tallest) continue;
+    vec2 y = clamp(vec2(-apex, apex), low, high);  // of its furthest to the left and to the right in this row
+    vec2 reach = widest * sqrt(max(vec2(0.0), 1.0 - y * y / (tallest * tallest)));
+    vec2 x = lean * y + vec2(-reach.x, reach.y);
+    float slack = 0.01 + 1e-5 * (abs(x.x) + abs(x.y));
+    float first = max(0.0, ceil((mean.x + x.x - slack - float(BLOCK_WIDTH - 1)) / float(BLOCK_WIDTH)));
+    float last = min(float(BLOCKS_ACROSS - 1), floor((mean.x + x.y + slack) / float(BLOCK_WIDTH)));
+    if (first <= last) bits |= ((2u << uint(last)) - (1u << uint(first))) << (row * BLOCKS_ACROSS);
+  }
+  return bits;
+}
+
+// The batch's splats that reach this subgroup's block, in order, and AHEAD that leave no mark: how many.
+uint list_own() {
+  uint lane = gl_SubgroupInvocationID;
+  uint count = 0u;
+  for (uint word = 0u; word < WORDS; ++word) {
+    bool reaches = (reached[word * 32u + lane] >> gl_SubgroupID & 1u) != 0u;
+    uint all = subgroupBallot(reaches).x;
+    if (reaches) own_lists[gl_SubgroupID][count + bitCount(all & gl_SubgroupLtMask.x)] = word * 32u + lane;
+    count += bitCount(all);
+  }
+  if (lane < AHEAD) own_lists[gl_SubgroupID][count + lane] = ROUND;
+  subgroupMemoryBarrierShared();
+  subgroupBarrier();
+  return count;
+}
+
+void main() {
+  if (!find_tile()) return;
+  uint self = gl_LocalInvocationIndex;
+  uint lane = gl_SubgroupInvocationID;
+  uvec2 block = uvec2(gl_SubgroupID % BLOCKS_ACROSS, gl_SubgroupID / BLOCKS_ACROSS);
+  uvec2 in_tile = block * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT) + uvec2(lane % BLOCK_WIDTH, lane / BLOCK_WIDTH * COLUMN);
+  begin_pixels(in_tile);
+  vec2 corner = vec2(first_pixel - in_tile);
+  if (self == 0u) stage_nothing(ROUND);
+  if (self == 0u) blocks_done = 0u;
+  bool ended = false;  // of the block
+  uint next = begin + self < end ? values[begin + self] : 0u;
+  for (uint batch = begin; batch < end; batch += ROUND) {
+    if (self < ROUND) {
+      uint bits = 0u;
+      if (batch + self < end) {
+        Splat splat = SPLAT(next);
+        bits = blocks_reached(splat, splat.mean - corner);
+        if (bits != 0u) stage(self, splat);
+      }
+      reached[self] = bits;
+      uint ahead = batch + ROUND + self;
+      next = ahead < end ? values[ahead] : 0u;
+    }
+    barrier();
+    if (!ended) {
+      uint own = list_own();
+      for (uint i = 0u; i < own; i += AHEAD) {
+        uint at[AHEAD];
+        for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[gl_SubgroupID][i + k];
+        blend(at);
+      }
+      ended = subgroupAll(are_done());
+      if (ended && lane == 0u) atomicAdd(blocks_done, 1u);
+    }
+    if (batch + ROUND >= end) break;
+    barrier();
+    if (blocks_done == BLOCKS) break;
+  }
+  write_pixels();
+}

@@ -1,0 +1,181 @@
+// Lists of pairs that several tiles share: each tile is offered what a list of its own would hold.
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "gl/shader_source.h"
+#include "render/support.h"
+#include "support/errors.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+using render::FrameSettings;
+using test::same_bits;
+
+// What each tile of a view is offered, in the order of blending, tiles row by row.
+using Offers = std::vector<std::vector<std::uint32_t>>;
+
+Offers offers(const Model& model, const std::vector<shared::View>& views, std::uint32_t v, int tiles,
+              int list_tiles) {
+  test::StageRun run(model, views, {.tiles = tiles, .list_tiles = list_tiles});
+  run.run_until(render::Stage::ranges);
+  const auto counters = run.frame.counters.read<shared::Counters>(1).front();
+  EXPECT_EQ(counters.overflow, 0u);
+  const std::uint32_t pairs = list_tiles == 1 ? counters.pairs : counters.tile_pairs;
+  const auto values = run.frame.values_of_tiles(run.shape).read<std::uint32_t>(pairs);
+  const auto ranges =
+      run.frame.ranges_of_tiles(run.shape).read<std::uint32_t>(2 * std::size_t{run.shape.tile_count()});
+  const shared::View& view = run.shape.views[v];
+  const auto side = static_cast<std::uint32_t>(list_tiles);
+  const std::uint32_t across = (view.tiles_x + side - 1) / side;
+  Offers offered(std::size_t{view.tiles_x} * view.tiles_y);
+  for (std::uint32_t y = 0; y < view.tiles_y; ++y) {
+    for (std::uint32_t x = 0; x < view.tiles_x; ++x) {
+      const std::uint32_t list = view.list_offset + y / side * across + x / side;
+      const std::uint32_t tile = list * side * side + y % side * side + x % side;
+      offered[y * view.tiles_x + x].assign(values.begin() + ranges[2 * tile],
+                                           values.begin() + ranges[2 * tile + 1]);
+    }
+  }
+  return offered;
+}
+
+// Two views of ragged sizes that share a depth order.
+std::vector<shared::View> two_views() {
+  return {make_view(test::front_camera(301, 187, 250)), make_view(test::front_camera(33, 50, 40))};
+}
+
+TEST(Lists, OfSeveralTilesOfferEachWhatItsOwnHolds) {
+  const Model model = test::random_model(51, 3000, 1);
+  for (const int tiles : {TILES_ELLIPSE, TILES_SNUG, TILES_OBB, TILES_AABB}) {
+    for (const std::uint32_t v : {0u, 1u}) {
+      const Offers own = offers(model, two_views(), v, tiles, 1);
+      EXPECT_GT(own.front().size() + own.back().size(), 0u);
+      EXPECT_EQ(offers(model, two_views(), v, tiles, 2), own) << tiles_choices[tiles].name << " " << v;
+    }
+  }
+}
+
+// The sequence of frames that these settings draw.
+struct Drawn {
+  std::vector<Picture> pictures;
+  std::uint64_t pairs = 0;   // of the last, of tiles
+  std::uint64_t listed = 0;  // and of lists
+};
+
+Drawn draw_frames(const Model& model, FrameSettings settings, int list_tiles, int count) {
+  settings.list_tiles = list_tiles;
+  render::Frame frame(test::gl_context(), model);
+  Drawn drawn;
+  for (int n = 0; n < count; ++n) {
+    const render::FrameReport report = frame.draw(two_views(), settings);
+    drawn.pairs = report.pairs;
+    drawn.listed = report.listed_pairs;
+    for (Picture& picture : frame.read_pictures()) drawn.pictures.push_back(std::move(picture));
+  }
+  return drawn;
+}
+
+bool same_pictures(const Drawn& own, const Drawn& shared) {
+  bool same = true;
+  for (std::size_t k = 0; k < own.pictures.size(); ++k)
+    same = same && same_bits(own.pictures[k], shared.pictures[k]);
+  return same;
+}
+
+bool same_frames(const Model& model, const FrameSettings& settings, int count = 1) {
+  const Drawn own = draw_frames(model, settings, 1, count), shared = draw_frames(model, settings, 2, count);
+  EXPECT_EQ(shared.pairs, own.pairs);
+  EXPECT_LT(shared.listed, own.listed);
+  return same_pictures(own, shared);
+}
+
+TEST(Lists, OfSeveralTilesChangeNoPicture) {
+  const Model model = test::random_model(52, 4000, 1);
+  EXPECT_TRUE(same_frames(model, {}));
+  EXPECT_TRUE(same_frames(model, {.tiles = TILES_AABB}));
+  EXPECT_TRUE(same_frames(model, {.th = TH_SQUARED, .loss = 0.5f}));
+  EXPECT_TRUE(same_frames(model, {.th = TH_PERIPHERAL, .loss = 5.0f}));
+  EXPECT_TRUE(same_frames(model, {.precision = PRECISION_HALF}));
+  // Every frame measures what the next goes by.
+  EXPECT_TRUE(same_frames(model,
+                          {.th = TH_SQUARED,
+                           .transmittance = TRANSMITTANCE_LAST,
+                           .contrast = CONTRAST_BEHIND,
+                           .record_every = 1,
+                           .loss = 0.5f},
+                          3));
+}
+
+TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
+  const test::TempFolder folder;
+  for (const auto& [name, text] : gl::embedded_shaders()) {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::string faulty = text;
+    const std::string asks = "(value >> LIST_SPLAT_BITS >> nth & 1u) != 0u";
+    const std::size_t at = faulty.find(asks);
+    EXPECT_EQ(at != std::string::npos, name == "tile_lists.comp") << name;
+    if (at != std::string::npos) faulty.replace(at, asks.size(), "value != 0u");
+    test::write_text(folder / name, faulty);
+  }
+  test::gl_context().set_shader_folder(folder.path());
+  // What the square of 3D-GS cuts, and what Th leaves out of a tile, is seen in the tiles beside.
+  const Model model = test::random_model(52, 4000, 1);
+  for (const FrameSettings& settings :
+       {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.th = TH_SQUARED, .loss = 0.5f}}) {
+    EXPECT_FALSE(same_pictures(draw_frames(model, settings, 1, 1), draw_frames(model, settings, 2, 1)));
+  }
+  test::gl_context().set_shader_folder({});
+}
+
+TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
+  const Model model = test::random_model(53, 4000, 1);
+  const auto told = [&](int list_tiles) {
+    render::Frame frame(test::gl_context(), model);
+    frame.draw(two_views(), {.th = TH_SQUARED, .loss = 0.5f, .list_tiles = list_tiles});
+    std::vector<std::vector<float>> all;
+    for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what)
+      for (const Image& image : frame.read_shown(what)) all.push_back(image.data);
+    return all;
+  };
+  const auto own = told(1), shared = told(2);
+  EXPECT_EQ(own, shared);
+  EXPECT_NE(own[0], own[2]) << "the same whatever is shown";
+  const auto weights = [&](int list_tiles) {
+    render::Frame frame(test::gl_context(), model);
+    frame.draw(two_views(), {.weigh = true, .list_tiles = list_tiles});
+    std::vector<double> all(model.count());
+    for (const render::WeighedGaussian& g : frame.read_weights(0)) all[g.index] = g.weight;
+    return all;
+  };
+  EXPECT_EQ(weights(1), weights(2));
+}
+
+TEST(Lists, GrowWithTheirTiles) {
+  const Model model = test::random_model(52, 4000, 1);
+  render::Frame frame(test::gl_context(), model), ample(test::gl_context(), model);
+  const render::FrameReport report = frame.draw(two_views(), {.list_tiles = 2, .pair_capacity = 50});
+  EXPECT_GE(report.redrawn, 2);  // for the lists, then for the tiles
+  EXPECT_EQ(frame.draw(two_views(), {.list_tiles = 2}).redrawn, 0);
+  ample.draw(two_views(), {});
+  EXPECT_TRUE(same_bits(frame.read_pictures()[1], ample.read_pictures()[1]));
+}
+
+TEST(Lists, OfTilesThatAreLeftToTheFrameChangeNoBit) {
+  const Model model = test::random_model(54, 400, 1);
+  const auto draw_with = [&](const FrameSettings& settings) {
+    render::Frame frame(test::gl_context(), model);
+    const render::FrameReport report = frame.draw(two_views(), settings);
+    EXPECT_TRUE(report.list_tiles == 1 || report.list_tiles == 2);
+    return frame.read_pictures()[0];
+  };
+  const Picture expected = draw_with({.tile_size = 16});
+  EXPECT_TRUE(same_bits(draw_with({.tile_size = TILE_SIZE_AUTO}), expected));
+  EXPECT_TRUE(same_bits(draw_with({.tile_size = 32, .list_tiles = 2}), expected));
+  EXPECT_TRUE(test::fails_saying([&] { draw_with({.list_tiles = 3}); }, {"lists of 3 x 3 tiles"}));
+}
+
+}  // namespace
+}  // namespace binosplat
