@@ -1,3 +1,7 @@
+#if WITH_SUBGROUPS
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
 // Stage 3, pairs: (list, splat) for every list of a tile that a splat touches, in depth order. A work group makes SCAN_BLOCK
 // pairs, and its invocations share what leads to them: first each takes a splat and counts its rows of lists, then a row and
 // finds its tiles, then pairs. However many rows and tiles a Gaussian covers, the work is spread evenly.

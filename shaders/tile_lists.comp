@@ -1,11 +1,11 @@
-#if SUBGROUPS
+#if WITH_SUBGROUPS
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #endif
 #pragma optionNV(unroll all)
 // Stage 5, ranges, where lists are of several tiles: each tile's own list out of the one that it shares, those of every list's
 // first tile first, then those of the second, and so on. A work group takes TILE_BLOCK sorted pairs, and a row of 32 invocations,
-// a subgroup where SUBGROUPS, EACH times 32 of them. Without WRITES it counts its block's by tile; with it, once these are
+// a subgroup where WITH_SUBGROUPS, EACH times 32 of them. Without WRITES it counts its block's by tile; with it, once these are
 // scanned, it writes them, and where a list begins or ends.
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -32,7 +32,7 @@ layout(std430, binding = 2) writeonly buffer TileCounts { uint tile_counts[]; };
 uniform uint blocks;
 
 shared uint row_counts[ROWS][LISTED];
-#if !SUBGROUPS
+#if !WITH_SUBGROUPS
 shared uint touching[ROWS][EACH][LISTED];
 #endif
 
@@ -48,7 +48,7 @@ void main() {
   for (uint k = 0u; k < EACH; ++k) value[k] = begin + 32u * k < count ? values[begin + 32u * k] : 0u;
   // Of each 32 values and tile, a bit for each that touches it.
   uint all[EACH][LISTED];
-#if SUBGROUPS
+#if WITH_SUBGROUPS
   for (uint k = 0u; k < EACH; ++k)
     for (uint nth = 0u; nth < LISTED; ++nth) all[k][nth] = subgroupBallot(touches(value[k], nth)).x;
 #else

@@ -1,8 +1,26 @@
-// An exclusive scan over the THREADS values of a work group (Hillis and Steele 1986), for the scan's programs.
+// An exclusive scan over the THREADS values of a work group (Hillis and Steele 1986; WITH_SUBGROUPS: by those of 32).
+#ifndef WITH_SUBGROUPS
+#define WITH_SUBGROUPS 0
+#endif
 
 shared uint scan_sums[THREADS];
 
 // The sum of the values before this invocation's; every invocation must call it.
+#if WITH_SUBGROUPS  // of numbers whose sum stays below COUNT_MAX: two barriers instead of seventeen
+shared uint subgroup_sums[THREADS / 32];
+
+uint scan_group(uint value) {
+  uint sum = subgroupInclusiveAdd(value);
+  if (gl_SubgroupInvocationID == 31u) subgroup_sums[gl_SubgroupID] = sum;
+  memoryBarrierShared();
+  barrier();
+  for (uint k = 0u; k < THREADS / 32; ++k) sum += k < gl_SubgroupID ? subgroup_sums[k] : 0u;
+  scan_sums[gl_LocalInvocationIndex] = sum;
+  memoryBarrierShared();
+  barrier();
+  return sum - value;
+}
+#else
 uint scan_group(uint value) {
   uint at = gl_LocalInvocationIndex;
   scan_sums[at] = value;
@@ -15,6 +33,7 @@ uint scan_group(uint value) {
   }
   return at == 0u ? 0u : scan_sums[at - 1u];
 }
+#endif
 
 // The same for neighbours that each invocation holds, so that the group scans once: each becomes what comes before it,
 // `before` included.

@@ -15,6 +15,9 @@ float lowest_level(Splat splat, View view, out vec2 at) {
 // What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.
 float ellipse_outer_rho(float rho) { return 1.001 * max(rho, 0.0) + 1e-3; }
 
+// And this a little too small, by far more than the test's rounding.
+float ellipse_inner_rho(float rho) { return 0.999 * rho - 1e-3; }
+
 uvec4 tile_box(Splat splat, View view) {
   float rho = splat.colour.w;
   if (!holds_a_centre(splat, view, level_extent(splat))) return uvec4(0u);
@@ -52,11 +55,21 @@ uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   precise float slack = 0.01 + 1e-5 * (abs(left) + abs(right));
   uvec2 columns = tile_span(splat.mean.x + left - slack, splat.mean.x + right + slack, view.tiles_x);
   columns = clamp(columns, box.xx, box.zz);
-  while (columns.x < columns.y &&
+  // Where a slightly smaller ellipse reaches, too, the test would say yes.
+  precise float inner = ellipse_inner_rho(rho);
+  precise vec2 heights = vec2(left_y, right_y);
+  precise vec2 room = inner - heights * heights / c.z;
+  uvec2 sure = uvec2(0u);
+  if (min(room.x, room.y) > 0.0) {
+    precise float first = lean * left_y - sqrt(room.x * width) + slack;
+    precise float last = lean * right_y + sqrt(room.y * width) - slack;
+    if (splat.mean.x + first <= float(view.width - 1u)) sure = tile_span(splat.mean.x + first, splat.mean.x + last, view.tiles_x);
+  }
+  while (columns.x < columns.y && !(columns.x >= sure.x && columns.x < sure.y) &&
          !ellipse_touches(splat, rho, tile_low(uvec2(columns.x, row)), tile_high(uvec2(columns.x, row), view))) {
     ++columns.x;
   }
-  while (columns.x < columns.y &&
+  while (columns.x < columns.y && !(columns.y > sure.x && columns.y <= sure.y) &&
          !ellipse_touches(splat, rho, tile_low(uvec2(columns.y - 1u, row)), tile_high(uvec2(columns.y - 1u, row), view))) {
     --columns.y;
   }

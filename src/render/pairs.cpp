@@ -28,7 +28,9 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
                   {"groups_max", context.limits().groups},
                   {"digit_bits", primitives::RadixSort::digit_bits(shape.list_bits())}});
-  dispatcher.run(context.program("pairs.comp", pair_defines(shape)),
+  gl::Defines defines = pair_defines(shape);
+  defines.emplace_back("WITH_SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0");
+  dispatcher.run(context.program("pairs.comp", defines),
                  gl::Work::indirect(buffers.pair_amounts, offsetof(shared::Amount, scan_x)),
                  {{"OrderAmounts", drawn},
                   {"PairAmounts", buffers.pair_amounts},

@@ -142,7 +142,9 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"gaussian_count", shape.gaussian_count},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
-  dispatcher.run(dispatcher.context().program("count_tall.comp", pair_defines(shape)),
+  gl::Defines tall_defines = pair_defines(shape);
+  tall_defines.emplace_back("WITH_SUBGROUPS", dispatcher.context().limits().subgroups_of_32 ? "1" : "0");
+  dispatcher.run(dispatcher.context().program("count_tall.comp", tall_defines),
                  gl::Work::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
                  {{"Views", buffers.views},
                   {"FrameCounters", buffers.counters},

@@ -20,9 +20,10 @@ void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffe
   const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
   const auto listed = static_cast<std::uint32_t>(shape.settings.list_tiles * shape.settings.list_tiles);
   const auto program = [&](const char* writes) -> const gl::Program& {
-    return context.program("tile_lists.comp", {{"LIST_TILES", std::to_string(shape.settings.list_tiles)},
-                                               {"SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0"},
-                                               {"WRITES", writes}});
+    return context.program("tile_lists.comp",
+                           {{"LIST_TILES", std::to_string(shape.settings.list_tiles)},
+                            {"WITH_SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0"},
+                            {"WRITES", writes}});
   };
   buffers.tile_amount.upload(std::vector{primitives::make_amount(listed * blocks, context.limits().groups)});
   dispatcher.run(program("0"), gl::Work::of_groups(blocks),

@@ -44,9 +44,16 @@ TEST_F(SubgroupShaders, Compile) {
       }
     }
   }
+  for (const char* name : {"pairs.comp", "count_tall.comp"}) {
+    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "0"},      {"TH", "0"},
+                             {"TILE_SIZE", "16"},       {"LIST_TILES", "2"}, {"HALF", "0"},
+                             {"WITH_SUBGROUPS", "1"}};
+    EXPECT_EQ(said_of(name, defines, {}), "") << name;
+  }
   for (const char* writes : {"0", "1"})
-    EXPECT_EQ(said_of("tile_lists.comp", {{"LIST_TILES", "2"}, {"SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
-              "");
+    EXPECT_EQ(
+        said_of("tile_lists.comp", {{"LIST_TILES", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
+        "");
   for (const char* block : {"1024", "2048", "4096"}) {
     for (const char* bits : {"8", "9"}) {
       EXPECT_EQ(said_of("primitives/sort_scatter_subgroups.comp",
