@@ -6,10 +6,9 @@
 
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
-#include "gl/shader_source.h"
+#include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"
-#include "support/program.h"
 #include "support/scaffold.h"
 #include "support/scenes.h"
 
@@ -97,24 +96,13 @@ TEST(AnchorReuse, ChangesNoBitWhileNothingMoves) {
 }
 
 TEST(AnchorReuse, AnchorsLeftOutTooSoonAreSeen) {
-  const test::TempFolder folder;
-  for (const auto& [name, text] : gl::embedded_shaders()) {
-    std::filesystem::create_directories((folder / name).parent_path());
-    std::string faulty = text;
-    const std::string sought = "upper) > 1.0";
-    const std::size_t at = faulty.find(sought);
-    EXPECT_EQ(at != std::string::npos, name == "decode.comp") << name;
-    if (at != std::string::npos) faulty.replace(at, sought.size(), "upper) > 0.1");
-    test::write_text(folder / name, faulty);
-  }
   const Model model = wall();
   render::Frame right(test::gl_context(), model);
   for (int n = 0; n < 4; ++n) right.draw(eyes(), squared);
   const Picture expected = right.read_pictures()[0];
-  test::gl_context().set_shader_folder(folder.path());
+  const test::FaultyShaders faulty("decode.comp", "upper) > 1.0", "upper) > 0.1");
   render::Frame wrong(test::gl_context(), model);
   for (int n = 0; n < 4; ++n) wrong.draw(eyes(), squared);
-  test::gl_context().set_shader_folder({});
   EXPECT_FALSE(same_bits(wrong.read_pictures()[0], expected));
 }
 

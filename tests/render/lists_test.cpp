@@ -1,12 +1,9 @@
 // Lists of pairs that several tiles share: each tile is offered what a list of its own would hold.
 
-#include <filesystem>
-
 #include "base/error.h"
-#include "gl/shader_source.h"
+#include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "support/errors.h"
-#include "support/program.h"
 
 namespace binosplat {
 namespace {
@@ -110,24 +107,14 @@ TEST(Lists, OfSeveralTilesChangeNoPicture) {
 }
 
 TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
-  const test::TempFolder folder;
-  for (const auto& [name, text] : gl::embedded_shaders()) {
-    std::filesystem::create_directories((folder / name).parent_path());
-    std::string faulty = text;
-    const std::string asks = "(value >> LIST_SPLAT_BITS >> nth & 1u) != 0u";
-    const std::size_t at = faulty.find(asks);
-    EXPECT_EQ(at != std::string::npos, name == "tile_lists.comp") << name;
-    if (at != std::string::npos) faulty.replace(at, asks.size(), "value != 0u");
-    test::write_text(folder / name, faulty);
-  }
-  test::gl_context().set_shader_folder(folder.path());
+  const test::FaultyShaders faulty("tile_lists.comp", "(value >> LIST_SPLAT_BITS >> nth & 1u) != 0u",
+                                   "value != 0u");
   // What the square of 3D-GS cuts, and what Th leaves out of a tile, is seen in the tiles beside.
   const Model model = test::random_model(52, 4000, 1);
   for (const FrameSettings& settings :
        {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.th = TH_SQUARED, .loss = 0.5f}}) {
     EXPECT_FALSE(same_pictures(draw_frames(model, settings, 1, 1), draw_frames(model, settings, 2, 1)));
   }
-  test::gl_context().set_shader_folder({});
 }
 
 TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
