@@ -219,8 +219,7 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
   choose(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
          decode_choices)
       ->group(group);
-  sub.add_option("--tile", o.tile,
-                 "Side of a tile in px (auto: 16, sorted in lists of 2 x 2 tiles\nwhere that is faster)")
+  sub.add_option("--tile", o.tile, "Side of a tile in px (auto: 16)")
       ->check(one_of<std::string>({"auto", "8", "16", "32"}))
       ->type_name("auto|8|16|32")
       ->group(group);

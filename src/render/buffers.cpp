@@ -169,11 +169,12 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   const bool measured = measures(shape.settings.transmittance);
   const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? shape.asked * 8 : 0);
-  const std::int64_t pair_bytes = 4 * 4;  // tile and splat, twice
+  const bool shared_lists = shape.settings.list_tiles > 1;
+  const std::int64_t pair_bytes = 4 * 4 + (shared_lists ? 4 : 0);  // list and splat, twice; the tiles' lists
   const std::int64_t slot_bytes =
       shape.view_count() * bytes_a_splat + 6 * 4;  // indices, order twice, offsets
   needs.frame = shape.gaussian_count * bytes_a_gaussian + shape.slots * slot_bytes + shape.pixel_count * 20 +
-                shape.tile_count() * 12LL + starting_pairs(shape) * pair_bytes;
+                shape.tile_count() * (shared_lists ? 14LL : 12LL) + starting_pairs(shape) * pair_bytes;
   return needs;
 }
 

@@ -61,7 +61,8 @@ std::uint32_t tile_blocks(std::int64_t pairs);
 /// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
 std::int64_t starting_pairs(const FrameShape& shape);
 
-/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides.
+/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides; a shape whose
+/// lists are left to the frame is taken to have one a tile.
 struct MemoryNeeds {
   std::int64_t model = 0;
   std::int64_t frame = 0;

@@ -18,14 +18,15 @@ namespace {
 
 constexpr int attempts_max = 8;
 
-// What TILE_SIZE_AUTO stands for: with lists of several tiles where subgroups blend, which pass over what a
-// tile is not offered, and where a pair's value has room for the tiles.
+// With tiles and lists chosen where that is left to the frame: lists of 2 x 2 tiles where subgroups blend,
+// and where a pair's value has room for the tiles.
 FrameSettings with_tiles(FrameSettings settings, std::uint64_t splats, bool has_subgroups) {
-  if (settings.tile_size != TILE_SIZE_AUTO) return settings;
-  settings.tile_size = TILE_SIZE_DEFAULT;
+  if (settings.tile_size == TILE_SIZE_AUTO) settings.tile_size = TILE_SIZE_DEFAULT;
+  if (settings.list_tiles != 0) return settings;
   const bool has_room = splats <= std::uint64_t{1} << LIST_SPLAT_BITS;
-  const bool by_tiles = settings.tiles != TILES_ALL && !settings.reference_until;
-  settings.list_tiles = has_subgroups && has_room && by_tiles ? 2 : 1;
+  const bool usual = settings.tile_size == TILE_SIZE_DEFAULT && settings.tiles != TILES_ALL;
+  const bool shares = has_subgroups && has_room && usual && !settings.reference_until;
+  settings.list_tiles = shares ? 2 : 1;
   return settings;
 }
 

@@ -55,12 +55,11 @@ struct FrameSettings {
   /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
   /// become, is not decoded. With a measured transmittance, each eye's own Th, and no quality to probe.
   bool anchor_reuse = true;
-  /// px: 8, 16 or 32, on which an exact picture does not depend. Or TILE_SIZE_AUTO: 16, and the frame chooses
-  /// list_tiles.
+  /// px: 8, 16 or 32, on which an exact picture does not depend; TILE_SIZE_AUTO: TILE_SIZE_DEFAULT.
   int tile_size = TILE_SIZE_DEFAULT;
   /// So many tiles along each side share a list of pairs, 1 or 2: with 2 there are fewer pairs to sort. No
-  /// picture depends on it.
-  int list_tiles = 1;
+  /// picture depends on it. 0: the frame chooses.
+  int list_tiles = 0;
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
   glm::vec3 background{0.0f};      // behind the scene, for contrast only: the pictures are without
   /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong

@@ -134,12 +134,14 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   const int tile = settings.tile_size == TILE_SIZE_AUTO ? TILE_SIZE_DEFAULT : settings.tile_size;
   if (tile != 8 && tile != 16 && tile != 32) fail("--tile {}: expected 8, 16 or 32", tile);
-  if (settings.list_tiles != 1 && settings.list_tiles != 2)
-    fail("lists of {} x {} tiles: expected 1 or 2", settings.list_tiles, settings.list_tiles);
+  const int side = std::max(settings.list_tiles, 1);
+  if (side > 2 || settings.list_tiles < 0)
+    fail("lists of {0} x {0} tiles: expected 1 or 2", settings.list_tiles);
   check_threshold(settings, views.size());
   FrameShape shape;
   shape.settings = settings;
   shape.settings.tile_size = tile;
+  shape.settings.list_tiles = side;
   shape.degree = model.degree;
   shape.kernel_px2 = model.kernel_px2;
   shape.antialiased = model.antialiased;

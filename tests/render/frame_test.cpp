@@ -238,8 +238,9 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
   const Model model = test::random_model(76, 20000, 2);
   const auto rig = stereo::make_rig(test::front_camera(300, 200, 300), {.ipd = 0.1});
   const std::int64_t before = test::gl_context().allocated_bytes();
-  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
-    const FrameSettings settings = {.transmittance = transmittance};
+  for (const FrameSettings& settings :
+       {FrameSettings{.list_tiles = 1}, FrameSettings{.transmittance = TRANSMITTANCE_LAST, .list_tiles = 1},
+        FrameSettings{.list_tiles = 2}}) {
     const auto needs = render::memory_needs(render::make_shape(rig.views, settings, model));
     render::Frame frame(test::gl_context(), model);
     EXPECT_EQ(test::gl_context().allocated_bytes() - before, needs.model);
