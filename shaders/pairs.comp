@@ -125,9 +125,9 @@ void main() {
       scan_group(row + self < rows ? take_row(row + self) : 0u);
       uint pairs = take_group_total();
       uint skipped = first > pair ? first - pair : 0u;  // by the groups before
-      for (uint nth = skipped + self; nth < min(pairs, end - pair); nth += THREADS) {
-        FIRST_AFTER(scan_sums, nth, at)
-        make_pair(pair_amounts[0].first + pair + nth, row + at, at, at == 0u ? nth : nth - scan_sums[at - 1u]);
+      for (uint made = skipped + self; made < min(pairs, end - pair); made += THREADS) {
+        FIRST_AFTER(scan_sums, made, at)
+        make_pair(pair_amounts[0].first + pair + made, row + at, at, at == 0u ? made : made - scan_sums[at - 1u]);
       }
       pair += pairs;
       memoryBarrierShared();

@@ -67,7 +67,7 @@ class EmbeddedRenderer {
   /// the state is restored then, too.
   EmbeddedReport draw(std::span<const shared::View> views, std::span<const Target> targets,
                       int layout = LAYOUT_SEPARATE, const Background& background = std::nullopt,
-                      const render::FrameSettings& settings = {.tile_size = TILE_SIZE_AUTO});
+                      const render::FrameSettings& settings = {});
 
   gl::Context& context() { return *context_; }
 

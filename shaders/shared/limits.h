@@ -18,9 +18,8 @@
 // J is evaluated at most this share of the picture's size beyond its edges; 0.15 a side is INRIA's 1.3
 // (METHOD 2).
 #define CLAMP_MARGIN 0.15
-// Side of a tile in px where nothing else is known; and what leaves it to the frame.
+// Side of a tile in px where nothing else is known.
 #define TILE_SIZE_DEFAULT 16
-#define TILE_SIZE_AUTO 0
 // Side of the tiles in px that an anchor of Scaffold-GS must touch, as trained.
 #define ANCHOR_TILE 16
 

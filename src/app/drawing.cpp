@@ -33,7 +33,7 @@ render::FrameSettings settings_of(const RenderOptions& options) {
   settings.th_eyes = number_of(options.th_eyes, th_eyes_choices);
   settings.quality = options.quality.value_or(0.0f);
   settings.decode = options.decode.empty() ? DECODE_EYES : number_of(options.decode, decode_choices);
-  settings.tile_size = options.tile == "auto" ? TILE_SIZE_AUTO : std::stoi(options.tile);
+  settings.tile_size = options.tile == "auto" ? TILE_SIZE_DEFAULT : std::stoi(options.tile);
   settings.precision = number_of(options.precision, precision_choices);
   settings.background = options.background.value_or(settings.background);
   for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {

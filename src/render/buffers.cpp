@@ -195,7 +195,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       tall(context, "tall splats"),
       pair_amounts(context, "amounts of pairs"),
       pairs(context, "Gaussian-tile pairs"),
-      ranges(context, "tile ranges"),
+      ranges(context, "ranges of lists"),
       tile_amount(context, "amount of the tiles' counts"),
       tile_counts(context, "tiles' counts"),
       tile_ranges(context, "ranges of tiles"),
@@ -248,9 +248,9 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity,
   pairs.reserve(pair_capacity);
   ranges.reserve(std::max<std::int64_t>(shape.list_count, shape.view_count()) * 8);
   if (shape.settings.list_tiles > 1) {
-    const int listed = shape.settings.list_tiles * shape.settings.list_tiles;
-    tile_counts.reserve(std::int64_t{tile_blocks(pairs.capacity())} * listed * 4);
-    scan.reserve(std::int64_t{tile_blocks(pairs.capacity())} * listed);
+    const std::int64_t counts = std::int64_t{tile_blocks(pairs.capacity())} * shape.tiles_a_list();
+    tile_counts.reserve(counts * 4);
+    scan.reserve(counts);
     tile_ranges.reserve(shape.tile_count() * 8LL);
     tile_values.reserve(tile_pair_capacity * 4);
   }

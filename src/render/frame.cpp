@@ -18,10 +18,9 @@ namespace {
 
 constexpr int attempts_max = 8;
 
-// With tiles and lists chosen where that is left to the frame: lists of 2 x 2 tiles where subgroups blend,
-// and where a pair's value has room for the tiles.
-FrameSettings with_tiles(FrameSettings settings, std::uint64_t splats, bool has_subgroups) {
-  if (settings.tile_size == TILE_SIZE_AUTO) settings.tile_size = TILE_SIZE_DEFAULT;
+// With lists chosen where that is left to the frame: of 2 x 2 tiles where subgroups blend, and where a pair's
+// value has room for the tiles.
+FrameSettings with_lists(FrameSettings settings, std::uint64_t splats, bool has_subgroups) {
   if (settings.list_tiles != 0) return settings;
   const bool has_room = splats <= std::uint64_t{1} << LIST_SPLAT_BITS;
   const bool usual = settings.tile_size == TILE_SIZE_DEFAULT && settings.tiles != TILES_ALL;
@@ -46,7 +45,7 @@ void Frame::reload() {
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
   const std::uint64_t splats = std::uint64_t{model_.count()} * (views.size() + 1);  // a probe is a view, too
-  const FrameSettings chosen = with_tiles(settings, splats, dispatcher_.context().limits().subgroups_of_32);
+  const FrameSettings chosen = with_lists(settings, splats, dispatcher_.context().limits().subgroups_of_32);
   shape_ = make_shape(views, chosen, model_);
   if (chosen.precision != model_buffers_.precision()) {
     model_buffers_.upload(dispatcher_.context(), model_, chosen.precision);

@@ -29,7 +29,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"groups_max", context.limits().groups},
                   {"digit_bits", primitives::RadixSort::digit_bits(shape.list_bits())}});
   gl::Defines defines = pair_defines(shape);
-  defines.emplace_back("WITH_SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0");
+  defines.push_back(subgroups_define(context));
   dispatcher.run(context.program("pairs.comp", defines),
                  gl::Work::indirect(buffers.pair_amounts, offsetof(shared::Amount, scan_x)),
                  {{"OrderAmounts", drawn},

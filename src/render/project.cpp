@@ -84,6 +84,10 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
 
 }  // namespace
 
+gl::Defines::value_type subgroups_define(const gl::Context& context) {
+  return {"WITH_SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0"};
+}
+
 gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
   gl::Defines defines = {{"TILES_NAME", tiles_choices[s.tiles].name},
@@ -143,7 +147,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
   gl::Defines tall_defines = pair_defines(shape);
-  tall_defines.emplace_back("WITH_SUBGROUPS", dispatcher.context().limits().subgroups_of_32 ? "1" : "0");
+  tall_defines.push_back(subgroups_define(dispatcher.context()));
   dispatcher.run(dispatcher.context().program("count_tall.comp", tall_defines),
                  gl::Work::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
                  {{"Views", buffers.views},

@@ -18,14 +18,13 @@ void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffe
   gl::Context& context = dispatcher.context();
   clear(dispatcher, buffers.tile_ranges, shape.tile_count());
   const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
-  const auto listed = static_cast<std::uint32_t>(shape.settings.list_tiles * shape.settings.list_tiles);
   const auto program = [&](const char* writes) -> const gl::Program& {
-    return context.program("tile_lists.comp",
-                           {{"LIST_TILES", std::to_string(shape.settings.list_tiles)},
-                            {"WITH_SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0"},
-                            {"WRITES", writes}});
+    return context.program("tile_lists.comp", {{"LIST_TILES", std::to_string(shape.settings.list_tiles)},
+                                               subgroups_define(context),
+                                               {"WRITES", writes}});
   };
-  buffers.tile_amount.upload(std::vector{primitives::make_amount(listed * blocks, context.limits().groups)});
+  buffers.tile_amount.upload(
+      std::vector{primitives::make_amount(shape.tiles_a_list() * blocks, context.limits().groups)});
   dispatcher.run(program("0"), gl::Work::of_groups(blocks),
                  {{"Amounts", buffers.pair_amounts},
                   {"Values", buffers.pairs.values()},

@@ -55,7 +55,7 @@ struct FrameSettings {
   /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
   /// become, is not decoded. With a measured transmittance, each eye's own Th, and no quality to probe.
   bool anchor_reuse = true;
-  /// px: 8, 16 or 32, on which an exact picture does not depend; TILE_SIZE_AUTO: TILE_SIZE_DEFAULT.
+  /// px: 8, 16 or 32, on which an exact picture does not depend.
   int tile_size = TILE_SIZE_DEFAULT;
   /// So many tiles along each side share a list of pairs, 1 or 2: with 2 there are fewer pairs to sort. No
   /// picture depends on it. 0: the frame chooses.

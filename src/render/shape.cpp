@@ -132,7 +132,7 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
                       const std::optional<Probe>& probe) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
-  const int tile = settings.tile_size == TILE_SIZE_AUTO ? TILE_SIZE_DEFAULT : settings.tile_size;
+  const int tile = settings.tile_size;
   if (tile != 8 && tile != 16 && tile != 32) fail("--tile {}: expected 8, 16 or 32", tile);
   const int side = std::max(settings.list_tiles, 1);
   if (side > 2 || settings.list_tiles < 0)
@@ -140,7 +140,6 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   check_threshold(settings, views.size());
   FrameShape shape;
   shape.settings = settings;
-  shape.settings.tile_size = tile;
   shape.settings.list_tiles = side;
   shape.degree = model.degree;
   shape.kernel_px2 = model.kernel_px2;

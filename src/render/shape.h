@@ -54,8 +54,9 @@ struct FrameShape {
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// Tiles that the lists are of, over all views: a few more than the pictures have where lists are of
   /// several.
-  std::uint32_t tile_count() const {
-    return list_count * static_cast<std::uint32_t>(settings.list_tiles * settings.list_tiles);
+  std::uint32_t tile_count() const { return list_count * tiles_a_list(); }
+  std::uint32_t tiles_a_list() const {
+    return static_cast<std::uint32_t>(settings.list_tiles * settings.list_tiles);
   }
   /// Bits that tell the lists apart by which pairs are sorted: of tiles, or views with --tiles all.
   std::uint32_t list_bits() const;

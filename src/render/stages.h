@@ -44,6 +44,9 @@ void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
 /// The mean over pixels and channels of what probe() summed up.
 double probed_error(const FrameShape& shape, const shared::Counters& counters);
 
+/// WITH_SUBGROUPS, for programs that do the same by subgroups of 32 where there are some.
+gl::Defines::value_type subgroups_define(const gl::Context& context);
+
 /// Shader defines that pick the variant of a stage which decides pairs.
 gl::Defines pair_defines(const FrameShape& shape);
 

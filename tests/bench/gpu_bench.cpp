@@ -95,7 +95,7 @@ Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int sh
 
 // How a case is drawn and timed.
 struct How {
-  render::FrameSettings settings = {.tile_size = TILE_SIZE_AUTO};
+  render::FrameSettings settings;
   fs::path shaders;
   int frames = 20;  // that the medians are of
   int shrink = 1;   // pictures so many times smaller
