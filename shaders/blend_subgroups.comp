@@ -20,6 +20,8 @@ shared uint reached[ROUND];                    // of the batch: a bit a block
 shared uint own_lists[BLOCKS][ROUND + AHEAD];  // by block: those of the batch that reach it
 shared uint blocks_done;
 
+uint value_at(uint at) { return at < end ? values[at] : 0u; }
+
 // The blocks where alpha comes to ALPHA_MIN in a pixel: maybe some more, for rounding, none less. `mean` is seen from the
 // tile's first pixel.
 uint blocks_reached(Splat splat, vec2 mean) {
@@ -72,18 +74,24 @@ void main() {
   if (self == 0u) stage_nothing(ROUND);
   if (self == 0u) blocks_done = 0u;
   bool ended = false;  // of the block
-  uint next = begin + self < end ? values[begin + self] : 0u;
+  uint next = value_at(begin + self);
+#if LISTS == LISTS_LONG  // few groups, which wait for memory: they read the next splats while these are blended
+  Splat next_splat = SPLAT(next);
+  next = value_at(begin + ROUND + self);
+#endif
   for (uint batch = begin; batch < end; batch += ROUND) {
     if (self < ROUND) {
-      uint bits = 0u;
-      if (batch + self < end) {
-        Splat splat = SPLAT(next);
-        bits = blocks_reached(splat, splat.mean - corner);
-        if (bits != 0u) stage(self, splat);
-      }
+#if LISTS == LISTS_LONG
+      Splat splat = next_splat;
+      next_splat = SPLAT(next);
+      next = value_at(batch + 2u * ROUND + self);
+#else
+      Splat splat = SPLAT(next);
+      next = value_at(batch + ROUND + self);
+#endif
+      uint bits = batch + self < end ? blocks_reached(splat, splat.mean - corner) : 0u;
+      if (bits != 0u) stage(self, splat);
       reached[self] = bits;
-      uint ahead = batch + ROUND + self;
-      next = ahead < end ? values[ahead] : 0u;
     }
     barrier();
     if (!ended) {

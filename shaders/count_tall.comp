@@ -17,7 +17,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
 layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats: slot * view_count + view
-layout(std430, binding = 4) writeonly buffer PairCounts { uint pair_counts[]; };
+layout(std430, binding = 4) writeonly buffer Touched { uint touched_by[]; };  // lists.glsl
 uniform uint view_count;  // of the frame
 
 shared uvec4 box_at[TALL_EACH];
@@ -48,5 +48,5 @@ void main() {
     atomicAdd(pairs_at[at], columns.y - columns.x);
   }
   barrier();
-  if (has_one) pair_counts[tall[first + self]] = pairs_at[self];
+  if (has_one) touched_by[tall[first + self]] = pairs_at[self];
 }

@@ -10,6 +10,19 @@
 #endif
 #define LISTED (LIST_TILES * LIST_TILES)  // tiles of a list
 
+// What `project` leaves of a splat in a view, for `pairs`: how many pairs it makes or, where these are in at most 2 x 2 lists of
+// 2 x 2 tiles, IN_FEW_LISTS with the first of these lists, counted in the view, at FEW_LIST_SHIFT, and below a bit for each tile,
+// four for each list, row by row; so that of a small splat `pairs` need ask nothing again.
+#define IN_FEW_LISTS 0x80000000u
+#define FEW_LIST_SHIFT 16
+#define FEW_LISTS_END 0x8000u  // what is in a list beyond is only counted
+
+uint count_of(uint touched) {
+  if ((touched & IN_FEW_LISTS) == 0u) return touched;
+  uint any = (touched | touched >> 1 | touched >> 2 | touched >> 3) & 0x1111u;
+  return uint(bitCount(any));
+}
+
 uint lists_across(View view) { return (view.tiles_x + uint(LIST_TILES - 1)) / uint(LIST_TILES); }
 
 // The column and row of a tile by its number.

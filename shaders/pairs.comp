@@ -3,8 +3,9 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
 // Stage 3, pairs: (list, splat) for every list of a tile that a splat touches, in depth order. A work group makes SCAN_BLOCK
-// pairs, and its invocations share what leads to them: first each takes a splat and counts its rows of lists, then a row and
-// finds its tiles, then pairs. However many rows and tiles a Gaussian covers, the work is spread evenly.
+// pairs. Its invocations take a splat each; of those in few lists they write the pairs at once, and share what leads to the
+// others: a splat each counts its rows of lists, then a row finds its tiles, then pairs. However many rows and tiles a Gaussian
+// covers, the work is spread evenly.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -20,7 +21,7 @@ layout(std430, binding = 1) readonly buffer PairAmounts { Amount pair_amounts[];
 layout(std430, binding = 2) readonly buffer Views { View views[]; };
 layout(std430, binding = 3) readonly buffer Order { uint order[]; };
 layout(std430, binding = 4) readonly buffer PairOffsets { uint pair_offsets[]; };  // scanned
-layout(std430, binding = 5) readonly buffer PairCounts { uint pair_counts[]; };
+layout(std430, binding = 5) readonly buffer TouchedInOrder { uint touched_in_order[]; };  // (rank, view of the group): lists.glsl
 layout(std430, binding = 7) writeonly buffer Keys { uint keys[]; };      // list, counted over all views
 layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // lists.glsl, of the splat slot * view_count + view
 uniform uint view_count;  // of the frame
@@ -28,8 +29,11 @@ uniform uint view_begin;
 uniform uint view_end;
 
 shared uint found;
-// Of the splats at hand: which, their tile boxes (here and below two numbers of 16 bits a word), and the rows before each.
+shared uint any_many[3];  // by batch in turn: whether a splat of it is in more than a few lists
+// Of the splats held: which, where their pairs begin, their tile boxes (here and below two numbers of 16 bits a word), and the
+// rows before each.
 shared uint splat_at[THREADS];
+shared uint start_at[THREADS];
 shared uvec2 box_at[THREADS];
 shared uint rows_before[THREADS];
 // Of the rows at hand: the place of their splats above, and the columns of tiles in their one or two rows of tiles. Each array
@@ -55,25 +59,47 @@ uint rank_of(uint pair) {
   return low;
 }
 
-// The rows of the nth splat from `rank` on, view after view; 0 where there is none.
-uint take_splat(uint rank, uint nth) {
+// The pairs [first, end) of a splat in few lists, whose own begin at `start`.
+void make_few(uint splat, uint touched, uint start, uint first, uint end) {
+  View view = views[splat % view_count];
+  uint list = view.list_offset + ((touched & ~IN_FEW_LISTS) >> FEW_LIST_SHIFT);
+  uint across = lists_across(view);
+  for (uint nth = 0u; nth < 4u; ++nth) {
+    uint tiles = touched >> 4u * nth & 15u;
+    if (tiles == 0u) continue;
+    if (start >= first && start < end) {
+      keys[pair_amounts[0].first + start] = list + nth % 2u + nth / 2u * across;
+      values[pair_amounts[0].first + start] = splat | tiles << LIST_SPLAT_BITS;
+    }
+    ++start;
+  }
+}
+
+// This invocation's splat, from `rank` on, view after view, and where its pairs begin, if it makes some of the pairs [first, end)
+// and is in more than a few lists; the pairs of one in few are made.
+bool take_splat(uint rank, uint first, uint end, out uint splat, out uint start) {
   uint self = gl_LocalInvocationIndex;
   uint in_views = view_end - view_begin;
-  rank += nth / in_views;
-  if (rank >= order_amounts[0].count) return 0u;
-  uint v = view_begin + nth % in_views;
-  uint splat = order[rank] * view_count + v;
-  if (pair_counts[splat] == 0u) return 0u;
-  uvec4 box = tile_box(SPLAT(splat), views[v]);
-  splat_at[self] = splat;
-  box_at[self] = box.xy | box.zw << 16;
-  uvec2 rows = list_rows(box);
-  return rows.y - rows.x;
+  rank += self / in_views;
+  if (self >= THREADS / in_views * in_views || rank >= order_amounts[0].count) return false;
+  uint nth = self % in_views;
+  splat = order[rank] * view_count + view_begin + nth;
+  uint touched = touched_in_order[rank * in_views + nth];
+  start = pair_offsets[rank];
+  for (uint k = 0u; k < nth; ++k) start += count_of(touched_in_order[rank * in_views + k]);
+  if (start >= end || start + count_of(touched) <= first) return false;
+#if LIST_TILES == 2
+  if ((touched & IN_FEW_LISTS) != 0u) {
+    make_few(splat, touched, start, first, end);
+    return false;
+  }
+#endif
+  return touched != 0u;
 }
 
 uvec4 box_of(uint place) { return uvec4(box_at[place] & 0xFFFFu, box_at[place] >> 16); }
 
-// The pairs of the nth row of the splats at hand.
+// The pairs of the nth row of the splats held.
 uint take_row(uint nth) {
   LAST_BEFORE(rows_before, nth, at)
   uint self = gl_LocalInvocationIndex;
@@ -93,7 +119,12 @@ ListRow row_at(uint at) {
   return list_row_of(uvec4(tiles.x & 0xFFFFu, tiles.x >> 16, tiles.y & 0xFFFFu, tiles.y >> 16));
 }
 
-// The nth pair of the row whose place is `at`, the nth_row of the splats at hand.
+uint sum_before(uint at) { return at == 0u ? 0u : scan_sums[at - 1u]; }
+
+// Of the rows at hand, from nth_row on, the first of the splat at `place`.
+uint first_row(uint place, uint nth_row) { return max(rows_before[place], nth_row) - nth_row; }
+
+// Pair `to`, the nth of the row at `at`, the nth_row of the splats held.
 void make_pair(uint to, uint nth_row, uint at, uint nth) {
   uint place = row_place[at];
   uint splat = splat_at[place];
@@ -109,29 +140,76 @@ void make_pair(uint to, uint nth_row, uint at, uint nth) {
   values[to] = value_of(splat, row, column);
 }
 
+// The pairs [first, end) of the splats held, which are in depth order.
+void make_many(uint held, uint first, uint end) {
+  uint self = gl_LocalInvocationIndex;
+  uint rows = 0u;
+  if (self < held) {
+    uvec4 box = tile_box(SPLAT(splat_at[self]), views[splat_at[self] % view_count]);
+    box_at[self] = box.xy | box.zw << 16;
+    rows = list_rows(box).y - list_rows(box).x;
+  }
+  rows_before[self] = scan_group(rows);
+  rows = take_group_total();
+  uint made = 0u;  // of the splat that the rows at hand begin with, by those before
+  for (uint row = 0u; row < rows; row += THREADS) {
+    scan_group(row + self < rows ? take_row(row + self) : 0u);
+    uint pairs = take_group_total();
+    if (rows_before[row_place[0]] == row) made = 0u;
+    // Only of the first splat there can be pairs before `first`.
+    uint from = start_at[row_place[0]] + made;
+    uint skipped = first > from ? first - from : 0u;
+    for (uint nth = skipped + self; nth < min(pairs, end - from); nth += THREADS) {
+      FIRST_AFTER(scan_sums, nth, at)
+      uint place = row_place[at];
+      uint in_splat = nth - sum_before(first_row(place, row)) + (rows_before[place] < row ? made : 0u);
+      uint to = start_at[place] + in_splat;
+      if (to < end) make_pair(pair_amounts[0].first + to, row + at, at, nth - sum_before(at));
+    }
+    uint last = row_place[min(rows - row, THREADS) - 1u];
+    made = pairs - sum_before(first_row(last, row)) + (rows_before[last] < row ? made : 0u);
+    if (start_at[last] + made >= end) break;
+    memoryBarrierShared();
+    barrier();
+  }
+  memoryBarrierShared();
+  barrier();
+}
+
 void main() {
   uint self = gl_LocalInvocationIndex;
   uint first = group_index() * SCAN_BLOCK;
   uint end = min(first + SCAN_BLOCK, pair_amounts[0].count);
   if (first >= end) return;
+  if (self == 0u) any_many[0] = 0u;
+  uint ranks = THREADS / (view_end - view_begin);  // at a time
   uint rank = rank_of(first);
-  uint pair = pair_offsets[rank];  // the first that the rows at hand make
-  uint splats_left = (order_amounts[0].count - rank) * (view_end - view_begin);
-  for (uint nth = 0u; pair < end && nth < splats_left; nth += THREADS) {
-    uint before = scan_group(take_splat(rank, nth + self));
-    rows_before[self] = before;
-    uint rows = take_group_total();
-    for (uint row = 0u; row < rows && pair < end; row += THREADS) {
-      scan_group(row + self < rows ? take_row(row + self) : 0u);
-      uint pairs = take_group_total();
-      uint skipped = first > pair ? first - pair : 0u;  // by the groups before
-      for (uint made = skipped + self; made < min(pairs, end - pair); made += THREADS) {
-        FIRST_AFTER(scan_sums, made, at)
-        make_pair(pair_amounts[0].first + pair + made, row + at, at, at == 0u ? made : made - scan_sums[at - 1u]);
+  memoryBarrierShared();
+  barrier();
+  uint held = 0u;
+  for (uint batch = 0u;; ++batch, rank += ranks) {
+    uint splat, start;
+    bool is_many = take_splat(rank, first, end, splat, start);
+    if (is_many) any_many[batch % 3u] = 1u;
+    if (self == 0u) any_many[(batch + 1u) % 3u] = 0u;
+    memoryBarrierShared();
+    barrier();
+    if (any_many[batch % 3u] != 0u) {
+      uint place = scan_group(is_many ? 1u : 0u);
+      uint count = take_group_total();
+      if (held + count > THREADS) {
+        make_many(held, first, end);
+        held = 0u;
       }
-      pair += pairs;
-      memoryBarrierShared();
-      barrier();
+      if (is_many) {
+        splat_at[held + place] = splat;
+        start_at[held + place] = start;
+      }
+      held += count;
     }
+    if (rank + ranks >= order_amounts[0].count || pair_offsets[rank + ranks] >= end) break;
   }
+  memoryBarrierShared();
+  barrier();
+  make_many(held, first, end);
 }

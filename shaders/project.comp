@@ -16,7 +16,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "splats.glsl"  // binding 12
 layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
-layout(std430, binding = 6) writeonly buffer PairCounts { uint pair_counts[]; };  // (slot, view)
+layout(std430, binding = 6) writeonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
 #if RECORDS || WEIGHS
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (slot, view), of one word or two
 #endif
@@ -51,7 +51,7 @@ void main() {
     axes = scaled_axes(g);
 #endif
     Splat splat;
-    uint pairs = 0u;
+    uint touched = 0u;
     if (is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(v, indices[slot], g, axes, splat);
 #if HALF
@@ -60,17 +60,17 @@ void main() {
       uvec4 box = tile_box(splat, view);
       uvec2 rows = list_rows(box);
       bool is_tall = rows.y - rows.x > TALL_ROWS;
-      pairs = is_tall ? 1u : pair_count(splat, view, box);  // not known yet
+      touched = is_tall ? 1u : touched_lists(splat, view, box);  // not known yet
       if (is_tall) leave_aside(slot * view_count + v);
     }
-    pair_counts[slot * view_count + v] = pairs;
+    touched_by[slot * view_count + v] = touched;
 #if WEIGHS
     measured[2u * (slot * view_count + v)] = 0u;
     measured[2u * (slot * view_count + v) + 1u] = 0u;
 #elif RECORDS
     measured[slot * view_count + v] = 0u;
 #endif
-    if (pairs > 0u) {
+    if (touched != 0u) {
 #if SH_DEGREE == 0 && OFFSETS == 0
       splat.colour.rgb = colour;
 #else

@@ -13,7 +13,7 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 uniform uint nearest_key;  // to be added to an order key: then the bits of a depth
 #if RECORDS
 layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };         // Gaussian of each slot
-layout(std430, binding = 2) readonly buffer PairCounts { uint pair_counts[]; };  // (slot, view)
+layout(std430, binding = 2) readonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
 layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // (slot, view)
 layout(std430, binding = 4) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 uniform uint gaussian_count;
@@ -28,7 +28,7 @@ void main() {
   if (slot == 0u) counters.median_depth = order_keys[amounts[0].count / 2u] + nearest_key;
 #if RECORDS
   for (uint v = view_begin; v < view_end; ++v) {
-    if (pair_counts[slot * view_count + v] == 0u) continue;
+    if (touched_by[slot * view_count + v] == 0u) continue;
     float most = uintBitsToFloat(measured[slot * view_count + v]);
     upper_next[v * gaussian_count + indices[slot]] = clamp(most, float(UPPER_FLOOR), 1.0);
   }

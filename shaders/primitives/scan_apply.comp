@@ -1,4 +1,5 @@
-// Scan, second: each value becomes the sum of all values before it.
+// Scan, second: each value becomes the sum of all values before it. By four, since what a store does not fill of 32 bytes costs as
+// much.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -9,7 +10,7 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
-layout(std430, binding = 1) buffer Values { uint values[]; };
+layout(std430, binding = 1) buffer Values { uvec4 values[]; };  // those beyond the last become anything
 layout(std430, binding = 2) readonly buffer BlockSums { uint block_sums[]; };
 layout(std430, binding = 3) writeonly buffer Total { uint total[]; };
 uniform uint amount;
@@ -26,10 +27,13 @@ void main() {
   before = take_group_total();
   uint first = block * SCAN_BLOCK + gl_LocalInvocationIndex * SCAN_EACH;
   uint mine[SCAN_EACH];
-  for (uint i = 0u; i < SCAN_EACH; ++i) mine[i] = first + i < count ? values[first + i] : 0u;
+  for (uint i = 0u; i < SCAN_EACH; i += 4u) {
+    uvec4 four = first + i < count ? values[(first + i) / 4u] : uvec4(0u);
+    for (uint k = 0u; k < 4u; ++k) mine[i + k] = first + i + k < count ? four[k] : 0u;
+  }
   scan_neighbours(before, mine);
   if (block + 1u == blocks && gl_LocalInvocationIndex == 0u) total[0] = saturating_add(before, group_total());
-  for (uint i = 0u; i < SCAN_EACH; ++i) {
-    if (first + i < count) values[first + i] = mine[i];
+  for (uint i = 0u; i < SCAN_EACH; i += 4u) {
+    if (first + i < count) values[(first + i) / 4u] = uvec4(mine[i], mine[i + 1u], mine[i + 2u], mine[i + 3u]);
   }
 }

@@ -98,13 +98,26 @@ uint value_of(uint splat, ListRow row, uint column) {
 #endif
 }
 
-uint pair_count(Splat splat, View view, uvec4 box) {
+// What a splat touches (lists.glsl).
+uint touched_lists(Splat splat, View view, uvec4 box) {
   uint count = 0u;
   uvec2 rows = list_rows(box);
+#if LIST_TILES == 2
+  uint list = rows.x * lists_across(view) + box.x / 2u;
+  bool are_few = rows.y - rows.x <= 2u && (box.z + 1u) / 2u - box.x / 2u <= 2u && list < FEW_LISTS_END;
+  uint bits = 0u;
+#endif
   for (uint nth = rows.x; nth < rows.y; ++nth) {
-    uvec2 columns = list_row(splat, view, box, nth).columns;
-    count += columns.y - columns.x;
+    ListRow row = list_row(splat, view, box, nth);
+    count += row.columns.y - row.columns.x;
+#if LIST_TILES == 2
+    uvec2 tiles = uvec2(value_of(0u, row, box.x / 2u), value_of(0u, row, box.x / 2u + 1u)) >> LIST_SPLAT_BITS;
+    bits |= (tiles.x | tiles.y << 4) << (8u * (nth - rows.x) & 31u);
+#endif
   }
+#if LIST_TILES == 2
+  if (are_few && count > 0u) return IN_FEW_LISTS | list << FEW_LIST_SHIFT | bits;
+#endif
   return count;
 }
 

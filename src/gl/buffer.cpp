@@ -29,7 +29,7 @@ void Buffer::release() {
 }
 
 void Buffer::reserve(std::int64_t bytes) {
-  bytes = std::max<std::int64_t>(bytes, 16);  // a binding of size 0 is an error
+  bytes = std::max<std::int64_t>((bytes + 15) / 16 * 16, 16);  // a binding of size 0 is an error
   if (bytes <= bytes_) return;
   const std::int64_t limit = context_.limits().storage_block_bytes;
   if (bytes > limit) {

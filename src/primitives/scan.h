@@ -15,7 +15,7 @@ class Scan {
   void reserve(std::int64_t count);
 
   /// Replaces each of the first amounts[which].count values (uint) by the sum of those before it; the sum of
-  /// all is left in total(). `amounts` holds Amounts.
+  /// all is left in total(). Up to three values after them change, too. `amounts` holds Amounts.
   void run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which,
            const gl::Buffer& values);
 

@@ -191,7 +191,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       measured(context, "measured transmittance"),
       depth_table(context, "transmittance by depth"),
       splats(context, "splats"),
-      pair_counts(context, "pair counts"),
+      touched(context, "what splats touch"),
       tall(context, "tall splats"),
       pair_amounts(context, "amounts of pairs"),
       pairs(context, "Gaussian-tile pairs"),
@@ -242,7 +242,7 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity,
   order.reserve(slots);
   pair_offsets.reserve(slots * 4);
   splats.reserve(slots * shape.view_count() * splat_bytes(shape.settings.precision));
-  pair_counts.reserve(slots * shape.view_count() * 4);
+  touched.reserve(slots * shape.view_count() * 4);
   tall.reserve(slots * shape.view_count() * 4);
   pair_amounts.reserve(sizeof(primitives::SortAmounts));
   pairs.reserve(pair_capacity);

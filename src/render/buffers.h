@@ -116,9 +116,11 @@ struct FrameBuffers {
   gl::Buffer depth_table;  // float by bin
 
   // Of all views.
-  gl::Buffer splats;              // Splat, or Halves (slot, view)
-  gl::Buffer pair_counts;         // uint (slot, view)
-  gl::Buffer tall;                // splats over many rows of tiles
+  gl::Buffer splats;   // Splat, or Halves (slot, view)
+  gl::Buffer touched;  // uint (slot, view): lists.glsl
+  gl::Buffer tall;     // splats over many rows of tiles,
+  gl::Buffer& touched_in_order =
+      tall;                       // and in its place, once they are counted, uint (rank, view of the group)
   gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
   primitives::PairBuffers pairs;  // list (view with --tiles all), splat (lists.glsl)
   gl::Buffer ranges;              // begin, end by list

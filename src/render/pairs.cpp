@@ -15,8 +15,9 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
   dispatcher.run(context.program("pairs_count.comp"), each(drawn),
                  {{"Amounts", drawn},
                   {"Order", buffers.order.values()},
-                  {"PairCounts", buffers.pair_counts},
-                  {"PairOffsets", buffers.pair_offsets}},
+                  {"Touched", buffers.touched},
+                  {"PairOffsets", buffers.pair_offsets},
+                  {"TouchedInOrder", buffers.touched_in_order}},
                  {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
   buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
   dispatcher.run(context.program("amount.comp", buffers.pairs.block_define(shape.list_bits())),
@@ -37,7 +38,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Views", buffers.views},
                   {"Order", buffers.order.values()},
                   {"PairOffsets", buffers.pair_offsets},
-                  {"PairCounts", buffers.pair_counts},
+                  {"TouchedInOrder", buffers.touched_in_order},
                   {"Splats", buffers.splats},
                   {"Keys", buffers.pairs.keys()},
                   {"Values", buffers.pairs.values()}},

@@ -125,7 +125,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},
                     {"Splats", buffers.splats},
-                    {"PairCounts", buffers.pair_counts},
+                    {"Touched", buffers.touched},
                     {"FrameCounters", buffers.counters},
                     {"Tall", buffers.tall},
                     {"Upper", *buffers.upper},
@@ -154,7 +154,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                   {"FrameCounters", buffers.counters},
                   {"Tall", buffers.tall},
                   {"Splats", buffers.splats},
-                  {"PairCounts", buffers.pair_counts}},
+                  {"Touched", buffers.touched}},
                  {{"view_count", shape.view_count()}});
 }
 

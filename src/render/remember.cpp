@@ -14,7 +14,7 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
                    gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
                    {{"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},
-                    {"PairCounts", buffers.pair_counts},
+                    {"Touched", buffers.touched},
                     {"Measured", buffers.measured},
                     {"UpperNext", *buffers.upper_next},
                     {"OrderKeys", buffers.order.keys()},

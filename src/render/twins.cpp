@@ -203,7 +203,7 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
     }
   }
   upload_in(shape.settings.precision, splats, buffers.splats);
-  buffers.pair_counts.upload(pair_counts);
+  buffers.touched.upload(pair_counts);
 }
 
 // The slots as the stage project leaves them, or `sorted` as the stage order does.

@@ -95,7 +95,7 @@ struct StageRun {
   Projected projected(std::uint32_t view) const {
     const std::size_t all = std::size_t{shape.slots} * shape.view_count();
     const auto splats = frame.splats.read<shared::Splat>(all);
-    const auto tiles = frame.pair_counts.read<std::uint32_t>(all);
+    const auto tiles = frame.touched.read<std::uint32_t>(all);
     Projected out{std::vector<shared::Splat>(shape.gaussian_count),
                   std::vector<std::uint32_t>(shape.gaussian_count)};
     const auto& drawn = indices[shape.views[view].order_group];
