@@ -1,5 +1,7 @@
 // Lists of pairs that several tiles share: each tile is offered what a list of its own would hold.
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
@@ -104,6 +106,39 @@ TEST(Lists, OfSeveralTilesChangeNoPicture) {
                            .record_every = 1,
                            .loss = 0.5f},
                           3));
+}
+
+TEST(Lists, OfSplatsOverThousandsOfThemAreWhole) {
+  // Of small splats between a few that each make more pairs than a work group does.
+  Model model = test::random_model(55, 600, 0);
+  for (std::size_t i = 0; i < model.count(); i += 150) model.scale[i] = glm::vec3(4.0f, 5.0f, 3.0f);
+  const std::vector<shared::View> views = {make_view(test::front_camera(2048, 1536, 1600)),
+                                           make_view(test::front_camera(1600, 1700, 1500))};
+  for (const std::uint32_t v : {0u, 1u}) {
+    const Offers own = offers(model, views, v, TILES_ELLIPSE, 1);
+    std::size_t most = 0;
+    for (const std::uint32_t splat : {0u, 1u, 2u}) {
+      std::size_t tiles = 0;
+      for (const auto& tile : own)
+        tiles += static_cast<std::size_t>(std::count(tile.begin(), tile.end(), splat * 2 + v));
+      most = std::max(most, tiles);
+    }
+    EXPECT_GT(most, 4u * SCAN_BLOCK);
+    EXPECT_EQ(offers(model, views, v, TILES_ELLIPSE, 2), own) << v;
+  }
+}
+
+TEST(Lists, FaultsInWhatIsLeftForPairsAreNoticed) {
+  const Model model = test::random_model(52, 4000, 1);
+  const Drawn own = draw_frames(model, {}, 1, 1);
+  const auto fails = [&](const char* shader, const char* sought, const char* fault) {
+    const test::FaultyShaders faulty(shader, sought, fault);
+    return !same_pictures(own, draw_frames(model, {}, 2, 1));
+  };
+  EXPECT_TRUE(fails("pairs.comp", "nth / 2u * across", "nth / 2u"));  // of few lists,
+  EXPECT_TRUE(fails("pairs.comp", "to = start_at[place] + in_splat", "to = start_at[place]"));  // of many
+  EXPECT_TRUE(fails("tiles/tiles.glsl", "(tiles.x | tiles.y << 4)", "tiles.x"));
+  EXPECT_TRUE(fails("pairs_count.comp", "count_of(one) + count_of(other)", "count_of(one)"));
 }
 
 TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {

@@ -87,7 +87,8 @@ struct StageRun {
     render::ranges(dispatcher, shape, frame);
   }
 
-  /// The splats of a view by Gaussian of the model; tiles 0 where the view does not draw it.
+  /// The splats of a view by Gaussian of the model; tiles 0 where the view does not draw it. With lists of
+  /// one tile: those of several are not only counted (lists.glsl).
   struct Projected {
     std::vector<shared::Splat> splats;
     std::vector<std::uint32_t> tiles;
