@@ -1,3 +1,7 @@
+#if WITH_SUBGROUPS
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+#endif
 // Stage 1, project, last part: the splats of the Gaussians that cull.comp found, side by side in index order. One invocation
 // a Gaussian, for all views of the order group.
 #include "shared/limits.h"
@@ -36,9 +40,9 @@ void leave_aside(uint splat) {
 
 void main() {
   uint slot = thread_index();
-  if (slot >= amounts[0].count) return;
-  uint i = indices[slot] - page_first;  // wraps, and is too large, before the page
-  if (i >= page_count) return;
+  uint i = slot < amounts[0].count ? indices[slot] - page_first : page_count;  // wraps, and is too large, before the page
+  bool is_here = i < page_count;
+  i = is_here ? i : 0u;
   Gaussian g = GAUSSIAN(i);
   mat3 axes = scaled_axes(g);
 #if SH_DEGREE == 0 && OFFSETS == 0
@@ -52,7 +56,7 @@ void main() {
 #endif
     Splat splat;
     uint touched = 0u;
-    if (is_kept(i, v) && project(view, g, axes, splat)) {
+    if (is_here && is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(v, indices[slot], g, axes, splat);
 #if HALF
       splat = rounded(splat);  // as `pairs` will find it
@@ -63,12 +67,14 @@ void main() {
       touched = is_tall ? 1u : touched_lists(splat, view, box);  // not known yet
       if (is_tall) leave_aside(slot * view_count + v);
     }
-    touched_by[slot * view_count + v] = touched;
+    if (is_here) touched_by[slot * view_count + v] = touched;
 #if WEIGHS
-    measured[2u * (slot * view_count + v)] = 0u;
-    measured[2u * (slot * view_count + v) + 1u] = 0u;
+    if (is_here) {
+      measured[2u * (slot * view_count + v)] = 0u;
+      measured[2u * (slot * view_count + v) + 1u] = 0u;
+    }
 #elif RECORDS
-    measured[slot * view_count + v] = 0u;
+    if (is_here) measured[slot * view_count + v] = 0u;
 #endif
     if (touched != 0u) {
 #if SH_DEGREE == 0 && OFFSETS == 0
@@ -76,7 +82,7 @@ void main() {
 #else
       splat.colour.rgb = sh_colour(place_of(i, v), normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
 #endif
-      write_splat(slot * view_count + v, splat);
     }
+    write_splat(slot * view_count + v, view_count, touched != 0u, splat);
   }
 }

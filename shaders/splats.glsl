@@ -1,27 +1,53 @@
 // The splats of a frame, (slot, view): SPLAT(at), or with SPLATS_WRITTEN write_splat().
-//   HALF   1: in half precision
-#ifdef SPLATS_WRITTEN
-#define SPLATS_ACCESS writeonly
-#else
-#define SPLATS_ACCESS readonly
-#endif
-
+//   HALF             1: in half precision
+//   WITH_SUBGROUPS   1: write_splat() by subgroups
 #if HALF
 #include "halves.glsl"
-layout(std430, binding = 12) SPLATS_ACCESS buffer Splats { uvec4 splats[]; };  // two each
-#define SPLAT(at) unpack_splat(splats[2u * (at)], splats[2u * (at) + 1u])
+#define SPLAT_PARTS 2u
+#define SPLAT_PART uvec4
 #else
-layout(std430, binding = 12) SPLATS_ACCESS buffer Splats { Splat splats[]; };
-#define SPLAT(at) splats[at]
+#define SPLAT_PARTS 3u
+#define SPLAT_PART vec4
 #endif
 
 #ifdef SPLATS_WRITTEN
-void write_splat(uint at, Splat splat) {
+
+layout(std430, binding = 12) writeonly buffer Splats { SPLAT_PART splats[]; };  // SPLAT_PARTS each
+
+// This invocation's splat, if it has one. All invocations must call it, neighbours with places `stride` apart.
+void write_splat(uint at, uint stride, bool has_one, Splat splat) {
 #if HALF
-  splats[2u * at] = packed_place(splat);
-  splats[2u * at + 1u] = packed_shape(splat);
+  if (has_one) {
+    splats[SPLAT_PARTS * at] = packed_place(splat);
+    splats[SPLAT_PARTS * at + 1u] = packed_shape(splat);
+  }
+#elif WITH_SUBGROUPS
+  // Of the one's and then of the other's splat two neighbours write half each of those 32 bytes that lie in one line of memory,
+  // which is faster than each writing both of its own.
+  bool is_even = gl_SubgroupInvocationID % 2u == 0u;
+  bool is_first = at % 2u == 0u;  // whether these are the first 32
+  vec4 place = vec4(splat.mean, splat.depth, splat.opacity);
+  vec4 low = is_first ? place : splat.conic, high = is_first ? splat.conic : splat.colour;
+  vec4 got = subgroupShuffleXor(is_even ? high : low, 1u);
+  bool other_has = subgroupShuffleXor(uint(has_one), 1u) != 0u;
+  uint even = is_even ? at : at - stride, odd = is_even ? at + stride : at;
+  uint half_way = is_even ? 0u : 1u;
+  if (is_even ? has_one : other_has) splats[SPLAT_PARTS * even + even % 2u + half_way] = is_even ? low : got;
+  if (is_even ? other_has : has_one) splats[SPLAT_PARTS * odd + odd % 2u + half_way] = is_even ? got : high;
+  if (has_one) splats[SPLAT_PARTS * at + (is_first ? 2u : 0u)] = is_first ? splat.colour : place;
 #else
-  splats[at] = splat;
+  if (has_one) {
+    splats[SPLAT_PARTS * at] = vec4(splat.mean, splat.depth, splat.opacity);
+    splats[SPLAT_PARTS * at + 1u] = splat.conic;
+    splats[SPLAT_PARTS * at + 2u] = splat.colour;
+  }
 #endif
 }
+
+#elif HALF
+layout(std430, binding = 12) readonly buffer Splats { uvec4 splats[]; };
+#define SPLAT(at) unpack_splat(splats[SPLAT_PARTS * (at)], splats[SPLAT_PARTS * (at) + 1u])
+#else
+layout(std430, binding = 12) readonly buffer Splats { Splat splats[]; };
+#define SPLAT(at) splats[at]
 #endif

@@ -98,30 +98,47 @@ uint value_of(uint splat, ListRow row, uint column) {
 #endif
 }
 
-// What a splat touches (lists.glsl).
+// What a splat touches (lists.glsl). Tile row by tile row, so that neighbours ask at the same time.
 uint touched_lists(Splat splat, View view, uvec4 box) {
   uint count = 0u;
+#if LIST_TILES == 1
+  for (uint row = box.y; row < box.w; ++row) {
+    uvec2 columns = tile_row(splat, view, box, row);
+    count += columns.y - columns.x;
+  }
+#else
   uvec2 rows = list_rows(box);
-#if LIST_TILES == 2
   uint list = rows.x * lists_across(view) + box.x / 2u;
   bool are_few = rows.y - rows.x <= 2u && (box.z + 1u) / 2u - box.x / 2u <= 2u && list < FEW_LISTS_END;
   uint bits = 0u;
-#endif
-  for (uint nth = rows.x; nth < rows.y; ++nth) {
-    ListRow row = list_row(splat, view, box, nth);
-    count += row.columns.y - row.columns.x;
-#if LIST_TILES == 2
-    uvec2 tiles = uvec2(value_of(0u, row, box.x / 2u), value_of(0u, row, box.x / 2u + 1u)) >> LIST_SPLAT_BITS;
-    bits |= (tiles.x | tiles.y << 4) << (8u * (nth - rows.x) & 31u);
-#endif
+  uvec4 tiles = uvec4(0u);
+  for (uint row = box.y; row < box.w; ++row) {
+    uvec2 columns = tile_row(splat, view, box, row);
+    if (are_few) {
+      uvec2 from = columns - (box.x & ~1u);
+      uint touched = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
+      bits |= (touched & 3u | (touched & 12u) << 2) << (8u * (row / 2u - rows.x) + 2u * (row % 2u));
+    } else {
+      if (row % 2u == 0u) tiles = uvec4(columns, 0u, 0u);
+      else tiles.zw = columns;
+      if (row % 2u == 1u || row + 1u == box.w) {
+        columns = list_row_of(tiles).columns;
+        count += columns.y - columns.x;
+      }
+    }
   }
-#if LIST_TILES == 2
-  if (are_few && count > 0u) return IN_FEW_LISTS | list << FEW_LIST_SHIFT | bits;
+  if (bits != 0u) return IN_FEW_LISTS | list << FEW_LIST_SHIFT | bits;
 #endif
   return count;
 }
 
 bool touches_a_tile(Splat splat, View view) {
+#if TILES == TILES_ELLIPSE
+  // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these.
+  vec2 d = clamp(round(splat.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u)) - splat.mean;
+  float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
+  if (q <= ellipse_inner_rho(splat.colour.w)) return true;
+#endif
   uvec4 box = tile_box(splat, view);
   uint likely = likely_row(splat, view, box);
   for (uint n = 0u; n < box.w - box.y; ++n) {

@@ -115,6 +115,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   gl::Defines defines = projecting(shape);
   defines.emplace_back("SH_DEGREE", std::to_string(shape.degree));
   defines.emplace_back("WEIGHS", shape.settings.weigh ? "1" : "0");
+  defines.push_back(subgroups_define(dispatcher.context()));
   const gl::Program& program = dispatcher.context().program("project.comp", defines);
   for (const ModelBuffers::Page& page : model.pages) {
     dispatcher.run(program, gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
