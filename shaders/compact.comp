@@ -15,34 +15,39 @@ layout(std430, binding = 5) writeonly buffer Indices { uint indices[]; };  // Ga
 uniform uint gaussian_count;
 uniform uint nearest_key;  // less than any key: what is sorted needs fewer bits without it
 
+#define EACH (COMPACT_BLOCK / THREADS)
 #define WORDS (THREADS / 32)
-shared uint masks[WORDS];
+shared uint masks[EACH][WORDS];  // of each round: a bit for each Gaussian that is drawn
 
 void main() {
   uint block = group_index();
   if (block * COMPACT_BLOCK >= gaussian_count || amounts[0].count == 0u) return;
   uint self = gl_LocalInvocationIndex;
   uint before = block_counts[block];
-  for (uint i = 0u; i < COMPACT_BLOCK / THREADS; ++i) {
-    if (self < WORDS) masks[self] = 0u;
-    barrier();
+  uint key[EACH];
+  for (uint i = 0u; i < EACH; ++i) {
     uint at = block * COMPACT_BLOCK + i * THREADS + self;
-    uint key = at < gaussian_count ? depth_keys[at] : DEPTH_KEY_NONE;
-    if (key != DEPTH_KEY_NONE) atomicOr(masks[self / 32u], 1u << (self % 32u));
+    key[i] = at < gaussian_count ? depth_keys[at] : DEPTH_KEY_NONE;
+  }
+  if (self < EACH * WORDS) masks[self / WORDS][self % WORDS] = 0u;
+  barrier();
+  for (uint i = 0u; i < EACH; ++i) {
+    uint at = block * COMPACT_BLOCK + i * THREADS + self;
+    bool is_drawn = key[i] != DEPTH_KEY_NONE;
+    if (is_drawn) atomicOr(masks[i][self / 32u], 1u << (self % 32u));
     barrier();
-    uint rank = uint(bitCount(masks[self / 32u] & ((1u << (self % 32u)) - 1u)));
+    uint rank = uint(bitCount(masks[i][self / 32u] & ((1u << (self % 32u)) - 1u)));
     uint all = 0u;
     for (uint w = 0u; w < WORDS; ++w) {
-      uint seen = uint(bitCount(masks[w]));
+      uint seen = uint(bitCount(masks[i][w]));
       if (w < self / 32u) rank += seen;
       all += seen;
     }
-    if (key != DEPTH_KEY_NONE) {
-      keys[before + rank] = key - nearest_key;
+    if (is_drawn) {
+      keys[before + rank] = key[i] - nearest_key;
       values[before + rank] = before + rank;
       indices[before + rank] = at;
     }
     before += all;
-    barrier();
   }
 }
