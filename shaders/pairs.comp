@@ -28,6 +28,7 @@ uniform uint view_count;  // of the frame
 uniform uint view_begin;
 uniform uint view_end;
 
+#define NO_SPLAT 0xFFFFFFFFu
 shared uint found;
 shared uint any_many[3];  // by batch in turn: whether a splat of it is in more than a few lists
 // Of the splats held: which, where their pairs begin, their tile boxes (here and below two numbers of 16 bits a word), and the
@@ -144,7 +145,7 @@ void make_pair(uint to, uint nth_row, uint at, uint nth) {
 void make_many(uint held, uint first, uint end) {
   uint self = gl_LocalInvocationIndex;
   uint rows = 0u;
-  if (self < held) {
+  if (self < held && splat_at[self] != NO_SPLAT) {
     uvec4 box = tile_box(SPLAT(splat_at[self]), views[splat_at[self] % view_count]);
     box_at[self] = box.xy | box.zw << 16;
     rows = list_rows(box).y - list_rows(box).x;
@@ -161,9 +162,13 @@ void make_many(uint held, uint first, uint end) {
     uint skipped = first > from ? first - from : 0u;
     for (uint nth = skipped + self; nth < min(pairs, end - from); nth += THREADS) {
       FIRST_AFTER(scan_sums, nth, at)
+#if LIST_TILES == 1
+      uint to = from + nth;  // none was made at once in between
+#else
       uint place = row_place[at];
       uint in_splat = nth - sum_before(first_row(place, row)) + (rows_before[place] < row ? made : 0u);
       uint to = start_at[place] + in_splat;
+#endif
       if (to < end) make_pair(pair_amounts[0].first + to, row + at, at, nth - sum_before(at));
     }
     uint last = row_place[min(rows - row, THREADS) - 1u];
@@ -190,6 +195,13 @@ void main() {
   for (uint batch = 0u;; ++batch, rank += ranks) {
     uint splat, start;
     bool is_many = take_splat(rank, first, end, splat, start);
+#if LIST_TILES == 1  // all are
+    splat_at[self] = is_many ? splat : NO_SPLAT;
+    start_at[self] = start;
+    memoryBarrierShared();
+    barrier();
+    make_many(THREADS, first, end);
+#else
     if (is_many) any_many[batch % 3u] = 1u;
     if (self == 0u) any_many[(batch + 1u) % 3u] = 0u;
     memoryBarrierShared();
@@ -207,9 +219,12 @@ void main() {
       }
       held += count;
     }
+#endif
     if (rank + ranks >= order_amounts[0].count || pair_offsets[rank + ranks] >= end) break;
   }
+#if LIST_TILES == 2
   memoryBarrierShared();
   barrier();
   make_many(held, first, end);
+#endif
 }
