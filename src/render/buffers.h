@@ -118,9 +118,9 @@ struct FrameBuffers {
   // Of all views.
   gl::Buffer splats;   // Splat, or Halves (slot, view)
   gl::Buffer touched;  // uint (slot, view): lists.glsl
-  gl::Buffer tall;     // splats over many rows of tiles,
-  gl::Buffer& touched_in_order =
-      tall;                       // and in its place, once they are counted, uint (rank, view of the group)
+  gl::Buffer tall;     // splats over many rows of tiles
+  // In their place, once their tiles are counted: uint (rank, view of the group), lists.glsl.
+  gl::Buffer& touched_in_order = tall;
   gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
   primitives::PairBuffers pairs;  // list (view with --tiles all), splat (lists.glsl)
   gl::Buffer ranges;              // begin, end by list

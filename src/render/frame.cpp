@@ -240,10 +240,10 @@ void Frame::read_drawn(std::uint32_t v, const Take& take) const {
   const auto count = drawn.amounts.read<shared::Amount>(1).front().count;
   const auto indices = drawn.indices.read<std::uint32_t>(count);
   const std::size_t views = shape_.view_count();
-  const auto tiles = buffers_.touched.read<std::uint32_t>(count * views);
+  const auto touched = buffers_.touched.read<std::uint32_t>(count * views);
   const auto measured = buffers_.measured.read<T>(count * views);
   for (std::size_t slot = 0; slot < count; ++slot) {
-    if (tiles[slot * views + v] != 0) take(indices[slot], measured[slot * views + v]);
+    if (touched[slot * views + v] != 0) take(indices[slot], measured[slot * views + v]);
   }
 }
 

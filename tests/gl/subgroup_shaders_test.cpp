@@ -50,6 +50,14 @@ TEST_F(SubgroupShaders, Compile) {
                              {"WITH_SUBGROUPS", "1"}};
     EXPECT_EQ(said_of(name, defines, {}), "") << name;
   }
+  for (const char* half : {"0", "1"}) {
+    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},      {"TH", "0"},
+                             {"TH_NAME", "tau"},        {"TH_EYES", "0"},    {"TRANSMITTANCE", "0"},
+                             {"TILE_SIZE", "16"},       {"LIST_TILES", "2"}, {"HALF", half},
+                             {"ANTIALIASED", "0"},      {"OFFSETS", "0"},    {"SH_DEGREE", "1"},
+                             {"RECORDS", "1"},          {"WEIGHS", "0"},     {"WITH_SUBGROUPS", "1"}};
+    EXPECT_EQ(said_of("project.comp", defines, {}), "") << half;
+  }
   for (const char* writes : {"0", "1"})
     EXPECT_EQ(
         said_of("tile_lists.comp", {{"LIST_TILES", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
