@@ -51,8 +51,10 @@ uint blocks_reached(Splat splat, vec2 mean) {
 uint list_own() {
   uint lane = gl_SubgroupInvocationID;
   uint count = 0u;
+  uint mine[WORDS];  // all are read before the first is waited for
+  for (uint word = 0u; word < WORDS; ++word) mine[word] = reached[word * 32u + lane];
   for (uint word = 0u; word < WORDS; ++word) {
-    bool reaches = (reached[word * 32u + lane] >> gl_SubgroupID & 1u) != 0u;
+    bool reaches = (mine[word] >> gl_SubgroupID & 1u) != 0u;
     uint all = subgroupBallot(reaches).x;
     if (reaches) own_lists[gl_SubgroupID][count + bitCount(all & gl_SubgroupLtMask.x)] = word * 32u + lane;
     count += bitCount(all);
@@ -90,7 +92,7 @@ void main() {
       next = value_at(batch + ROUND + self);
 #endif
       uint bits = batch + self < end ? blocks_reached(splat, splat.mean - corner) : 0u;
-      if (bits != 0u) stage(self, splat);
+      stage(self, splat);
       reached[self] = bits;
     }
     barrier();

@@ -27,7 +27,7 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  // tiles
 #endif
 #if RECORDS || WEIGHS
-layout(std430, binding = 7) buffer Measured { uint measured[]; };  // (slot, view): bits of floats, or two words of a sum
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat: bits of floats, or two words of a sum
 shared uint batch_measured[BATCH];
 #endif
 #if RECORDS

@@ -5,7 +5,7 @@
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer DepthKeys { uint depth_keys[]; };
+layout(std430, binding = 0) readonly buffer DepthKeys { uvec4 depth_keys[]; };  // by four: fewer, larger reads
 layout(std430, binding = 1) writeonly buffer BlockCounts { uint block_counts[]; };
 uniform uint gaussian_count;
 
@@ -17,9 +17,10 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) seen = 0u;
   barrier();
   uint mine = 0u;
-  for (uint i = 0u; i < COMPACT_BLOCK / THREADS; ++i) {
-    uint at = block * COMPACT_BLOCK + i * THREADS + gl_LocalInvocationIndex;
-    if (at < gaussian_count) mine += uint(depth_keys[at] != DEPTH_KEY_NONE);
+  for (uint i = 0u; i < COMPACT_BLOCK / THREADS / 4; ++i) {
+    uint at = block * COMPACT_BLOCK + 4u * (i * THREADS + gl_LocalInvocationIndex);
+    uvec4 four = at < gaussian_count ? depth_keys[at / 4u] : uvec4(DEPTH_KEY_NONE);
+    for (uint k = 0u; k < 4u; ++k) mine += uint(at + k < gaussian_count && four[k] != DEPTH_KEY_NONE);
   }
   atomicAdd(seen, mine);
   barrier();

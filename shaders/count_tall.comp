@@ -9,6 +9,7 @@
 #include "shared/grid.glsl"
 #include "shared/saturate.glsl"
 #include "primitives/scan_block.glsl"
+#include "slots.glsl"
 #include "tiles/tiles.glsl"
 #include "splats.glsl"  // binding 12
 
@@ -16,8 +17,8 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
-layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats: slot * view_count + view
-layout(std430, binding = 4) writeonly buffer Touched { uint touched_by[]; };  // lists.glsl
+layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats
+layout(std430, binding = 4) writeonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
 uniform uint view_count;  // of the frame
 
 shared uvec4 box_at[TALL_EACH];
@@ -32,7 +33,7 @@ void main() {
   uint rows = 0u;
   if (has_one) {
     uint splat = tall[first + self];
-    uvec4 box = tile_box(SPLAT(splat), views[splat % view_count]);
+    uvec4 box = tile_box(SPLAT(splat), views[view_of(splat)]);
     box_at[self] = box;
     pairs_at[self] = 0u;
     rows = list_rows(box).y - list_rows(box).x;
@@ -44,9 +45,12 @@ void main() {
     uint splat = tall[first + at];
     uvec4 box = box_at[at];
     uint row = list_rows(box).x + nth - rows_before[at];
-    uvec2 columns = list_row(SPLAT(splat), views[splat % view_count], box, row).columns;
+    uvec2 columns = list_row(SPLAT(splat), views[view_of(splat)], box, row).columns;
     atomicAdd(pairs_at[at], columns.y - columns.x);
   }
   barrier();
-  if (has_one) touched_by[tall[first + self]] = pairs_at[self];
+  if (has_one) {
+    uint splat = tall[first + self];
+    touched_by[slot_of(splat) * view_count + view_of(splat)] = pairs_at[self];
+  }
 }

@@ -11,6 +11,7 @@
 #include "shared/grid.glsl"
 #include "shared/saturate.glsl"
 #include "primitives/scan_block.glsl"
+#include "slots.glsl"
 #include "tiles/tiles.glsl"
 #include "splats.glsl"  // binding 12
 
@@ -23,8 +24,7 @@ layout(std430, binding = 3) readonly buffer Order { uint order[]; };
 layout(std430, binding = 4) readonly buffer PairOffsets { uint pair_offsets[]; };  // scanned
 layout(std430, binding = 5) readonly buffer TouchedInOrder { uint touched_in_order[]; };  // (rank, view of the group): lists.glsl
 layout(std430, binding = 7) writeonly buffer Keys { uint keys[]; };      // list, counted over all views
-layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // lists.glsl, of the splat slot * view_count + view
-uniform uint view_count;  // of the frame
+layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // lists.glsl
 uniform uint view_begin;
 uniform uint view_end;
 
@@ -60,9 +60,8 @@ uint rank_of(uint pair) {
   return low;
 }
 
-// The pairs [first, end) of a splat in few lists, whose own begin at `start`.
-void make_few(uint splat, uint touched, uint start, uint first, uint end) {
-  View view = views[splat % view_count];
+// The pairs [first, end) of a splat of a view in few lists, whose own begin at `start`.
+void make_few(uint splat, View view, uint touched, uint start, uint first, uint end) {
   uint list = view.list_offset + ((touched & ~IN_FEW_LISTS) >> FEW_LIST_SHIFT);
   uint across = lists_across(view);
   for (uint nth = 0u; nth < 4u; ++nth) {
@@ -84,14 +83,14 @@ bool take_splat(uint rank, uint first, uint end, out uint splat, out uint start)
   rank += self / in_views;
   if (self >= THREADS / in_views * in_views || rank >= order_amounts[0].count) return false;
   uint nth = self % in_views;
-  splat = order[rank] * view_count + view_begin + nth;
+  splat = splat_of(order[rank], view_begin + nth);
   uint touched = touched_in_order[rank * in_views + nth];
   start = pair_offsets[rank];
   for (uint k = 0u; k < nth; ++k) start += count_of(touched_in_order[rank * in_views + k]);
   if (start >= end || start + count_of(touched) <= first) return false;
 #if LIST_TILES == 2
   if ((touched & IN_FEW_LISTS) != 0u) {
-    make_few(splat, touched, start, first, end);
+    make_few(splat, views[view_begin + nth], touched, start, first, end);
     return false;
   }
 #endif
@@ -106,7 +105,7 @@ uint take_row(uint nth) {
   uint self = gl_LocalInvocationIndex;
   uint splat = splat_at[at];
   uvec4 box = box_of(at);
-  ListRow row = list_row(SPLAT(splat), views[splat % view_count], box, list_rows(box).x + nth - rows_before[at]);
+  ListRow row = list_row(SPLAT(splat), views[view_of(splat)], box, list_rows(box).x + nth - rows_before[at]);
   row_place[self] = at;
   row_tiles[0][self] = row.tiles.x | row.tiles.y << 16;
 #if LIST_TILES == 2
@@ -132,9 +131,9 @@ void make_pair(uint to, uint nth_row, uint at, uint nth) {
   ListRow row = row_at(at);
   uint column = row.columns.x + nth;
 #if TILES == TILES_ALL
-  keys[to] = splat % view_count;  // one list a view
+  keys[to] = view_of(splat);  // one list a view
 #else
-  uint v = splat % view_count;
+  uint v = view_of(splat);
   uint row_in_view = list_rows(box_of(place)).x + nth_row - rows_before[place];
   keys[to] = views[v].list_offset + row_in_view * lists_across(views[v]) + column;
 #endif
@@ -146,7 +145,7 @@ void make_many(uint held, uint first, uint end) {
   uint self = gl_LocalInvocationIndex;
   uint rows = 0u;
   if (self < held && splat_at[self] != NO_SPLAT) {
-    uvec4 box = tile_box(SPLAT(splat_at[self]), views[splat_at[self] % view_count]);
+    uvec4 box = tile_box(SPLAT(splat_at[self]), views[view_of(splat_at[self])]);
     box_at[self] = box.xy | box.zw << 16;
     rows = list_rows(box).y - list_rows(box).x;
   }

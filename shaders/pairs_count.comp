@@ -6,27 +6,37 @@
 
 layout(local_size_x = THREADS) in;
 
+#if BOTH_EYES
+#define TOUCHED uvec2  // of both eyes by one read
+#else
+#define TOUCHED uint
+#endif
+
 layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 1) readonly buffer Order { uint order[]; };
-layout(std430, binding = 2) readonly buffer Touched { uint touched_by[]; };  // lists.glsl
+layout(std430, binding = 2) readonly buffer Touched { TOUCHED touched_by[]; };  // (slot, view): lists.glsl
 layout(std430, binding = 3) writeonly buffer PairOffsets { uint pair_offsets[]; };
-layout(std430, binding = 4) writeonly buffer TouchedInOrder { uint touched_in_order[]; };  // (rank, view of the group)
+layout(std430, binding = 4) writeonly buffer TouchedInOrder { TOUCHED touched_in_order[]; };  // (rank, view of the group)
+#if !BOTH_EYES
 uniform uint view_count;  // of the frame
 uniform uint view_begin;
 uniform uint view_end;
+#endif
 
 void main() {
   uint rank = thread_index();
   if (rank >= amounts[0].count) return;
-  uint first = order[rank] * view_count;
+#if BOTH_EYES
+  TOUCHED both = touched_by[order[rank]];
+  touched_in_order[rank] = both;
+  pair_offsets[rank] = count_of(both.x) + count_of(both.y);
+#else
   uint sum = 0u;
-  for (uint v = view_begin; v < view_end; v += 2u) {  // both eyes' at once, so that neither waits for the other
-    uint one = touched_by[first + v];
-    uint other = v + 1u < view_end ? touched_by[first + v + 1u] : 0u;
-    sum += count_of(one) + count_of(other);
-    uint to = rank * (view_end - view_begin) + v - view_begin;
-    touched_in_order[to] = one;
-    if (v + 1u < view_end) touched_in_order[to + 1u] = other;
+  for (uint v = view_begin; v < view_end; ++v) {
+    uint touched = touched_by[order[rank] * view_count + v];
+    touched_in_order[rank * (view_end - view_begin) + v - view_begin] = touched;
+    sum += count_of(touched);
   }
   pair_offsets[rank] = sum;
+#endif
 }

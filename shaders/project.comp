@@ -8,6 +8,7 @@
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "projection.glsl"
+#include "slots.glsl"
 #include "tiles/tiles.glsl"
 
 layout(local_size_x = THREADS) in;
@@ -22,7 +23,7 @@ layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
 layout(std430, binding = 6) writeonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
 #if RECORDS || WEIGHS
-layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // (slot, view), of one word or two
+layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // by splat, of one word or two
 #endif
 layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for count_tall.comp, in any order
@@ -50,6 +51,7 @@ void main() {
 #endif
   for (uint v = view_begin; v < view_end; ++v) {
     View view = views[v];
+    uint splat_at = splat_of(slot, v);
 #if OFFSETS > 0
     g = GAUSSIAN(place_of(i, v));
     axes = scaled_axes(g);
@@ -65,16 +67,16 @@ void main() {
       uvec2 rows = list_rows(box);
       bool is_tall = rows.y - rows.x > TALL_ROWS;
       touched = is_tall ? 1u : touched_lists(splat, view, box);  // not known yet
-      if (is_tall) leave_aside(slot * view_count + v);
+      if (is_tall) leave_aside(splat_at);
     }
     if (is_here) touched_by[slot * view_count + v] = touched;
 #if WEIGHS
     if (is_here) {
-      measured[2u * (slot * view_count + v)] = 0u;
-      measured[2u * (slot * view_count + v) + 1u] = 0u;
+      measured[2u * splat_at] = 0u;
+      measured[2u * splat_at + 1u] = 0u;
     }
 #elif RECORDS
-    if (is_here) measured[slot * view_count + v] = 0u;
+    if (is_here) measured[splat_at] = 0u;
 #endif
     if (touched != 0u) {
 #if SH_DEGREE == 0 && OFFSETS == 0
@@ -83,6 +85,6 @@ void main() {
       splat.colour.rgb = sh_colour(place_of(i, v), normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
 #endif
     }
-    write_splat(slot * view_count + v, view_count, touched != 0u, splat);
+    write_splat(splat_at, touched != 0u, splat);
   }
 }

@@ -4,6 +4,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "slots.glsl"
 
 layout(local_size_x = THREADS) in;
 
@@ -14,7 +15,7 @@ uniform uint nearest_key;  // to be added to an order key: then the bits of a de
 #if RECORDS
 layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };         // Gaussian of each slot
 layout(std430, binding = 2) readonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
-layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // (slot, view)
+layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // by splat
 layout(std430, binding = 4) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 uniform uint gaussian_count;
 uniform uint view_begin;
@@ -29,7 +30,7 @@ void main() {
 #if RECORDS
   for (uint v = view_begin; v < view_end; ++v) {
     if (touched_by[slot * view_count + v] == 0u) continue;
-    float most = uintBitsToFloat(measured[slot * view_count + v]);
+    float most = uintBitsToFloat(measured[splat_of(slot, v)]);
     upper_next[v * gaussian_count + indices[slot]] = clamp(most, float(UPPER_FLOOR), 1.0);
   }
 #endif

@@ -1,4 +1,4 @@
-// The splats of a frame, (slot, view): SPLAT(at), or with SPLATS_WRITTEN write_splat().
+// The splats of a frame (slots.glsl): SPLAT(at), or with SPLATS_WRITTEN write_splat().
 //   HALF             1: in half precision
 //   WITH_SUBGROUPS   1: write_splat() by subgroups
 #if HALF
@@ -14,8 +14,8 @@
 
 layout(std430, binding = 12) writeonly buffer Splats { SPLAT_PART splats[]; };  // SPLAT_PARTS each
 
-// This invocation's splat, if it has one. All invocations must call it, neighbours with places `stride` apart.
-void write_splat(uint at, uint stride, bool has_one, Splat splat) {
+// This invocation's splat, if it has one. All invocations must call it, neighbours with neighbouring places.
+void write_splat(uint at, bool has_one, Splat splat) {
 #if HALF
   if (has_one) {
     splats[SPLAT_PARTS * at] = packed_place(splat);
@@ -30,7 +30,7 @@ void write_splat(uint at, uint stride, bool has_one, Splat splat) {
   vec4 low = is_first ? place : splat.conic, high = is_first ? splat.conic : splat.colour;
   vec4 got = subgroupShuffleXor(is_even ? high : low, 1u);
   bool other_has = subgroupShuffleXor(uint(has_one), 1u) != 0u;
-  uint even = is_even ? at : at - stride, odd = is_even ? at + stride : at;
+  uint even = is_even ? at : at - 1u, odd = even + 1u;
   uint half_way = is_even ? 0u : 1u;
   if (is_even ? has_one : other_has) splats[SPLAT_PARTS * even + even % 2u + half_way] = is_even ? low : got;
   if (is_even ? other_has : has_one) splats[SPLAT_PARTS * odd + odd % 2u + half_way] = is_even ? got : high;
@@ -48,6 +48,10 @@ void write_splat(uint at, uint stride, bool has_one, Splat splat) {
 layout(std430, binding = 12) readonly buffer Splats { uvec4 splats[]; };
 #define SPLAT(at) unpack_splat(splats[SPLAT_PARTS * (at)], splats[SPLAT_PARTS * (at) + 1u])
 #else
-layout(std430, binding = 12) readonly buffer Splats { Splat splats[]; };
-#define SPLAT(at) splats[at]
+layout(std430, binding = 12) readonly buffer Splats { vec4 splats[]; };  // SPLAT_PARTS each
+Splat read_splat(uint at) {
+  vec4 place = splats[SPLAT_PARTS * at];
+  return Splat(place.xy, place.z, place.w, splats[SPLAT_PARTS * at + 1u], splats[SPLAT_PARTS * at + 2u]);
+}
+#define SPLAT(at) read_splat(at)
 #endif

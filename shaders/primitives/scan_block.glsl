@@ -1,9 +1,13 @@
 // An exclusive scan over the THREADS values of a work group (Hillis and Steele 1986; WITH_SUBGROUPS: by those of 32).
+//   SCAN_RESULT_ONLY   defined: only scan_group's result is needed, which takes less shared memory by subgroups
 #ifndef WITH_SUBGROUPS
 #define WITH_SUBGROUPS 0
 #endif
 
+#if !WITH_SUBGROUPS || !defined(SCAN_RESULT_ONLY)
+#define SCAN_SUMS
 shared uint scan_sums[THREADS];
+#endif
 
 // The sum of the values before this invocation's; every invocation must call it.
 #if WITH_SUBGROUPS  // of numbers whose sum stays below COUNT_MAX: two barriers instead of seventeen
@@ -15,7 +19,9 @@ uint scan_group(uint value) {
   memoryBarrierShared();
   barrier();
   for (uint k = 0u; k < THREADS / 32; ++k) sum += k < gl_SubgroupID ? subgroup_sums[k] : 0u;
+#ifdef SCAN_SUMS
   scan_sums[gl_LocalInvocationIndex] = sum;
+#endif
   memoryBarrierShared();
   barrier();
   return sum - value;
@@ -34,6 +40,8 @@ uint scan_group(uint value) {
   return at == 0u ? 0u : scan_sums[at - 1u];
 }
 #endif
+
+#ifdef SCAN_SUMS
 
 // The same for neighbours that each invocation holds, so that the group scans once: each becomes what comes before it,
 // `before` included.
@@ -70,3 +78,5 @@ uint take_group_total() {
   barrier();
   return total;
 }
+
+#endif

@@ -9,12 +9,12 @@
 layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
-layout(std430, binding = 1) readonly buffer Keys { uint keys[]; };
+layout(std430, binding = 1) readonly buffer Keys { uvec4 keys[]; };  // by four: fewer, larger reads
 layout(std430, binding = 2) writeonly buffer Histogram { uint histogram[]; };
 uniform uint shift;  // of the digit in the key
 
 #define DIGITS (1u << DIGIT_BITS)
-#define ROUNDS (SORT_BLOCK / THREADS)
+#define ROUNDS (SORT_BLOCK / THREADS / 4)
 shared uint counts[DIGITS];
 
 void main() {
@@ -23,14 +23,16 @@ void main() {
   if (block * SORT_BLOCK >= count) return;
   for (uint d = gl_LocalInvocationIndex; d < DIGITS; d += THREADS) counts[d] = 0u;
   barrier();
-  uint key[ROUNDS];  // all are read before the first is waited for
+  uint first = block * SORT_BLOCK + 4u * gl_LocalInvocationIndex;
+  uvec4 four[ROUNDS];  // all are read before the first is waited for
   for (uint i = 0u; i < ROUNDS; ++i) {
-    uint at = block * SORT_BLOCK + i * THREADS + gl_LocalInvocationIndex;
-    key[i] = at < count ? keys[at] : 0u;
+    uint at = first + 4u * THREADS * i;
+    four[i] = at < count ? keys[at / 4u] : uvec4(0u);
   }
   for (uint i = 0u; i < ROUNDS; ++i) {
-    uint at = block * SORT_BLOCK + i * THREADS + gl_LocalInvocationIndex;
-    if (at < count) atomicAdd(counts[(key[i] >> shift) % DIGITS], 1u);
+    for (uint k = 0u; k < 4u; ++k) {
+      if (first + 4u * THREADS * i + k < count) atomicAdd(counts[(four[i][k] >> shift) % DIGITS], 1u);
+    }
   }
   barrier();
   uint blocks = blocks_of(count, SORT_BLOCK);

@@ -1,4 +1,5 @@
 #extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #pragma optionNV(unroll all)
@@ -9,6 +10,8 @@
 #include "shared/grid.glsl"
 #include "shared/amount.glsl"
 #include "shared/saturate.glsl"
+#define WITH_SUBGROUPS 1
+#define SCAN_RESULT_ONLY
 #include "primitives/scan_block.glsl"
 
 layout(local_size_x = THREADS) in;
@@ -25,9 +28,9 @@ uniform uint shift;
 #define DIGITS_EACH (DIGITS / THREADS)
 #define SUBGROUPS (THREADS / 32)
 #define ROUNDS (SORT_BLOCK / THREADS)
-// At first a counter of each subgroup and digit: how many keys so far, then where they begin in the block. Later the
-// block's keys, then its values, in their new order. In one array, for more groups at a time.
-shared uint board[max(SORT_BLOCK, SUBGROUPS << DIGIT_BITS)];
+// At first a counter of each subgroup and digit, those of two subgroups in a word: how many keys so far, then where they begin in
+// the block. Later the block's keys, then its values, in their new order. In one array, for more groups at a time.
+shared uint board[max(SORT_BLOCK, SUBGROUPS / 2 << DIGIT_BITS)];
 shared uint moves[DIGITS];  // from a place in the block to the place in the buffer, modulo 2^32
 
 uint digit_of(uint key) { return (key >> shift) % DIGITS; }
@@ -37,9 +40,10 @@ void main() {
   uint block = group_index();
   if (block * SORT_BLOCK >= count) return;
   uint self = gl_LocalInvocationIndex;
-  uint mine = gl_SubgroupID * DIGITS;
+  uint mine = gl_SubgroupID / 2u * DIGITS;
+  uint half_shift = gl_SubgroupID % 2u * 16u;  // of this subgroup's counters in their words
   uint first = block * SORT_BLOCK + gl_SubgroupID * 32u * ROUNDS + gl_SubgroupInvocationID;
-  for (uint d = self; d < SUBGROUPS * DIGITS; d += THREADS) board[d] = 0u;
+  for (uint d = self; d < SUBGROUPS / 2 * DIGITS; d += THREADS) board[d] = 0u;
   barrier();
   uint key[ROUNDS];
   uint place[ROUNDS];
@@ -56,26 +60,32 @@ void main() {
     // The first of the equals counts for all; its answer comes before any of the next round's, so no barrier is needed.
     uint before = uint(bitCount(equal & gl_SubgroupLtMask.x));
     uint seen = 0u;
-    if (at < count && before == 0u) seen = atomicAdd(board[mine + digit], uint(bitCount(equal)));
+    if (at < count && before == 0u) {
+      seen = atomicAdd(board[mine + digit], uint(bitCount(equal)) << half_shift) >> half_shift & 0xFFFFu;
+    }
     place[i] = before + subgroupShuffle(seen, uint(findLSB(equal)) % 32u);
   }
   barrier();
   uint of_mine = 0u;
   for (uint k = 0u; k < DIGITS_EACH; ++k) {
-    for (uint s = 0u; s < SUBGROUPS; ++s) of_mine += board[s * DIGITS + self * DIGITS_EACH + k];
+    for (uint s = 0u; s < SUBGROUPS / 2; ++s) {
+      uint of_two = board[s * DIGITS + self * DIGITS_EACH + k];
+      of_mine += (of_two & 0xFFFFu) + (of_two >> 16);
+    }
   }
   uint start = scan_group(of_mine);
   for (uint k = 0u; k < DIGITS_EACH; ++k) {
     uint digit = self * DIGITS_EACH + k;
     moves[digit] = histogram[digit * blocks_of(count, SORT_BLOCK) + block] - start;
-    for (uint s = 0u; s < SUBGROUPS; ++s) {
-      uint of_subgroup = board[s * DIGITS + digit];
-      board[s * DIGITS + digit] = start;
-      start += of_subgroup;
+    for (uint s = 0u; s < SUBGROUPS / 2; ++s) {
+      uint of_two = board[s * DIGITS + digit];
+      uint second = start + (of_two & 0xFFFFu);
+      board[s * DIGITS + digit] = start | second << 16;
+      start = second + (of_two >> 16);
     }
   }
   barrier();
-  for (uint i = 0u; i < ROUNDS; ++i) place[i] += board[mine + digit_of(key[i])];
+  for (uint i = 0u; i < ROUNDS; ++i) place[i] += board[mine + digit_of(key[i])] >> half_shift & 0xFFFFu;
   barrier();
   for (uint i = 0u; i < ROUNDS; ++i) {
     if (first + 32u * i < count) board[place[i]] = key[i];

@@ -53,15 +53,13 @@
 #define PRESENT_COLUMNS 32u
 #define PRESENT_ROWS 8u
 // Elements that one work group scans, compacts or sorts: several rounds of THREADS. A sort of few has smaller
-// blocks, or they would not fill a GPU, and one by digits of 8 bits, whose counters leave room for more
-// groups; its programs define theirs (primitives/radix_sort.h).
+// blocks, or they would not fill a GPU; its programs define theirs (primitives/radix_sort.h).
 #define SCAN_BLOCK 2048
 #define COMPACT_BLOCK 2048
 #define SORT_FEW 524288
 #define SORT_BLOCK_FEW 1024
-#define SORT_BLOCK_8_BITS 2048
 #ifndef SORT_BLOCK
-#define SORT_BLOCK 4096
+#define SORT_BLOCK 2048
 #endif
 // Bits of a radix sort's digit: at most so many, where that saves a pass over 8 (primitives/radix_sort.h).
 #define SORT_BITS_MAX 9

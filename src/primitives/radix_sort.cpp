@@ -19,18 +19,20 @@ void PairBuffers::reserve(std::int64_t count) {
   for (gl::Buffer* buffer : {&keys_, &keys_other_, &values_, &values_other_}) buffer->reserve(count * 4);
 }
 
-std::uint32_t PairBuffers::block(std::uint32_t bits) const {
-  if (capacity() <= SORT_FEW) return SORT_BLOCK_FEW;
-  return RadixSort::digit_bits(bits) == 8 ? SORT_BLOCK_8_BITS : SORT_BLOCK;
-}
+std::uint32_t PairBuffers::block() const { return RadixSort::block(capacity()); }
 
-void RadixSort::reserve(const PairBuffers& pairs) {
-  const auto counters_of = [&](std::uint32_t bits) {
-    return (pairs.capacity() / pairs.block(bits) + 1) << digit_bits(bits);
-  };
-  const std::int64_t counters = std::max(counters_of(8), counters_of(SORT_BITS_MAX));
+void RadixSort::reserve(const PairBuffers& pairs, std::uint32_t bits) {
+  const std::int64_t counters = counters_of(pairs.capacity(), bits);
   histogram_.reserve(counters * 4);
   scan_.reserve(counters);
+}
+
+std::uint32_t RadixSort::block(std::int64_t capacity) {
+  return capacity <= SORT_FEW ? SORT_BLOCK_FEW : SORT_BLOCK;
+}
+
+std::int64_t RadixSort::counters_of(std::int64_t capacity, std::uint32_t bits) {
+  return (capacity / block(capacity) + 1) << digit_bits(bits);
 }
 
 std::uint32_t RadixSort::digit_bits(std::uint32_t bits) { return bits <= 8 * passes(bits) ? 8 : 9; }
@@ -40,7 +42,7 @@ std::uint32_t RadixSort::passes(std::uint32_t bits) { return (bits + SORT_BITS_M
 void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs,
                     std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
-  gl::Defines defines = pairs.block_define(bits);
+  gl::Defines defines = pairs.block_define();
   defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
   const gl::Program& count = context.program("primitives/sort_count.comp", defines);
   const gl::Program& scatter =

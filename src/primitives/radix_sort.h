@@ -16,11 +16,9 @@ class PairBuffers {
   void reserve(std::int64_t count);
   std::int64_t capacity() const { return keys_.bytes() / 4; }
 
-  /// Pairs that a work group of a sort by `bits` bits has: fewer where there is room for few, or where its
-  /// counters of 8 bits take less shared memory than more pairs would. Who fills SortAmounts for them needs
-  /// it, programs as the define SORT_BLOCK.
-  std::uint32_t block(std::uint32_t bits) const;
-  gl::Defines block_define(std::uint32_t bits) const { return {{"SORT_BLOCK", std::to_string(block(bits))}}; }
+  /// RadixSort::block(capacity()); programs have it as the define SORT_BLOCK.
+  std::uint32_t block() const;
+  gl::Defines block_define() const { return {{"SORT_BLOCK", std::to_string(block())}}; }
 
   /// Where the pairs are now.
   gl::Buffer& keys() { return flipped_ ? keys_other_ : keys_; }
@@ -40,8 +38,15 @@ class RadixSort {
   explicit RadixSort(gl::Context& context)
       : histogram_(context, "counters of the radix sort"), scan_(context) {}
 
-  /// Room to sort as many pairs as they have room for.
-  void reserve(const PairBuffers& pairs);
+  /// Room to sort as many pairs as they have room for by so many bits.
+  void reserve(const PairBuffers& pairs, std::uint32_t bits);
+
+  /// Pairs that a work group has where there is room for so many: fewer where it is for few. Who fills
+  /// SortAmounts for them needs it.
+  static std::uint32_t block(std::int64_t capacity);
+
+  /// Counters (uint) that a sort of so many pairs by `bits` bits takes besides.
+  static std::int64_t counters_of(std::int64_t capacity, std::uint32_t bits);
 
   /// Bits that each pass of a sort by `bits` bits takes: 8, or 9 where that makes a pass less; and the
   /// passes.

@@ -174,7 +174,8 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   const std::int64_t slot_bytes =
       shape.view_count() * bytes_a_splat + 6 * 4;  // indices, order twice, offsets
   needs.frame = shape.gaussian_count * bytes_a_gaussian + shape.slots * slot_bytes + shape.pixel_count * 20 +
-                shape.tile_count() * (shared_lists ? 14LL : 12LL) + starting_pairs(shape) * pair_bytes;
+                shape.tile_count() * (shared_lists ? 14LL : 12LL) + starting_pairs(shape) * pair_bytes +
+                4 * primitives::RadixSort::counters_of(starting_pairs(shape), shape.list_bits());
   return needs;
 }
 
@@ -258,8 +259,8 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity,
   colours.reserve(shape.pixel_count * 16);
   z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));
-  sort.reserve(order);
-  sort.reserve(pairs);
+  for (const OrderGroup& group : shape.groups) sort.reserve(order, group.key_bits);
+  sort.reserve(pairs, shape.list_bits());
 }
 
 }  // namespace binosplat::render

@@ -112,11 +112,11 @@ struct FrameBuffers {
   // while the last frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> upper;
   std::unique_ptr<gl::Buffer> upper_next;
-  gl::Buffer measured;     // uint (slot, view), bits of the largest float; two, low first, where weighed
+  gl::Buffer measured;     // uint by splat, bits of the largest float; two, low first, where weighed
   gl::Buffer depth_table;  // float by bin
 
   // Of all views.
-  gl::Buffer splats;   // Splat, or Halves (slot, view)
+  gl::Buffer splats;   // Splat, or Halves (view, slot)
   gl::Buffer touched;  // uint (slot, view): lists.glsl
   gl::Buffer tall;     // splats over many rows of tiles
   // In their place, once their tiles are counted: uint (rank, view of the group), lists.glsl.
@@ -136,7 +136,7 @@ struct FrameBuffers {
 
   // Of show().
   gl::Buffer shown;        // float by pixel
-  gl::Buffer shown_light;  // uint (slot, view), bits of the largest T
+  gl::Buffer shown_light;  // uint by splat, bits of the largest T
 
   primitives::Scan scan;
   primitives::RadixSort sort;

@@ -44,7 +44,8 @@ void Frame::reload() {
 }
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
-  const std::uint64_t splats = std::uint64_t{model_.count()} * (views.size() + 1);  // a probe is a view, too
+  const std::uint64_t slots = std::max<std::uint64_t>(model_.count(), slots_);
+  const std::uint64_t splats = slots * (views.size() + 1);  // a probe is a view, too
   const FrameSettings chosen = with_lists(settings, splats, dispatcher_.context().limits().subgroups_of_32);
   shape_ = make_shape(views, chosen, model_);
   if (chosen.precision != model_buffers_.precision()) {
@@ -241,9 +242,9 @@ void Frame::read_drawn(std::uint32_t v, const Take& take) const {
   const auto indices = drawn.indices.read<std::uint32_t>(count);
   const std::size_t views = shape_.view_count();
   const auto touched = buffers_.touched.read<std::uint32_t>(count * views);
-  const auto measured = buffers_.measured.read<T>(count * views);
+  const auto measured = buffers_.measured.read<T>(count, std::size_t{v} * shape_.slots);
   for (std::size_t slot = 0; slot < count; ++slot) {
-    if (touched[slot * views + v] != 0) take(indices[slot], measured[slot * views + v]);
+    if (touched[slot * views + v] != 0) take(indices[slot], measured[slot]);
   }
 }
 

@@ -12,7 +12,8 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
   const auto each = [](const gl::Buffer& amounts) {
     return gl::Work::indirect(amounts, offsetof(shared::Amount, threads_x));
   };
-  dispatcher.run(context.program("pairs_count.comp"), each(drawn),
+  const bool both_eyes = shape.view_count() == 2 && shape.groups.size() == 1;
+  dispatcher.run(context.program("pairs_count.comp", {{"BOTH_EYES", both_eyes ? "1" : "0"}}), each(drawn),
                  {{"Amounts", drawn},
                   {"Order", buffers.order.values()},
                   {"Touched", buffers.touched},
@@ -20,8 +21,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"TouchedInOrder", buffers.touched_in_order}},
                  {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
   buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
-  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define(shape.list_bits())),
-                 gl::Work::of_groups(1),
+  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define()), gl::Work::of_groups(1),
                  {{"Amounts", buffers.pair_amounts},
                   {"Total", buffers.scan.total()},
                   {"FrameCounters", buffers.counters}},
@@ -42,7 +42,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Splats", buffers.splats},
                   {"Keys", buffers.pairs.keys()},
                   {"Values", buffers.pairs.values()}},
-                 {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
+                 {{"slots", shape.slots}, {"view_begin", views.begin}, {"view_end", views.end}});
 }
 
 }  // namespace binosplat::render

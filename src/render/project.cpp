@@ -66,7 +66,7 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
                  {{"gaussian_count", shape.gaussian_count}});
   buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
   dispatcher.run(
-      context.program("amount.comp", buffers.order.block_define(group.key_bits)), gl::Work::of_groups(1),
+      context.program("amount.comp", buffers.order.block_define()), gl::Work::of_groups(1),
       {{"Amounts", drawn.amounts}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
       {{"kind", AMOUNT_ORDER},
        {"capacity", shape.slots},
@@ -140,6 +140,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"view_begin", views.begin},
                     {"view_end", views.end},
                     {"view_count", shape.view_count()},
+                    {"slots", shape.slots},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
                     {"exact_from", shape.asked},
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
@@ -156,7 +157,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                   {"Tall", buffers.tall},
                   {"Splats", buffers.splats},
                   {"Touched", buffers.touched}},
-                 {{"view_count", shape.view_count()}});
+                 {{"view_count", shape.view_count()}, {"slots", shape.slots}});
 }
 
 }  // namespace binosplat::render

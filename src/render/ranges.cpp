@@ -8,15 +8,16 @@ namespace binosplat::render {
 
 namespace {
 
-void clear(gl::Dispatcher& dispatcher, const gl::Buffer& ranges, std::uint32_t lists) {
-  dispatcher.run(dispatcher.context().program("ranges_clear.comp"), gl::Work::threads(2 * lists, THREADS),
-                 {{"Ranges", ranges}}, {{"count", 2 * lists}});
+// The dispatch after it must not need them.
+void start_clear(gl::Dispatcher& dispatcher, const gl::Buffer& ranges, std::uint32_t lists) {
+  dispatcher.start(dispatcher.context().program("ranges_clear.comp"), gl::Work::threads(2 * lists, THREADS),
+                   {{"Ranges", ranges}}, {{"count", 2 * lists}});
 }
 
 // Each tile's list out of the one that it shares.
 void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  clear(dispatcher, buffers.tile_ranges, shape.tile_count());
+  start_clear(dispatcher, buffers.tile_ranges, shape.tile_count());
   const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
   const auto program = [&](const char* writes) -> const gl::Program& {
     return context.program("tile_lists.comp", {{"LIST_TILES", std::to_string(shape.settings.list_tiles)},
@@ -51,7 +52,8 @@ void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& b
     split_lists(dispatcher, shape, buffers);
     return;
   }
-  clear(dispatcher, buffers.ranges, std::max(shape.list_count, shape.view_count()));
+  start_clear(dispatcher, buffers.ranges, std::max(shape.list_count, shape.view_count()));
+  dispatcher.wait_for_writes();
   dispatcher.run(
       dispatcher.context().program("ranges.comp"),
       gl::Work::indirect(buffers.pair_amounts, offsetof(shared::Amount, threads_x)),

@@ -23,7 +23,8 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
                     {"gaussian_count", shape.gaussian_count},
                     {"view_begin", shape.groups[group].begin},
                     {"view_end", std::min(shape.groups[group].end, shape.asked)},
-                    {"view_count", shape.view_count()}});
+                    {"view_count", shape.view_count()},
+                    {"slots", shape.slots}});
   }
 }
 

@@ -162,7 +162,7 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
         const std::uint32_t i = lists.gaussians[k];
         ranked.push_back(
-            {std::uint64_t{group} << 32 | rank[i], {first + t, slots[group].of[i] * shape.view_count() + v}});
+            {std::uint64_t{group} << 32 | rank[i], {first + t, v * shape.slots + slots[group].of[i]}});
       }
     }
   }
@@ -184,11 +184,11 @@ void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t list_bits, std::
   }
   const auto count = static_cast<std::uint32_t>(pairs.size());
   buffers.pairs.reserve(count);
-  buffers.sort.reserve(buffers.pairs);
+  buffers.sort.reserve(buffers.pairs, list_bits);
   buffers.pairs.keys().upload(keys);
   buffers.pairs.values().upload(values);
   buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(
-      count, primitives::RadixSort::digit_bits(list_bits), groups_max, buffers.pairs.block(list_bits))});
+      count, primitives::RadixSort::digit_bits(list_bits), groups_max, buffers.pairs.block())});
 }
 
 void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
@@ -198,7 +198,7 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
     const std::vector<std::uint32_t>& indices = slots[shape.views[v].order_group].indices;
     for (std::size_t slot = 0; slot < indices.size(); ++slot) {
-      splats[slot * shape.view_count() + v] = to_shared(results[v].splats[indices[slot]]);
+      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]]);
       pair_counts[slot * shape.view_count() + v] = results[v].pair_counts[indices[slot]];
     }
   }
@@ -227,9 +227,8 @@ void upload_order(const OrderGroup& group, const Slots& slots, const std::vector
   buffers.order.keys().upload(keys);
   buffers.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
-  buffers.drawn.front()->amounts.upload(
-      std::vector{primitives::make_sort_amounts(count, primitives::RadixSort::digit_bits(group.key_bits),
-                                                groups_max, buffers.order.block(group.key_bits))});
+  buffers.drawn.front()->amounts.upload(std::vector{primitives::make_sort_amounts(
+      count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.order.block())});
 }
 
 void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {

@@ -25,13 +25,13 @@ std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits, std::int
   pairs.reserve(std::max<std::int64_t>(count, room));
   gl::Buffer amounts(context, "amounts");
   amounts.upload(std::vector{
-      make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block(bits))});
+      make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block())});
   Keys values(count);
   std::iota(values.begin(), values.end(), 0u);
   pairs.keys().upload(keys);
   pairs.values().upload(values);
   RadixSort sort(context);
-  sort.reserve(pairs);
+  sort.reserve(pairs, bits);
   gl::Dispatcher dispatcher(context);
   sort.run(dispatcher, amounts, pairs, bits);
   return {pairs.keys().read<std::uint32_t>(count), pairs.values().read<std::uint32_t>(count)};
@@ -62,7 +62,7 @@ TEST(RadixSort, EqualsAStableSortAtEverySizeThatMatters) {
     std::uint32_t bits;
   };
   for (const auto& [block, room, bits] :
-       {Case{SORT_BLOCK_FEW, 0, 32}, {SORT_BLOCK_8_BITS, SORT_FEW + 1, 32}, {SORT_BLOCK, SORT_FEW + 1, 27}}) {
+       {Case{SORT_BLOCK_FEW, 0, 32}, {SORT_BLOCK, SORT_FEW + 1, 32}, {SORT_BLOCK, SORT_FEW + 1, 27}}) {
     for (const int size : {0, 1, 2, 255, 257, block - 1, block, block + 1, 5 * block + 33, 200000}) {
       const Keys keys = random_keys(static_cast<std::size_t>(size), ~0u);
       EXPECT_EQ(sort_on_gpu(keys, bits, room), sort_on_cpu(keys, bits)) << size << ", blocks of " << block;

@@ -23,9 +23,9 @@ Lists gpu_lists(test::StageRun& run) {
   std::size_t total = 0;
   for (std::uint32_t t = 0; t < run.shape.list_count; ++t) {
     for (std::uint32_t k = ranges[2 * t]; k < ranges[2 * t + 1]; ++k) {
-      const std::uint32_t view = values[k] % run.shape.view_count();
+      const std::uint32_t view = values[k] / run.shape.slots;
       const std::uint32_t gaussian =
-          run.indices[run.shape.views[view].order_group][values[k] / run.shape.view_count()];
+          run.indices[run.shape.views[view].order_group][values[k] % run.shape.slots];
       lists[t].push_back(view * run.shape.gaussian_count + gaussian);
     }
     total += lists[t].size();

@@ -101,7 +101,7 @@ struct StageRun {
                   std::vector<std::uint32_t>(shape.gaussian_count)};
     const auto& drawn = indices[shape.views[view].order_group];
     for (std::size_t slot = 0; slot < drawn.size(); ++slot) {
-      out.splats[drawn[slot]] = splats[slot * shape.view_count() + view];
+      out.splats[drawn[slot]] = splats[std::size_t{view} * shape.slots + slot];
       out.tiles[drawn[slot]] = tiles[slot * shape.view_count() + view];
     }
     return out;
