@@ -12,7 +12,6 @@
 #include "shared/grid.glsl"
 #include "lists.glsl"
 
-#define NO_LIST 0xFFFFFFFFu
 #define ROWS 8
 #define EACH (TILE_BLOCK / 32 / ROWS)
 layout(local_size_x = 32, local_size_y = ROWS) in;
@@ -83,16 +82,14 @@ void main() {
     uint at = begin + 32u * k;
     if (at >= count) break;
     uint list = keys[at];
-    uint list_before = at == 0u ? NO_LIST : keys[at - 1u];
+    bool is_first = at == 0u || keys[at - 1u] != list;
+    bool is_last = at + 1u == count || keys[at + 1u] != list;
     for (uint nth = 0u; nth < LISTED; ++nth) {
       uint place = to[nth] + bitCount(all[k][nth] & ((1u << lane) - 1u));
       bool is_one = touches(value[k], nth);
       if (is_one && place < capacity) tile_values[place] = value[k] & ((1u << LIST_SPLAT_BITS) - 1u);
-      if (list != list_before) {
-        tile_ranges[2u * (list * LISTED + nth)] = place;
-        if (at > 0u) tile_ranges[2u * (list_before * LISTED + nth) + 1u] = place;
-      }
-      if (at + 1u == count) tile_ranges[2u * (list * LISTED + nth) + 1u] = is_one ? place + 1u : place;
+      if (is_first) tile_ranges[2u * (list * LISTED + nth)] = place;
+      if (is_last) tile_ranges[2u * (list * LISTED + nth) + 1u] = is_one ? place + 1u : place;
       to[nth] += bitCount(all[k][nth]);
     }
   }
