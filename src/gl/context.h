@@ -22,8 +22,8 @@ namespace binosplat::gl {
 /// one that both libraries draw with.
 enum class Backend { automatic, device, surfaceless, osmesa };
 
-/// Storage blocks that binosplat's largest shader uses.
-constexpr std::uint32_t storage_blocks_needed = 9;
+/// Bindings of storage blocks that binosplat's shaders use, from 0 on.
+constexpr std::uint32_t storage_blocks_needed = 13;
 
 struct Limits {
   std::int64_t storage_block_bytes = 0;  // largest binding of a storage buffer that is safe on this driver
