@@ -34,7 +34,7 @@ TEST(Floors, AreWhatMustBeMovedAndComputed) {
   EXPECT_TRUE(json[0]["floor_ms"].is_null()) << "decode has none";
   const std::map<std::string, double> bytes = {{"project", 1000 * 52.0 + 500 * 48.0 + 1000 * 52.0},
                                                {"order", 500 * 60.0},
-                                               {"pairs", 1000 * 52.0 + 80000.0},
+                                               {"pairs", 500 * 4.0 + 1000 * 4.0 + 80000.0},
                                                {"tile_sort", 200000.0},
                                                {"ranges", 40800.0},
                                                {"blend", 12000 * 52.0 + 25600 * 20.0}};
