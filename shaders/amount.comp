@@ -26,6 +26,9 @@ void main() {
     first = counters.pairs;
     wanted = saturating_add(first, count);
     counters.pairs = wanted;
+    // The next order group leaves splats aside anew; these have made room for something else.
+    counters.tall = 0u;
+    counters.tall_y = 0u;
   } else {
     count = counters.pairs;
     wanted = count;
