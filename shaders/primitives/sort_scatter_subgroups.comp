@@ -10,6 +10,12 @@
 #include "shared/grid.glsl"
 #include "shared/amount.glsl"
 #include "shared/saturate.glsl"
+// Twice as many invocations hold half as many pairs each, which leaves room for more of them; but counters of 9 bits would take
+// up the shared memory.
+#if DIGIT_BITS == 8
+#undef THREADS
+#define THREADS 512
+#endif
 #define WITH_SUBGROUPS 1
 #define SCAN_RESULT_ONLY
 #include "primitives/scan_block.glsl"
@@ -25,7 +31,7 @@ layout(std430, binding = 5) writeonly buffer ValuesOut { uint values_out[]; };
 uniform uint shift;
 
 #define DIGITS (1u << DIGIT_BITS)
-#define DIGITS_EACH (DIGITS / THREADS)
+#define DIGITS_EACH (DIGITS > THREADS ? DIGITS / THREADS : 1u)  // of those that have some
 #define SUBGROUPS (THREADS / 32)
 #define ROUNDS (SORT_BLOCK / THREADS)
 // At first a counter of each subgroup and digit, those of two subgroups in a word: how many keys so far, then where they begin in
@@ -66,15 +72,16 @@ void main() {
     place[i] = before + subgroupShuffle(seen, uint(findLSB(equal)) % 32u);
   }
   barrier();
+  uint digits = self * DIGITS_EACH < DIGITS ? DIGITS_EACH : 0u;
   uint of_mine = 0u;
-  for (uint k = 0u; k < DIGITS_EACH; ++k) {
+  for (uint k = 0u; k < digits; ++k) {
     for (uint s = 0u; s < SUBGROUPS / 2; ++s) {
       uint of_two = board[s * DIGITS + self * DIGITS_EACH + k];
       of_mine += (of_two & 0xFFFFu) + (of_two >> 16);
     }
   }
   uint start = scan_group(of_mine);
-  for (uint k = 0u; k < DIGITS_EACH; ++k) {
+  for (uint k = 0u; k < digits; ++k) {
     uint digit = self * DIGITS_EACH + k;
     moves[digit] = histogram[digit * blocks_of(count, SORT_BLOCK) + block] - start;
     for (uint s = 0u; s < SUBGROUPS / 2; ++s) {
