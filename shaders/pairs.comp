@@ -10,7 +10,7 @@
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "shared/saturate.glsl"
-#if WITH_SUBGROUPS  // with fewer in a group, fewer wait for the last; twice as many are a third slower
+#if WITH_SUBGROUPS  // with fewer in a group, fewer wait for the last (README.md of render)
 #undef THREADS
 #define THREADS 128
 #endif

@@ -67,10 +67,14 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend, b
   set_program_cache(ProgramCache::default_folder());
 
   read_limits();
-  if (limits_.storage_blocks < storage_blocks_needed) {
+  GLint bindings = 0;
+  functions_.GetIntegerv(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, &bindings);
+  if (limits_.storage_blocks < storage_blocks_needed || bindings < GLint{storage_bindings_needed}) {
     throw Error(ExitCode::no_gl,
-                fmt::format("{} offers {} storage blocks to a compute shader: binosplat needs {}", renderer_,
-                            limits_.storage_blocks, storage_blocks_needed));
+                fmt::format("{} offers {} storage blocks to a compute shader and {} bindings for them: "
+                            "binosplat needs {} and {}",
+                            renderer_, limits_.storage_blocks, bindings, storage_blocks_needed,
+                            storage_bindings_needed));
   }
 }
 
@@ -96,7 +100,7 @@ void Context::read_limits() {
         reinterpret_cast<const char*>(functions_.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
     if (name != nullptr && std::string_view(name) == "GL_KHR_shader_subgroup") {
       constexpr int needed = GL_SUBGROUP_FEATURE_BALLOT_BIT_KHR | GL_SUBGROUP_FEATURE_SHUFFLE_BIT_KHR |
-                             GL_SUBGROUP_FEATURE_VOTE_BIT_KHR;
+                             GL_SUBGROUP_FEATURE_VOTE_BIT_KHR | GL_SUBGROUP_FEATURE_ARITHMETIC_BIT_KHR;
       has_subgroups_ = integer(GL_SUBGROUP_SIZE_KHR) == 32 &&
                        (integer(GL_SUBGROUP_SUPPORTED_STAGES_KHR) & GL_COMPUTE_SHADER_BIT) != 0 &&
                        (integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & needed) == needed;

@@ -22,8 +22,9 @@ namespace binosplat::gl {
 /// one that both libraries draw with.
 enum class Backend { automatic, device, surfaceless, osmesa };
 
-/// Bindings of storage blocks that binosplat's shaders use, from 0 on.
-constexpr std::uint32_t storage_blocks_needed = 13;
+/// Storage blocks that binosplat's largest shader uses, and the bindings that all use, from 0 on.
+constexpr std::uint32_t storage_blocks_needed = 12;
+constexpr std::uint32_t storage_bindings_needed = 13;
 
 struct Limits {
   std::int64_t storage_block_bytes = 0;  // largest binding of a storage buffer that is safe on this driver

@@ -15,7 +15,7 @@ KeptState::KeptState(const Context& context) : gl_(context.gl()) {
   scissors_ = gl_.IsEnabledi(GL_SCISSOR_TEST, 0);
   encodes_ = gl_.IsEnabled(GL_FRAMEBUFFER_SRGB);
   discards_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
-  for (GLuint i = 0; i < storage_blocks_needed; ++i) {
+  for (GLuint i = 0; i < storage_bindings_needed; ++i) {
     gl_.GetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, i, &storages_[i].buffer);
     gl_.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, i, &storages_[i].offset);
     gl_.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, i, &storages_[i].size);
@@ -29,7 +29,7 @@ void KeptState::set_plain() const {
 }
 
 KeptState::~KeptState() {
-  for (GLuint i = 0; i < storage_blocks_needed; ++i) {
+  for (GLuint i = 0; i < storage_bindings_needed; ++i) {
     const Storage& kept = storages_[i];
     const auto buffer = static_cast<GLuint>(kept.buffer);
     if (kept.size == 0) {

@@ -10,7 +10,7 @@
 namespace binosplat::gl {
 
 /// Remembers all state that a frame, and pictures written into a texture or framebuffer, change, and sets it
-/// again when it goes: the program; storage buffers, those of the first storage_blocks_needed bindings and
+/// again when it goes: the program; storage buffers, those of the first storage_bindings_needed bindings and
 /// the general one; the buffer of indirect dispatches; the image of unit 0; the scissor test of index 0, the
 /// conversion to sRGB and the rasterizer's discarding.
 ///
@@ -42,7 +42,7 @@ class KeptState {
   GLint program_ = 0, storage_ = 0, indirect_ = 0;
   Image image_;
   GLboolean scissors_ = 0, encodes_ = 0, discards_ = 0;
-  std::array<Storage, storage_blocks_needed> storages_;
+  std::array<Storage, storage_bindings_needed> storages_;
 };
 
 }  // namespace binosplat::gl

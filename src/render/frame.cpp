@@ -44,8 +44,10 @@ void Frame::reload() {
 }
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings) {
-  const std::uint64_t slots = std::max<std::uint64_t>(model_.count(), slots_);
-  const std::uint64_t splats = slots * (views.size() + 1);  // a probe is a view, too
+  const std::int64_t slots =
+      std::max({static_cast<std::int64_t>(model_.count()), slots_, settings.order_capacity});
+  const std::uint64_t splats =
+      static_cast<std::uint64_t>(slots) * (views.size() + 1);  // a probe is a view, too
   const FrameSettings chosen = with_lists(settings, splats, dispatcher_.context().limits().subgroups_of_32);
   shape_ = make_shape(views, chosen, model_);
   if (chosen.precision != model_buffers_.precision()) {

@@ -28,14 +28,14 @@ TEST(ShaderSource, PutsDefinesFirstAndEachIncludeOnce) {
       "#version 450 core\n#define SIZE 16\n#line 1 0\n#line 1 1\nint b;\n#line 2 0\n#line 3 0\nint a;\n");
 }
 
-TEST(ShaderSource, BindsNoMoreStorageBlocksThanACallersStateIsKeptOf) {
+TEST(ShaderSource, UsesTheBindingsThatACallersStateIsKeptOf) {
   const std::regex block(R"(layout\(std430, binding = (\d+)\))");
   std::uint32_t most = 0;
   for (const auto& [name, text] : embedded_shaders()) {
     for (std::sregex_iterator found(text.begin(), text.end(), block), end; found != end; ++found)
       most = std::max(most, static_cast<std::uint32_t>(std::stoul((*found)[1])));
   }
-  EXPECT_EQ(most + 1, storage_blocks_needed);
+  EXPECT_EQ(most + 1, storage_bindings_needed);
 }
 
 TEST(ShaderSource, NamesTheFileInADriversMessage) {

@@ -89,7 +89,7 @@ struct State : testing::Test {
         "sRGB framebuffer", [this] { gl.Enable(GL_FRAMEBUFFER_SRGB); },
         [this] { return Values{double(gl.IsEnabled(GL_FRAMEBUFFER_SRGB))}; });
     add_enabled("rasterizer discard", GL_RASTERIZER_DISCARD);
-    for (GLuint i = 0; i < gl::storage_blocks_needed; ++i) {
+    for (GLuint i = 0; i < gl::storage_bindings_needed; ++i) {
       // Some bound as a range, some as a whole, and the general binding must survive both.
       const auto set = [this, i] {
         if (i % 3 == 2) {
