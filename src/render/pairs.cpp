@@ -5,6 +5,19 @@
 
 namespace binosplat::render {
 
+void count_pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t kind,
+                 FrameBuffers& buffers) {
+  gl::Context& context = dispatcher.context();
+  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define()), gl::Work::of_groups(1),
+                 {{"Amounts", buffers.pair_amounts},
+                  {"Total", buffers.scan.total()},
+                  {"FrameCounters", buffers.counters}},
+                 {{"kind", kind},
+                  {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
+                  {"groups_max", context.limits().groups},
+                  {"digit_bits", primitives::RadixSort::digit_bits(shape.list_bits())}});
+}
+
 void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   const OrderGroup views = shape.groups[group];
@@ -21,14 +34,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"TouchedInOrder", buffers.touched_in_order}},
                  {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
   buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
-  dispatcher.run(context.program("amount.comp", buffers.pairs.block_define()), gl::Work::of_groups(1),
-                 {{"Amounts", buffers.pair_amounts},
-                  {"Total", buffers.scan.total()},
-                  {"FrameCounters", buffers.counters}},
-                 {{"kind", AMOUNT_PAIRS},
-                  {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
-                  {"groups_max", context.limits().groups},
-                  {"digit_bits", primitives::RadixSort::digit_bits(shape.list_bits())}});
+  count_pairs(dispatcher, shape, AMOUNT_PAIRS, buffers);
   gl::Defines defines = pair_defines(shape);
   defines.push_back(subgroups_define(context));
   dispatcher.run(context.program("pairs.comp", defines),

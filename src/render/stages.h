@@ -47,6 +47,10 @@ double probed_error(const FrameShape& shape, const shared::Counters& counters);
 /// WITH_SUBGROUPS, for programs that do the same by subgroups of 32 where there are some.
 gl::Defines::value_type subgroups_define(const gl::Context& context);
 
+/// Fills the amounts of the pairs that are to be made, AMOUNT_PAIRS, or sorted, AMOUNT_ALL_PAIRS.
+void count_pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t kind,
+                 FrameBuffers& buffers);
+
 /// Shader defines that pick the variant of a stage which decides pairs.
 gl::Defines pair_defines(const FrameShape& shape);
 

@@ -1,0 +1,39 @@
+#pragma once
+// A head that goes through a model's cameras: paths for videos, and to measure on what moves.
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/camera.h"
+
+namespace binosplat {
+
+/// How fast a head goes and how fast it turns: at each moment as fast as both allow.
+struct Motion {
+  std::string name;
+  double metres_per_second = 0.0;
+  double degrees_per_second = 0.0;
+};
+
+/// What heads do: calm (0.3 m/s, 12 degrees a second), walk (1.5, 45), fast (1.5, 200).
+const std::vector<Motion>& head_motions();
+
+/// World units that count as a metre where nothing tells of a scale: from each camera to its nearest
+/// neighbour elsewhere, in the median. 1 for fewer than two places.
+double metre_of(std::span<const Camera> cameras);
+
+struct TourSettings {
+  Motion motion;
+  double frames_per_second = 90.0;
+  double units_per_metre = 1.0;  // world units
+};
+
+/// The cameras of a head that goes through all of `cameras`, from the first on, each next the nearest that is
+/// left, along a smooth curve through their places, turning smoothly from one to the next; one a frame, with
+/// `time`. All have the first camera's lens and size. Throws Error(bad_input) for fewer than two cameras, all
+/// of one pose, or speeds that are not above 0.
+std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings);
+
+}  // namespace binosplat
