@@ -74,6 +74,12 @@ class Frame {
   /// The next frame goes by nothing that earlier ones measured, as a first one does.
   void forget() { last_shape_ = recorded_shape_ = {}; }
 
+  /// The next frame is drawn as this Frame's first one was: the loss that was found for a quality goes, too.
+  void start_over() {
+    forget();
+    loss_control_ = {};
+  }
+
   /// What the last frame measured in its view `v`, in index order; none unless it did (FrameReport).
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 

@@ -1,0 +1,35 @@
+// The squared error, in 255ths, of a drawn view against what byte_pictures.comp kept of another, summed by work group: in
+// whole numbers, so that equal pictures have 0 and no order of summing shows. One invocation a pixel.
+#include "shared/limits.h"
+#include "shared/grid.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
+layout(std430, binding = 1) readonly buffer Kept { uint kept[]; };
+layout(std430, binding = 2) writeonly buffer Sums { uint sums_of_groups[]; };
+uniform uint first_pixel;
+uniform uint first_kept;
+uniform uint first_sum;
+uniform uint pixel_count;
+
+shared uint sums[THREADS];  // of at most 3 * 255^2 each: their sum fits a word
+
+void main() {
+  uint pixel = thread_index();
+  uint self = gl_LocalInvocationIndex;
+  sums[self] = 0u;
+  if (pixel < pixel_count) {
+    ivec3 drawn = ivec3(floor(clamp(colours[first_pixel + pixel].rgb, 0.0, 1.0) * 255.0 + 0.5));
+    uint word = kept[first_kept + pixel];
+    ivec3 d = drawn - ivec3(word & 255u, word >> 8u & 255u, word >> 16u & 255u);
+    sums[self] = uint(d.r * d.r + d.g * d.g + d.b * d.b);
+  }
+  barrier();
+  for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) {
+    if (self < half_way) sums[self] += sums[self + half_way];
+    barrier();
+  }
+  uint group = group_index();
+  if (self == 0u && group * THREADS < pixel_count) sums_of_groups[first_sum + group] = sums[0];
+}

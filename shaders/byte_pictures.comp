@@ -1,0 +1,19 @@
+// Drawn pixels as 8 bits keep them, a word each: what a picture takes that only 8-bit pictures are compared with. One
+// invocation a pixel.
+#include "shared/limits.h"
+#include "shared/grid.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; over black
+layout(std430, binding = 1) writeonly buffer Kept { uint kept[]; };       // red in the lowest byte
+uniform uint first_pixel;
+uniform uint first_kept;
+uniform uint pixel_count;
+
+void main() {
+  uint pixel = thread_index();
+  if (pixel >= pixel_count) return;
+  uvec3 bytes = uvec3(floor(clamp(colours[first_pixel + pixel].rgb, 0.0, 1.0) * 255.0 + 0.5));
+  kept[first_kept + pixel] = bytes.r | bytes.g << 8u | bytes.b << 16u;
+}
