@@ -1,15 +1,14 @@
 #include "app/analyses.h"
 
 #include <cstdio>
-#include <memory>
 
 #include "app/command.h"
 #include "app/drawing.h"
 #include "app/open_scene.h"
+#include "app/parts.h"
 #include "app/photos.h"
 #include "app/report.h"
 #include "base/log.h"
-#include "base/progress.h"
 #include "study/analyses.h"
 
 namespace binosplat::app {
@@ -20,20 +19,6 @@ using nlohmann::ordered_json;
 namespace {
 
 constexpr std::size_t calibration_views = 16, test_views = 8;
-
-/// A line of progress for each part of the work.
-class Parts {
- public:
-  void update(const std::string& what, std::size_t done, std::size_t of) {
-    if (what != what_) progress_ = std::make_unique<Progress>(what, of);
-    what_ = what;
-    progress_->update(done);
-  }
-
- private:
-  std::string what_;
-  std::unique_ptr<Progress> progress_;
-};
 
 void print(const study::Page& page) {
   for (const study::Section& section : page.sections)

@@ -171,33 +171,60 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
   return json;
 }
 
+/// Which study the options ask for, beside the analyses.
+enum class Kind { analyses, stability, eyes, rules, motion, carried };
+
+Kind kind_of(const StudyOptions& o) {
+  const bool path = !o.scene.path.empty() && !o.motion.chosen;  // --motion goes along one, too
+  if (int{o.stability} + int{o.eyes} + int{o.rules} + int{o.motion.chosen} + int{path} > 1)
+    fail("study: --stability, --eyes, --rules, --motion and --path FILE are studies of their own");
+  return o.stability       ? Kind::stability
+         : o.eyes          ? Kind::eyes
+         : o.rules         ? Kind::rules
+         : o.motion.chosen ? Kind::motion
+         : path            ? Kind::carried
+                           : Kind::analyses;
+}
+
+void check(const StudyOptions& options, Kind kind) {
+  const bool of_page = kind == Kind::stability;
+  if (!options.test.empty() || !options.scene.photos.empty())
+    fail(
+        "study: --test and --photos are for the analyses, without --stability, --eyes, --rules, --motion and "
+        "--path");
+  if (options.frames && kind != Kind::rules && kind != Kind::motion)
+    fail("--frames goes with --rules and --motion, or with the analyses");
+  if (options.scene.views.size() > 1) fail("--view: this study is of one view");
+  if (kind == Kind::motion && !options.scene.views.empty()) fail("--view: --motion goes through all cameras");
+  if (kind == Kind::eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
+  if (!options.output.empty() && !of_page)
+    fail("study: -o is for the analyses and --stability: --json keeps the numbers of the others");
+}
+
+ordered_json studied(const StudyOptions& options, Kind kind) {
+  if (kind == Kind::motion) return study_motion(options);
+  const Studied studied = open(options);
+  const auto context = open_context(options.scene);
+  return kind == Kind::stability ? study_stability(*context, options, studied)
+         : kind == Kind::eyes    ? eyes(*context, options, studied)
+         : kind == Kind::rules   ? rules(*context, options, studied)
+                                 : carried(*context, options, studied);
+}
+
 ExitCode study_scene(const StudyOptions& options) {
-  const int chosen =
-      int{options.stability} + int{options.eyes} + int{options.rules} + int{!options.scene.path.empty()};
-  if (chosen > 1) fail("study: --stability, --eyes, --rules and --path FILE are studies of their own");
-  if (chosen == 0) {
+  const Kind kind = kind_of(options);
+  if (kind == Kind::analyses) {
     if (!options.not_for_analyses.empty())
-      fail("study: {} {} with --stability, --eyes, --rules or --path FILE",
+      fail("study: {} {} with --stability, --eyes, --rules, --motion or --path FILE",
            fmt::join(options.not_for_analyses, ", "), options.not_for_analyses.size() > 1 ? "go" : "goes");
     return analyse_scene({options.scene, options.test, options.frames.value_or(24),
                           options.output.empty() ? "out/study" : options.output});
   }
-  if (!options.test.empty() || !options.scene.photos.empty())
-    fail("study: --test and --photos are for the analyses, without --stability, --eyes, --rules and --path");
-  if (options.frames && !options.rules) fail("--frames goes with --rules, or with the analyses");
-  if (options.scene.views.size() > 1) fail("--view: this study is of one view");
-  if (options.eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
-  if (!options.output.empty() && !options.stability)
-    fail("study: -o is for the analyses and --stability: --json keeps the numbers of the others");
+  check(options, kind);
   const std::filesystem::path folder = options.output;
   if (!options.output.empty()) check_output(folder / "study.json");
   if (!options.json.empty()) check_output(options.json);
-  const Studied studied = open(options);
-  const auto context = open_context(options.scene);
-  const ordered_json json = options.stability ? study_stability(*context, options, studied)
-                            : options.eyes    ? eyes(*context, options, studied)
-                            : options.rules   ? rules(*context, options, studied)
-                                              : carried(*context, options, studied);
+  const ordered_json json = studied(options, kind);
   if (!options.json.empty()) save_json(options.json, json);
   if (!options.output.empty()) save_report(folder, "study.json", json, study::stability_page(json));
   return ExitCode::done;
@@ -216,20 +243,27 @@ void add_study(CLI::App& program, Command& command) {
                 "One rule with each --th-eyes on a still pair (both eyes' light by default)");
   auto* rules = sub->add_flag("--rules", o.rules,
                               "Every rule, source and contrast at one error on a still pair, timed");
-  sub->add_option("--frames", o.frames, "Timed of each setting in each of three rounds (24; --rules 96)")
+  CLI::Option* motion = add_motion_options(*sub, o.motion);
+  sub->add_option(
+         "--frames", o.frames,
+         "Timed of each setting in each of three rounds (24; --rules 96);\nwith --motion: that move, of a "
+         "segment (60)")
       ->type_name("N")
       ->check(CLI::Range(1, 10000).description(""));
-  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules);
-  sub->add_option("--path", o.scene.path, "Carry one rule along the cameras of this file instead")
+  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules, motion);
+  sub->add_option("--path", o.scene.path,
+                  "Carry one rule along the cameras of this file instead;\nwith --motion: measure along it")
       ->type_name("FILE");
-  sub->add_option("--target", o.target, "dB that losses are chosen for (40)")
+  sub->add_option("--target", o.target,
+                  "dB that losses are chosen for (40);\nwith --motion: at which rules are compared")
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
   sub->add_option("--loss", o.scene.loss, "Of the rule carried, instead")
-      ->excludes(rules)
+      ->excludes(rules, motion)
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""));
-  sub->add_option("--quality", o.scene.quality, "Steer the rule carried to so many dB")
+  sub->add_option("--quality", o.scene.quality,
+                  "Steer the rule carried to so many dB;\nwith --motion: every rule (40)")
       ->excludes(rules)
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
@@ -237,7 +271,7 @@ void add_study(CLI::App& program, Command& command) {
     std::vector<std::string> names;
     for (const Choice& choice : choices) names.emplace_back(choice.name);
     sub->add_option(name, into, fmt::format("Of the rule carried ({})", into))
-        ->excludes(rules)
+        ->excludes(rules, motion)
         ->check(CLI::IsMember(names).description(""))
         ->type_name(fmt::format("{}", fmt::join(names, "|")));
   };
@@ -247,9 +281,10 @@ void add_study(CLI::App& program, Command& command) {
   choose("--th-eyes", o.th_eyes, th_eyes_choices);
   sub->add_option("--cameras", o.scene.cameras, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o.scene.views,
-                  "The camera to study from; default: the first. Without --stability, --eyes, --rules and\n"
-                  "--path: those to calibrate on; default: 16 others than the test's, evenly spread")
+  sub->add_option(
+         "--view", o.scene.views,
+         "The camera to study from; default: the first. Without --stability, --eyes, --rules,\n"
+         "--motion and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
       ->type_name("NAME...");
   sub->add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
   sub->add_option("--photos", o.scene.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB")
@@ -266,10 +301,11 @@ void add_study(CLI::App& program, Command& command) {
                   "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees")
       ->check(CLI::IsMember({"preview", "headset"}).description(""))
       ->type_name("preview|headset");
-  sub->add_flag("--mono", o.scene.mono, "With --path and --rules: the cameras themselves, no rig");
+  sub->add_flag("--mono", o.scene.mono, "With --path, --rules and --motion: the cameras themselves, no rig");
   add_measured_options(*sub, o.scene);
   sub->add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
-  sub->add_option("--units-per-metre", o.scene.units_per_metre, "World units that make a metre (1)")
+  sub->add_option("--units-per-metre", o.scene.units_per_metre,
+                  "World units that make a metre (1);\nwith --motion: by the distances of cameras")
       ->type_name("U");
   sub->add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
   sub->footer(
@@ -277,12 +313,14 @@ void add_study(CLI::App& program, Command& command) {
       "Examples:\n"
       "  binosplat study garden.ply --photos images -o out/garden\n"
       "  binosplat study garden.ply --rules --preset headset\n"
+      "  binosplat study garden.ply --motion --rule squared,one --rule squared,last --size 1280x1120\n"
       "  binosplat study garden.ply --stability --size 320x320");
   sub->callback([options, sub, &command] {
     for (const char* name : {"--case", "--target", "--loss", "--quality", "--th", "--transmittance",
                              "--contrast", "--th-eyes", "--mono", "--json"}) {
       if (sub->count(name) > 0) options->not_for_analyses.emplace_back(name);
     }
+    options->motion.lengths.moving = static_cast<std::size_t>(options->frames.value_or(60));
     command = [options] { return study_scene(*options); };
   });
 }

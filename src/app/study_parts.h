@@ -11,14 +11,27 @@
 #include "app/shots.h"
 #include "gl/context.h"
 #include "scene/model.h"
+#include "study/motion_paths.h"
 
 namespace binosplat::app {
+
+/// Of --motion.
+struct MotionOptions {
+  bool chosen = false;
+  std::vector<std::string> motions;
+  std::vector<std::string> rules;  // TH,SOURCE[,CONTRAST[,EYES]]; empty: all
+  std::size_t segments = 3;
+  study::SegmentLengths lengths;
+  int rounds = 2;
+  bool no_equal = false;
+};
 
 struct StudyOptions {
   RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
   bool stability = false;
   bool eyes = false;
   bool rules = false;
+  MotionOptions motion;
   std::optional<int> frames;  // timed of each rule in each round
   std::vector<std::string> test;
   std::string output;
@@ -39,5 +52,11 @@ struct Studied {
 /// --stability: prints the tables; the JSON is stability_page.h's.
 nlohmann::ordered_json study_stability(gl::Context& context, const StudyOptions& options,
                                        const Studied& studied);
+
+/// Adds --motion, which it returns, and the options that no other study takes.
+CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options);
+
+/// --motion: prints the tables; the JSON is motion_page.h's.
+nlohmann::ordered_json study_motion(const StudyOptions& options);
 
 }  // namespace binosplat::app

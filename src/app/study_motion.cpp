@@ -1,0 +1,312 @@
+// binosplat study --motion.
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "app/command.h"
+#include "app/drawing.h"
+#include "app/open_scene.h"
+#include "app/parts.h"
+#include "app/study_parts.h"
+#include "base/error.h"
+#include "scene/tour.h"
+#include "study/motion.h"
+#include "study/rules.h"
+#include "study/settings.h"
+
+namespace binosplat::app {
+
+using nlohmann::ordered_json;
+using study::Variant;
+
+namespace {
+
+constexpr double frames_per_second = 90.0;
+constexpr const char* still_name = "still";
+
+std::vector<std::string> words(const std::string& text) {
+  std::vector<std::string> found(1);
+  for (const char c : text) {
+    if (c == ',') {
+      found.emplace_back();
+    } else if (c != ' ') {
+      found.back() += c;
+    }
+  }
+  return found;
+}
+
+/// TH,SOURCE[,CONTRAST[,EYES]] by their names.
+Variant rule_of(const std::string& text, std::size_t eyes) {
+  const std::vector<std::string> names = words(text);
+  if (names.size() < 2 || names.size() > 4) fail("--rule {}: expected TH,SOURCE[,CONTRAST[,EYES]]", text);
+  const std::string place = "--rule " + text;
+  Variant rule{.th = study::find_choice(place, names[0], th_choices),
+               .transmittance = study::find_choice(place, names[1], transmittance_choices)};
+  if (names.size() > 2) rule.contrast = study::find_choice(place, names[2], contrast_choices);
+  if (names.size() > 3) rule.th_eyes = study::find_choice(place, names[3], th_eyes_choices);
+  if (rule.th == TH_TAU) fail("{}: {} is exact, and always measured", place, names[0]);
+  Variant at_a_loss = rule;
+  at_a_loss.loss = 1.0f;
+  study::check(place, at_a_loss.settings(), static_cast<int>(eyes));
+  return rule;
+}
+
+std::vector<Variant> rules_for(const StudyOptions& options, std::size_t eyes) {
+  std::vector<Variant> rules;
+  for (const std::string& text : options.motion.rules) rules.push_back(rule_of(text, eyes));
+  if (rules.empty()) rules = study::rules_of(eyes);
+  return rules;
+}
+
+/// What a metre is in world units, and why.
+struct Metre {
+  double units = 1.0;
+  std::string source;
+};
+
+/// What is driven through: the model, the rig, and the cameras that the paths are made of.
+struct Driven {
+  std::shared_ptr<const Model> model;
+  RenderOptions render;  // with the metre
+  std::vector<Camera> cameras;
+  double near_plane = 0.0;
+  Metre metre;
+};
+
+Driven open(const StudyOptions& options) {
+  Driven driven{.render = options.scene};
+  const Scene scene = open_scene(options.scene);
+  const CameraList list = listed_cameras(options.scene, scene.cameras);
+  if (!list.listed)
+    fail("--motion goes through the cameras of a model: name their file with --cameras, or a --path");
+  driven.cameras = list.cameras;
+  if (options.scene.units_per_metre) {
+    driven.metre = {*options.scene.units_per_metre, "--units-per-metre"};
+  } else if (options.scene.path.empty()) {
+    driven.metre = {metre_of(driven.cameras), "the cameras' distances"};
+  } else {
+    driven.metre = {1.0, "nothing said otherwise"};
+  }
+  driven.render.units_per_metre = driven.metre.units;
+  driven.model = std::make_shared<const Model>(scene.model());
+  driven.near_plane = near_plane_of(options.scene, list, *driven.model);
+  return driven;
+}
+
+/// The views of cameras that follow one another.
+std::vector<std::vector<shared::View>> frames_of(const Driven& driven, std::vector<Camera> cameras) {
+  std::vector<std::vector<shared::View>> frames;
+  const CameraList list{"a path", std::move(cameras), false, {}};  // not listed: all are drawn
+  for (const Shot& shot : make_shots(driven.render, list, driven.near_plane, driven.model->axes))
+    frames.push_back(views_of(shot));
+  return frames;
+}
+
+std::vector<Camera> toured(const Driven& driven, const Motion& motion) {
+  return tour(driven.cameras, {motion, frames_per_second, driven.metre.units});
+}
+
+study::MotionPath along_tour(const Driven& driven, const Motion& motion, const MotionOptions& options) {
+  study::MotionPath path{
+      motion.name,
+      fmt::format("{:g} m/s, {:g} degrees a second", motion.metres_per_second, motion.degrees_per_second),
+      {}};
+  const std::vector<Camera> cameras = toured(driven, motion);
+  const std::size_t length = std::min(cameras.size(), options.lengths.lead + options.lengths.moving);
+  for (const std::size_t start : study::stretch_starts(cameras.size(), length, options.segments)) {
+    const auto first = cameras.begin() + static_cast<std::ptrdiff_t>(start);
+    path.segments.push_back(study::segment_of(
+        frames_of(driven, {first, first + static_cast<std::ptrdiff_t>(length)}), options.lengths));
+  }
+  return path;
+}
+
+/// A head that stands where calm stretches begin.
+study::MotionPath standing(const Driven& driven, const MotionOptions& options) {
+  study::MotionPath path{still_name, "no motion", {}};
+  const std::vector<Camera> cameras = toured(driven, head_motions().front());
+  const std::size_t length = std::min(cameras.size(), options.lengths.lead + options.lengths.moving);
+  for (const std::size_t start : study::stretch_starts(cameras.size(), length, options.segments))
+    path.segments.push_back(
+        study::still_segment(frames_of(driven, {cameras[start]}).front(), options.lengths));
+  return path;
+}
+
+std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions& options) {
+  if (!options.scene.path.empty()) {
+    auto frames = frames_of(driven, driven.cameras);
+    if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
+    const std::string name = std::filesystem::path(options.scene.path).stem().string();
+    return {{name, options.scene.path, {study::segment_of(std::move(frames), options.motion.lengths)}}};
+  }
+  std::vector<study::MotionPath> paths;
+  for (const std::string& name : options.motion.motions) {
+    if (name == still_name) {
+      paths.push_back(standing(driven, options.motion));
+      continue;
+    }
+    for (const Motion& motion : head_motions()) {
+      if (motion.name == name) paths.push_back(along_tour(driven, motion, options.motion));
+    }
+  }
+  return paths;
+}
+
+std::string number(const ordered_json& value, const char* form) {
+  return value.is_number() ? fmt::format(fmt::runtime(form), value.get<double>()) : "–";
+}
+
+void print_asked(const ordered_json& path) {
+  fmt::print(
+      "| rule | true dB | tenth | worst | told minus true | farthest | lead, worst | stop | stop, worst | "
+      "pairs, M | "
+      "removed | frame ms | of exact | of `one` "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  const ordered_json& exact = path["exact"]["moving"];
+  fmt::print("| exact | | | | | | | | | {:.3f} | | {:.3f} | 1 | |\n", 1e-6 * exact["pairs"].get<double>(),
+             exact["frame_ms"].get<double>());
+  for (const ordered_json& rule : path["rules"]) {
+    const ordered_json& asked = rule["asked"];
+    const ordered_json &moving = asked["moving"], &lead = asked["lead"], &stop = asked["stop"];
+    const auto db = [](const ordered_json& part, const char* key) {
+      return part["frames"] == 0 ? "–" : number(part[key], "{:.2f}");
+    };
+    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} | {:.1f} % | {} | {} | {} |\n",
+               rule["name"].get<std::string>(), db(moving, "true_db"), db(moving, "tenth_percentile_db"),
+               db(moving, "worst_db"), number(moving["told_minus_true_db"], "{:+.2f}"),
+               number(moving["told_minus_true_farthest_db"], "{:+.2f}"), db(lead, "worst_db"),
+               db(stop, "true_db"), db(stop, "worst_db"), 1e-6 * moving["pairs"].get<double>(),
+               100.0 * moving["pairs_removed"].get<double>(), number(moving["frame_ms"], "{:.3f}"),
+               number(asked["ms_of_exact"], "{:.3f}"), number(asked["ms_of_one"], "{:.3f}"));
+  }
+}
+
+void print_at_target(const ordered_json& path) {
+  fmt::print(
+      "| rule | request | true dB | tenth | worst | pairs, M | of `one` | removed | frame ms | of exact | of "
+      "`one` | "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const ordered_json& rule : path["rules"]) {
+    const ordered_json& at = rule["at_target"];
+    const ordered_json& moving = at["moving"];
+    fmt::print("| {} | {} | {} | {} | {} | {:.3f} | {} | {:.1f} % | {} | {} | {} | {} |\n",
+               rule["name"].get<std::string>(), number(at["request_db"], "{:.2f}"),
+               number(moving["true_db"], "{:.2f}"), number(moving["tenth_percentile_db"], "{:.2f}"),
+               number(moving["worst_db"], "{:.2f}"), 1e-6 * moving["pairs"].get<double>(),
+               number(at["pairs_of_one"], "{:.3f}"), 100.0 * moving["pairs_removed"].get<double>(),
+               number(moving["frame_ms"], "{:.3f}"), number(at["ms_of_exact"], "{:.3f}"),
+               number(at["ms_of_one"], "{:.3f}"), at["problem"].get<std::string>());
+  }
+}
+
+std::string lengths_text(const ordered_json& path) {
+  std::vector<std::string> texts;
+  for (const ordered_json& one : path["lengths"])
+    texts.push_back(
+        fmt::format("{} + {} + {}", one["lead"].dump(), one["moving"].dump(), one["stop"].dump()));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+void print(const ordered_json& json, bool equal) {
+  fmt::print("{}: {}, {} x {} x {} px; a metre is {:.4g} units ({})\n", json["device"].get<std::string>(),
+             json["scene"].get<std::string>(), json["eyes"].dump(), json["width"].dump(),
+             json["height"].dump(), json["units_per_metre"].get<double>(),
+             json["metre_source"].get<std::string>());
+  for (const ordered_json& path : json["paths"]) {
+    fmt::print("\n## {}: {}; frames of lead, motion and stop: {}\n\nAsked for {:g} dB:\n\n",
+               path["name"].get<std::string>(), path["motion"].get<std::string>(), lengths_text(path),
+               json["quality_db"].get<double>());
+    print_asked(path);
+    if (!equal) continue;
+    fmt::print("\nAt {:g} dB of the moving frames' true mean:\n\n", json["target_db"].get<double>());
+    print_at_target(path);
+  }
+  fmt::print(
+      "\nTrue: the worse eye's, of 8-bit pictures against exact ones, in the mean over moving frames ({:g} "
+      "for equal "
+      "pictures). Pairs and ms: their means, too, a probe's pairs included. A frame's ms: the median of {} "
+      "rounds.\n",
+      study::equal_db, json["rounds"].dump());
+}
+
+}  // namespace
+
+CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
+  std::vector<std::string> names = {still_name};
+  for (const Motion& motion : head_motions()) names.push_back(motion.name);
+  options.motions = names;
+  CLI::Option* motion = sub.add_flag(
+      "--motion", options.chosen, "Rules along moving heads, frame by frame: true quality, pairs and time");
+  sub.add_option("--motions", options.motions, fmt::format("Which; default: {}", fmt::join(names, ",")))
+      ->needs(motion)
+      ->delimiter(',')
+      ->type_name("NAME,...")
+      ->check(CLI::IsMember(names).description(""));
+  sub.add_option(
+         "--rule", options.rules,
+         "TH,SOURCE[,CONTRAST[,EYES]] as --th, --transmittance, --contrast and\n--th-eyes name them; may be "
+         "given again; default: all")
+      ->needs(motion)
+      ->type_name("RULE")
+      ->allow_extra_args(false);
+  const auto count = [&](const char* name, std::size_t& into, const char* help, int least) {
+    sub.add_option(name, into, fmt::format("{} ({})", help, into))
+        ->needs(motion)
+        ->type_name("N")
+        ->check(CLI::Range(least, 10000).description(""));
+  };
+  count("--segments", options.segments, "Stretches, spread evenly along a tour through the cameras", 1);
+  count("--lead", options.lengths.lead, "Frames of a segment before those that count", 0);
+  count("--stop", options.lengths.stop, "Frames at the last pose of a segment that moves", 0);
+  sub.add_option("--rounds", options.rounds, fmt::format("In which frames are timed ({})", options.rounds))
+      ->needs(motion)
+      ->type_name("N")
+      ->check(CLI::Range(1, 100).description(""));
+  sub.add_flag("--no-equal", options.no_equal,
+               "Without the comparison at one true quality, which takes longest")
+      ->needs(motion);
+  return motion;
+}
+
+ordered_json study_motion(const StudyOptions& options) {
+  const Driven driven = open(options);
+  const std::vector<study::MotionPath> paths = paths_of(driven, options);
+  const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
+  const std::vector<Variant> rules = rules_for(options, views.size());
+  const auto context = open_context(options.scene);
+  const study::MotionSettings settings{.quality = options.scene.quality.value_or(40.0f),
+                                       .target = options.target,
+                                       .equal = !options.motion.no_equal,
+                                       .rounds = options.motion.rounds};
+  std::vector<study::MotionResult> results;
+  {
+    Parts parts;
+    results = study::measure_motion(
+        *context, *driven.model, paths, rules, settings,
+        [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
+  }
+  ordered_json json = {{"format", "binosplat motion"},
+                       {"version", 1},
+                       {"device", context->renderer()},
+                       {"scene", options.scene.scene},
+                       {"gaussians", driven.model->count()},
+                       {"eyes", views.size()},
+                       {"width", views.front().width},
+                       {"height", views.front().height},
+                       {"frames_per_second", frames_per_second},
+                       {"units_per_metre", driven.metre.units},
+                       {"metre_source", driven.metre.source},
+                       {"quality_db", settings.quality},
+                       {"target_db", settings.target},
+                       {"equal_pictures_db", study::equal_db},
+                       {"rounds", settings.rounds}};
+  for (const study::MotionResult& result : results) json["paths"].push_back(to_json(result));
+  print(json, settings.equal);
+  return json;
+}
+
+}  // namespace binosplat::app
