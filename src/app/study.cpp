@@ -19,6 +19,7 @@
 #include "base/progress.h"
 #include "study/carried.h"
 #include "study/eyes.h"
+#include "study/motion_page.h"
 #include "study/rules.h"
 #include "study/stability_page.h"
 
@@ -187,7 +188,7 @@ Kind kind_of(const StudyOptions& o) {
 }
 
 void check(const StudyOptions& options, Kind kind) {
-  const bool of_page = kind == Kind::stability;
+  const bool of_page = kind == Kind::stability || kind == Kind::motion;
   if (!options.test.empty() || !options.scene.photos.empty())
     fail(
         "study: --test and --photos are for the analyses, without --stability, --eyes, --rules, --motion and "
@@ -198,7 +199,7 @@ void check(const StudyOptions& options, Kind kind) {
   if (kind == Kind::motion && !options.scene.views.empty()) fail("--view: --motion goes through all cameras");
   if (kind == Kind::eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
   if (!options.output.empty() && !of_page)
-    fail("study: -o is for the analyses and --stability: --json keeps the numbers of the others");
+    fail("study: -o is for the analyses, --stability and --motion: --json keeps the numbers of the others");
 }
 
 ordered_json studied(const StudyOptions& options, Kind kind) {
@@ -226,7 +227,9 @@ ExitCode study_scene(const StudyOptions& options) {
   if (!options.json.empty()) check_output(options.json);
   const ordered_json json = studied(options, kind);
   if (!options.json.empty()) save_json(options.json, json);
-  if (!options.output.empty()) save_report(folder, "study.json", json, study::stability_page(json));
+  if (!options.output.empty())
+    save_report(folder, "study.json", json,
+                kind == Kind::motion ? study::motion_page(json) : study::stability_page(json));
   return ExitCode::done;
 }
 
@@ -291,7 +294,7 @@ void add_study(CLI::App& program, Command& command) {
       ->type_name("DIR")
       ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
   sub->add_option("-o,--output", o.output,
-                  "Folder for report.html and study.json (out/study);\nwith --stability, too")
+                  "Folder for report.html and study.json (out/study);\nwith --stability and --motion, too")
       ->type_name("DIR");
   sub->add_option_function<std::string>(
          "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },

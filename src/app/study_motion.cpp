@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "scene/tour.h"
 #include "study/motion.h"
+#include "study/motion_page.h"
 #include "study/rules.h"
 #include "study/settings.h"
 
@@ -26,6 +27,12 @@ namespace {
 
 constexpr double frames_per_second = 90.0;
 constexpr const char* still_name = "still";
+
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  for (std::size_t n = 0; n < times; ++n) all += text;
+  return all;
+}
 
 std::vector<std::string> words(const std::string& text) {
   std::vector<std::string> found(1);
@@ -156,80 +163,42 @@ std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions
   return paths;
 }
 
-std::string number(const ordered_json& value, const char* form) {
-  return value.is_number() ? fmt::format(fmt::runtime(form), value.get<double>()) : "–";
-}
-
-void print_asked(const ordered_json& path) {
-  fmt::print(
-      "| rule | true dB | tenth | worst | told minus true | farthest | lead, worst | stop | stop, worst | "
-      "pairs, M | "
-      "removed | frame ms | of exact | of `one` "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const ordered_json& exact = path["exact"]["moving"];
-  fmt::print("| exact | | | | | | | | | {:.3f} | | {:.3f} | 1 | |\n", 1e-6 * exact["pairs"].get<double>(),
-             exact["frame_ms"].get<double>());
-  for (const ordered_json& rule : path["rules"]) {
-    const ordered_json& asked = rule["asked"];
-    const ordered_json &moving = asked["moving"], &lead = asked["lead"], &stop = asked["stop"];
-    const auto db = [](const ordered_json& part, const char* key) {
-      return part["frames"] == 0 ? "–" : number(part[key], "{:.2f}");
-    };
-    fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} | {:.1f} % | {} | {} | {} |\n",
-               rule["name"].get<std::string>(), db(moving, "true_db"), db(moving, "tenth_percentile_db"),
-               db(moving, "worst_db"), number(moving["told_minus_true_db"], "{:+.2f}"),
-               number(moving["told_minus_true_farthest_db"], "{:+.2f}"), db(lead, "worst_db"),
-               db(stop, "true_db"), db(stop, "worst_db"), 1e-6 * moving["pairs"].get<double>(),
-               100.0 * moving["pairs_removed"].get<double>(), number(moving["frame_ms"], "{:.3f}"),
-               number(asked["ms_of_exact"], "{:.3f}"), number(asked["ms_of_one"], "{:.3f}"));
+/// A table for a terminal and for documents: dB and % to what can be told apart, the rest to three digits.
+void print(const study::Table& table) {
+  fmt::print("| {} |\n|{}\n", fmt::join(table.columns, " | "), repeated("---|", table.columns.size()));
+  for (const ordered_json& row : table.rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string& column = table.columns[k];
+      const int digits = column.ends_with("dB") ? 2 : column.ends_with("%") ? 1 : 3;
+      const std::string text = row[k].is_number()   ? fmt::format("{:.{}f}", row[k].get<double>(), digits)
+                               : row[k].is_string() ? row[k].get<std::string>()
+                                                    : "";
+      fmt::print("{} {}", k == 0 ? "|" : " |", text);
+    }
+    fmt::print(" |\n");
   }
 }
 
-void print_at_target(const ordered_json& path) {
-  fmt::print(
-      "| rule | request | true dB | tenth | worst | pairs, M | of `one` | removed | frame ms | of exact | of "
-      "`one` | "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const ordered_json& rule : path["rules"]) {
-    const ordered_json& at = rule["at_target"];
-    const ordered_json& moving = at["moving"];
-    fmt::print("| {} | {} | {} | {} | {} | {:.3f} | {} | {:.1f} % | {} | {} | {} | {} |\n",
-               rule["name"].get<std::string>(), number(at["request_db"], "{:.2f}"),
-               number(moving["true_db"], "{:.2f}"), number(moving["tenth_percentile_db"], "{:.2f}"),
-               number(moving["worst_db"], "{:.2f}"), 1e-6 * moving["pairs"].get<double>(),
-               number(at["pairs_of_one"], "{:.3f}"), 100.0 * moving["pairs_removed"].get<double>(),
-               number(moving["frame_ms"], "{:.3f}"), number(at["ms_of_exact"], "{:.3f}"),
-               number(at["ms_of_one"], "{:.3f}"), at["problem"].get<std::string>());
-  }
-}
-
-std::string lengths_text(const ordered_json& path) {
-  std::vector<std::string> texts;
-  for (const ordered_json& one : path["lengths"])
-    texts.push_back(
-        fmt::format("{} + {} + {}", one["lead"].dump(), one["moving"].dump(), one["stop"].dump()));
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
-void print(const ordered_json& json, bool equal) {
+void print(const ordered_json& json) {
   fmt::print("{}: {}, {} x {} x {} px; a metre is {:.4g} units ({})\n", json["device"].get<std::string>(),
              json["scene"].get<std::string>(), json["eyes"].dump(), json["width"].dump(),
              json["height"].dump(), json["units_per_metre"].get<double>(),
              json["metre_source"].get<std::string>());
   for (const ordered_json& path : json["paths"]) {
-    fmt::print("\n## {}: {}; frames of lead, motion and stop: {}\n\nAsked for {:g} dB:\n\n",
-               path["name"].get<std::string>(), path["motion"].get<std::string>(), lengths_text(path),
-               json["quality_db"].get<double>());
-    print_asked(path);
-    if (!equal) continue;
+    fmt::print("\n## {}\n{}; {}. Asked for {:g} dB:\n\n", path["name"].get<std::string>(),
+               path["motion"].get<std::string>(), study::lengths_of(path), json["quality_db"].get<double>());
+    print(study::asked_table(path));
+    const study::Table at_target = study::target_table(path);
+    if (at_target.rows.empty()) continue;
     fmt::print("\nAt {:g} dB of the moving frames' true mean:\n\n", json["target_db"].get<double>());
-    print_at_target(path);
+    print(at_target);
   }
   fmt::print(
-      "\nTrue: the worse eye's, of 8-bit pictures against exact ones, in the mean over moving frames ({:g} "
-      "for equal "
-      "pictures). Pairs and ms: their means, too, a probe's pairs included. A frame's ms: the median of {} "
-      "rounds.\n",
+      "\nTrue: the worse eye's PSNR, of 8-bit pictures against exact ones, {:g} dB for equal ones; its mean, "
+      "its tenth "
+      "percentile and its worst over moving frames. Pairs, with a probe's, and ms: means over moving frames; "
+      "a frame's "
+      "ms is the median of {} rounds.\n",
       study::equal_db, json["rounds"].dump());
 }
 
@@ -305,7 +274,7 @@ ordered_json study_motion(const StudyOptions& options) {
                        {"equal_pictures_db", study::equal_db},
                        {"rounds", settings.rounds}};
   for (const study::MotionResult& result : results) json["paths"].push_back(to_json(result));
-  print(json, settings.equal);
+  print(json);
   return json;
 }
 

@@ -156,7 +156,7 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--stability", "--photos", folder / "."}, "--test and --photos are for the analyses"},
       {{"--test", "no-such"}, "--view no-such"},
       {{"-o", folder / "file"}, "file"},
-      {{"--rules", "-o", folder / "out"}, "-o is for the analyses and --stability"},
+      {{"--rules", "-o", folder / "out"}, "-o is for the analyses, --stability and --motion"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
       {{"--eyes", "--view", "all"}, "--view all"},

@@ -1,0 +1,141 @@
+#include "study/motion_page.h"
+
+#include <gtest/gtest.h>
+
+#include "study/motion.h"
+
+namespace binosplat::study {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Two stretches of one lead, two moving and one stop frame at such dB.
+MovedPass pass(float request, double db, double pairs, double ms, bool stops = true) {
+  MovedPass made{request, {}, {}, {}, {}};
+  for (int s = 0; s < 2; ++s) {
+    auto& frames = made.frames.emplace_back();
+    for (int n = 0; n < (stops ? 4 : 3); ++n) {
+      frames.push_back({.view_db = {db + s, db + 5.0},
+                        .told_db = 40.0,
+                        .pairs = pairs,
+                        .exact_pairs = 4e6,
+                        .loss = 0.1,
+                        .ms = ms});
+    }
+  }
+  const auto summary = [&](std::size_t begin, std::size_t end) {
+    std::vector<MovedFrame> some;
+    for (const auto& frames : made.frames) {
+      for (std::size_t n = begin; n < std::min(end, frames.size()); ++n) some.push_back(frames[n]);
+    }
+    return summary_of(some);
+  };
+  made.lead = summary(0, 1);
+  made.moving = summary(1, 3);
+  made.stop = summary(3, 4);
+  return made;
+}
+
+MotionPath path(const std::string& name) {
+  const MotionSegment segment{std::vector<std::vector<shared::View>>(4), 1, 1};
+  return {name, "1.5 m/s", {segment, segment}};
+}
+
+ordered_json results(bool compared = true) {
+  ordered_json json = {{"device", "llvmpipe"},
+                       {"scene", "fox"},
+                       {"gaussians", 1000},
+                       {"eyes", 2},
+                       {"width", 64},
+                       {"height", 48},
+                       {"frames_per_second", 90.0},
+                       {"units_per_metre", 0.25},
+                       {"metre_source", "--units-per-metre"},
+                       {"quality_db", 40.0},
+                       {"target_db", 40.0},
+                       {"equal_pictures_db", 100.0},
+                       {"rounds", 2}};
+  for (const char* name : {"calm", "walk"}) {
+    const bool walk = std::string(name) == "walk";
+    MotionResult result{path(name), pass(0.0f, 100.0, 4e6, 4.0), {}};
+    result.rules.push_back({Variant{}, pass(40.0f, 39.5, 2e6, 2.0)});
+    result.rules.push_back(
+        {Variant{.transmittance = TRANSMITTANCE_LAST}, pass(40.0f, walk ? 36.0 : 38.0, 1e6, 1.0)});
+    for (MovedRule& rule : result.rules) {
+      rule.compared = compared;
+      if (compared) rule.equal = pass(42.5f, 39.5, walk ? 3e6 : 1.5e6, walk ? 3.0 : 1.5, false);
+    }
+    json["paths"].push_back(to_json(result));
+  }
+  return json;
+}
+
+TEST(MotionPage, SaysWhoKeepsTheirWordAndWhatThatTakes) {
+  const ordered_json study = results();
+  const Page page = motion_page(study);
+  EXPECT_EQ(page.data, study);
+  ASSERT_EQ(page.sections.size(), 2u + 2 * 3);
+  // 39.5 and 40.5 dB in the two stretches: just what was asked for, and 2 or 4 dB less.
+  EXPECT_NE(page.sentence.find("“squared, one, off, per-eye” stays"), std::string::npos) << page.sentence;
+  const Table& words = *page.sections[0].table;
+  EXPECT_EQ(words.columns[2], "walk: true dB");
+  EXPECT_EQ(words.rows[1][0], "squared, last, off, per-eye");
+  EXPECT_EQ(words.rows[1][2], 36.5);
+  EXPECT_EQ(words.rows[1][6], 3.5) << "told minus true, walk";
+  const Table& gains = *page.sections[1].table;
+  EXPECT_EQ(gains.columns[1], "calm: ms of `one`");
+  EXPECT_EQ(gains.rows[1],
+            ordered_json({"squared, last, off, per-eye", 1.0, 1.0, 1.0, 1.0, 0.375, 0.75, "", ""}));
+  EXPECT_NE(page.sections[1].sentence.find("at most 0.75 of the exact frame's time (walk)"),
+            std::string::npos)
+      << page.sections[1].sentence;
+}
+
+TEST(MotionPage, DrawsEveryFrame) {
+  const Page page = motion_page(results());
+  EXPECT_EQ(page.sections[5].id, "asked-walk");
+  EXPECT_NE(
+      page.sections[5].sentence.find("2 stretches of 2 frames, after 1 to find a loss, then a stop of 1"),
+      std::string::npos)
+      << page.sections[5].sentence;
+  const Plot& quality = *page.sections[5].plot;
+  ASSERT_EQ(quality.series.size(), 4u);
+  EXPECT_EQ(quality.series[3].name, "squared, last, off, per-eye: told");
+  const Series& last = quality.series[2];
+  ASSERT_EQ(last.points.size(), 8u);
+  EXPECT_EQ(last.points[3].y, 36.0);
+  EXPECT_EQ(last.points[3].label, "stretch 1, stop");
+  EXPECT_EQ(std::get<double>(last.points[4].x), 4.0);
+  EXPECT_EQ(last.points[4].y, 37.0);
+  EXPECT_EQ(last.points[4].label, "stretch 2, lead");
+  const Plot& pairs = *page.sections[6].plot;
+  EXPECT_EQ(pairs.series[0].name, "exact");
+  EXPECT_EQ(pairs.series[0].points[0].y, 4.0);
+  EXPECT_EQ(pairs.series[2].points[7].y, 1.0);
+  EXPECT_EQ(page.sections[6].table->rows[1][1], 42.5);
+  EXPECT_EQ(page.sections[7].plot->series[1].points[2].y, 2.0);
+  EXPECT_NE(html(page).find("stretch 2, lead"), std::string::npos);
+}
+
+TEST(MotionPage, TablesNameWhatWasMeasured) {
+  const ordered_json study = results();
+  const Table asked = asked_table(study["paths"][0]);
+  ASSERT_EQ(asked.rows.size(), 3u);
+  EXPECT_EQ(asked.rows[0][0], "exact");
+  EXPECT_EQ(asked.rows[2][9], 1.0);    // M pairs
+  EXPECT_EQ(asked.rows[2][10], 75.0);  // removed %
+  EXPECT_EQ(asked.rows[2][13], 0.5);   // of `one`
+  for (const auto& row : asked.rows) EXPECT_EQ(row.size(), asked.columns.size());
+}
+
+TEST(MotionPage, WithoutAComparisonSaysSo) {
+  const ordered_json study = results(false);
+  EXPECT_TRUE(target_table(study["paths"][0]).rows.empty());
+  const Page page = motion_page(study);
+  EXPECT_NE(page.sections[1].problem.find("--no-equal"), std::string::npos);
+  EXPECT_FALSE(page.sections[3].table);
+  EXPECT_FALSE(html(page).empty());
+}
+
+}  // namespace
+}  // namespace binosplat::study
