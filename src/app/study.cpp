@@ -259,6 +259,7 @@ void add_study(CLI::App& program, Command& command) {
       ->type_name("FILE");
   sub->add_option("--target", o.target,
                   "dB that losses are chosen for (40);\nwith --motion: at which rules are compared")
+      ->excludes(sub->get_option("--no-equal"))
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
   sub->add_option("--loss", o.scene.loss, "Of the rule carried, instead")

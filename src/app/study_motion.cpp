@@ -27,6 +27,7 @@ namespace {
 
 constexpr double frames_per_second = 90.0;
 constexpr const char* still_name = "still";
+constexpr std::size_t segments_default = 3;
 
 std::string repeated(const std::string& text, std::size_t times) {
   std::string all;
@@ -124,7 +125,8 @@ study::MotionPath along_tour(const Driven& driven, const Motion& motion, const M
       {}};
   const std::vector<Camera> cameras = toured(driven, motion);
   const std::size_t length = std::min(cameras.size(), options.lengths.lead + options.lengths.moving);
-  for (const std::size_t start : study::stretch_starts(cameras.size(), length, options.segments)) {
+  for (const std::size_t start :
+       study::stretch_starts(cameras.size(), length, options.segments.value_or(segments_default))) {
     const auto first = cameras.begin() + static_cast<std::ptrdiff_t>(start);
     path.segments.push_back(study::segment_of(
         frames_of(driven, {first, first + static_cast<std::ptrdiff_t>(length)}), options.lengths));
@@ -132,12 +134,19 @@ study::MotionPath along_tour(const Driven& driven, const Motion& motion, const M
   return path;
 }
 
+std::vector<std::string> all_motions() {
+  std::vector<std::string> names = {still_name};
+  for (const Motion& motion : head_motions()) names.push_back(motion.name);
+  return names;
+}
+
 /// A head that stands where calm stretches begin.
 study::MotionPath standing(const Driven& driven, const MotionOptions& options) {
   study::MotionPath path{still_name, "no motion", {}};
   const std::vector<Camera> cameras = toured(driven, head_motions().front());
   const std::size_t length = std::min(cameras.size(), options.lengths.lead + options.lengths.moving);
-  for (const std::size_t start : study::stretch_starts(cameras.size(), length, options.segments))
+  for (const std::size_t start :
+       study::stretch_starts(cameras.size(), length, options.segments.value_or(segments_default)))
     path.segments.push_back(
         study::still_segment(frames_of(driven, {cameras[start]}).front(), options.lengths));
   return path;
@@ -145,13 +154,17 @@ study::MotionPath standing(const Driven& driven, const MotionOptions& options) {
 
 std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions& options) {
   if (!options.scene.path.empty()) {
+    if (options.motion.segments || !options.motion.motions.empty() || options.frames)
+      fail(
+          "--motions, --segments and --frames are for tours through the cameras: --path FILE is gone along "
+          "once, whole");
     auto frames = frames_of(driven, driven.cameras);
     if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
     const std::string name = std::filesystem::path(options.scene.path).stem().string();
     return {{name, options.scene.path, {study::segment_of(std::move(frames), options.motion.lengths)}}};
   }
   std::vector<study::MotionPath> paths;
-  for (const std::string& name : options.motion.motions) {
+  for (const std::string& name : options.motion.motions.empty() ? all_motions() : options.motion.motions) {
     if (name == still_name) {
       paths.push_back(standing(driven, options.motion));
       continue;
@@ -205,9 +218,7 @@ void print(const ordered_json& json) {
 }  // namespace
 
 CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
-  std::vector<std::string> names = {still_name};
-  for (const Motion& motion : head_motions()) names.push_back(motion.name);
-  options.motions = names;
+  const std::vector<std::string> names = all_motions();
   CLI::Option* motion = sub.add_flag(
       "--motion", options.chosen, "Rules along moving heads, frame by frame: true quality, pairs and time");
   sub.add_option("--motions", options.motions, fmt::format("Which; default: {}", fmt::join(names, ",")))
@@ -222,15 +233,20 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
       ->needs(motion)
       ->type_name("RULE")
       ->allow_extra_args(false);
-  const auto count = [&](const char* name, std::size_t& into, const char* help, int least) {
+  const auto count = [&](const char* name, std::size_t& into, const char* help) {
     sub.add_option(name, into, fmt::format("{} ({})", help, into))
         ->needs(motion)
         ->type_name("N")
-        ->check(CLI::Range(least, 10000).description(""));
+        ->check(CLI::Range(0, 10000).description(""));
   };
-  count("--segments", options.segments, "Stretches, spread evenly along a tour through the cameras", 1);
-  count("--lead", options.lengths.lead, "Frames of a segment before those that count", 0);
-  count("--stop", options.lengths.stop, "Frames at the last pose of a segment that moves", 0);
+  sub.add_option(
+         "--segments", options.segments,
+         fmt::format("Stretches, spread evenly along a tour through the cameras ({})", segments_default))
+      ->needs(motion)
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000).description(""));
+  count("--lead", options.lengths.lead, "Frames of a segment before those that count");
+  count("--stop", options.lengths.stop, "Frames at the last pose of a segment that moves");
   sub.add_option("--rounds", options.rounds, fmt::format("In which frames are timed ({})", options.rounds))
       ->needs(motion)
       ->type_name("N")

@@ -18,9 +18,9 @@ namespace binosplat::app {
 /// Of --motion.
 struct MotionOptions {
   bool chosen = false;
-  std::vector<std::string> motions;
-  std::vector<std::string> rules;  // TH,SOURCE[,CONTRAST[,EYES]]; empty: all
-  std::size_t segments = 3;
+  std::vector<std::string> motions;  // empty: all
+  std::vector<std::string> rules;    // TH,SOURCE[,CONTRAST[,EYES]]; empty: all
+  std::optional<std::size_t> segments;
   study::SegmentLengths lengths;
   int rounds = 2;
   bool no_equal = false;

@@ -24,30 +24,28 @@ ordered_json millions(const ordered_json& pairs) { return 1e-6 * pairs.get<doubl
 
 ordered_json percent(const ordered_json& share) { return 100.0 * share.get<double>(); }
 
-/// The rule whose worst path is the best by value(rule), of which less is better; null where any has none.
+/// The path on which something of a rule is largest; not a number where it is none on any.
+struct Worst {
+  std::string rule, path;
+  double value = -INFINITY;
+};
+
+/// By rule, of value(rule).
 template <typename Value>
-const ordered_json* least(const ordered_json& results, const Value& value, double& worst_of_best,
-                          std::string& where) {
-  const ordered_json* best = nullptr;
-  const ordered_json& paths = results["paths"];
-  for (std::size_t k = 0; k < paths[0]["rules"].size(); ++k) {
-    double worst = -INFINITY;
-    std::string at;
-    for (const ordered_json& path : paths) {
+std::vector<Worst> worst_paths(const ordered_json& results, const Value& value) {
+  std::vector<Worst> all;
+  for (const ordered_json& path : results["paths"]) {
+    all.resize(path["rules"].size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
       const double here = value(path["rules"][k]);
-      if (!(here <= worst)) {
-        worst = here;
-        at = text(path["name"]);
-      }
-      if (std::isnan(here)) break;
+      if (here <= all[k].value || std::isnan(all[k].value)) continue;
+      all[k] = {text(path["rules"][k]["name"]), text(path["name"]), here};
     }
-    if (std::isnan(worst) || (best != nullptr && worst >= worst_of_best)) continue;
-    best = &paths[0]["rules"][k];
-    worst_of_best = worst;
-    where = at;
   }
-  return best;
+  return all;
 }
+
+bool less(const Worst& a, const Worst& b) { return a.value < b.value; }
 
 /// A column a path of what `value` takes from its rules.
 template <typename Value>
@@ -74,19 +72,17 @@ Section words_kept(const ordered_json& results) {
   add_columns(results, "true dB", moving("true_db"), table);
   add_columns(results, "worst dB", moving("worst_db"), table);
   add_columns(results, "told minus true dB", moving("told_minus_true_db"), table);
-  const double asked = results["quality_db"];
-  double off = 0.0;
-  std::string where;
-  const ordered_json* best = least(
-      results,
-      [&](const ordered_json& rule) { return asked - rule["asked"]["moving"]["true_db"].get<double>(); }, off,
-      where);
-  std::string sentence = fmt::format("Every rule was asked for {:g} dB", asked);
-  if (best != nullptr)
+  const auto worst = worst_paths(
+      results, [](const ordered_json& rule) { return -rule["asked"]["moving"]["true_db"].get<double>(); });
+  const auto [nearest, farthest] = std::minmax_element(worst.begin(), worst.end(), less);
+  std::string sentence = fmt::format(
+      "Every rule was asked for {:g} dB. “{}” falls least below: moving frames come to {:.1f} dB in the mean "
+      "where it "
+      "does worst ({})",
+      results["quality_db"].get<double>(), nearest->rule, -nearest->value, nearest->path);
+  if (farthest->value > nearest->value)
     sentence +=
-        fmt::format(": “{}” stays {} {:.1f} dB {} that, in the mean over the frames of {}, its worst path",
-                    text((*best)["name"]), off > 0 ? "within" : "at least", std::abs(off),
-                    off > 0 ? "of" : "above", where);
+        fmt::format("; “{}” falls most: {:.1f} dB ({})", farthest->rule, -farthest->value, farthest->path);
   return {"words", "Whether rules keep their word", sentence + ".", {}, table, ""};
 }
 
@@ -95,9 +91,12 @@ double number_or_none(const ordered_json& value) { return value.is_number() ? va
 /// What rules take at one true quality.
 Section gains(const ordered_json& results) {
   Section section{"gains", "What rules take at one true quality", "", {}, {}, ""};
-  bool compared = true;
+  bool compared = true, problems = false;
   for (const ordered_json& path : results["paths"]) {
-    for (const ordered_json& rule : path["rules"]) compared = compared && rule.contains("at_target");
+    for (const ordered_json& rule : path["rules"]) {
+      compared = compared && rule.contains("at_target");
+      problems = problems || (rule.contains("at_target") && rule["at_target"]["problem"] != "");
+    }
   }
   if (!compared) {
     section.problem = "This was not measured (--no-equal).";
@@ -110,24 +109,22 @@ Section gains(const ordered_json& results) {
   add_columns(results, "ms of `one`", at("ms_of_one"), table);
   add_columns(results, "pairs of `one`", at("pairs_of_one"), table);
   add_columns(results, "ms of exact", at("ms_of_exact"), table);
-  add_columns(results, "why not", at("problem"), table);
+  if (problems) add_columns(results, "why not", at("problem"), table);
   section.sentence = fmt::format(
       "At {:g} dB, the true mean of each path's moving frames: GPU time and pairs in those of the rule that "
       "takes all "
       "the light for granted, with the same threshold",
       results["target_db"].get<double>());
-  double most = 0.0;
-  std::string where;
-  const ordered_json* best = least(
-      results,
-      [](const ordered_json& rule) {
-        const ordered_json& at_target = rule["at_target"];
-        return at_target["problem"] == "" ? number_or_none(at_target["ms_of_exact"]) : NAN;
-      },
-      most, where);
-  if (best != nullptr)
+  std::vector<Worst> worst = worst_paths(results, [](const ordered_json& rule) {
+    const ordered_json& at_target = rule["at_target"];
+    return at_target["problem"] == "" ? number_or_none(at_target["ms_of_exact"]) : NAN;
+  });
+  std::erase_if(worst, [](const Worst& one) { return std::isnan(one.value); });
+  if (!worst.empty()) {
+    const Worst best = *std::min_element(worst.begin(), worst.end(), less);
     section.sentence += fmt::format(". The fastest is “{}”: at most {:.2f} of the exact frame's time ({})",
-                                    text((*best)["name"]), most, where);
+                                    best.rule, best.value, best.path);
+  }
   section.sentence += ".";
   section.table = table;
   return section;

@@ -17,8 +17,8 @@ struct MotionCommand : test::SceneTest {
   std::string printed;
 
   nlohmann::json motion(std::vector<std::string> more) {
-    more.insert(more.begin(), {"study", model, "--motion", "--frames", "3", "--lead", "2", "--rounds", "1",
-                               "--json", folder / "m.json"});
+    more.insert(more.begin(),
+                {"study", model, "--motion", "--lead", "2", "--rounds", "1", "--json", folder / "m.json"});
     const test::Outcome outcome = test::run_program(more);
     EXPECT_TRUE(test::good(outcome));
     printed = outcome.out;
@@ -30,8 +30,8 @@ struct MotionCommand : test::SceneTest {
 
 TEST_F(MotionCommand, GoesThroughTheCamerasAndLeavesAPage) {
   const auto json =
-      motion({"--motions", "still,walk", "--segments", "2", "--stop", "1", "--rule", "squared,one", "--rule",
-              "peripheral,last", "--size", "36x24", "--target", "38", "-o", out});
+      motion({"--motions", "still,walk", "--frames", "3", "--segments", "2", "--stop", "1", "--rule",
+              "squared,one", "--rule", "peripheral,last", "--size", "36x24", "--target", "38", "-o", out});
   EXPECT_EQ(json.at("eyes"), 2);
   EXPECT_EQ(json.at("width"), 36);
   EXPECT_EQ(json.at("metre_source"), "the cameras' distances");
@@ -95,6 +95,8 @@ TEST_F(MotionCommand, WhatMakesNoSenseIsNamed) {
       {{"--motion", "--cameras", folder / "alone.json"}, "two cameras or more"},
       {{"--motion", "--path", folder / "alone.json"}, "two cameras or more"},
       {{"--motion", "--photos", folder / "."}, "--test and --photos are for the analyses"},
+      {{"--motion", "--path", folder / "alone.json", "--motions", "walk"}, "are for tours"},
+      {{"--motion", "--no-equal", "--target", "38"}, "--no-equal"},
       {{"--segments", "2"}, "--motion"},
       {{"--rules", "--rule", "squared,one"}, "--motion"},
       {{"--no-equal"}, "--motion"},
