@@ -233,6 +233,39 @@ ExitCode study_scene(const StudyOptions& options) {
   return ExitCode::done;
 }
 
+/// What is studied and where that goes.
+void add_scene_options(CLI::App& sub, StudyOptions& o) {
+  sub.add_option("--cameras", o.scene.cameras, "cameras.json; default: the one beside the model")
+      ->type_name("FILE");
+  sub.add_option(
+         "--view", o.scene.views,
+         "The camera to study from; default: the first. Without --stability, --eyes, --rules,\n"
+         "--motion and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
+      ->type_name("NAME...");
+  sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
+  sub.add_option("--photos", o.scene.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB")
+      ->type_name("DIR")
+      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+  sub.add_option("-o,--output", o.output,
+                 "Folder for report.html and study.json (out/study);\nwith --stability and --motion, too")
+      ->type_name("DIR");
+  sub.add_option_function<std::string>(
+         "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },
+         "Of an eye's picture")
+      ->type_name("WxH");
+  sub.add_option("--preset", o.scene.preset,
+                 "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees")
+      ->check(CLI::IsMember({"preview", "headset"}).description(""))
+      ->type_name("preview|headset");
+  sub.add_flag("--mono", o.scene.mono, "With --path, --rules and --motion: the cameras themselves, no rig");
+  add_measured_options(sub, o.scene);
+  sub.add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
+  sub.add_option("--units-per-metre", o.scene.units_per_metre,
+                 "World units that make a metre (1);\nwith --motion: by the distances of cameras")
+      ->type_name("U");
+  sub.add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
+}
+
 }  // namespace
 
 void add_study(CLI::App& program, Command& command) {
@@ -283,35 +316,7 @@ void add_study(CLI::App& program, Command& command) {
   choose("--transmittance", o.transmittance, transmittance_choices);
   choose("--contrast", o.contrast, contrast_choices);
   choose("--th-eyes", o.th_eyes, th_eyes_choices);
-  sub->add_option("--cameras", o.scene.cameras, "cameras.json; default: the one beside the model")
-      ->type_name("FILE");
-  sub->add_option(
-         "--view", o.scene.views,
-         "The camera to study from; default: the first. Without --stability, --eyes, --rules,\n"
-         "--motion and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
-      ->type_name("NAME...");
-  sub->add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
-  sub->add_option("--photos", o.scene.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB")
-      ->type_name("DIR")
-      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
-  sub->add_option("-o,--output", o.output,
-                  "Folder for report.html and study.json (out/study);\nwith --stability and --motion, too")
-      ->type_name("DIR");
-  sub->add_option_function<std::string>(
-         "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },
-         "Of an eye's picture")
-      ->type_name("WxH");
-  sub->add_option("--preset", o.scene.preset,
-                  "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees")
-      ->check(CLI::IsMember({"preview", "headset"}).description(""))
-      ->type_name("preview|headset");
-  sub->add_flag("--mono", o.scene.mono, "With --path, --rules and --motion: the cameras themselves, no rig");
-  add_measured_options(*sub, o.scene);
-  sub->add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
-  sub->add_option("--units-per-metre", o.scene.units_per_metre,
-                  "World units that make a metre (1);\nwith --motion: by the distances of cameras")
-      ->type_name("U");
-  sub->add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
+  add_scene_options(*sub, o);
   sub->footer(
       "By itself it repeats AdaGScale's analyses on the scene, as a page with plots.\n"
       "Examples:\n"

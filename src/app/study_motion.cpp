@@ -213,6 +213,10 @@ void print(const ordered_json& json) {
       "a frame's "
       "ms is the median of {} rounds.\n",
       study::equal_db, json["rounds"].dump());
+  const study::Page page = study::motion_page(json);
+  for (std::size_t k = 0; k < 2; ++k)
+    fmt::print("\n{}\n",
+               page.sections[k].problem.empty() ? page.sections[k].sentence : page.sections[k].problem);
 }
 
 }  // namespace

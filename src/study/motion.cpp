@@ -144,22 +144,26 @@ struct Timed {
   render::FrameSettings settings;
   MovedPass* into;
   std::vector<std::vector<std::vector<double>>> ms;  // by segment, frame and round
+  std::size_t differs = 0;  // frames that made other pairs than when they were judged
 };
 
 void draw_segment(render::Frame& frame, Timed& timed, std::size_t s) {
   const MotionSegment& segment = timed.path->segments[s];
   frame.start_over();
-  for (std::size_t n = 0; n < segment.frames.size(); ++n)
-    timed.ms[s][n].push_back(frame.draw(segment.frames[n], timed.settings).total_ms);
+  for (std::size_t n = 0; n < segment.frames.size(); ++n) {
+    const render::FrameReport report = frame.draw(segment.frames[n], timed.settings);
+    timed.ms[s][n].push_back(report.total_ms);
+    timed.differs += static_cast<double>(report.pairs) != timed.into->frames[s][n].pairs;
+  }
 }
 
 void Drive::time(MotionResult& result) {
   const MotionPath moving = without_stops(result.path);
-  std::vector<Timed> all = {{&result.path, settings_of({.th = TH_TAU}, 0.0f), &result.exact, {}}};
+  std::vector<Timed> all = {{&result.path, settings_of({.th = TH_TAU}, 0.0f), &result.exact, {}, 0}};
   for (MovedRule& rule : result.rules) {
-    all.push_back({&result.path, settings_of(rule.variant, rule.asked.request), &rule.asked, {}});
+    all.push_back({&result.path, settings_of(rule.variant, rule.asked.request), &rule.asked, {}, 0});
     if (rule.equal)
-      all.push_back({&moving, settings_of(rule.variant, rule.equal->request), &*rule.equal, {}});
+      all.push_back({&moving, settings_of(rule.variant, rule.equal->request), &*rule.equal, {}, 0});
   }
   const std::size_t segments = result.path.segments.size();
   for (Timed& timed : all) {
@@ -182,6 +186,8 @@ void Drive::time(MotionResult& result) {
         timed.into->frames[s][n].ms = quantile(timed.ms[s][n], 0.5);
     }
     summarise(*timed.path, *timed.into);
+    if (timed.differs > 0)
+      log_warning("{}: {} frames timed are not those that were judged", result.path.name, timed.differs);
   }
 }
 

@@ -95,7 +95,7 @@ Section gains(const ordered_json& results) {
   for (const ordered_json& path : results["paths"]) {
     for (const ordered_json& rule : path["rules"]) {
       compared = compared && rule.contains("at_target");
-      problems = problems || (rule.contains("at_target") && rule["at_target"]["problem"] != "");
+      problems = problems || (rule.contains("at_target") && !text(rule["at_target"]["problem"]).empty());
     }
   }
   if (!compared) {
@@ -117,7 +117,7 @@ Section gains(const ordered_json& results) {
       results["target_db"].get<double>());
   std::vector<Worst> worst = worst_paths(results, [](const ordered_json& rule) {
     const ordered_json& at_target = rule["at_target"];
-    return at_target["problem"] == "" ? number_or_none(at_target["ms_of_exact"]) : NAN;
+    return text(at_target["problem"]).empty() ? number_or_none(at_target["ms_of_exact"]) : NAN;
   });
   std::erase_if(worst, [](const Worst& one) { return std::isnan(one.value); });
   if (!worst.empty()) {

@@ -49,7 +49,7 @@ TEST_F(MotionCommand, GoesThroughTheCamerasAndLeavesAPage) {
   EXPECT_EQ(walk.at("rules")[0].at("asked").at("segments")[1].at("true_db").size(), 6u);
   const auto& at_target = walk.at("rules")[0].at("at_target");
   const bool near = std::abs(at_target.at("moving").at("true_db").get<double>() - 38.0) <= 0.1;
-  EXPECT_EQ(near, at_target.at("problem") == "");
+  EXPECT_EQ(near, at_target.at("problem").get<std::string>().empty());
   EXPECT_NE(printed.find("\n## walk\n"), std::string::npos) << printed;
   EXPECT_NE(page().find("Whether rules keep their word"), std::string::npos);
   EXPECT_EQ(nlohmann::json::parse(test::read_text(out + "/study.json")), json);
