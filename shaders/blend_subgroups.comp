@@ -1,6 +1,9 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_vote : require
+#if LIGHT
+#extension GL_KHR_shader_subgroup_shuffle : require
+#endif
 // Stage 6 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
 // next splats to shared memory and ask which blocks each reaches; then each subgroup blends those that reach its own. The bits
 // are those of blend.comp.
@@ -46,6 +49,45 @@ uint blocks_reached(Splat splat, vec2 mean) {
   }
   return bits;
 }
+
+#if LIGHT
+uint light_nth = 0u;                    // the first level that some pixel of the block has more than
+float light_level = float(LIGHT_STEP);  // that level
+float light_depth = LIGHT_NEVER;        // of the level of this invocation's number
+
+void follow_light(uint at[AHEAD]) {
+  float most = transmittance[0];
+  for (uint p = 1u; p < COLUMN; ++p) most = max(most, transmittance[p]);
+  while (light_nth < LIGHT_LEVELS && !subgroupAny(most > light_level)) {
+    if (gl_SubgroupInvocationID == light_nth) light_depth = deepest(at);
+    ++light_nth;
+    light_level = next_level(light_level, light_nth);
+  }
+}
+
+#if COLUMN == 1  // two subgroups a block of the map
+shared float light_depths[BLOCKS][LIGHT_LEVELS];
+#endif
+
+void write_light() {
+  View view = views[view_index];
+  uint lane = gl_SubgroupInvocationID;
+  uvec2 block = (tile_corner(tile_of(tile, view), view) +
+                 uvec2(gl_SubgroupID % BLOCKS_ACROSS, gl_SubgroupID / BLOCKS_ACROSS) * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT)) / uint(LIGHT_BLOCK);
+#if COLUMN == 1
+  if (lane < LIGHT_LEVELS) light_depths[gl_SubgroupID][lane] = light_depth;
+  memoryBarrierShared();
+  barrier();
+  if (gl_SubgroupID / BLOCKS_ACROSS % 2u != 0u) return;
+  light_depth = max(light_depth, light_depths[gl_SubgroupID + BLOCKS_ACROSS][lane % LIGHT_LEVELS]);
+#endif
+  light_depth /= view.anchor.w;
+  float other = subgroupShuffleXor(light_depth, 1u);
+  uvec2 blocks = light_blocks(view, 0u);
+  if (is_probe(view) || block.x >= blocks.x || block.y >= blocks.y) return;
+  if (lane < LIGHT_LEVELS && lane % 2u == 0u) light[4u * light_place(view, 0u, block) + lane / 2u] = light_word(light_depth, other);
+}
+#endif
 
 // The batch's splats that reach this subgroup's block, in order, and AHEAD that leave no mark: how many.
 uint list_own() {
@@ -111,4 +153,7 @@ void main() {
     if (blocks_done == BLOCKS) break;
   }
   write_pixels();
+#if LIGHT
+  write_light();
+#endif
 }

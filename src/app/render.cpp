@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "app/calibrated.h"
@@ -78,25 +79,12 @@ render::DepthTable depth_table(render::Frame& frame, const RenderOptions& option
   return measure::measure_depth_table(frame, views);
 }
 
-// Where there is no path the frames of a view have no time to find their loss: some go ahead that see all of
-// it, until the loss stays where it is.
-void settle(render::Frame& frame, const std::vector<shared::View>& views, render::FrameSettings settings) {
-  constexpr int frames_min = 6, frames_max = 24;
-  constexpr float still = 0.02f;
-  settings.probe_strips = 1;
-  float last = 0.0f;
-  for (int n = 0; n < frames_max; ++n) {
-    const float loss = frame.draw(views, settings).loss;
-    if (n >= frames_min && std::abs(loss - last) < still * last) break;
-    last = loss;
-  }
-}
-
 // Draws every shot options.frames times and writes its last frame.
 void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> shots, const CameraList& list,
               Model& model, std::optional<FollowedLevels>& followed, RenderReport& report) {
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
+  if (options.path.empty()) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
   render::Frame frame(context, report.model, settings.precision);
   stereo::Show show(context, report.model);
   const CalibratedSettings calibrated(options, report.model);
@@ -109,7 +97,6 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    if (options.quality && options.path.empty()) settle(frame, views, settings);
     const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
     if (followed) drawn.levels = followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < options.frames; ++n) {

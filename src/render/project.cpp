@@ -39,6 +39,7 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"Kept", kept_of(page)},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
+                    {"Light", buffers.light},
                     {"DepthTable", buffers.depth_table},
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
@@ -53,6 +54,9 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
                     {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
+                    {"last_first", static_cast<std::uint32_t>(shape.views.size() + shape.between.size())},
+                    {"moved_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.moved))},
+                    {"nearest_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.nearest))},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
 }
@@ -98,6 +102,7 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},
                          {"LIST_TILES", std::to_string(s.list_tiles)},
+                         {"PROBED", shape.probe ? "1" : "0"},
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"OFFSETS", std::to_string(shape.offset_count)}};
@@ -130,6 +135,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"FrameCounters", buffers.counters},
                     {"Tall", buffers.tall},
                     {"Upper", *buffers.upper},
+                    {"Light", buffers.light},
                     {"DepthTable", buffers.depth_table},
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
@@ -146,6 +152,9 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
                     {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
+                    {"last_first", static_cast<std::uint32_t>(shape.views.size() + shape.between.size())},
+                    {"moved_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.moved))},
+                    {"nearest_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.nearest))},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
   gl::Defines tall_defines = pair_defines(shape);
