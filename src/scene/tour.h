@@ -10,7 +10,8 @@
 
 namespace binosplat {
 
-/// How fast a head goes and how fast it turns: at each moment as fast as both allow.
+/// How fast a head goes and how fast it turns at most: at each moment as fast as both allow. Only where its
+/// way turns back does it slow down, to go from rest to full speed, or to turn so, in 0.25 s.
 struct Motion {
   std::string name;
   double metres_per_second = 0.0;
@@ -21,7 +22,8 @@ struct Motion {
 const std::vector<Motion>& head_motions();
 
 /// World units that count as a metre where nothing tells of a scale: from each camera to its nearest
-/// neighbour elsewhere, in the median. 1 for fewer than two places.
+/// neighbour elsewhere, in the median. 1 for fewer than two places. NAME_left and NAME_right are one camera
+/// between them, here and for tours.
 double metre_of(std::span<const Camera> cameras);
 
 struct TourSettings {
@@ -31,9 +33,11 @@ struct TourSettings {
 };
 
 /// The cameras of a head that goes through all of `cameras`, from the first on, each next the nearest that is
-/// left, along a smooth curve through their places, turning smoothly from one to the next; one a frame, with
-/// `time`. All have the first camera's lens and size. Throws Error(bad_input) for fewer than two cameras, all
-/// of one pose, or speeds that are not above 0.
+/// left as far as that is short, along a smooth curve through their places, turning smoothly from one to the
+/// next; one a frame, with `time`. The way depends neither on the order of the others nor on the motion.
+/// Cameras within 1 cm and 1 degree of another are left out. All have the first camera's lens and size.
+/// Throws Error(bad_input) for fewer than two cameras, all of one pose, speeds that are not above 0, or more
+/// than a million frames.
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings);
 
 }  // namespace binosplat
