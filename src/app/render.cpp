@@ -16,6 +16,7 @@
 #include "app/render_outputs.h"
 #include "app/render_report.h"
 #include "app/shots.h"
+#include "app/tour.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/cameras_file.h"
@@ -109,7 +110,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    if (options.quality && options.path.empty()) settle(frame, views, settings);
+    if (options.quality && !along_path(options)) settle(frame, views, settings);
     const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
     if (followed) drawn.levels = followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < options.frames; ++n) {
@@ -159,6 +160,7 @@ ExitCode render(RenderOptions options) {
   const auto saved = saved_camera(options);
   if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
   CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
+  if (options.tour) go_on_tour(options, !plan.video.empty(), list);
   options.photos = photos_folder(options, list);
   std::optional<FollowedLevels> followed;
   if (options.detail) {
@@ -202,7 +204,9 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
       "  binosplat render scaffold-model --decode cyclopean\n"
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
-      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4");
+      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
+      "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
+      "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });
 }
 
