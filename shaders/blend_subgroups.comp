@@ -51,41 +51,51 @@ uint blocks_reached(Splat splat, vec2 mean) {
 }
 
 #if LIGHT
-uint light_nth = 0u;                    // the first level that some pixel of the block has more than
+// A block of the map is some invocations of the subgroup, who all keep the same of it.
+#define LIGHT_LANES (LIGHT_BLOCK * LIGHT_BLOCK / COLUMN)
+uint light_nth = 0u;                    // the first level that more than LIGHT_SPARED of its pixels have more than
 float light_level = float(LIGHT_STEP);  // that level
-float light_depth = LIGHT_NEVER;        // of the level of this invocation's number
+float light_depth = LIGHT_NEVER;        // of the level of this invocation's number in the block
+
+uvec2 light_block_in_subgroup() {
+  uint lane = gl_SubgroupInvocationID;
+  return uvec2(lane % BLOCK_WIDTH, lane / BLOCK_WIDTH * COLUMN) / uint(LIGHT_BLOCK);
+}
+
+uint light_lanes() {
+  uvec2 block = light_block_in_subgroup();
+  uint row = (1u << LIGHT_BLOCK) - 1u, rows = 0u;
+  for (uint y = 0u; y < LIGHT_BLOCK / COLUMN; ++y) rows |= row << (y * BLOCK_WIDTH);
+  return rows << (block.x * LIGHT_BLOCK + block.y * (LIGHT_BLOCK / COLUMN) * BLOCK_WIDTH);
+}
 
 void follow_light(uint at[AHEAD]) {
-  float most = transmittance[0];
-  for (uint p = 1u; p < COLUMN; ++p) most = max(most, transmittance[p]);
-  while (light_nth < LIGHT_LEVELS && !subgroupAny(most > light_level)) {
-    if (gl_SubgroupInvocationID == light_nth) light_depth = deepest(at);
+  uint lanes = light_lanes();
+  for (;;) {
+    uint above = 0u;
+    for (uint p = 0u; p < COLUMN; ++p) above += bitCount(subgroupBallot(transmittance[p] > light_level).x & lanes);
+#ifdef V2
+    bool crossed = light_nth < LIGHT_LEVELS && above <= (light_nth == 0u ? 4u : light_nth == 1u ? 2u : 0u);
+#else
+    bool crossed = light_nth < LIGHT_LEVELS && above == 0u;
+#endif
+    if (!subgroupAny(crossed)) break;
+    if (!crossed) continue;
+    if (bitCount(lanes & gl_SubgroupLtMask.x) == light_nth) light_depth = deepest(at);
     ++light_nth;
     light_level = next_level(light_level, light_nth);
   }
 }
 
-#if COLUMN == 1  // two subgroups a block of the map
-shared float light_depths[BLOCKS][LIGHT_LEVELS];
-#endif
-
 void write_light() {
   View view = views[view_index];
-  uint lane = gl_SubgroupInvocationID;
-  uvec2 block = (tile_corner(tile_of(tile, view), view) +
-                 uvec2(gl_SubgroupID % BLOCKS_ACROSS, gl_SubgroupID / BLOCKS_ACROSS) * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT)) / uint(LIGHT_BLOCK);
-#if COLUMN == 1
-  if (lane < LIGHT_LEVELS) light_depths[gl_SubgroupID][lane] = light_depth;
-  memoryBarrierShared();
-  barrier();
-  if (gl_SubgroupID / BLOCKS_ACROSS % 2u != 0u) return;
-  light_depth = max(light_depth, light_depths[gl_SubgroupID + BLOCKS_ACROSS][lane % LIGHT_LEVELS]);
-#endif
-  light_depth /= view.anchor.w;
+  uvec2 in_tile = uvec2(gl_SubgroupID % BLOCKS_ACROSS, gl_SubgroupID / BLOCKS_ACROSS) * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT);
+  uvec2 block = (tile_corner(tile_of(tile, view), view) + in_tile) / uint(LIGHT_BLOCK) + light_block_in_subgroup();
+  uint nth = bitCount(light_lanes() & gl_SubgroupLtMask.x);
   float other = subgroupShuffleXor(light_depth, 1u);
   uvec2 blocks = light_blocks(view, 0u);
-  if (is_probe(view) || block.x >= blocks.x || block.y >= blocks.y) return;
-  if (lane < LIGHT_LEVELS && lane % 2u == 0u) light[4u * light_place(view, 0u, block) + lane / 2u] = light_word(light_depth, other);
+  if (is_probe(view) || block.x >= blocks.x || block.y >= blocks.y || nth >= LIGHT_LEVELS || nth % 2u != 0u) return;
+  light[4u * light_place(view, 0u, block) + nth / 2u] = light_word(light_depth / view.anchor.w, other / view.anchor.w);
 }
 #endif
 

@@ -37,7 +37,7 @@
 #define UPPER_AGEING 1.25
 // The map of light (light.glsl): px of a block's side, levels of T, each a step below the one before and the
 // last none at all, and how often blocks are joined.
-#define LIGHT_BLOCK 8
+#define LIGHT_BLOCK 4
 #define LIGHT_LEVELS 8u
 #define LIGHT_STEP 0.6
 #define LIGHT_LEVEL_MAX 5u

@@ -17,6 +17,7 @@
 #include "app/render_outputs.h"
 #include "app/render_report.h"
 #include "app/shots.h"
+#include "app/tour.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/cameras_file.h"
@@ -84,7 +85,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
               Model& model, std::optional<FollowedLevels>& followed, RenderReport& report) {
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
-  if (options.path.empty()) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
+  if (!along_path(options)) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
   render::Frame frame(context, report.model, settings.precision);
   stereo::Show show(context, report.model);
   const CalibratedSettings calibrated(options, report.model);
@@ -146,6 +147,7 @@ ExitCode render(RenderOptions options) {
   const auto saved = saved_camera(options);
   if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
   CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
+  if (options.tour) go_on_tour(options, !plan.video.empty(), list);
   options.photos = photos_folder(options, list);
   std::optional<FollowedLevels> followed;
   if (options.detail) {
@@ -189,7 +191,9 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
       "  binosplat render scaffold-model --decode cyclopean\n"
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
-      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4");
+      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
+      "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
+      "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });
 }
 

@@ -12,20 +12,18 @@ namespace {
 // What a view's probe weighs after each further one of that view.
 constexpr double fading = 0.8;
 // dB that frames aim at above what is asked for: the promise is of the worse view, and of single frames.
-constexpr double margin = 0.25;
+constexpr double margin = 0.3;
 // dB below what is asked for at which a frame is drawn again; and after a cut, about what is aimed at.
 constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 1.0;
 // Of what was expected: a probe beyond these shows another scene, not another part of it.
-constexpr double surprise_above = 2.2, surprise_below = 0.25;
-// So many times the tiles after a cut.
-constexpr std::uint64_t more_when_fresh = 4;
-constexpr int attempts_max = 8;  // the last of them exact
-// Of the loss from one frame to the next, and between attempts.
-constexpr double step = 2.0, step_when_fresh = 30.0;
+constexpr double surprise_above = 2.5, surprise_below = 0.2;
+// Attempts at a frame: the last is exact; from the middle on one that is better than need be is good enough.
+constexpr int attempts_max = 8;
+// Of the loss: the most it changes by from one frame to the next and between attempts.
+constexpr double step_up = 1.1, step_down = 2.0, step_searching = 30.0;
+constexpr double slope_min = 1.0, slope_max = 12.0, slope_up_min = 3.0;
 constexpr double loss_min = 1e-9, loss_max = 1e9;
-
-double target_of(const FrameSettings& s) { return std::pow(10.0, -0.1 * (s.quality + margin)); }
 
 // METHOD 8: losses that gave 40 dB or a little more on every shared scene at a focal length of 700 px. In
 // smaller pictures Gaussians are smaller, too, and fox asked for 0.027 (squared, last) at 160 px: less than
@@ -52,8 +50,8 @@ void LossControl::forget() {
 void LossControl::begin(const FrameSettings& settings) {
   forget();
   settings_ = settings;
-  slope_ = power_ = settings.th == TH_PERIPHERAL ? 2.0 : 1.3;
-  loss_ = careful_loss_at_40_db(settings, focal_) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / power_);
+  slope_ = settings.th == TH_PERIPHERAL ? 2.0 : 1.5;
+  loss_ = careful_loss_at_40_db(settings, focal_) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }
 
 Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
@@ -67,9 +65,10 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
   focal_ = view.lens.y;
   const auto side = static_cast<std::uint32_t>(settings.tile_size);
   const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
-  const std::uint64_t wanted = std::uint64_t{static_cast<std::uint32_t>(std::max(1, settings.probe_tiles))} *
-                               (fresh_ ? more_when_fresh : 1);
-  while ((probe_.step + 1) * (probe_.step + 1) * wanted <= across * down) ++probe_.step;
+  // After a cut all of it.
+  const double wanted = std::max(1, settings.probe_tiles);
+  while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= static_cast<double>(across) * down)
+    ++probe_.step;
   // A golden step, so that the places of a few probes are spread evenly.
   const std::uint32_t places = probe_.step * probe_.step;
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
@@ -83,62 +82,100 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
 }
 
 float LossControl::next_loss(const FrameSettings& settings) {
-  if (holds_) attempts_ = 0;
-  if (!same_rule(settings, settings_) || loss_ == 0.0) begin(settings);
+  if (holds_) {
+    attempts_ = 0;
+    bracket_ = {};
+  }
+  if (!same_rule(settings, settings_)) begin(settings);
   exact_ = ++attempts_ == attempts_max;
   if (exact_) return 0.0f;
-  if (!any_known()) return static_cast<float>(loss_);
-  const double error = error_now(), most = fresh_ || attempts_ > 1 ? step_when_fresh : step;
-  const double wanted = error > 0.0 ? std::pow(target_of(settings) / error, 1.0 / slope_) : most;
-  last_loss_ = loss_;
-  last_error_ = error;
-  loss_ = std::clamp(loss_ * std::clamp(wanted, 1.0 / most, most), loss_min, loss_max);
+  const double before = loss_;
+  if (attempts_ > 1) {
+    loss_ = std::clamp(searched_loss(target()), loss_min, loss_max);
+  } else if (!fresh_) {
+    loss_ = std::clamp(followed_loss(target()), loss_min, loss_max);
+  }
+  for (Estimate& view : views_) view.error *= std::pow(loss_ / before, slope_);
   return static_cast<float>(loss_);
 }
 
-void LossControl::take(double error_at_one) {
+// From one frame to the next.
+double LossControl::followed_loss(double target) const {
+  const double error = worst();
+  if (error <= 0.0) return loss_ * step_up;
+  const double slope = error > target ? slope_ : std::max(slope_, slope_up_min);
+  return loss_ * std::clamp(std::pow(target / error, 1.0 / slope), 1.0 / step_down, step_up);
+}
+
+// Between attempts at a frame.
+double LossControl::searched_loss(double target) const {
+  const Bracket& b = bracket_;
+  if (b.held > 0.0 && b.missed > 0.0) {
+    if (attempts_ > attempts_max - 2) return b.held;
+    double share = 0.5;  // of the way from the one to the other, by their logarithms
+    if (b.held_error > 0.0) share = std::log(target / b.held_error) / std::log(b.missed_error / b.held_error);
+    return b.held * std::pow(b.missed / b.held, std::clamp(share, 0.1, 0.9));
+  }
+  const double error = worst();
+  if (error <= 0.0) return loss_ * step_searching;
+  return loss_ * std::clamp(std::pow(target / error, 1.0 / slope_), 1.0 / step_searching, step_searching);
+}
+
+void LossControl::take(double squared_error) {
   Estimate& view = views_[probe_.view];
-  const double expected = view.weight > 0.0 ? view.error_at_one : most_at_one();
-  const bool surprises = error_at_one > surprise_above * expected || error_at_one < surprise_below * expected;
+  const double expected = view.weight > 0.0 ? view.error : worst();
+  const bool surprises =
+      squared_error > surprise_above * expected || squared_error < surprise_below * expected;
   if (fresh_ || attempts_ > 1 || surprises)
     for (Estimate& any : views_) any.weight = 0.0;
   view.weight *= fading;
-  view.error_at_one =
-      (view.weight * view.error_at_one + probe_tiles_ * error_at_one) / (view.weight + probe_tiles_);
+  view.error = (view.weight * view.error + probe_tiles_ * squared_error) / (view.weight + probe_tiles_);
   view.weight += probe_tiles_;
 }
 
+// What two attempts at a frame say of the error's law about here.
+void LossControl::learn(double target) {
+  Bracket& b = bracket_;
+  const double error = worst(), before_loss = b.held > 0.0 ? b.held : b.missed,
+               before = b.held > 0.0 ? b.held_error : b.missed_error;
+  if (before > 0.0 && error > 0.0 && std::abs(std::log(loss_ / before_loss)) > 0.02)
+    slope_ = std::clamp(std::log(error / before) / std::log(loss_ / before_loss), slope_min, slope_max);
+  if (error > target && (b.missed == 0.0 || loss_ < b.missed)) {
+    b.missed = loss_;
+    b.missed_error = error;
+  } else if (error <= target && loss_ > b.held) {
+    b.held = loss_;
+    b.held_error = error;
+  }
+}
+
 void LossControl::measured(double squared_error, bool settled) {
-  if (!exact_) take(squared_error / std::pow(loss_, power_));
-  holds_ = exact_ || (settled && keeps_promise());
-  // Between two attempts at one frame the error's own law is known.
-  const double apart = std::log(loss_ / last_loss_), grown = std::log(error_now() / last_error_);
-  const bool tells = settled && !holds_ && attempts_ > 2 && std::abs(apart) > 0.1 && std::isfinite(grown);
-  slope_ = tells ? std::clamp(grown / apart, 0.5 * power_, 2.0 * power_) : power_;
+  if (exact_) {
+    holds_ = true;
+  } else {
+    take(squared_error);
+    const double above = quality() - settings_.quality;
+    if (!fresh_) {
+      holds_ = settled && above >= -miss;
+    } else {  // what is too good costs time only: not all attempts are for that
+      holds_ = settled && above >= margin - fresh_below &&
+               (above <= margin + fresh_above || attempts_ > attempts_max / 2);
+    }
+    if (settled && fresh_) learn(target());
+  }
   if (holds_) fresh_ = false;
 }
 
-bool LossControl::keeps_promise() const {
-  const double above = quality() - settings_.quality;
-  if (!fresh_) return above >= -miss;
-  // What is too good costs time only: that is asked of the first attempts.
-  return above >= margin - fresh_below && (above <= margin + fresh_above || attempts_ > attempts_max / 2);
-}
+double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }
 
-bool LossControl::any_known() const {
-  return std::any_of(views_.begin(), views_.end(), [](const Estimate& view) { return view.weight > 0.0; });
-}
-
-double LossControl::most_at_one() const {
+double LossControl::worst() const {
   double most = 0.0;
-  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, view.error_at_one) : most;
+  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, view.error) : most;
   return most;
 }
 
-double LossControl::error_now() const { return most_at_one() * std::pow(loss_, power_); }
-
 double LossControl::quality() const {
-  const double error = exact_ ? 0.0 : error_now();
+  const double error = exact_ ? 0.0 : worst();
   return error > 0.0 ? -10.0 * std::log10(error) : std::numeric_limits<double>::infinity();
 }
 

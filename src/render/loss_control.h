@@ -11,9 +11,10 @@
 namespace binosplat::render {
 
 /// Chooses the loss of each frame by what probes of it and of those before showed: tiles evenly spread over a
-/// view, in turn over all views and all of their tiles. A rule's mean squared error grows as a power of its
-/// loss (METHOD 8: kappa^1.3, K^2), so what a probe cost at one loss says what it would cost at another. The
-/// view that errs most must keep the promise.
+/// view, in turn over all views and all of their tiles. The view that errs most must keep the promise. A
+/// rule's mean squared error grows as a power of its loss (METHOD 8: kappa^1.3, K^2 on trained scenes;
+/// kappa^10 where thousands of like Gaussians go at once), which each search after a cut finds anew; so the
+/// loss falls at once and rises carefully.
 ///
 /// A frame that does not hold is to be drawn again: one after a cut, of which nothing was known, or one whose
 /// probe shows what nobody could foresee. Each attempt is
@@ -42,29 +43,35 @@ class LossControl {
 
  private:
   struct Estimate {
-    double error_at_one = 0.0;  // squared error, scaled to a loss of 1: mean of what was seen,
-    double weight = 0.0;        // of so many tiles, fewer the longer ago
+    double error = 0.0;   // squared error of a view at the loss last given: mean of what was seen,
+    double weight = 0.0;  // of so many tiles, fewer the longer ago
+  };
+  // Of the attempts at one frame: the largest loss seen to hold and the smallest seen to miss, and what they
+  // cost.
+  struct Bracket {
+    double held = 0.0, held_error = 0.0;
+    double missed = 0.0, missed_error = 0.0;
   };
   void begin(const FrameSettings& settings);
-  void take(double error_at_one);
-  bool keeps_promise() const;
-  bool any_known() const;
-  double most_at_one() const;
-  double error_now() const;  // of the worst view, at the loss last given
+  double searched_loss(double target) const;
+  double followed_loss(double target) const;
+  void take(double squared_error);
+  void learn(double target);
+  double worst() const;  // of the estimates
+  double target() const;
 
   FrameSettings settings_;  // of the frames so far
-  double power_ = 1.0;      // squared error grows as loss^power_,
-  double slope_ = 1.0;      // and about here as loss^slope_
-  double loss_ = 0.0;       // of the last attempt
+  double slope_ = 1.0;      // squared error grows about as loss^slope_ here
+  double loss_ = 0.0;       // of the last attempt that was not exact
   double focal_ = 0.0;      // px
   bool fresh_ = true;       // no frame was kept since the cut
   bool holds_ = true;
-  bool exact_ = false;                         // the attempt at hand
-  int attempts_ = 0;                           // at the frame at hand
-  std::uint32_t next_ = 0;                     // of the probes, in their order
-  Probe probe_;                                // of the attempt at hand
-  double probe_tiles_ = 0.0;                   // of it
-  double last_loss_ = 0.0, last_error_ = 0.0;  // of the attempt before, for the slope between
+  bool exact_ = false;  // the attempt at hand
+  int attempts_ = 0;    // at the frame at hand
+  Bracket bracket_;
+  std::uint32_t next_ = 0;    // of the probes, in their order
+  Probe probe_;               // of the attempt at hand
+  double probe_tiles_ = 0.0;  // of it
   std::vector<Estimate> views_;
 };
 

@@ -26,11 +26,13 @@ gl::Defines projecting(const FrameShape& shape) {
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
+  // A probe is asked with its view, unless it is alone in its group.
+  const std::uint32_t end = views.begin < shape.asked ? std::min(views.end, shape.asked) : views.end;
   // An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
   // invocation asks both where one eye's answer makes the other's unnecessary.
   const bool asks_both = !shape.records && shape.gaussian_count >= fills_a_gpu;
   gl::Defines defines = projecting(shape);
-  defines.emplace_back("EYES", views.end - views.begin > 1 && !asks_both ? "2" : "1");
+  defines.emplace_back("EYES", end - views.begin > 1 && !asks_both ? "2" : "1");
   const gl::Program& program = dispatcher.context().program("cull.comp", defines);
   for (const ModelBuffers::Page& page : model.pages) {
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
@@ -48,7 +50,8 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"decoding_of_probe", shape.decoding_of_probe()},
                     {"asked", shape.asked},
                     {"view_begin", views.begin},
-                    {"view_end", views.end},
+                    {"view_end", end},
+                    {"probed", views.end > end ? shape.probe->view : MAX_VIEWS},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
                     {"exact_from", shape.asked},
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},

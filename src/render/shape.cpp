@@ -27,7 +27,7 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
     fail("--quality {}: expected dB, above zero", s.quality);
   if (s.quality > 0.0f && s.th == TH_TAU) fail("--quality {} with --th tau, which is exact", s.quality);
   if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
-  if (s.transmittance > TRANSMITTANCE_LAST && views % 2 != 0) {
+  if (s.transmittance > TRANSMITTANCE_LAST && s.transmittance != TRANSMITTANCE_MAP && views % 2 != 0) {
     fail("--transmittance {}: only for both eyes together", transmittance_choices[s.transmittance].name);
   }
   if (s.th_eyes != TH_EYES_PER_EYE && views % 2 != 0) {
@@ -95,8 +95,8 @@ void add_view(FrameShape& shape, shared::View view, const Probe& tiles = {}, boo
   };
   for (std::uint32_t level = 0; level <= LIGHT_LEVEL_MAX && !is_probe; ++level)
     shape.light_count += blocks(view.width, level) * blocks(view.height, level);
-  const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t tiles) {
-    return (tiles + side - 1) / side;
+  const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t along) {
+    return (along + side - 1) / side;
   };
   shape.list_count += lists(view.tiles_x) * lists(view.tiles_y);
   if (v == 0 || !same_depths(view, shape.views.back())) shape.groups.push_back({v, v});

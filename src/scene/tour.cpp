@@ -212,9 +212,11 @@ double time_between(const Stop& a, const Stop& b, const Motion& motion) {
                   turn_between(a.turned, b.turned) / glm::radians(motion.degrees_per_second));
 }
 
-/// The curve as places so near to each other that the ways between are straight, with `at`.
-std::vector<Sample> samples_of(const std::vector<Knot>& knots, const Motion& motion) {
+/// The curve as places so near to each other that the ways between are straight, with `at`; at least as far
+/// as the head gets in so many seconds, and so much farther that what comes after has no say in them.
+std::vector<Sample> samples_of(const std::vector<Knot>& knots, const Motion& motion, double seconds) {
   constexpr double too_near = 1e-9;  // s: no direction could be told
+  const double enough = seconds + 2.0 * seconds_to_full_speed;
   const auto stop_at = [](const glm::dvec3& place, const glm::dvec4& turned) {
     const glm::dvec4 q = glm::normalize(turned);
     return Stop{place, glm::dquat(q.w, q.x, q.y, q.z)};
@@ -225,7 +227,7 @@ std::vector<Sample> samples_of(const std::vector<Knot>& knots, const Motion& mot
     const double apart = b.at - a.at;
     const double straight = time_between(stop_at(a.place, a.turned), stop_at(b.place, b.turned), motion);
     const double count = std::max(samples_least, std::ceil(straight / seconds_a_sample));
-    for (double n = 1.0; n <= count; ++n) {
+    for (double n = 1.0; n <= count && samples.back().at < enough; ++n) {
       const Stop stop =
           stop_at(hermite(a.place, a.place_slope, b.place, b.place_slope, apart, n / count),
                   hermite(a.turned, a.turned_slope, b.turned, b.turned_slope, apart, n / count));
@@ -290,10 +292,44 @@ void check(const TourSettings& settings) {
     fail("a tour at {} m and {} degrees a second: expected speeds above 0", motion.metres_per_second,
          motion.degrees_per_second);
   }
+  if (!(settings.seconds > 0.0)) fail("a tour of {} seconds: expected more than 0", settings.seconds);
   if (!good(settings.frames_per_second) || !good(settings.units_per_metre)) {
     fail("a tour of {} frames a second and {} units a metre: expected numbers above 0",
          settings.frames_per_second, settings.units_per_metre);
   }
+}
+
+/// The stops in the order of the tour.
+std::vector<Stop> ordered_stops(const std::vector<Camera>& heads, double units_per_metre) {
+  if (heads.size() < 2) {
+    fail(
+        "a tour goes through two cameras or more, and there is {}: name a file of more with --cameras, or go "
+        "around the model with --orbit",
+        heads.size());
+  }
+  std::vector<Stop> stops = stops_of(heads, units_per_metre);
+  if (stops.size() < 2) {
+    fail(
+        "a tour goes through cameras that lie apart: all {} are within {} m and {} degrees, at {} world "
+        "units "
+        "a metre; name others with --cameras, or another scale with --units-per-metre",
+        heads.size(), same_metres, same_degrees, units_per_metre);
+  }
+  order_greedily(stops);
+  shorten(stops);
+  return stops;
+}
+
+/// Before the long work: straight ways are the shortest.
+void check_length(const std::vector<Stop>& stops, const TourSettings& settings) {
+  double least = 0.0;  // s
+  for (std::size_t k = 1; k < stops.size(); ++k)
+    least += time_between(stops[k - 1], stops[k], settings.motion);
+  const double frames = std::min(least, settings.seconds) * settings.frames_per_second;
+  if (frames < frames_most) return;
+  fail(
+      "a tour of {:.2g} frames or more, and {:.0e} fit: go faster, for less time or at fewer frames a second",
+      frames, frames_most);
 }
 
 }  // namespace
@@ -322,28 +358,16 @@ double metre_of(std::span<const Camera> cameras) {
 std::vector<Camera> tour(std::span<const Camera> cameras, const TourSettings& settings) {
   check(settings);
   const std::vector<Camera> heads = heads_of(cameras);
-  if (heads.size() < 2) fail("a tour needs two places or more to go through, and here is {}", heads.size());
-  std::vector<Stop> stops = stops_of(heads, settings.units_per_metre);
-  if (stops.size() < 2) {
-    fail("a tour needs two cameras apart: all {} lie within {} m and {} degrees, at {} world units a metre",
-         heads.size(), same_metres, same_degrees, settings.units_per_metre);
-  }
-  order_greedily(stops);
-  shorten(stops);
-  const Motion& motion = settings.motion;
-  double least = 0.0;  // s
-  for (std::size_t k = 1; k < stops.size(); ++k) least += time_between(stops[k - 1], stops[k], motion);
-  if (!(least * settings.frames_per_second < frames_most)) {
-    fail("a tour of {:.2g} frames or more, and {:.0e} fit: go faster, or with fewer frames a second",
-         least * settings.frames_per_second, frames_most);
-  }
-  std::vector<Sample> samples = samples_of(knots_of(stops), motion);
-  time_samples(samples, motion);
-  const double frames = samples.back().time * settings.frames_per_second;
+  const std::vector<Stop> stops = ordered_stops(heads, settings.units_per_metre);
+  check_length(stops, settings);
+  std::vector<Sample> samples = samples_of(knots_of(stops), settings.motion, settings.seconds);
+  time_samples(samples, settings.motion);
   std::vector<Camera> out;
   std::size_t next = 1;
-  for (std::size_t n = 0; n == 0 || static_cast<double>(n) <= frames; ++n) {
+  for (std::size_t n = 0;; ++n) {
     const double time = static_cast<double>(n) / settings.frames_per_second;
+    // A frame that begins with the last moment is no part of so many seconds.
+    if (n > 0 && (time > samples.back().time || time > settings.seconds - 1e-9)) break;
     while (next + 1 < samples.size() && samples[next].time < time) ++next;
     const Stop stop = between(samples[next - 1], samples[next], time);
     Camera& camera = out.emplace_back(heads[0]);

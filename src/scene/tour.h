@@ -1,7 +1,7 @@
 #pragma once
 // A head that goes through a model's cameras: paths for videos, and to measure on what moves.
 
-#include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +29,8 @@ double metre_of(std::span<const Camera> cameras);
 struct TourSettings {
   Motion motion;
   double frames_per_second = 90.0;
-  double units_per_metre = 1.0;  // world units
+  double units_per_metre = 1.0;                              // world units
+  double seconds = std::numeric_limits<double>::infinity();  // of the tour: at most the first so many
 };
 
 /// The cameras of a head that goes through all of `cameras`, from the first on, each next the nearest that is

@@ -180,6 +180,20 @@ TEST(Tour, FramesAreNamedAndTimed) {
   EXPECT_LT(glm::distance(frames[0].position, cameras[0].position), 1e-9);
 }
 
+TEST(Tour, FewerSecondsAreTheFirstOnes) {
+  TourSettings settings = settings_for("fast");
+  const Cameras all = tour(scattered(), settings);
+  for (const double seconds : {1e-3, 1.0, 2.0 / 3.0, 5.55, 1e3}) {
+    settings.seconds = seconds;
+    const Cameras some = tour(scattered(), settings);
+    ASSERT_EQ(some.size(), std::min(all.size(), static_cast<std::size_t>(std::ceil(90.0 * seconds - 1e-6))));
+    for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(some[k].position, all[k].position) << k;
+  }
+  settings.motion.metres_per_second = 1e-9;  // all of it would not fit
+  settings.seconds = 1.0;
+  EXPECT_EQ(tour(scattered(), settings).size(), 90u);
+}
+
 TEST(Tour, PassesThroughEveryCamera) {
   for (const char* name : {"calm", "walk", "fast"}) {
     for (const Cameras& cameras : {ring(12, 2.0), scattered()}) {
@@ -294,6 +308,23 @@ TEST(Tour, TheListsOrderDoesNotCount) {
   }
 }
 
+TEST(Tour, TheListsOrderDoesNotCountWhereTwoAreEquallyNear) {
+  const Cameras cameras = {camera_at({0, 0, 0}), camera_at({1, 0, 1}), camera_at({-1, 0, 1}),
+                           camera_at({1, 0, 2}), camera_at({-1, 0, 2})};
+  Cameras reversed = cameras;
+  std::reverse(reversed.begin() + 1, reversed.end());
+  const TourSettings settings = settings_for("walk");
+  EXPECT_EQ(tour(cameras, settings).back().position, tour(reversed, settings).back().position);
+}
+
+TEST(Tour, LooksFartherThanTheNextCamera) {
+  // Who always goes to the nearest goes to and fro, 19.5 m.
+  Cameras line;
+  for (const double x : {0.0, 1.0, -1.5, 4.0, -6.5}) line.push_back(camera_at({x, 0, 0}));
+  const TourSettings settings = settings_for("walk");
+  EXPECT_NEAR(length(tour(line, settings), settings), 14.5, 0.1);
+}
+
 TEST(Tour, IsMuchShorterThanTheListsOrder) {
   const TourSettings settings = settings_for("walk");
   Cameras grid;
@@ -379,9 +410,10 @@ TEST(Tour, ErrorsSayWhatIsMissing) {
     return test::fails_saying([&] { tour(cameras, settings); }, parts);
   };
   const Cameras cameras = ring(3, 1.0);
-  EXPECT_TRUE(refused({}, walk, {"two places"}));
-  EXPECT_TRUE(refused({cameras[0]}, walk, {"two places"}));
-  EXPECT_TRUE(refused({cameras[0], cameras[0]}, walk, {"two cameras apart", "1 world units a metre"}));
+  EXPECT_TRUE(refused({}, walk, {"two cameras or more, and there is 0", "--cameras", "--orbit"}));
+  EXPECT_TRUE(refused({cameras[0]}, walk, {"two cameras or more, and there is 1"}));
+  EXPECT_TRUE(refused(as_pairs({cameras[0]}), walk, {"two cameras or more, and there is 1"}));
+  EXPECT_TRUE(refused({cameras[0], cameras[0]}, walk, {"that lie apart", "1 world units a metre"}));
   for (const double wrong : {0.0, -1.0, std::nan(""), double{INFINITY}}) {
     TourSettings settings = walk;
     settings.motion.metres_per_second = wrong;
@@ -396,6 +428,9 @@ TEST(Tour, ErrorsSayWhatIsMissing) {
     settings.units_per_metre = wrong;
     EXPECT_TRUE(refused(cameras, settings, {"units a metre"}));
   }
+  TourSettings none = walk;
+  none.seconds = 0.0;
+  EXPECT_TRUE(refused(cameras, none, {"0 seconds"}));
   TourSettings snail = walk;
   snail.motion.metres_per_second = 1e-9;
   EXPECT_TRUE(refused(cameras, snail, {"go faster"}));
