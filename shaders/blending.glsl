@@ -8,6 +8,7 @@
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "lists.glsl"
+#include "tiles/places.glsl"
 #include "splats.glsl"  // binding 12
 
 #define LISTS_SHORT 0
@@ -15,6 +16,13 @@
 
 #ifndef SHOW
 #define SHOW SHOW_PICTURE
+#endif
+#ifndef LIGHT
+#define LIGHT 0  // 1: leaves the map of light for the next frame
+#endif
+#if LIGHT
+#include "light.glsl"
+layout(std430, binding = 10) writeonly buffer Light { uint light[]; };  // words: four a block
 #endif
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
@@ -102,6 +110,19 @@ bool are_done() {
   return all;
 }
 
+#if LIGHT
+void follow_light(uint at[AHEAD]);  // of the includer: after each of these
+
+float deepest(uint at[AHEAD]) {
+  float depth = 0.0;
+  for (uint k = 0u; k < AHEAD; ++k) depth = max(depth, batch_colour[at[k]].a);
+  return depth;
+}
+
+// The level after one.
+float next_level(float level, uint nth) { return nth + 1u < LIGHT_LEVELS ? level * float(LIGHT_STEP) : 0.0; }
+#endif
+
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
 void blend(uint at[AHEAD]) {
   float alpha[AHEAD][COLUMN];
@@ -166,6 +187,9 @@ void blend(uint at[AHEAD]) {
     }
     transmittance[p] = left;
   }
+#if LIGHT
+  follow_light(at);
+#endif
 }
 
 // Those that follow one another.
@@ -226,10 +250,22 @@ bool find_tile() {
   return LISTS != LISTS_SHORT || end - begin <= LONG_LIST || list_per_view != 0u;
 }
 
+// Where pixel p of this invocation is kept. A probe's tiles are kept side by side.
+uint place_of(View view, uint p) {
+  uvec2 at = first_pixel;
+  uint across = view.width;
+  if (is_probe(view)) {
+    uvec2 in_grid = tile_of(tile, view);
+    at += in_grid * uint(TILE_SIZE) - tile_corner(in_grid, view);
+    across = view.tiles_x * uint(TILE_SIZE);
+  }
+  return view.pixel_offset + (at.y + p) * across + at.x;
+}
+
 // The pixels of this invocation, of which the first lies `in_tile`.
 void begin_pixels(uvec2 in_tile) {
   View view = views[view_index];
-  uvec2 corner = tile_of(tile, view) * uint(TILE_SIZE);
+  uvec2 corner = tile_corner(tile_of(tile, view), view);
   middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
   first_pixel = corner + in_tile;
   pixel = vec2(first_pixel) - middle;
@@ -242,7 +278,7 @@ void begin_pixels(uvec2 in_tile) {
 #if RECORDS && CONTRAST != CONTRAST_OFF
     last[p] = vec3(0.0);
     if (inside && remembers != 0u) {
-      uint from = view.pixel_offset + (first_pixel.y + p) * view.width + first_pixel.x;
+      uint from = place_of(view, p);
       vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
       last[p] = colours[from].rgb + colours[from].a * background;
     }
@@ -257,7 +293,7 @@ void write_pixels() {
   View view = views[view_index];
   for (uint p = 0u; p < COLUMN; ++p) {
     if (first_pixel.x >= view.width || first_pixel.y + p >= view.height) continue;
-    uint to = view.pixel_offset + (first_pixel.y + p) * view.width + first_pixel.x;
+    uint to = place_of(view, p);
     float left = is_done(p) ? -least[p] : transmittance[p];
 #if SHOW == SHOW_PAIRS
     told[p] = float(end - begin);

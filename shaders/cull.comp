@@ -16,7 +16,8 @@ layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };  
 layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 #endif
 uniform uint view_begin;
-uniform uint view_end;
+uniform uint view_end;  // without the probe,
+uniform uint probed;    // of which view that is
 
 // What the next frame is to know of a Gaussian that this view does not draw: all the light again for one out of sight,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
@@ -52,6 +53,12 @@ uint key_of(uint i) {
     if (projected) splat = rounded(splat);  // or an eye could get what it has not alone
 #endif
     bool drawn = projected && touches_a_tile(splat, views[v]);
+#if PROBED
+    if (projected && !drawn && v == probed) {  // all of it that leaves a mark
+      splat.colour.w = visible_level(splat.opacity);
+      drawn = touches_a_tile(splat, views[exact_from]);
+    }
+#endif
     if (drawn) key = floatBitsToUint(splat.depth);
 #if RECORDS
     remember(page_first + i, v, projected, drawn, splat);

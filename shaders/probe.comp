@@ -1,31 +1,40 @@
-// After the blend: the squared error of a strip of a view against the same strip drawn exactly, summed for --quality. One
-// invocation a pixel.
+// After the blend: the squared error of a view in its probe's tiles, drawn exactly, summed for --quality. Both as 8 bits would
+// keep them, which is what is looked at. One invocation a pixel of those tiles.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
-layout(std430, binding = 1) buffer FrameCounters { Counters counters; };
-uniform uint pixel_count;
-uniform uint exact_first;
-uniform uint judged_first;
+layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 2) buffer FrameCounters { Counters counters; };
+uniform uint probe;  // a view
+uniform uint probed;
 uniform uint background_r, background_g, background_b;  // bits of floats
 
 shared float sums[THREADS];
 
+vec3 shown(uint pixel) {
+  vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
+  vec3 colour = colours[pixel].rgb + colours[pixel].a * background;
+  return floor(255.0 * clamp(colour, 0.0, 1.0) + 0.5) / 255.0;
+}
+
+float squared_error(uint nth) {
+  View exact = views[probe];
+  const uint side = uint(TILE_SIZE);
+  uint across = exact.tiles_x * side;
+  uvec2 kept = uvec2(nth % across, nth / across);
+  uvec2 at = kept / side * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + kept % side;
+  if (kept.y >= exact.tiles_y * side || at.x >= exact.width || at.y >= exact.height) return 0.0;
+  vec3 d = shown(exact.pixel_offset + kept.y * across + kept.x) - shown(views[probed].pixel_offset + at.y * exact.width + at.x);
+  return dot(d, d);
+}
+
 void main() {
-  uint pixel = thread_index();
   uint self = gl_LocalInvocationIndex;
-  sums[self] = 0.0;
-  if (pixel < pixel_count) {
-    vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
-    vec4 exact = colours[exact_first + pixel];
-    vec4 judged = colours[judged_first + pixel];
-    vec3 d = clamp(exact.rgb + exact.a * background, 0.0, 1.0) - clamp(judged.rgb + judged.a * background, 0.0, 1.0);
-    sums[self] = dot(d, d);
-  }
+  sums[self] = squared_error(thread_index());
   barrier();
   for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) {
     if (self < half_way) sums[self] += sums[self + half_way];

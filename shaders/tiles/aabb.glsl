@@ -12,9 +12,11 @@ uvec4 tile_box(Splat splat, View view) {
   precise float radius = ceil(3.0 * sqrt(lambda));
   precise vec2 low = (splat.mean - radius) / float(TILE_SIZE);
   precise vec2 high = (splat.mean + radius + float(TILE_SIZE - 1)) / float(TILE_SIZE);
+  // Of a probe those of its tiles that are among them.
+  vec2 step = vec2(tile_pitch(view) / uint(TILE_SIZE)), shift = vec2(tile_shift(view) / uint(TILE_SIZE));
   vec2 grid = vec2(view.tiles_x, view.tiles_y);
-  uvec2 first = uvec2(trunc(clamp(low, vec2(0.0), grid)));
-  uvec2 last = uvec2(trunc(clamp(high, vec2(0.0), grid)));
+  uvec2 first = uvec2(clamp(ceil((max(trunc(low), 0.0) - shift) / step), vec2(0.0), grid));
+  uvec2 last = uvec2(clamp(ceil((max(trunc(high), 0.0) - shift) / step), vec2(0.0), grid));
   return uvec4(first, max(first, last));
 }
 

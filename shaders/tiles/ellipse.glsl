@@ -23,8 +23,8 @@ uvec4 tile_box(Splat splat, View view) {
   if (!holds_a_centre(splat, view, level_extent(splat))) return uvec4(0u);
   vec3 c = covariance(splat);
   precise vec2 extent = sqrt(ellipse_outer_rho(rho) * c.xz) * 1.0001 + 0.01;
-  uvec2 columns = tile_span(splat.mean.x - extent.x, splat.mean.x + extent.x, view.tiles_x);
-  uvec2 rows = tile_span(splat.mean.y - extent.y, splat.mean.y + extent.y, view.tiles_y);
+  uvec2 columns = tile_columns(splat.mean.x - extent.x, splat.mean.x + extent.x, view);
+  uvec2 rows = tile_rows(splat.mean.y - extent.y, splat.mean.y + extent.y, view);
   // Of tall ones beside the picture no row need be asked.
   vec2 at;
   if (rows.y - rows.x > TALL_ROWS && lowest_level(splat, view, at) > ellipse_outer_rho(rho)) return uvec4(0u);
@@ -35,14 +35,14 @@ uint likely_row(Splat splat, View view, uvec4 box) {
   if (box.w - box.y <= TALL_ROWS) return box.y;
   vec2 at;
   lowest_level(splat, view, at);
-  return clamp(uint(max(0.0, splat.mean.y + at.y)) / uint(TILE_SIZE), box.y, box.w - 1u);
+  return clamp(tile_rows(splat.mean.y + at.y, splat.mean.y + at.y, view).x, box.y, box.w - 1u);
 }
 
 uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   float rho = splat.colour.w;
   precise float outer = ellipse_outer_rho(rho);
   vec3 c = covariance(splat);
-  float low = tile_low(uvec2(0u, row)).y - splat.mean.y;
+  float low = tile_low(uvec2(0u, row), view).y - splat.mean.y;
   float high = tile_high(uvec2(0u, row), view).y - splat.mean.y;
   // Where the ellipse reaches furthest to the right and, mirrored, to the left; then the nearest heights in this row.
   precise float apex = c.y * sqrt(outer / c.x);
@@ -53,7 +53,7 @@ uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   precise float left = lean * left_y - sqrt(max(0.0, (outer - left_y * left_y / c.z) * width));
   precise float right = lean * right_y + sqrt(max(0.0, (outer - right_y * right_y / c.z) * width));
   precise float slack = 0.01 + 1e-5 * (abs(left) + abs(right));
-  uvec2 columns = tile_span(splat.mean.x + left - slack, splat.mean.x + right + slack, view.tiles_x);
+  uvec2 columns = tile_columns(splat.mean.x + left - slack, splat.mean.x + right + slack, view);
   columns = clamp(columns, box.xx, box.zz);
   // Where a slightly smaller ellipse reaches, too, the test would say yes.
   precise float inner = ellipse_inner_rho(rho);
@@ -63,14 +63,14 @@ uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   if (min(room.x, room.y) > 0.0) {
     precise float first = lean * left_y - sqrt(room.x * width) + slack;
     precise float last = lean * right_y + sqrt(room.y * width) - slack;
-    if (splat.mean.x + first <= float(view.width - 1u)) sure = tile_span(splat.mean.x + first, splat.mean.x + last, view.tiles_x);
+    if (splat.mean.x + first <= float(view.width - 1u)) sure = tile_columns(splat.mean.x + first, splat.mean.x + last, view);
   }
   while (columns.x < columns.y && !(columns.x >= sure.x && columns.x < sure.y) &&
-         !ellipse_touches(splat, rho, tile_low(uvec2(columns.x, row)), tile_high(uvec2(columns.x, row), view))) {
+         !ellipse_touches(splat, rho, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {
     ++columns.x;
   }
   while (columns.x < columns.y && !(columns.y > sure.x && columns.y <= sure.y) &&
-         !ellipse_touches(splat, rho, tile_low(uvec2(columns.y - 1u, row)), tile_high(uvec2(columns.y - 1u, row), view))) {
+         !ellipse_touches(splat, rho, tile_low(uvec2(columns.y - 1u, row), view), tile_high(uvec2(columns.y - 1u, row), view))) {
     --columns.y;
   }
   return columns;

@@ -39,8 +39,8 @@ uvec4 tile_box(Splat splat, View view) {
   OrientedBox box = oriented_box(splat);
   vec2 a = abs(box.axis);
   precise vec2 outer = 1.001 * vec2(box.extent.x * a.x + box.extent.y * a.y, box.extent.x * a.y + box.extent.y * a.x) + 0.01;
-  uvec2 columns = tile_span(splat.mean.x - outer.x, splat.mean.x + outer.x, view.tiles_x);
-  uvec2 rows = tile_span(splat.mean.y - outer.y, splat.mean.y + outer.y, view.tiles_y);
+  uvec2 columns = tile_columns(splat.mean.x - outer.x, splat.mean.x + outer.x, view);
+  uvec2 rows = tile_rows(splat.mean.y - outer.y, splat.mean.y + outer.y, view);
   return uvec4(columns.x, rows.x, columns.y, rows.y);
 }
 
@@ -56,7 +56,7 @@ uint likely_row(Splat splat, View view, uvec4 box) { return box.y; }
 uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   OrientedBox oriented = oriented_box(splat);
   // Where the box's strips leave room for a tile's middle, a little too wide; then the test itself from both ends.
-  float y = 0.5 * (tile_low(uvec2(0u, row)).y + tile_high(uvec2(0u, row), view).y) - splat.mean.y;
+  float y = 0.5 * (tile_low(uvec2(0u, row), view).y + tile_high(uvec2(0u, row), view).y) - splat.mean.y;
   float tile = float(TILE_SIZE);
   vec2 a = abs(oriented.axis);
   float size = tile * (a.x + a.y);
@@ -64,13 +64,13 @@ uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   vec2 across = strip(vec2(-oriented.axis.y, oriented.axis.x), y, oriented.extent.y + size);
   vec2 room = vec2(max(along.x, across.x), min(along.y, across.y));
   float slack = tile + 1e-4 * (abs(room.x) + abs(room.y));
-  uvec2 columns = tile_span(splat.mean.x + room.x - slack, splat.mean.x + room.y + slack, view.tiles_x);
+  uvec2 columns = tile_columns(splat.mean.x + room.x - slack, splat.mean.x + room.y + slack, view);
   columns = clamp(columns, box.xx, box.zz);
   while (columns.x < columns.y &&
-         !box_touches(splat, oriented, tile_low(uvec2(columns.x, row)), tile_high(uvec2(columns.x, row), view))) {
+         !box_touches(splat, oriented, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {
     ++columns.x;
   }
-  while (columns.x < columns.y && !box_touches(splat, oriented, tile_low(uvec2(columns.y - 1u, row)),
+  while (columns.x < columns.y && !box_touches(splat, oriented, tile_low(uvec2(columns.y - 1u, row), view),
                                                tile_high(uvec2(columns.y - 1u, row), view))) {
     --columns.y;
   }

@@ -1,10 +1,11 @@
 // The box around the ellipse where alpha reaches Th (SnugBox of Speedy-Splat) against the tile's pixel centres, touching
 // counts: makes every pair that can be seen, and those of the box's corners besides.
 
-// The tiles of a span whose pixel centres reach within `extent` of the mean: `span` is a little too large.
-uvec2 snug_span(uvec2 span, float mean, float extent, uint pixels) {
-  while (span.x < span.y && float(min(span.x * uint(TILE_SIZE) + uint(TILE_SIZE - 1), pixels - 1u)) - mean < -extent) ++span.x;
-  while (span.x < span.y && float((span.y - 1u) * uint(TILE_SIZE)) - mean > extent) --span.y;
+// The tiles of a span along an axis whose pixel centres reach within `extent` of the mean: `span` is a little too large.
+uvec2 snug_span(uvec2 span, int axis, Splat splat, float extent, View view) {
+  float mean = splat.mean[axis];
+  while (span.x < span.y && tile_high(span.xx, view)[axis] - mean < -extent) ++span.x;
+  while (span.x < span.y && tile_low(uvec2(span.y - 1u), view)[axis] - mean > extent) --span.y;
   return span;
 }
 
@@ -12,10 +13,10 @@ uvec4 tile_box(Splat splat, View view) {
   vec2 extent = level_extent(splat);
   if (!holds_a_centre(splat, view, extent)) return uvec4(0u);
   precise vec2 outer = 1.001 * extent + 0.01;
-  uvec2 columns = tile_span(splat.mean.x - outer.x, splat.mean.x + outer.x, view.tiles_x);
-  uvec2 rows = tile_span(splat.mean.y - outer.y, splat.mean.y + outer.y, view.tiles_y);
-  columns = snug_span(columns, splat.mean.x, extent.x, view.width);
-  rows = snug_span(rows, splat.mean.y, extent.y, view.height);
+  uvec2 columns = tile_columns(splat.mean.x - outer.x, splat.mean.x + outer.x, view);
+  uvec2 rows = tile_rows(splat.mean.y - outer.y, splat.mean.y + outer.y, view);
+  columns = snug_span(columns, 0, splat, extent.x, view);
+  rows = snug_span(rows, 1, splat, extent.y, view);
   return uvec4(columns.x, rows.x, columns.y, rows.y);
 }
 

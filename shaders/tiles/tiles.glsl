@@ -8,21 +8,32 @@
 #include "shared/types.h"
 
 #include "lists.glsl"
+#include "tiles/places.glsl"
 #include "tiles/level.glsl"
 
-// First and one-past-last tile along an axis for pixels [low, high]; beyond the grid is cut off. Clamped as floats, since
-// int() of a huge float is anything.
-uvec2 tile_span(float low, float high, uint tiles) {
-  float first = clamp(ceil((low - float(TILE_SIZE - 1)) / float(TILE_SIZE)), 0.0, float(tiles));
-  float last = clamp(floor(high / float(TILE_SIZE)), -1.0, float(tiles) - 1.0);
+// First and one-past-last tile along an axis for pixels [low, high] from where the first tile begins; beyond the grid is cut
+// off. Clamped as floats, since int() of a huge float is anything.
+uvec2 tile_span(float low, float high, uint pitch, uint tiles) {
+  float first = clamp(ceil((low - float(TILE_SIZE - 1)) / float(pitch)), 0.0, float(tiles));
+  float last = clamp(floor(high / float(pitch)), -1.0, float(tiles) - 1.0);
   return uvec2(uint(first), max(uint(first), uint(last + 1.0)));
 }
 
+uvec2 tile_columns(float low, float high, View view) {
+  uvec2 shift = tile_shift(view);
+  return tile_span(low - float(shift.x), high - float(shift.x), tile_pitch(view), view.tiles_x);
+}
+
+uvec2 tile_rows(float low, float high, View view) {
+  uvec2 shift = tile_shift(view);
+  return tile_span(low - float(shift.y), high - float(shift.y), tile_pitch(view), view.tiles_y);
+}
+
 // The first and the last pixel centre of a tile, the last one clipped to the picture.
-vec2 tile_low(uvec2 tile) { return vec2(tile * uint(TILE_SIZE)); }
+vec2 tile_low(uvec2 tile, View view) { return vec2(tile_corner(tile, view)); }
 
 vec2 tile_high(uvec2 tile, View view) {
-  return vec2(min(tile * uint(TILE_SIZE) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u)));
+  return vec2(min(tile_corner(tile, view) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u)));
 }
 
 // C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
@@ -134,10 +145,12 @@ uint touched_lists(Splat splat, View view, uvec4 box) {
 
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
+  if (!is_probe(view)) {
   // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these.
   vec2 d = clamp(round(splat.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u)) - splat.mean;
   float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
   if (q <= ellipse_inner_rho(splat.colour.w)) return true;
+  }
 #endif
   uvec4 box = tile_box(splat, view);
   uint likely = likely_row(splat, view, box);

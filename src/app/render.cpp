@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "app/calibrated.h"
@@ -16,6 +17,7 @@
 #include "app/render_outputs.h"
 #include "app/render_report.h"
 #include "app/shots.h"
+#include "app/tour.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/cameras_file.h"
@@ -78,25 +80,12 @@ render::DepthTable depth_table(render::Frame& frame, const RenderOptions& option
   return measure::measure_depth_table(frame, views);
 }
 
-// Where there is no path the frames of a view have no time to find their loss: some go ahead that see all of
-// it, until the loss stays where it is.
-void settle(render::Frame& frame, const std::vector<shared::View>& views, render::FrameSettings settings) {
-  constexpr int frames_min = 6, frames_max = 24;
-  constexpr float still = 0.02f;
-  settings.probe_strips = 1;
-  float last = 0.0f;
-  for (int n = 0; n < frames_max; ++n) {
-    const float loss = frame.draw(views, settings).loss;
-    if (n >= frames_min && std::abs(loss - last) < still * last) break;
-    last = loss;
-  }
-}
-
 // Draws every shot options.frames times and writes its last frame.
 void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> shots, const CameraList& list,
               Model& model, std::optional<FollowedLevels>& followed, RenderReport& report) {
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
+  if (!along_path(options)) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
   render::Frame frame(context, report.model, settings.precision);
   stereo::Show show(context, report.model);
   const CalibratedSettings calibrated(options, report.model);
@@ -109,7 +98,6 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    if (options.quality && options.path.empty()) settle(frame, views, settings);
     const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
     if (followed) drawn.levels = followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < options.frames; ++n) {
@@ -159,6 +147,7 @@ ExitCode render(RenderOptions options) {
   const auto saved = saved_camera(options);
   if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
   CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
+  if (options.tour) go_on_tour(options, !plan.video.empty(), list);
   options.photos = photos_folder(options, list);
   std::optional<FollowedLevels> followed;
   if (options.detail) {
@@ -202,7 +191,9 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --eye 0,-1.6,3 --at 0,-1,0 --convergence 2\n"
       "  binosplat render scaffold-model --decode cyclopean\n"
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
-      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4");
+      "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
+      "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
+      "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, &command] { command = [options] { return render(*options); }; });
 }
 

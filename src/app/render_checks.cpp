@@ -40,6 +40,28 @@ void check_threshold(const RenderOptions& o) {
   }
 }
 
+void check_cameras(const RenderOptions& o) {
+  if (o.eye.has_value() != o.at.has_value())
+    fail("--eye and --at go together: where the camera is, and what it looks at");
+  const bool made_up = o.eye || o.orbit;
+  if (o.eye && o.orbit) fail("--eye and --orbit: choose one of them");
+  if (made_up && (!o.cameras.empty() || !o.views.empty())) {
+    fail("{} makes its own camera: leave --cameras and --view out", o.eye ? "--eye" : "--orbit");
+  }
+  if (o.tour && (made_up || !o.path.empty() || !o.views.empty() || o.frames > 1)) {
+    fail(
+        "--tour goes through all cameras of the scene or of --cameras, each frame drawn once: leave --view, "
+        "--path, --eye, --orbit and --frames out");
+  }
+  if (o.tour && !o.photos.empty()) fail("--photos with --tour: between the cameras no photos were taken");
+  if (o.seconds && !o.tour) fail("--seconds is for --tour: how much of it is drawn");
+  if (!o.path.empty() && (made_up || !o.cameras.empty() || !o.views.empty() || o.frames > 1)) {
+    fail(
+        "--path names its own cameras, each drawn once: leave --cameras, --view, --eye, --orbit and --frames "
+        "out");
+  }
+}
+
 }  // namespace
 
 std::string threshold_name(const RenderOptions& o) {
@@ -55,6 +77,8 @@ std::string transmittance_name(const RenderOptions& o) {
 double units_per_metre(const RenderOptions& o) {
   return o.units_per_metre.value_or(o.saved ? o.saved->units_per_metre : 1.0);
 }
+
+bool along_path(const RenderOptions& o) { return o.tour || !o.path.empty(); }
 
 void check(const RenderOptions& o) {
   if (o.scene != demo_city_name && (o.seed || o.count)) {
@@ -77,18 +101,7 @@ void check(const RenderOptions& o) {
   }
   if (o.repeat.has_value() != o.spacing.has_value())
     fail("--repeat and --spacing go together: how many copies, and how far apart");
-  if (o.eye.has_value() != o.at.has_value())
-    fail("--eye and --at go together: where the camera is, and what it looks at");
-  const bool made_up = o.eye || o.orbit;
-  if (o.eye && o.orbit) fail("--eye and --orbit: choose one of them");
-  if (made_up && (!o.cameras.empty() || !o.views.empty())) {
-    fail("{} makes its own camera: leave --cameras and --view out", o.eye ? "--eye" : "--orbit");
-  }
-  if (!o.path.empty() && (made_up || !o.cameras.empty() || !o.views.empty() || o.frames > 1)) {
-    fail(
-        "--path names its own cameras, each drawn once: leave --cameras, --view, --eye, --orbit and --frames "
-        "out");
-  }
+  check_cameras(o);
   check_threshold(o);
   if (o.fov && o.preset == "headset")
     fail("--fov with --preset headset: the preset's lens has 100 degrees across");

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/option_checks.h"
+#include "app/tour.h"
 #include "base/error.h"
 #include "scene/axes.h"
 #include "shared/axes.h"
@@ -282,7 +283,7 @@ void add_outputs(CLI::App& sub, RenderOptions& o) {
       ->type_name("DIR|FILE")
       ->group(group);
   add_look(sub, o);
-  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30)")
+  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30) or of a tour")
       ->type_name("N")
       ->check(positive)
       ->group(group);
@@ -355,6 +356,7 @@ void add_options(CLI::App& sub, RenderOptions& options) {
                "Print PSNR against the finest levels, and between those before and\nafter each switch")
       ->group("Scene");
   add_cameras(sub, options);
+  add_tour_options(sub, options);
   add_rig(sub, options);
   add_frame(sub, options);
   add_outputs(sub, options);

@@ -11,6 +11,7 @@
 #include "base/image.h"
 #include "formats/detail.h"
 #include "formats/pose_file.h"
+#include "scene/tour.h"
 #include "shared/limits.h"
 
 namespace binosplat::app {
@@ -41,6 +42,8 @@ struct RenderOptions {
   // Cameras.
   std::string cameras;             // a file; empty: found beside the model
   std::string path;                // a file whose cameras are the frames of a path, instead
+  std::optional<Motion> tour;      // through the cameras, as a path
+  std::optional<double> seconds;   // of the tour; none: all
   std::vector<std::string> views;  // names, or "all"; empty: the first
   std::optional<glm::dvec3> eye, at, up;
   std::optional<double> fov;  // degrees
@@ -82,7 +85,7 @@ struct RenderOptions {
   std::string output;
   std::string layout;  // empty: by what -o names
   std::string show = "picture";
-  std::optional<double> fps;  // of a video; none: by the path's times
+  std::optional<double> fps;  // of a tour, or of a video; none: by the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
   std::string exr;
@@ -118,6 +121,9 @@ std::string transmittance_name(const RenderOptions& options);
 
 /// What --units-per-metre is: as given, as saved, or 1.
 double units_per_metre(const RenderOptions& options);
+
+/// Whether the views are the frames of one path, each drawn once and by what the last one measured.
+bool along_path(const RenderOptions& options);
 
 /// Throws Error for options that contradict each other.
 void check(const RenderOptions& options);

@@ -96,17 +96,16 @@ OutputPlan plan_video(const RenderOptions& options, const fs::path& output) {
   return plan;
 }
 
-// From the times of a path's cameras, where they are evenly spaced; 30 where they say nothing.
+// From the times of a path's cameras, where they are evenly spaced; the usual where they say nothing.
 double frames_a_second(const RenderOptions& options, const std::vector<Shot>& shots) {
-  constexpr double usual = 30.0;
   if (options.fps) return *options.fps;
   const auto& first = shots.front().eyes[0].camera.time;
   const auto& last = shots.back().eyes[0].camera.time;
-  if (shots.size() < 2 || !first || !last || !(*last > *first)) return usual;
+  if (shots.size() < 2 || !first || !last || !(*last > *first)) return video_fps;
   const double step = (*last - *first) / static_cast<double>(shots.size() - 1);
   for (std::size_t k = 1; k < shots.size(); ++k) {
     const auto &a = shots[k - 1].eyes[0].camera.time, &b = shots[k].eyes[0].camera.time;
-    if (!a || !b || std::abs(*b - *a - step) > 0.01 * step) return usual;
+    if (!a || !b || std::abs(*b - *a - step) > 0.01 * step) return video_fps;
   }
   return 1.0 / step;
 }
@@ -126,7 +125,8 @@ OutputPlan plan_outputs(const RenderOptions& options) {
   const std::string extension = lower_extension(output);
   const bool file = extension == ".png" || extension == ".exr";
   if (is_video(output)) return plan_video(options, output);
-  if (options.fps) fail("--fps is for videos: -o FILE.mp4, .mov, .mkv or .webm");
+  if (options.fps && !options.tour)
+    fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
   for (const char* other : {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp"}) {
     if (extension == other) fail("-o {}: pictures are written as .png or .exr", output.string());
   }

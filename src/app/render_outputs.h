@@ -25,6 +25,9 @@ struct OutputPlan {
   bool exr = false;
 };
 
+/// Frames a second of videos, where nothing says otherwise.
+constexpr double video_fps = 30.0;
+
 /// Where a scene's files go without -o: out/ and its name.
 std::filesystem::path default_folder(const std::string& scene);
 

@@ -68,7 +68,7 @@ Choice choose(const std::string& name, const CameraList& list, bool mono) {
 
 std::vector<Choice> chosen(const RenderOptions& options, const CameraList& list) {
   const bool everything =
-      !list.listed || !options.path.empty() || options.views == std::vector<std::string>{"all"};
+      !list.listed || along_path(options) || options.views == std::vector<std::string>{"all"};
   if (everything || options.views.empty()) {
     std::vector<Choice> choices = all_choices(list.cameras, !options.mono);
     if (everything || choices.size() == 1) return choices;
@@ -180,8 +180,8 @@ std::optional<SavedPose> find_saved(const RenderOptions& options) {
 
 std::optional<CameraList> saved_camera(const RenderOptions& options) {
   const RenderOptions& o = options;
-  const bool chosen = !o.cameras.empty() || !o.views.empty() || !o.path.empty() || !o.photos.empty() ||
-                      o.eye || o.orbit || o.up || o.fov;
+  const bool chosen = !o.cameras.empty() || !o.views.empty() || along_path(o) || !o.photos.empty() || o.eye ||
+                      o.orbit || o.up || o.fov;
   if (!o.saved || chosen) return std::nullopt;
   return CameraList{pose_path(o.scene).string(), {o.saved->camera}, true, o.saved->near_plane};
 }

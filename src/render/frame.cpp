@@ -29,6 +29,20 @@ FrameSettings with_lists(FrameSettings settings, std::uint64_t splats, bool has_
   return settings;
 }
 
+// Another attempt at a frame: the last one is the frame, all took their time.
+void add(FrameReport attempt, FrameReport& report) {
+  attempt.attempts += report.attempts;
+  attempt.redrawn += report.redrawn;
+  attempt.submit_ms += report.submit_ms;
+  attempt.total_ms += report.total_ms;
+  for (const gl::StageTime& before : report.stages) {
+    const auto same = std::find_if(attempt.stages.begin(), attempt.stages.end(),
+                                   [&](const gl::StageTime& s) { return s.name == before.name; });
+    if (same != attempt.stages.end()) same->ms += before.ms;
+  }
+  report = std::move(attempt);
+}
+
 }  // namespace
 
 Frame::Frame(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians)
@@ -54,11 +68,21 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
     model_buffers_.upload(dispatcher_.context(), model_, chosen.precision);
     recorded_shape_ = {};  // of Scaffold-GS what was kept is gone
   }
-  if (chosen.quality > 0.0f) {
-    const bool cut = !continues(last_shape_, shape_, last_median_depth_);
-    shape_ = make_shape(views, chosen, model_, loss_control_.next_probe(views, chosen));
-    shape_.settings.loss = loss_control_.next_loss(chosen, cut);
-  }
+  if (chosen.quality == 0.0f) return attempt();
+  if (!continues(last_shape_, shape_, last_median_depth_)) loss_control_.forget();
+  FrameReport report;
+  do {
+    const Probe probe = loss_control_.next_probe(views, chosen);
+    shape_ = make_shape(views, chosen, model_, probe);
+    shape_.settings.loss = loss_control_.next_loss(chosen);
+    add(attempt(), report);
+  } while (!loss_control_.holds());
+  report.quality = loss_control_.quality();
+  return report;
+}
+
+FrameReport Frame::attempt() {
+  const FrameSettings& chosen = shape_.settings;
   decide_measuring();
   if (model_buffers_.box) limit_keys(shape_, *model_buffers_.box);
   slots_ = std::max<std::int64_t>(slots_, shape_.slots);
@@ -74,6 +98,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   buffers_.block_amount.upload(std::vector{primitives::make_amount(blocks, groups_max)});
 
   FrameReport report;
+  report.attempts = 1;
   shared::Counters counters{};
   for (;;) {
     shape_.slots = static_cast<std::uint32_t>(slots_);
@@ -159,6 +184,14 @@ shared::Counters Frame::draw_once(FrameReport& report) {
 void Frame::decide_measuring() {
   const FrameSettings& s = shape_.settings;
   if (!measures(s.transmittance)) return;
+  if (s.transmittance == TRANSMITTANCE_MAP) {
+    shape_.remembers = recorded_shape_.lights && continues(recorded_shape_, shape_, last_median_depth_);
+    if (shape_.remembers) go_by_light(shape_, recorded_shape_, last_median_depth_);
+    ++since_recorded_;
+    shape_.lights = !shape_.remembers || since_recorded_ >= s.record_every ||
+                    !continues(recorded_shape_, shape_, last_median_depth_, 1.0 / 3.0);
+    return;
+  }
   shape_.remembers = remembers(recorded_shape_, shape_, last_median_depth_);
   since_cut_ = shape_.remembers ? since_cut_ + 1 : 0;
   ++since_recorded_;
@@ -169,9 +202,12 @@ void Frame::decide_measuring() {
 
 void Frame::keep_measurements(const shared::Counters& counters, FrameReport& report) {
   last_shape_ = shape_;
-  if (shape_.records || shape_.probe)
+  if (shape_.records || shape_.probe || shape_.lights)
     last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
-  if (shape_.records) {
+  if (shape_.lights) {
+    recorded_shape_ = shape_;
+    since_recorded_ = 0;
+  } else if (shape_.records) {
     recorded_shape_ = shape_;
     since_recorded_ = 0;
     std::swap(buffers_.upper, buffers_.upper_next);
@@ -182,10 +218,9 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   report.recorded = shape_.records;
   report.loss = shape_.settings.loss;
   report.remembered = shape_.remembers;
-  if (!shape_.probe) return;
-  if (shape_.remembers || !measures(shape_.settings.transmittance))
-    loss_control_.measured(probed_error(shape_, counters));
-  report.quality = loss_control_.quality();
+  if (shape_.probe)
+    loss_control_.measured(probed_error(shape_, counters),
+                           shape_.remembers || !measures(shape_.settings.transmittance));
 }
 
 void Frame::grow(const shared::Counters& counters) {

@@ -22,17 +22,19 @@ struct FrameReport {
   std::uint32_t order_groups = 0;
   std::uint32_t order_passes = 0;      // of the radix sort by depth, of an order group
   std::uint32_t tile_sort_passes = 0;  // of that by tile
-  int redrawn = 0;                     // times that buffers had to grow
-  std::vector<gl::StageTime> stages;   // GPU time of the last, complete drawing
-  double total_ms = 0;                 // their sum
-  double submit_ms = 0;                // CPU time of handing the last drawing to the driver
-  std::int64_t gpu_bytes = 0;          // in buffers, the model's included
-  int tile_size = 0;                   // px
+  int attempts = 0;  // with settings.quality: times it was drawn until that held; times are of all, what else
+                     // is told is of the last
+  int redrawn = 0;   // times that buffers had to grow
+  std::vector<gl::StageTime> stages;  // GPU time of the last, complete drawing
+  double total_ms = 0;                // their sum
+  double submit_ms = 0;               // CPU time of handing the last drawing to the driver
+  std::int64_t gpu_bytes = 0;         // in buffers, the model's included
+  int tile_size = 0;                  // px
   int list_tiles = 0;       // tiles along a side of a list: settings.list_tiles, or what the frame chose
   float loss = 0.0f;        // K or kappa that the frame went by
   bool remembered = false;  // it went by what an earlier frame measured
   bool recorded = false;    // it measured for later ones
-  double quality = 0.0;     // with settings.quality: the PSNR in dB that its probes so far tell of
+  double quality = 0.0;     // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
 };
 
 /// A Gaussian that a frame drew in a view, and the most light that reached it.
@@ -99,6 +101,7 @@ class Frame {
   const std::vector<shared::View>& views() const { return shape_.views; }
 
  private:
+  FrameReport attempt();
   shared::Counters draw_once(FrameReport& report);
   void grow(const shared::Counters& counters);
   void decide_measuring();

@@ -9,15 +9,21 @@ namespace binosplat::render {
 
 namespace {
 
-// A sample's weight after each further frame: what was seen 20 frames ago counts for a third.
-constexpr double fading = 0.95;
-// Before anything is measured, so many strips at the target; their weight falls faster.
-constexpr double start_weight = 2.0;
-constexpr double start_fading = 0.5;
-constexpr double step = 4.0 / 3.0;
+// What a view's probe weighs after each further one of that view.
+constexpr double fading = 0.8;
+// dB that frames aim at above what is asked for: the promise is of the worse view, and of single frames.
+constexpr double margin = 0.3;
+// dB below what is asked for at which a frame is drawn again; and after a cut, about what is aimed at.
+constexpr double miss = 0.75;
+constexpr double fresh_below = 0.3, fresh_above = 1.0;
+// Of what was expected: a probe beyond these shows another scene, not another part of it.
+constexpr double surprise_above = 2.5, surprise_below = 0.2;
+// Attempts at a frame: the last is exact; from the middle on one that is better than need be is good enough.
+constexpr int attempts_max = 8;
+// Of the loss: the most it changes by from one frame to the next and between attempts.
+constexpr double step_up = 1.1, step_down = 2.0, step_searching = 30.0;
+constexpr double slope_min = 1.0, slope_max = 12.0, slope_up_min = 3.0;
 constexpr double loss_min = 1e-9, loss_max = 1e9;
-
-double target_of(const FrameSettings& s) { return std::pow(10.0, -0.1 * s.quality); }
 
 // METHOD 8: losses that gave 40 dB or a little more on every shared scene at a focal length of 700 px. In
 // smaller pictures Gaussians are smaller, too, and fox asked for 0.027 (squared, last) at 160 px: less than
@@ -29,67 +35,147 @@ double careful_loss_at_40_db(const FrameSettings& s, double focal) {
   return (s.contrast == CONTRAST_BEHIND ? 0.008 : 0.1) * smaller;
 }
 
+bool same_rule(const FrameSettings& a, const FrameSettings& b) {
+  return a.quality == b.quality && a.th == b.th && a.contrast == b.contrast &&
+         a.transmittance == b.transmittance;
+}
+
 }  // namespace
 
-void LossControl::reset(const FrameSettings& settings) {
+void LossControl::forget() {
+  for (Estimate& view : views_) view.weight = 0.0;
+  fresh_ = true;
+}
+
+void LossControl::begin(const FrameSettings& settings) {
+  forget();
   settings_ = settings;
-  power_ = settings.th == TH_PERIPHERAL ? 2.0 : 1.3;
-  loss_ = careful_loss_at_40_db(settings, focal_) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / power_);
+  slope_ = settings.th == TH_PERIPHERAL ? 2.0 : 1.5;
+  loss_ = careful_loss_at_40_db(settings, focal_) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }
 
 Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
-  const std::uint32_t view = next_ % static_cast<std::uint32_t>(views.size());
-  focal_ = views[view].lens.y;
-  const std::uint32_t height = views[view].height;
-  const auto strips = std::min(static_cast<std::uint32_t>(settings.probe_strips), height);
-  const std::uint32_t rows = (height + strips - 1) / strips;
-  const std::uint32_t count = (height + rows - 1) / rows;
-  // A golden step, so that the first few strips lie all over the picture.
-  std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * count)));
-  while (std::gcd(stride, count) != 1) ++stride;
-  const std::uint32_t strip = next_ / static_cast<std::uint32_t>(views.size()) * stride % count;
-  const std::size_t all = views.size() * static_cast<std::size_t>(settings.probe_strips);
-  if (samples_.size() != all) {
-    samples_.assign(all, {});
+  if (views_.size() != views.size()) {
+    views_.assign(views.size(), {});
     fresh_ = true;
   }
-  probed_ = view * static_cast<std::size_t>(settings.probe_strips) + strip;
+  const auto count = static_cast<std::uint32_t>(views.size());
+  probe_ = {.view = next_ % count};
+  const shared::View& view = views[probe_.view];
+  focal_ = view.lens.y;
+  const auto side = static_cast<std::uint32_t>(settings.tile_size);
+  const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
+  // After a cut all of it.
+  const double wanted = std::max(1, settings.probe_tiles);
+  while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= static_cast<double>(across) * down)
+    ++probe_.step;
+  // A golden step, so that the places of a few probes are spread evenly.
+  const std::uint32_t places = probe_.step * probe_.step;
+  std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
+  while (std::gcd(stride, places) != 1) ++stride;
+  const std::uint32_t place = next_ / count * stride % places;
+  probe_.column = std::min(place % probe_.step, across - 1);
+  probe_.row = std::min(place / probe_.step, down - 1);
+  probe_tiles_ = static_cast<double>(across) * down / places;
   ++next_;
-  return {view, strip * rows, std::min(rows, height - strip * rows)};
+  return probe_;
 }
 
-double LossControl::error_at_one() const {
-  double sum = start_.weight * start_.error_at_one, weight = start_.weight;
-  for (const Sample& sample : samples_) {
-    sum += sample.weight * sample.error_at_one;
-    weight += sample.weight;
+float LossControl::next_loss(const FrameSettings& settings) {
+  if (holds_) {
+    attempts_ = 0;
+    bracket_ = {};
   }
-  return sum / weight;
-}
-
-float LossControl::next_loss(const FrameSettings& settings, bool cut) {
-  const bool other = settings.quality != settings_.quality || settings.th != settings_.th ||
-                     settings.contrast != settings_.contrast ||
-                     settings.transmittance != settings_.transmittance;
-  if (other || loss_ == 0.0) reset(settings);
-  if (other || cut || fresh_) {
-    for (Sample& sample : samples_) sample.weight = 0.0;
-    fresh_ = false;
-    start_ = {target_of(settings) / std::pow(loss_, power_), start_weight};
+  if (!same_rule(settings, settings_)) begin(settings);
+  exact_ = ++attempts_ == attempts_max;
+  if (exact_) return 0.0f;
+  const double before = loss_;
+  if (attempts_ > 1) {
+    loss_ = std::clamp(searched_loss(target()), loss_min, loss_max);
+  } else if (!fresh_) {
+    loss_ = std::clamp(followed_loss(target()), loss_min, loss_max);
   }
-  const double wanted = std::pow(target_of(settings) / std::max(error_at_one(), 1e-30), 1.0 / power_);
-  loss_ = std::clamp(std::clamp(wanted, loss_ / step, loss_ * step), loss_min, loss_max);
+  for (Estimate& view : views_) view.error *= std::pow(loss_ / before, slope_);
   return static_cast<float>(loss_);
 }
 
-void LossControl::measured(double squared_error) {
-  for (Sample& sample : samples_) sample.weight *= fading;
-  start_.weight *= start_fading;
-  samples_[probed_] = {squared_error / std::pow(loss_, power_), 1.0};
+// From one frame to the next.
+double LossControl::followed_loss(double target) const {
+  const double error = worst();
+  if (error <= 0.0) return loss_ * step_up;
+  const double slope = error > target ? slope_ : std::max(slope_, slope_up_min);
+  return loss_ * std::clamp(std::pow(target / error, 1.0 / slope), 1.0 / step_down, step_up);
+}
+
+// Between attempts at a frame.
+double LossControl::searched_loss(double target) const {
+  const Bracket& b = bracket_;
+  if (b.held > 0.0 && b.missed > 0.0) {
+    if (attempts_ > attempts_max - 2) return b.held;
+    double share = 0.5;  // of the way from the one to the other, by their logarithms
+    if (b.held_error > 0.0) share = std::log(target / b.held_error) / std::log(b.missed_error / b.held_error);
+    return b.held * std::pow(b.missed / b.held, std::clamp(share, 0.1, 0.9));
+  }
+  const double error = worst();
+  if (error <= 0.0) return loss_ * step_searching;
+  return loss_ * std::clamp(std::pow(target / error, 1.0 / slope_), 1.0 / step_searching, step_searching);
+}
+
+void LossControl::take(double squared_error) {
+  Estimate& view = views_[probe_.view];
+  const double expected = view.weight > 0.0 ? view.error : worst();
+  const bool surprises =
+      squared_error > surprise_above * expected || squared_error < surprise_below * expected;
+  if (fresh_ || attempts_ > 1 || surprises)
+    for (Estimate& any : views_) any.weight = 0.0;
+  view.weight *= fading;
+  view.error = (view.weight * view.error + probe_tiles_ * squared_error) / (view.weight + probe_tiles_);
+  view.weight += probe_tiles_;
+}
+
+// What two attempts at a frame say of the error's law about here.
+void LossControl::learn(double target) {
+  Bracket& b = bracket_;
+  const double error = worst(), before_loss = b.held > 0.0 ? b.held : b.missed,
+               before = b.held > 0.0 ? b.held_error : b.missed_error;
+  if (before > 0.0 && error > 0.0 && std::abs(std::log(loss_ / before_loss)) > 0.02)
+    slope_ = std::clamp(std::log(error / before) / std::log(loss_ / before_loss), slope_min, slope_max);
+  if (error > target && (b.missed == 0.0 || loss_ < b.missed)) {
+    b.missed = loss_;
+    b.missed_error = error;
+  } else if (error <= target && loss_ > b.held) {
+    b.held = loss_;
+    b.held_error = error;
+  }
+}
+
+void LossControl::measured(double squared_error, bool settled) {
+  if (exact_) {
+    holds_ = true;
+  } else {
+    take(squared_error);
+    const double above = quality() - settings_.quality;
+    if (!fresh_) {
+      holds_ = settled && above >= -miss;
+    } else {  // what is too good costs time only: not all attempts are for that
+      holds_ = settled && above >= margin - fresh_below &&
+               (above <= margin + fresh_above || attempts_ > attempts_max / 2);
+    }
+    if (settled && fresh_) learn(target());
+  }
+  if (holds_) fresh_ = false;
+}
+
+double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }
+
+double LossControl::worst() const {
+  double most = 0.0;
+  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, view.error) : most;
+  return most;
 }
 
 double LossControl::quality() const {
-  const double error = error_at_one() * std::pow(loss_, power_);
+  const double error = exact_ ? 0.0 : worst();
   return error > 0.0 ? -10.0 * std::log10(error) : std::numeric_limits<double>::infinity();
 }
 

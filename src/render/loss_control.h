@@ -10,43 +10,69 @@
 
 namespace binosplat::render {
 
-/// Chooses the loss of each frame. A rule's mean squared error grows as a power of its loss (METHOD 8:
-/// kappa^1.3, K^2), so what one strip of a view cost at one loss says what it would cost at another. The
-/// strips of all views are probed in turn, recent ones count for more, and the loss is set to where their
-/// mean meets the target. It starts with a loss that is careful on our scenes and moves by at most a third a
-/// frame.
+/// Chooses the loss of each frame by what probes of it and of those before showed: tiles evenly spread over a
+/// view, in turn over all views and all of their tiles. The view that errs most must keep the promise. A
+/// rule's mean squared error grows as a power of its loss (METHOD 8: kappa^1.3, K^2 on trained scenes;
+/// kappa^10 where thousands of like Gaussians go at once), which each search after a cut finds anew; so the
+/// loss falls at once and rises carefully.
+///
+/// A frame that does not hold is to be drawn again: one after a cut, of which nothing was known, or one whose
+/// probe shows what nobody could foresee. Each attempt is
+///   next_probe(), next_loss(), the drawing, measured(), and again unless holds().
 class LossControl {
  public:
-  /// The strip that the next frame of these views draws exactly, too.
+  /// What was measured so far is of other views. The loss stays, as a first guess.
+  void forget();
+
+  /// The tiles that the next attempt draws exactly, too: after a cut more of them.
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
 
-  /// The loss for a frame; `cut`: what was measured so far is of other views.
-  float next_loss(const FrameSettings& settings, bool cut);
+  /// The loss for the next attempt.
+  float next_loss(const FrameSettings& settings);
 
-  /// What that frame's probe showed: the mean squared error over its pixels and channels. Not for a frame
-  /// that went by no measurement while its successors will: it errs less than they do.
-  void measured(double squared_error);
+  /// What its probe showed: the mean squared error over its pixels and channels. `settled`: the frame went by
+  /// all that its successors will go by.
+  void measured(double squared_error, bool settled);
 
-  /// PSNR in dB that the frames come to at the loss last given, as far as is known; infinite for no error.
+  /// Whether the last attempt is the frame.
+  bool holds() const { return holds_; }
+
+  /// PSNR in dB of the view that errs most, at the loss last given, as far as is known; infinite for no
+  /// error.
   double quality() const;
 
  private:
-  struct Sample {
-    double error_at_one = 0.0;  // squared error, scaled to a loss of 1
-    double weight = 0.0;
+  struct Estimate {
+    double error = 0.0;   // squared error of a view at the loss last given: mean of what was seen,
+    double weight = 0.0;  // of so many tiles, fewer the longer ago
   };
-  void reset(const FrameSettings& settings);
-  double error_at_one() const;
+  // Of the attempts at one frame: the largest loss seen to hold and the smallest seen to miss, and what they
+  // cost.
+  struct Bracket {
+    double held = 0.0, held_error = 0.0;
+    double missed = 0.0, missed_error = 0.0;
+  };
+  void begin(const FrameSettings& settings);
+  double searched_loss(double target) const;
+  double followed_loss(double target) const;
+  void take(double squared_error);
+  void learn(double target);
+  double worst() const;  // of the estimates
+  double target() const;
 
   FrameSettings settings_;  // of the frames so far
-  double power_ = 1.0;      // squared error grows as loss^power_
-  double loss_ = 0.0;
-  double focal_ = 0.0;           // px
-  bool fresh_ = true;            // no sample counts yet
-  std::uint32_t next_ = 0;       // of the strips, in the order in which they are probed
-  std::size_t probed_ = 0;       // sample of the frame at hand
-  Sample start_;                 // stands for what is not measured yet
-  std::vector<Sample> samples_;  // (view, strip)
+  double slope_ = 1.0;      // squared error grows about as loss^slope_ here
+  double loss_ = 0.0;       // of the last attempt that was not exact
+  double focal_ = 0.0;      // px
+  bool fresh_ = true;       // no frame was kept since the cut
+  bool holds_ = true;
+  bool exact_ = false;  // the attempt at hand
+  int attempts_ = 0;    // at the frame at hand
+  Bracket bracket_;
+  std::uint32_t next_ = 0;    // of the probes, in their order
+  Probe probe_;               // of the attempt at hand
+  double probe_tiles_ = 0.0;  // of it
+  std::vector<Estimate> views_;
 };
 
 }  // namespace binosplat::render

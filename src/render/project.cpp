@@ -26,11 +26,13 @@ gl::Defines projecting(const FrameShape& shape) {
 // memory.
 void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views, const ModelBuffers& model,
           FrameBuffers& buffers) {
+  // A probe is asked with its view, unless it is alone in its group.
+  const std::uint32_t end = views.begin < shape.asked ? std::min(views.end, shape.asked) : views.end;
   // An invocation for each eye takes the time of one where a model does not fill the GPU. Elsewhere one
   // invocation asks both where one eye's answer makes the other's unnecessary.
   const bool asks_both = !shape.records && shape.gaussian_count >= fills_a_gpu;
   gl::Defines defines = projecting(shape);
-  defines.emplace_back("EYES", views.end - views.begin > 1 && !asks_both ? "2" : "1");
+  defines.emplace_back("EYES", end - views.begin > 1 && !asks_both ? "2" : "1");
   const gl::Program& program = dispatcher.context().program("cull.comp", defines);
   for (const ModelBuffers::Page& page : model.pages) {
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
@@ -39,6 +41,7 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"Kept", kept_of(page)},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
+                    {"Light", buffers.light},
                     {"DepthTable", buffers.depth_table},
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
@@ -47,12 +50,16 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"decoding_of_probe", shape.decoding_of_probe()},
                     {"asked", shape.asked},
                     {"view_begin", views.begin},
-                    {"view_end", views.end},
+                    {"view_end", end},
+                    {"probed", views.end > end ? shape.probe->view : MAX_VIEWS},
                     {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
                     {"exact_from", shape.asked},
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
                     {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
+                    {"last_first", static_cast<std::uint32_t>(shape.views.size() + shape.between.size())},
+                    {"moved_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.moved))},
+                    {"nearest_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.nearest))},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
 }
@@ -98,6 +105,7 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},
                          {"LIST_TILES", std::to_string(s.list_tiles)},
+                         {"PROBED", shape.probe ? "1" : "0"},
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"OFFSETS", std::to_string(shape.offset_count)}};
@@ -130,6 +138,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"FrameCounters", buffers.counters},
                     {"Tall", buffers.tall},
                     {"Upper", *buffers.upper},
+                    {"Light", buffers.light},
                     {"DepthTable", buffers.depth_table},
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
@@ -146,6 +155,9 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
                     {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
+                    {"last_first", static_cast<std::uint32_t>(shape.views.size() + shape.between.size())},
+                    {"moved_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.moved))},
+                    {"nearest_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.nearest))},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
   gl::Defines tall_defines = pair_defines(shape);

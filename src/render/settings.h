@@ -24,8 +24,11 @@ struct DepthTable {
   std::vector<float> upper;
 };
 
-/// Whether frames measure what their successors go by.
+/// Whether frames measure what their successors go by, and whether they do of each Gaussian.
 constexpr bool measures(int transmittance) { return transmittance >= TRANSMITTANCE_LAST; }
+constexpr bool measures_gaussians(int transmittance) {
+  return measures(transmittance) && transmittance != TRANSMITTANCE_MAP;
+}
 
 /// Frames after a cut until what they measure of themselves has settled: with a contrast seven, else three.
 constexpr int settling_frames = 8;
@@ -43,10 +46,11 @@ struct FrameSettings {
   int record_every = settling_frames;
   float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
   /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
-  /// dB. Each frame draws one strip of a view exactly, too, and the next loss follows from what that shows
-  /// (loss_control.h). A view has so many strips; with 1 a whole view is drawn twice.
+  /// dB, both as 8 bits would keep them: the PSNR of the view that errs most. Each frame draws some tiles of
+  /// a view exactly, too, and the next loss follows from what they show; a frame that misses is drawn again
+  /// (loss_control.h). About so many tiles; all of the view where it has no more.
   float quality = 0.0f;
-  int probe_strips = 16;
+  int probe_tiles = 256;
   /// The frame sums the weight alpha * T of each Gaussian over the pixels, for Frame::read_weights; the
   /// pictures are the same. Not with a measured transmittance.
   bool weigh = false;

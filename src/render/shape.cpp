@@ -26,8 +26,8 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   if (!(s.quality >= 0.0f) || !std::isfinite(s.quality))
     fail("--quality {}: expected dB, above zero", s.quality);
   if (s.quality > 0.0f && s.th == TH_TAU) fail("--quality {} with --th tau, which is exact", s.quality);
-  if (s.probe_strips < 1) fail("{} strips of a view to probe: expected at least one", s.probe_strips);
-  if (s.transmittance > TRANSMITTANCE_LAST && views % 2 != 0) {
+  if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
+  if (s.transmittance > TRANSMITTANCE_LAST && s.transmittance != TRANSMITTANCE_MAP && views % 2 != 0) {
     fail("--transmittance {}: only for both eyes together", transmittance_choices[s.transmittance].name);
   }
   if (s.th_eyes != TH_EYES_PER_EYE && views % 2 != 0) {
@@ -69,27 +69,34 @@ shared::View view_between(const shared::View& left, const shared::View& right) {
   return view;
 }
 
-shared::View probe_view(const shared::View& of, const Probe& probe) {
-  shared::View view = of;
-  view.lens.w -= static_cast<float>(probe.first_row);
-  view.height = probe.rows;
-  return view;
-}
-
-// Appends a view, in the last order group if it sees the same depths.
-void add_view(FrameShape& shape, shared::View view) {
+// Appends a view, or a probe of it, in the last order group if that sees the same depths.
+void add_view(FrameShape& shape, shared::View view, const Probe& tiles = {}, bool is_probe = false) {
   const auto tile = static_cast<std::uint32_t>(shape.settings.tile_size);
   const std::uint32_t v = shape.view_count();
   if (view.width == 0 || view.height == 0)
     fail("a view of {} x {} px has no picture", view.width, view.height);
-  view.tiles_x = (view.width + tile - 1) / tile;
-  view.tiles_y = (view.height + tile - 1) / tile;
+  const auto tiles_in = [&](std::uint32_t pixels, std::uint32_t first) {
+    const std::uint32_t all = (pixels + tile - 1) / tile;
+    return all <= first ? 0 : (all - first + tiles.step - 1) / tiles.step;
+  };
+  view.pitch = tiles.step * tile;
+  view.shift_x = tiles.column * tile;
+  view.shift_y = tiles.row * tile;
+  view.tiles_x = tiles_in(view.width, tiles.column);
+  view.tiles_y = tiles_in(view.height, tiles.row);
   view.list_offset = shape.list_count;
   view.pixel_offset = static_cast<std::uint32_t>(shape.pixel_count);
-  shape.pixel_count += std::int64_t{view.width} * view.height;
+  shape.pixel_count += is_probe ? std::int64_t{view.tiles_x} * view.tiles_y * tile * tile
+                                : std::int64_t{view.width} * view.height;
   if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
-  const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t tiles) {
-    return (tiles + side - 1) / side;
+  view.light_offset = is_probe ? NO_LIGHT : shape.light_count;
+  const auto blocks = [](std::uint32_t pixels, std::uint32_t level) {
+    return ((pixels + LIGHT_BLOCK - 1) / LIGHT_BLOCK + (1u << level) - 1) >> level;
+  };
+  for (std::uint32_t level = 0; level <= LIGHT_LEVEL_MAX && !is_probe; ++level)
+    shape.light_count += blocks(view.width, level) * blocks(view.height, level);
+  const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t along) {
+    return (along + side - 1) / side;
   };
   shape.list_count += lists(view.tiles_x) * lists(view.tiles_y);
   if (v == 0 || !same_depths(view, shape.views.back())) shape.groups.push_back({v, v});
@@ -155,7 +162,7 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   shape.asked = static_cast<std::uint32_t>(views.size());
   for (const shared::View& view : views) add_view(shape, view);
   shape.probe = probe;
-  if (probe) add_view(shape, probe_view(views[probe->view], *probe));
+  if (probe) add_view(shape, views[probe->view], *probe, true);
   if (settings.th_eyes == TH_EYES_CYCLOPEAN) {
     for (std::uint32_t v = 0; v < shape.asked; ++v) shape.views[v].th_view = shape.view_count() + v / 2;
     for (std::uint32_t v = 0; v < shape.asked; v += 2)

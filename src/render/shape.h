@@ -21,12 +21,13 @@ struct OrderGroup {
   std::uint32_t key_bits = 32;
 };
 
-/// Rows [first_row, first_row + rows) px of one of a frame's views, drawn exactly beside it to see what its
-/// loss costs.
+/// Tiles of one of a frame's views that are drawn exactly, too, to see what the frame's loss costs: one of
+/// every `step` x `step`, from the one in this column and row on.
 struct Probe {
   std::uint32_t view = 0;
-  std::uint32_t first_row = 0;
-  std::uint32_t rows = 0;
+  std::uint32_t step = 1;
+  std::uint32_t column = 0;
+  std::uint32_t row = 0;
 };
 
 /// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
@@ -36,16 +37,21 @@ struct FrameShape {
   double kernel_px2 = KERNEL_PX2;  // of the model
   bool antialiased = false;
   std::uint32_t gaussian_count = 0;
-  bool remembers = false;           // an earlier frame measured for this one
-  bool records = false;             // this one measures for those to come
+  bool remembers = false;          // an earlier frame measured for this one
+  bool records = false;            // this one measures for those to come
+  bool lights = false;             // this one leaves a map of light
+  std::vector<shared::View> last;  // of the frame that left the map of light
+  double moved = 0.0;    // px that what is one world unit away has moved since then, for the head's own move
+  double nearest = 0.0;  // world units: hardly anything that hides something is nearer
   std::uint32_t slots = 0;          // room for the Gaussians that one order group draws
   std::vector<shared::View> views;  // those asked for, then the probe's
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
   std::vector<shared::View> between;  // the eyes of each pair, with TH_EYES_CYCLOPEAN; not drawn
   std::vector<OrderGroup> groups;
-  std::uint32_t list_count = 0;  // lists of pairs, over all views
-  std::int64_t pixel_count = 0;  // over all views
+  std::uint32_t list_count = 0;   // lists of pairs, over all views
+  std::int64_t pixel_count = 0;   // over all views
+  std::uint32_t light_count = 0;  // blocks of the map of light, all its levels, over all views
   // Of Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made

@@ -308,6 +308,23 @@ TEST(Tour, TheListsOrderDoesNotCount) {
   }
 }
 
+TEST(Tour, TheListsOrderDoesNotCountWhereTwoAreEquallyNear) {
+  const Cameras cameras = {camera_at({0, 0, 0}), camera_at({1, 0, 1}), camera_at({-1, 0, 1}),
+                           camera_at({1, 0, 2}), camera_at({-1, 0, 2})};
+  Cameras reversed = cameras;
+  std::reverse(reversed.begin() + 1, reversed.end());
+  const TourSettings settings = settings_for("walk");
+  EXPECT_EQ(tour(cameras, settings).back().position, tour(reversed, settings).back().position);
+}
+
+TEST(Tour, LooksFartherThanTheNextCamera) {
+  // Who always goes to the nearest goes to and fro, 19.5 m.
+  Cameras line;
+  for (const double x : {0.0, 1.0, -1.5, 4.0, -6.5}) line.push_back(camera_at({x, 0, 0}));
+  const TourSettings settings = settings_for("walk");
+  EXPECT_NEAR(length(tour(line, settings), settings), 14.5, 0.1);
+}
+
 TEST(Tour, IsMuchShorterThanTheListsOrder) {
   const TourSettings settings = settings_for("walk");
   Cameras grid;

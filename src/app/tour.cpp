@@ -1,0 +1,91 @@
+#include "app/tour.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "app/option_checks.h"
+#include "app/render_outputs.h"
+#include "base/error.h"
+#include "base/log.h"
+
+namespace binosplat::app {
+
+namespace {
+
+constexpr double headset_fps = 90.0;
+
+// The name of a motion, or "1.5,45": metres and degrees a second.
+Motion parse_motion(const std::string& text) {
+  std::vector<std::string> names;
+  for (const Motion& motion : head_motions()) {
+    if (motion.name == text) return motion;
+    names.push_back(motion.name);
+  }
+  Motion motion{text};
+  char comma = 0;
+  std::istringstream in(text);
+  in >> motion.metres_per_second >> comma >> motion.degrees_per_second;
+  if (!in || comma != ',' || in.peek() != std::istringstream::traits_type::eof() ||
+      !(motion.metres_per_second > 0.0) || !(motion.degrees_per_second > 0.0)) {
+    fail("--tour {}: expected {}, or metres and degrees a second above 0, as in 1.5,45", text,
+         fmt::join(names, ", "));
+  }
+  return motion;
+}
+
+std::string motions_help() {
+  std::string lines;
+  for (const Motion& motion : head_motions())
+    lines += fmt::format("\n  {}: {} m and {} degrees a second", motion.name, motion.metres_per_second,
+                         motion.degrees_per_second);
+  return lines;
+}
+
+// --units-per-metre, where neither an option nor the scene tells.
+void estimate_metre(RenderOptions& options, const CameraList& list) {
+  if (options.units_per_metre || options.saved || options.scene.rfind("demo:", 0) == 0) return;
+  options.units_per_metre = metre_of(list.cameras);
+  log_info(
+      "--tour: {:.4g} world units count as a metre, for the eyes' distance, too: from each camera to the "
+      "next, in the median (--units-per-metre for another)",
+      *options.units_per_metre);
+}
+
+}  // namespace
+
+void add_tour_options(CLI::App& sub, RenderOptions& o) {
+  const char* const group = "Cameras";
+  sub.add_option_function<std::string>(
+         "--tour", [&o](const std::string& text) { o.tour = parse_motion(text); },
+         "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in metres "
+         "of "
+         "--units-per-metre, or else from camera\nto camera, in the median; M,DEG: at other speeds" +
+             motions_help())
+      ->type_name("calm|walk|fast|M,DEG")
+      ->group(group);
+  sub.add_option("--seconds", o.seconds, "The first S seconds of the tour (all)")
+      ->type_name("S")
+      ->check(positive)
+      ->group(group);
+}
+
+void go_on_tour(RenderOptions& options, bool video, CameraList& list) {
+  if (list.cameras.empty()) {
+    fail(
+        "--tour: no cameras beside {} to go through: name their file with --cameras, or go around the model "
+        "with --orbit",
+        options.scene);
+  }
+  estimate_metre(options, list);
+  if (!options.fps) options.fps = video ? video_fps : headset_fps;
+  const std::size_t count = list.cameras.size();
+  TourSettings settings{*options.tour, *options.fps, units_per_metre(options)};
+  settings.seconds = options.seconds.value_or(settings.seconds);
+  list.cameras = tour(list.cameras, settings);
+  log_info("--tour: through {} cameras of {} at up to {} m and {} degrees a second: {} frames, {:.3g} s{}",
+           count, list.source, settings.motion.metres_per_second, settings.motion.degrees_per_second,
+           list.cameras.size(), static_cast<double>(list.cameras.size()) / *options.fps,
+           options.seconds ? "" : " (--seconds S for the first S of them)");
+}
+
+}  // namespace binosplat::app
