@@ -94,10 +94,10 @@ Driven open(const StudyOptions& options) {
   driven.cameras = list.cameras;
   if (options.scene.units_per_metre) {
     driven.metre = {*options.scene.units_per_metre, "--units-per-metre"};
-  } else if (options.scene.path.empty()) {
+  } else if (options.scene.path.empty() && options.scene.scene.rfind("demo:", 0) != 0) {
     driven.metre = {metre_of(driven.cameras), "the cameras' distances"};
   } else {
-    driven.metre = {1.0, "nothing said otherwise"};
+    driven.metre = {1.0, "nothing says otherwise"};
   }
   driven.render.units_per_metre = driven.metre.units;
   driven.model = std::make_shared<const Model>(scene.model());
@@ -207,11 +207,9 @@ void print(const ordered_json& json) {
     print(at_target);
   }
   fmt::print(
-      "\nTrue: the worse eye's PSNR, of 8-bit pictures against exact ones, {:g} dB for equal ones; its mean, "
-      "its tenth "
-      "percentile and its worst over moving frames. Pairs, with a probe's, and ms: means over moving frames; "
-      "a frame's "
-      "ms is the median of {} rounds.\n",
+      "\nTrue: the worse eye's PSNR, of 8-bit pictures against exact ones, {:g} dB for equal ones; its mean,"
+      " tenth\npercentile and worst over moving frames. Pairs, with a probe's, times drawn, and ms of all of"
+      " these:\nmeans over moving frames; a frame's ms is the median of {} rounds.\n",
       study::equal_db, json["rounds"].dump());
   const study::Page page = study::motion_page(json);
   for (std::size_t k = 0; k < 2; ++k)

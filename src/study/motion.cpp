@@ -96,7 +96,7 @@ MovedPass Drive::judged(const MotionPath& path, const Variant& variant, float re
                         .pairs = static_cast<double>(report.pairs),
                         .exact_pairs = exact_.pairs(s, n),
                         .loss = report.loss,
-                        .drawn = 1 + report.redrawn});
+                        .drawn = report.attempts});
     }
   }
   summarise(path, pass);

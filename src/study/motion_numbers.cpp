@@ -51,7 +51,7 @@ std::vector<MovedFrame> frames_of(const MotionPath& path, const MovedFrames& fra
 MotionSummary summary_of(std::span<const MovedFrame> frames) {
   MotionSummary summary{.frames = frames.size()};
   if (frames.empty()) return summary;
-  std::vector<double> db, beyond, pairs, exact_pairs, ms;
+  std::vector<double> db, beyond, pairs, exact_pairs, drawn, ms;
   for (const MovedFrame& frame : frames) {
     db.push_back(frame.true_db());
     beyond.push_back(frame.told() - frame.true_db());
@@ -60,7 +60,7 @@ MotionSummary summary_of(std::span<const MovedFrame> frames) {
     ms.push_back(frame.ms);
     summary.equal +=
         std::all_of(frame.view_db.begin(), frame.view_db.end(), [](double d) { return std::isinf(d); });
-    summary.redrawn += frame.drawn > 1;
+    drawn.push_back(frame.drawn);
   }
   summary.true_db = mean(db);
   summary.tenth_db = quantile(db, 0.1);
@@ -70,6 +70,7 @@ MotionSummary summary_of(std::span<const MovedFrame> frames) {
                                          [](double a, double b) { return std::abs(a) < std::abs(b); });
   summary.pairs = mean(pairs);
   summary.removed = 1.0 - mean(pairs) / mean(exact_pairs);
+  summary.drawn = mean(drawn);
   summary.ms = mean(ms);
   return summary;
 }
@@ -83,9 +84,9 @@ ordered_json to_json(const MotionSummary& s) {
           {"told_minus_true_farthest_db", s.told_worst},
           {"pairs", s.pairs},
           {"pairs_removed", s.removed},
+          {"drawn", s.drawn},
           {"frame_ms", s.ms},
-          {"equal_frames", s.equal},
-          {"redrawn_frames", s.redrawn}};
+          {"equal_frames", s.equal}};
 }
 
 ordered_json to_json(const MovedFrames& frames) {

@@ -18,7 +18,7 @@ struct MovedFrame {
   double exact_pairs = 0.0;
   double loss = 0.0;
   double ms = 0.0;  // GPU time, by itself: the median of the rounds; 0 before any
-  int drawn = 1;    // times, until its buffers were large enough
+  int drawn = 1;    // times, until it held what it was asked for: ms are of all, the rest is of the last
 
   /// The worse eye's; for equal pictures equal_db of settings.h, which is in no case exceeded.
   double true_db() const;
@@ -38,9 +38,9 @@ struct MotionSummary {
   double told_worst = 0.0;   // the one of these that is farthest from 0
   double pairs = 0.0;
   double removed = 0.0;  // share of the exact frames' pairs, all frames together
+  double drawn = 0.0;    // times
   double ms = 0.0;
-  std::size_t equal = 0;    // frames whose pictures are equal
-  std::size_t redrawn = 0;  // frames that were drawn more than once
+  std::size_t equal = 0;  // frames whose pictures are equal
 };
 
 enum class MotionPart { lead, moving, stop };

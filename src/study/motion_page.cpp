@@ -212,26 +212,26 @@ Section times(const ordered_json& results, const ordered_json& path) {
 Table asked_table(const ordered_json& path) {
   Table table{
       {"rule", "true dB", "tenth dB", "worst dB", "told minus true dB", "farthest dB", "lead, worst dB",
-       "stop dB", "stop, worst dB", "pairs, M", "removed %", "frame ms", "of exact", "of `one`"},
+       "stop dB", "stop, worst dB", "pairs, M", "removed %", "drawn", "frame ms", "of exact", "of `one`"},
       {}};
   const ordered_json& exact = path["exact"]["moving"];
   table.rows.push_back({"exact", nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,
-                        millions(exact["pairs"]), 0.0, exact["frame_ms"], 1.0, nullptr});
+                        millions(exact["pairs"]), 0.0, 1.0, exact["frame_ms"], 1.0, nullptr});
   for (const ordered_json& rule : path["rules"]) {
     const ordered_json& one = rule["asked"];
     const ordered_json &moving = one["moving"], &lead = one["lead"], &stop = one["stop"];
     table.rows.push_back({rule["name"], moving["true_db"], moving["tenth_percentile_db"], moving["worst_db"],
                           moving["told_minus_true_db"], moving["told_minus_true_farthest_db"],
                           of_part(lead, "worst_db"), of_part(stop, "true_db"), of_part(stop, "worst_db"),
-                          millions(moving["pairs"]), percent(moving["pairs_removed"]), moving["frame_ms"],
-                          one["ms_of_exact"], one["ms_of_one"]});
+                          millions(moving["pairs"]), percent(moving["pairs_removed"]), moving["drawn"],
+                          moving["frame_ms"], one["ms_of_exact"], one["ms_of_one"]});
   }
   return table;
 }
 
 Table target_table(const ordered_json& path) {
   Table table{{"rule", "asked for dB", "true dB", "tenth dB", "worst dB", "pairs, M", "pairs of `one`",
-               "removed %", "frame ms", "of exact", "of `one`", "why not"},
+               "removed %", "drawn", "frame ms", "of exact", "of `one`", "why not"},
               {}};
   for (const ordered_json& rule : path["rules"]) {
     if (!rule.contains("at_target")) continue;
@@ -239,8 +239,8 @@ Table target_table(const ordered_json& path) {
     const ordered_json& moving = one["moving"];
     table.rows.push_back({rule["name"], one["request_db"], moving["true_db"], moving["tenth_percentile_db"],
                           moving["worst_db"], millions(moving["pairs"]), one["pairs_of_one"],
-                          percent(moving["pairs_removed"]), moving["frame_ms"], one["ms_of_exact"],
-                          one["ms_of_one"], one["problem"]});
+                          percent(moving["pairs_removed"]), moving["drawn"], moving["frame_ms"],
+                          one["ms_of_exact"], one["ms_of_one"], one["problem"]});
   }
   return table;
 }

@@ -45,7 +45,7 @@ TEST(MotionNumbers, SayWhatSeriesComeTo) {
   EXPECT_DOUBLE_EQ(s.removed, 0.5);
   EXPECT_EQ(s.ms, 3.0);
   EXPECT_EQ(s.equal, 1u);
-  EXPECT_EQ(s.redrawn, 1u);
+  EXPECT_EQ(s.drawn, 1.1);
   // Nothing that is not finite gets out.
   const nlohmann::ordered_json json = to_json(MovedFrames{frames});
   EXPECT_EQ(json.dump().find("null"), std::string::npos);

@@ -127,7 +127,7 @@ TEST(MotionPage, TablesNameWhatWasMeasured) {
   EXPECT_EQ(asked.rows[0][0], "exact");
   EXPECT_EQ(asked.rows[2][9], 1.0);    // M pairs
   EXPECT_EQ(asked.rows[2][10], 75.0);  // removed %
-  EXPECT_EQ(asked.rows[2][13], 0.5);   // of `one`
+  EXPECT_EQ(asked.rows[2][14], 0.5);   // of `one`
   for (const auto& row : asked.rows) EXPECT_EQ(row.size(), asked.columns.size());
 }
 
