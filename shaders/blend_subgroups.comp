@@ -1,9 +1,6 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_vote : require
-#if LIGHT
-#extension GL_KHR_shader_subgroup_shuffle : require
-#endif
 // Stage 6 where subgroups have 32 invocations: one work group a tile, a subgroup a block of it. Together they take the list's
 // next splats to shared memory and ask which blocks each reaches; then each subgroup blends those that reach its own. The bits
 // are those of blend.comp.
@@ -49,55 +46,6 @@ uint blocks_reached(Splat splat, vec2 mean) {
   }
   return bits;
 }
-
-#if LIGHT
-// A block of the map is some invocations of the subgroup, who all keep the same of it.
-#define LIGHT_LANES (LIGHT_BLOCK * LIGHT_BLOCK / COLUMN)
-uint light_nth = 0u;                    // the first level that more than LIGHT_SPARED of its pixels have more than
-float light_level = float(LIGHT_STEP);  // that level
-float light_depth = LIGHT_NEVER;        // of the level of this invocation's number in the block
-
-uvec2 light_block_in_subgroup() {
-  uint lane = gl_SubgroupInvocationID;
-  return uvec2(lane % BLOCK_WIDTH, lane / BLOCK_WIDTH * COLUMN) / uint(LIGHT_BLOCK);
-}
-
-uint light_lanes() {
-  uvec2 block = light_block_in_subgroup();
-  uint row = (1u << LIGHT_BLOCK) - 1u, rows = 0u;
-  for (uint y = 0u; y < LIGHT_BLOCK / COLUMN; ++y) rows |= row << (y * BLOCK_WIDTH);
-  return rows << (block.x * LIGHT_BLOCK + block.y * (LIGHT_BLOCK / COLUMN) * BLOCK_WIDTH);
-}
-
-void follow_light(uint at[AHEAD]) {
-  uint lanes = light_lanes();
-  for (;;) {
-    uint above = 0u;
-    for (uint p = 0u; p < COLUMN; ++p) above += bitCount(subgroupBallot(transmittance[p] > light_level).x & lanes);
-#ifdef V2
-    bool crossed = light_nth < LIGHT_LEVELS && above <= (light_nth == 0u ? 4u : light_nth == 1u ? 2u : 0u);
-#else
-    bool crossed = light_nth < LIGHT_LEVELS && above == 0u;
-#endif
-    if (!subgroupAny(crossed)) break;
-    if (!crossed) continue;
-    if (bitCount(lanes & gl_SubgroupLtMask.x) == light_nth) light_depth = deepest(at);
-    ++light_nth;
-    light_level = next_level(light_level, light_nth);
-  }
-}
-
-void write_light() {
-  View view = views[view_index];
-  uvec2 in_tile = uvec2(gl_SubgroupID % BLOCKS_ACROSS, gl_SubgroupID / BLOCKS_ACROSS) * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT);
-  uvec2 block = (tile_corner(tile_of(tile, view), view) + in_tile) / uint(LIGHT_BLOCK) + light_block_in_subgroup();
-  uint nth = bitCount(light_lanes() & gl_SubgroupLtMask.x);
-  float other = subgroupShuffleXor(light_depth, 1u);
-  uvec2 blocks = light_blocks(view, 0u);
-  if (is_probe(view) || block.x >= blocks.x || block.y >= blocks.y || nth >= LIGHT_LEVELS || nth % 2u != 0u) return;
-  light[4u * light_place(view, 0u, block) + nth / 2u] = light_word(light_depth / view.anchor.w, other / view.anchor.w);
-}
-#endif
 
 // The batch's splats that reach this subgroup's block, in order, and AHEAD that leave no mark: how many.
 uint list_own() {
@@ -163,7 +111,4 @@ void main() {
     if (blocks_done == BLOCKS) break;
   }
   write_pixels();
-#if LIGHT
-  write_light();
-#endif
 }

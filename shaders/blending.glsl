@@ -17,13 +17,6 @@
 #ifndef SHOW
 #define SHOW SHOW_PICTURE
 #endif
-#ifndef LIGHT
-#define LIGHT 0  // 1: leaves the map of light for the next frame
-#endif
-#if LIGHT
-#include "light.glsl"
-layout(std430, binding = 10) writeonly buffer Light { uint light[]; };  // words: four a block
-#endif
 
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
@@ -110,19 +103,6 @@ bool are_done() {
   return all;
 }
 
-#if LIGHT
-void follow_light(uint at[AHEAD]);  // of the includer: after each of these
-
-float deepest(uint at[AHEAD]) {
-  float depth = 0.0;
-  for (uint k = 0u; k < AHEAD; ++k) depth = max(depth, batch_colour[at[k]].a);
-  return depth;
-}
-
-// The level after one.
-float next_level(float level, uint nth) { return nth + 1u < LIGHT_LEVELS ? level * float(LIGHT_STEP) : 0.0; }
-#endif
-
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
 void blend(uint at[AHEAD]) {
   float alpha[AHEAD][COLUMN];
@@ -187,9 +167,6 @@ void blend(uint at[AHEAD]) {
     }
     transmittance[p] = left;
   }
-#if LIGHT
-  follow_light(at);
-#endif
 }
 
 // Those that follow one another.

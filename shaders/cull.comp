@@ -53,6 +53,9 @@ uint key_of(uint i) {
     if (projected) splat = rounded(splat);  // or an eye could get what it has not alone
 #endif
     bool drawn = projected && touches_a_tile(splat, views[v]);
+#if RECORDS
+    remember(page_first + i, v, projected, drawn, splat);
+#endif
 #if PROBED
     if (projected && !drawn && v == probed) {  // all of it that leaves a mark
       splat.colour.w = visible_level(splat.opacity);
@@ -60,9 +63,7 @@ uint key_of(uint i) {
     }
 #endif
     if (drawn) key = floatBitsToUint(splat.depth);
-#if RECORDS
-    remember(page_first + i, v, projected, drawn, splat);
-#else
+#if !RECORDS
     if (drawn) break;  // no need to ask the other eye
 #endif
   }

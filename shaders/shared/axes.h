@@ -21,7 +21,6 @@
 #define TRANSMITTANCE_LAST 2  // from here on measured by frames
 #define TRANSMITTANCE_OTHER_EYE 3
 #define TRANSMITTANCE_BOTH 4
-#define TRANSMITTANCE_MAP 5
 
 // --contrast: what that light is multiplied with, for --th squared.
 #define CONTRAST_OFF 0
@@ -103,7 +102,6 @@ inline constexpr Choice transmittance_choices[] = {
     {"last", "as the last frame measured it in the same eye"},
     {"other-eye", "as the last frame measured it in the other eye"},
     {"both", "the larger of the two"},
-    {"map", "as the last frame's picture left it, by place and depth"},
 };
 
 inline constexpr Choice contrast_choices[] = {

@@ -35,12 +35,6 @@
 // zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be measured again.
 #define UPPER_FLOOR 0.01
 #define UPPER_AGEING 1.25
-// The map of light (light.glsl): px of a block's side, levels of T, each a step below the one before and the
-// last none at all, and how often blocks are joined.
-#define LIGHT_BLOCK 4
-#define LIGHT_LEVELS 8u
-#define LIGHT_STEP 0.6
-#define LIGHT_LEVEL_MAX 5u
 // Blending weights alpha T are summed in steps of this: the least one that a pixel can blend, tau times the
 // least T, is more than one step, and the sum of a tile of 1,024 px fits a word.
 #define WEIGHT_SCALE 4194304.0

@@ -36,7 +36,7 @@ struct View {
   uint pitch;  // px from one of its tiles to the next: a tile's side, more in a probe, whose tiles lie apart
   uint shift_x;  // px, where its first tile begins
   uint shift_y;
-  uint light_offset;  // this view's first block in the frame's map of light (light.glsl); NO_LIGHT: a probe
+  uint is_probe;  // 1: only tiles that lie apart, drawn exactly
 };
 
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
@@ -82,7 +82,6 @@ struct Counters {
   uint tile_pairs;  // Gaussian-tile pairs wanted where lists are of several tiles, all views
 };
 
-#define NO_LIGHT 0xFFFFFFFFu     // light_offset of a probe
 #define KEPT_HIDDEN 0x80000000u  // among the bits of an anchor's Gaussians: not decoded, the last frame's
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
@@ -106,7 +105,7 @@ struct Amount {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(View) == 160 && offsetof(View, slopes) == 96 && offsetof(View, light_offset) == 156);
+static_assert(sizeof(View) == 160 && offsetof(View, slopes) == 96 && offsetof(View, is_probe) == 156);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);

@@ -4,17 +4,10 @@
 // size: sqrt(det C2), px^2; upper: T_upper, or W for `squared`, above 0; loss: K or kappa.
 // The program declares views[] and, in gaussians.glsl, what Gaussians there are, and this file goes by them.
 
-// 2 ln(sigma / tau), of what leaves a mark at all.
-float visible_level(float opacity) {
-  precise float rho = 1.3862943611198906 * log2(opacity / float(ALPHA_MIN));
-  return rho;
-}
-
-#include "threshold/upper.glsl"
-
 uniform uint loss_bits;   // --loss, a float's bits
 uniform uint exact_from;  // this view and those after it are exact
 
+#include "threshold/upper.glsl"
 #include "threshold/{TH_NAME}.glsl"
 
 float threshold_of(Splat splat, float upper) { return threshold(splat.conic.w, upper, uintBitsToFloat(loss_bits)); }
@@ -22,7 +15,7 @@ float threshold_of(Splat splat, float upper) { return threshold(splat.conic.w, u
 // Th of a Gaussian in view v, where it is `splat`. Eyes of a pair are views 2k and 2k + 1.
 float threshold_in(uint v, uint gaussian, Gaussian g, mat3 axes, Splat splat) {
   if (v >= exact_from) return float(ALPHA_MIN);
-  float own = threshold_of(splat, upper_of(gaussian, v, g, splat));
+  float own = threshold_of(splat, upper_of(gaussian, v, splat.depth));
 #if TH != TH_TAU && TH_EYES == TH_EYES_SHARED_MIN
 #if OFFSETS > 0
   // The other eye's own, where it has it.
@@ -33,16 +26,22 @@ float threshold_in(uint v, uint gaussian, Gaussian g, mat3 axes, Splat splat) {
 #endif
   Splat other;
   if (project(views[v ^ 1u], g, axes, other))
-    return min(own, threshold_of(other, upper_of(gaussian, v ^ 1u, g, other)));
+    return min(own, threshold_of(other, upper_of(gaussian, v ^ 1u, other.depth)));
 #elif TH != TH_TAU && TH_EYES == TH_EYES_CYCLOPEAN
   Splat between;
   if (project(views[views[v].th_view], g, axes, between)) {
     // The eye between was not drawn: it is taken to see what either eye sees.
-    float upper = max(upper_of(gaussian, v, g, between), upper_of(gaussian, v ^ 1u, g, between));
+    float upper = max(upper_of(gaussian, v, between.depth), upper_of(gaussian, v ^ 1u, between.depth));
     return threshold_of(between, upper);
   }
 #endif
   return own;
+}
+
+// The same for what leaves a mark at all.
+float visible_level(float opacity) {
+  precise float rho = 1.3862943611198906 * log2(opacity / float(ALPHA_MIN));
+  return rho;
 }
 
 // 2 ln(sigma / Th), the level of the tile tests; negative where no alpha reaches Th. `precise`: cull and project must agree.

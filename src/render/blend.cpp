@@ -10,7 +10,6 @@ namespace {
 struct Variant {
   bool records = false;
   bool weighs = false;
-  bool lights = false;
   int contrast = CONTRAST_OFF;
   int show = SHOW_PICTURE;
 };
@@ -41,7 +40,6 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
                                 {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                                 {"RECORDS", variant.records ? "1" : "0"},
                                 {"WEIGHS", variant.weighs ? "1" : "0"},
-                                {"LIGHT", variant.lights ? "1" : "0"},
                                 {"CONTRAST", std::to_string(variant.contrast)},
                                 {"SHOW", std::to_string(variant.show)}});
 }
@@ -61,8 +59,7 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.long_lists},
                       {"Measured", measured},
-                      {"Shown", buffers.shown},
-                      {"Light", buffers.light}},
+                      {"Shown", buffers.shown}},
                      {{"view_count", shape.view_count()},
                       {"remembers", shape.remembers ? 1u : 0u},
                       {"background_r", std::bit_cast<std::uint32_t>(background.r)},
@@ -74,16 +71,6 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
   draw(Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
   draw(Lists::of_short, gl::Work::of_groups(shape.tile_count()));
   dispatcher.wait_for_writes();
-}
-
-// The coarser levels of the map of light that the blend left.
-void light_levels(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  std::uint32_t groups = 0;
-  constexpr std::uint32_t side = LIGHT_BLOCK << LIGHT_LEVEL_MAX;
-  for (std::uint32_t v = 0; v < shape.asked; ++v)
-    groups += ((shape.views[v].width + side - 1) / side) * ((shape.views[v].height + side - 1) / side);
-  dispatcher.run(dispatcher.context().program("light_levels.comp"), gl::Work::of_groups(groups),
-                 {{"Views", buffers.views}, {"Light", buffers.light}}, {{"view_count", shape.asked}});
 }
 
 }  // namespace
@@ -99,12 +86,7 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
   }
   const FrameSettings& settings = shape.settings;
   run(dispatcher, shape, buffers,
-      {.records = shape.records,
-       .weighs = settings.weigh,
-       .lights = shape.lights,
-       .contrast = settings.contrast},
-      buffers.measured);
-  if (shape.lights) light_levels(dispatcher, shape, buffers);
+      {.records = shape.records, .weighs = settings.weigh, .contrast = settings.contrast}, buffers.measured);
 }
 
 void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what) {

@@ -166,7 +166,7 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   needs.model =
       shape.anchor_bytes + std::int64_t{decodings} * shape.gaussian_count *
                                (gaussian_bytes(precision) + harmonic_bytes(shape.degree, precision));
-  const bool measured = measures_gaussians(shape.settings.transmittance);
+  const bool measured = measures(shape.settings.transmittance);
   const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? shape.asked * 8 : 0);
   const bool shared_lists = shape.settings.list_tiles > 1;
@@ -189,7 +189,6 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       pair_offsets(context, "pair offsets"),
       upper(std::make_unique<gl::Buffer>(context, "remembered transmittance")),
       upper_next(std::make_unique<gl::Buffer>(context, "transmittance to remember")),
-      light(context, "map of light"),
       measured(context, "measured transmittance"),
       depth_table(context, "transmittance by depth"),
       splats(context, "splats"),
@@ -214,7 +213,6 @@ FrameBuffers::FrameBuffers(gl::Context& context)
 void FrameBuffers::upload(const FrameShape& shape) {
   std::vector<shared::View> all = shape.views;
   all.insert(all.end(), shape.between.begin(), shape.between.end());
-  all.insert(all.end(), shape.last.begin(), shape.last.end());
   views.upload(all);
   if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = shape.settings.depth_table.upper;
@@ -236,8 +234,7 @@ void FrameBuffers::reserve(const FrameShape& shape, std::int64_t pair_capacity,
     group->amounts.reserve(sizeof(primitives::SortAmounts));
     group->indices.reserve(slots * 4);
   }
-  if (measures(shape.settings.transmittance)) light.reserve(shape.light_count * 16LL);
-  if (measures_gaussians(shape.settings.transmittance)) {
+  if (measures(shape.settings.transmittance)) {
     upper->reserve(gaussians * shape.asked * 4);
     upper_next->reserve(gaussians * shape.asked * 4);
     measured.reserve(slots * shape.view_count() * 4);

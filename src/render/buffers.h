@@ -112,7 +112,6 @@ struct FrameBuffers {
   // while the last frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> upper;
   std::unique_ptr<gl::Buffer> upper_next;
-  gl::Buffer light;        // the map of light: four words a block
   gl::Buffer measured;     // uint by splat, bits of the largest float; two, low first, where weighed
   gl::Buffer depth_table;  // float by bin
 

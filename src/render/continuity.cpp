@@ -40,14 +40,6 @@ bool continues(const FrameShape& before, const FrameShape& now, double median_de
   return true;
 }
 
-void go_by_light(FrameShape& now, const FrameShape& before, double median_depth) {
-  now.last.assign(before.views.begin(), before.views.begin() + before.asked);
-  now.nearest = 0.5 * median_depth;
-  now.moved = 0.0;
-  for (std::size_t v = 0; v < now.asked; ++v)
-    now.moved = std::max(now.moved, double{before.views[v].lens.x} * moved(before.views[v], now.views[v]));
-}
-
 bool remembers(const FrameShape& before, const FrameShape& now, double median_depth) {
   return measures(before.settings.transmittance) && measures(now.settings.transmittance) &&
          before.settings.contrast == now.settings.contrast &&

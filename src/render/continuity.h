@@ -11,10 +11,6 @@ namespace binosplat::render {
 /// `share` of these limits, for a closer look.
 bool continues(const FrameShape& before, const FrameShape& now, double median_depth, double share = 1.0);
 
-/// The map of light that `before` left serves `now`: its views, and how far things may have moved aside
-/// since.
-void go_by_light(FrameShape& now, const FrameShape& before, double median_depth);
-
 /// True if `before` measured what `now` goes by. After anything else the frame starts as a first one does.
 bool remembers(const FrameShape& before, const FrameShape& now, double median_depth);
 

@@ -184,14 +184,6 @@ shared::Counters Frame::draw_once(FrameReport& report) {
 void Frame::decide_measuring() {
   const FrameSettings& s = shape_.settings;
   if (!measures(s.transmittance)) return;
-  if (s.transmittance == TRANSMITTANCE_MAP) {
-    shape_.remembers = recorded_shape_.lights && continues(recorded_shape_, shape_, last_median_depth_);
-    if (shape_.remembers) go_by_light(shape_, recorded_shape_, last_median_depth_);
-    ++since_recorded_;
-    shape_.lights = !shape_.remembers || since_recorded_ >= s.record_every ||
-                    !continues(recorded_shape_, shape_, last_median_depth_, 1.0 / 3.0);
-    return;
-  }
   shape_.remembers = remembers(recorded_shape_, shape_, last_median_depth_);
   since_cut_ = shape_.remembers ? since_cut_ + 1 : 0;
   ++since_recorded_;
@@ -202,12 +194,9 @@ void Frame::decide_measuring() {
 
 void Frame::keep_measurements(const shared::Counters& counters, FrameReport& report) {
   last_shape_ = shape_;
-  if (shape_.records || shape_.probe || shape_.lights)
+  if (shape_.records || shape_.probe)
     last_median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
-  if (shape_.lights) {
-    recorded_shape_ = shape_;
-    since_recorded_ = 0;
-  } else if (shape_.records) {
+  if (shape_.records) {
     recorded_shape_ = shape_;
     since_recorded_ = 0;
     std::swap(buffers_.upper, buffers_.upper_next);

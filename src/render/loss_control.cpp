@@ -16,8 +16,15 @@ constexpr double margin = 0.3;
 // dB below what is asked for at which a frame is drawn again; and after a cut, about what is aimed at.
 constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 1.0;
-// Of what was expected: a probe beyond these shows another scene, not another part of it.
-constexpr double surprise_above = 2.5, surprise_below = 0.2;
+// The same for one probe by itself.
+constexpr double miss_of_one = 1.75;
+// Of the logarithm: a probe that is further from what was expected shows another scene, not another part of
+// it.
+constexpr double surprise = 1.0;
+// What a probe may be off by, one standard deviation of its logarithm, for which it has as many tiles as that
+// takes; at least one of so many.
+constexpr double deviation = 0.15;
+constexpr double share_max = 64.0;
 // Attempts at a frame: the last is exact; from the middle on one that is better than need be is good enough.
 constexpr int attempts_max = 8;
 // Of the loss: the most it changes by from one frame to the next and between attempts.
@@ -51,6 +58,7 @@ void LossControl::begin(const FrameSettings& settings) {
   forget();
   settings_ = settings;
   slope_ = settings.th == TH_PERIPHERAL ? 2.0 : 1.5;
+  unevenness_ = 0.0;
   loss_ = careful_loss_at_40_db(settings, focal_) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }
 
@@ -65,10 +73,11 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
   focal_ = view.lens.y;
   const auto side = static_cast<std::uint32_t>(settings.tile_size);
   const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
-  // After a cut all of it.
-  const double wanted = std::max(1, settings.probe_tiles);
-  while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= static_cast<double>(across) * down)
-    ++probe_.step;
+  // After a cut all of it; then more, the more tiles differ.
+  const double all = static_cast<double>(across) * down;
+  const double wanted = std::max(
+      {static_cast<double>(settings.probe_tiles), all / share_max, unevenness_ / (deviation * deviation)});
+  while (!fresh_ && (probe_.step + 1.0) * (probe_.step + 1.0) * wanted <= all) ++probe_.step;
   // A golden step, so that the places of a few probes are spread evenly.
   const std::uint32_t places = probe_.step * probe_.step;
   std::uint32_t stride = std::max(1u, static_cast<std::uint32_t>(std::lround(0.618 * places)));
@@ -76,7 +85,7 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
   const std::uint32_t place = next_ / count * stride % places;
   probe_.column = std::min(place % probe_.step, across - 1);
   probe_.row = std::min(place / probe_.step, down - 1);
-  probe_tiles_ = static_cast<double>(across) * down / places;
+  probe_tiles_ = all / places;
   ++next_;
   return probe_;
 }
@@ -124,10 +133,12 @@ double LossControl::searched_loss(double target) const {
 void LossControl::take(double squared_error) {
   Estimate& view = views_[probe_.view];
   const double expected = view.weight > 0.0 ? view.error : worst();
-  const bool surprises =
-      squared_error > surprise_above * expected || squared_error < surprise_below * expected;
-  if (fresh_ || attempts_ > 1 || surprises)
+  const double off = std::log(std::max(squared_error, 1e-12) / std::max(expected, 1e-12));
+  if (fresh_ || std::abs(off) > surprise) {
     for (Estimate& any : views_) any.weight = 0.0;
+  } else {
+    unevenness_ += (1.0 - fading) * (off * off * probe_tiles_ - unevenness_);
+  }
   view.weight *= fading;
   view.error = (view.weight * view.error + probe_tiles_ * squared_error) / (view.weight + probe_tiles_);
   view.weight += probe_tiles_;
@@ -150,20 +161,25 @@ void LossControl::learn(double target) {
 }
 
 void LossControl::measured(double squared_error, bool settled) {
-  if (exact_) {
-    holds_ = true;
-  } else {
+  holds_ = exact_;
+  if (!exact_) {
     take(squared_error);
-    const double above = quality() - settings_.quality;
-    if (!fresh_) {
-      holds_ = settled && above >= -miss;
-    } else {  // what is too good costs time only: not all attempts are for that
-      holds_ = settled && above >= margin - fresh_below &&
-               (above <= margin + fresh_above || attempts_ > attempts_max / 2);
+    if (fresh_) {
+      // What is too good costs time only: not all attempts are for that.
+      const double above = quality() - settings_.quality - margin;
+      holds_ = settled && above >= -fresh_below && (above <= fresh_above || attempts_ > attempts_max / 2);
+      if (settled) learn(target());
+    } else {
+      const double wanted = std::pow(10.0, -0.1 * settings_.quality);
+      holds_ = settled && worst() <= wanted * std::pow(10.0, 0.1 * miss) &&
+               squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
     }
-    if (settled && fresh_) learn(target());
   }
-  if (holds_) fresh_ = false;
+  if (holds_) {
+    fresh_ = false;
+  } else if (!fresh_) {
+    forget();  // the next attempts see the whole of a view
+  }
 }
 
 double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }

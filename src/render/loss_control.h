@@ -72,6 +72,7 @@ class LossControl {
   std::uint32_t next_ = 0;    // of the probes, in their order
   Probe probe_;               // of the attempt at hand
   double probe_tiles_ = 0.0;  // of it
+  double unevenness_ = 0.0;   // variance of the error's logarithm from tile to tile, as probes show it
   std::vector<Estimate> views_;
 };
 

@@ -41,7 +41,6 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"Kept", kept_of(page)},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
-                    {"Light", buffers.light},
                     {"DepthTable", buffers.depth_table},
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
@@ -57,9 +56,6 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
                     {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
-                    {"last_first", static_cast<std::uint32_t>(shape.views.size() + shape.between.size())},
-                    {"moved_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.moved))},
-                    {"nearest_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.nearest))},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
 }
@@ -138,7 +134,6 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"FrameCounters", buffers.counters},
                     {"Tall", buffers.tall},
                     {"Upper", *buffers.upper},
-                    {"Light", buffers.light},
                     {"DepthTable", buffers.depth_table},
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
@@ -155,9 +150,6 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
                     {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
                     {"gaussian_count", shape.gaussian_count},
-                    {"last_first", static_cast<std::uint32_t>(shape.views.size() + shape.between.size())},
-                    {"moved_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.moved))},
-                    {"nearest_bits", std::bit_cast<std::uint32_t>(static_cast<float>(shape.nearest))},
                     {"remembers", shape.remembers ? 1u : 0u}});
   }
   gl::Defines tall_defines = pair_defines(shape);

@@ -6,7 +6,7 @@
 namespace binosplat::render {
 
 void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (!shape.records && !shape.probe && !shape.lights) return;
+  if (!shape.records && !shape.probe) return;
   const gl::Defines defines = {{"RECORDS", shape.records ? "1" : "0"}};
   for (std::size_t group = 0; group < shape.groups.size(); ++group) {
     const DrawnBuffers& drawn = *buffers.drawn[group];

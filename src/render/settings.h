@@ -24,11 +24,8 @@ struct DepthTable {
   std::vector<float> upper;
 };
 
-/// Whether frames measure what their successors go by, and whether they do of each Gaussian.
+/// Whether frames measure what their successors go by.
 constexpr bool measures(int transmittance) { return transmittance >= TRANSMITTANCE_LAST; }
-constexpr bool measures_gaussians(int transmittance) {
-  return measures(transmittance) && transmittance != TRANSMITTANCE_MAP;
-}
 
 /// Frames after a cut until what they measure of themselves has settled: with a contrast seven, else three.
 constexpr int settling_frames = 8;

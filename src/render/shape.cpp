@@ -27,7 +27,7 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
     fail("--quality {}: expected dB, above zero", s.quality);
   if (s.quality > 0.0f && s.th == TH_TAU) fail("--quality {} with --th tau, which is exact", s.quality);
   if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
-  if (s.transmittance > TRANSMITTANCE_LAST && s.transmittance != TRANSMITTANCE_MAP && views % 2 != 0) {
+  if (s.transmittance > TRANSMITTANCE_LAST && views % 2 != 0) {
     fail("--transmittance {}: only for both eyes together", transmittance_choices[s.transmittance].name);
   }
   if (s.th_eyes != TH_EYES_PER_EYE && views % 2 != 0) {
@@ -89,12 +89,7 @@ void add_view(FrameShape& shape, shared::View view, const Probe& tiles = {}, boo
   shape.pixel_count += is_probe ? std::int64_t{view.tiles_x} * view.tiles_y * tile * tile
                                 : std::int64_t{view.width} * view.height;
   if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
-  view.light_offset = is_probe ? NO_LIGHT : shape.light_count;
-  const auto blocks = [](std::uint32_t pixels, std::uint32_t level) {
-    return ((pixels + LIGHT_BLOCK - 1) / LIGHT_BLOCK + (1u << level) - 1) >> level;
-  };
-  for (std::uint32_t level = 0; level <= LIGHT_LEVEL_MAX && !is_probe; ++level)
-    shape.light_count += blocks(view.width, level) * blocks(view.height, level);
+  view.is_probe = is_probe ? 1 : 0;
   const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t along) {
     return (along + side - 1) / side;
   };

@@ -37,21 +37,16 @@ struct FrameShape {
   double kernel_px2 = KERNEL_PX2;  // of the model
   bool antialiased = false;
   std::uint32_t gaussian_count = 0;
-  bool remembers = false;          // an earlier frame measured for this one
-  bool records = false;            // this one measures for those to come
-  bool lights = false;             // this one leaves a map of light
-  std::vector<shared::View> last;  // of the frame that left the map of light
-  double moved = 0.0;    // px that what is one world unit away has moved since then, for the head's own move
-  double nearest = 0.0;  // world units: hardly anything that hides something is nearer
+  bool remembers = false;           // an earlier frame measured for this one
+  bool records = false;             // this one measures for those to come
   std::uint32_t slots = 0;          // room for the Gaussians that one order group draws
   std::vector<shared::View> views;  // those asked for, then the probe's
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
   std::vector<shared::View> between;  // the eyes of each pair, with TH_EYES_CYCLOPEAN; not drawn
   std::vector<OrderGroup> groups;
-  std::uint32_t list_count = 0;   // lists of pairs, over all views
-  std::int64_t pixel_count = 0;   // over all views
-  std::uint32_t light_count = 0;  // blocks of the map of light, all its levels, over all views
+  std::uint32_t list_count = 0;  // lists of pairs, over all views
+  std::int64_t pixel_count = 0;  // over all views
   // Of Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made
