@@ -175,11 +175,7 @@ void LossControl::measured(double squared_error, bool settled) {
                squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
     }
   }
-  if (holds_) {
-    fresh_ = false;
-  } else if (!fresh_) {
-    forget();  // the next attempts see the whole of a view
-  }
+  fresh_ = !holds_;  // further attempts see the whole of a view
 }
 
 double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }

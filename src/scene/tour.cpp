@@ -335,7 +335,7 @@ void check_length(const std::vector<Stop>& stops, const TourSettings& settings) 
 }  // namespace
 
 const std::vector<Motion>& head_motions() {
-  static const std::vector<Motion> motions = {{"calm", 0.3, 12.0}, {"walk", 1.5, 45.0}, {"fast", 1.5, 200.0}};
+  static const std::vector<Motion> motions = {{"calm", 0.3, 12.0}, {"walk", 1.5, 45.0}, {"fast", 6.0, 200.0}};
   return motions;
 }
 

@@ -18,7 +18,8 @@ struct Motion {
   double degrees_per_second = 0.0;
 };
 
-/// What heads do: calm (0.3 m/s, 12 degrees a second), walk (1.5, 45), fast (1.5, 200).
+/// What heads do: calm (0.3 m/s, 12 degrees a second), walk (1.5, 45), fast (6, 200: turns, and what a head
+/// does not do, for what must hold all the same).
 const std::vector<Motion>& head_motions();
 
 /// World units that count as a metre where nothing tells of a scale: from each camera to its nearest

@@ -27,7 +27,7 @@ struct MotionPath {
 
 /// How long segments are, in frames.
 struct SegmentLengths {
-  std::size_t lead = 16, moving = 60, stop = 15;
+  std::size_t lead = 0, moving = 60, stop = 15;
 };
 
 /// Where `count` stretches of `length` frames begin that are spread evenly over `total` frames, first and
