@@ -17,6 +17,8 @@ namespace binosplat::render {
 namespace {
 
 constexpr int attempts_max = 8;
+// Of the way to a cut: a picture that has changed by more is probed again.
+constexpr double probe_share = 1.0 / 15.0;
 
 // With lists chosen where that is left to the frame: of 2 x 2 tiles where subgroups blend, and where a pair's
 // value has room for the tiles.
@@ -71,6 +73,13 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   if (chosen.quality == 0.0f) return attempt();
   if (!continues(last_shape_, shape_, last_median_depth_)) loss_control_.forget();
   FrameReport report;
+  if (loss_control_.knows(chosen) && ++since_probed_ < chosen.probe_every &&
+      continues(probed_shape_, shape_, last_median_depth_, probe_share)) {
+    shape_.settings.loss = loss_control_.loss();
+    report = attempt();
+    report.quality = loss_control_.quality();
+    return report;
+  }
   do {
     const Probe probe = loss_control_.next_probe(views, chosen);
     shape_ = make_shape(views, chosen, model_, probe);
@@ -207,9 +216,11 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   report.recorded = shape_.records;
   report.loss = shape_.settings.loss;
   report.remembered = shape_.remembers;
-  if (shape_.probe)
-    loss_control_.measured(probed_error(shape_, counters),
-                           shape_.remembers || !measures(shape_.settings.transmittance));
+  if (!shape_.probe) return;
+  probed_shape_ = shape_;
+  since_probed_ = 0;
+  loss_control_.measured(probed_error(shape_, counters),
+                         shape_.remembers || !measures(shape_.settings.transmittance));
 }
 
 void Frame::grow(const shared::Counters& counters) {

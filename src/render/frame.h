@@ -116,6 +116,8 @@ class Frame {
   FrameShape shape_;
   FrameShape last_shape_;      // of the last frame drawn
   FrameShape recorded_shape_;  // of the last one that measured
+  FrameShape probed_shape_;    // of the last one with a probe
+  int since_probed_ = 0;       // frames
   int since_cut_ = 0;          // frames that remembered
   int since_recorded_ = 0;     // frames
   LossControl loss_control_;

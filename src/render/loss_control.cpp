@@ -54,6 +54,10 @@ void LossControl::forget() {
   fresh_ = true;
 }
 
+bool LossControl::knows(const FrameSettings& settings) const {
+  return !fresh_ && holds_ && !exact_ && same_rule(settings, settings_);
+}
+
 void LossControl::begin(const FrameSettings& settings) {
   forget();
   settings_ = settings;

@@ -24,7 +24,11 @@ class LossControl {
   /// What was measured so far is of other views. The loss stays, as a first guess.
   void forget();
 
-  /// The tiles that the next attempt draws exactly, too: after a cut more of them.
+  /// Whether enough is known of a frame of these settings to draw it at loss(), without a probe.
+  bool knows(const FrameSettings& settings) const;
+  float loss() const { return static_cast<float>(loss_); }
+
+  /// The tiles that the next attempt draws exactly, too: after a cut all of them.
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
 
   /// The loss for the next attempt.

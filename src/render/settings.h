@@ -43,11 +43,14 @@ struct FrameSettings {
   int record_every = settling_frames;
   float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
   /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
-  /// dB, both as 8 bits would keep them: the PSNR of the view that errs most. Each frame draws some tiles of
-  /// a view exactly, too, and the next loss follows from what they show; a frame that misses is drawn again
-  /// (loss_control.h). About so many tiles; all of the view where it has no more.
+  /// dB, both as 8 bits would keep them, in the view that errs most. A frame that looks draws some tiles of a
+  /// view exactly, too, and the next loss follows from what they show; one that misses, and the first one, is
+  /// drawn again (loss_control.h). About so many tiles; all of the view where it has no more.
   float quality = 0.0f;
   int probe_tiles = 256;
+  /// At least 1 of so many frames looks, and each whose eyes have gone a fifteenth of the way to a cut since
+  /// the last that did (continuity.h): a degree, say.
+  int probe_every = 4;
   /// The frame sums the weight alpha * T of each Gaussian over the pixels, for Frame::read_weights; the
   /// pictures are the same. Not with a measured transmittance.
   bool weigh = false;

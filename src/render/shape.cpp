@@ -26,6 +26,7 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   if (!(s.quality >= 0.0f) || !std::isfinite(s.quality))
     fail("--quality {}: expected dB, above zero", s.quality);
   if (s.quality > 0.0f && s.th == TH_TAU) fail("--quality {} with --th tau, which is exact", s.quality);
+  if (s.probe_every < 1) fail("looking at one of {} frames: expected at least one", s.probe_every);
   if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
   if (s.transmittance > TRANSMITTANCE_LAST && views % 2 != 0) {
     fail("--transmittance {}: only for both eyes together", transmittance_choices[s.transmittance].name);
