@@ -1,5 +1,6 @@
 // After the blend: the squared error of a view in its probe's tiles, drawn exactly, summed for --quality. Both as 8 bits would
-// keep them, which is what is looked at. One invocation a pixel of those tiles.
+// keep them, which is what is looked at; and the squares of the sums of THREADS pixels, a tile mostly, by which tiles differ. One
+// invocation a pixel of those tiles.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -24,11 +25,12 @@ vec3 shown(uint pixel) {
 float squared_error(uint nth) {
   View exact = views[probe];
   const uint side = uint(TILE_SIZE);
-  uint across = exact.tiles_x * side;
-  uvec2 kept = uvec2(nth % across, nth / across);
-  uvec2 at = kept / side * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + kept % side;
-  if (kept.y >= exact.tiles_y * side || at.x >= exact.width || at.y >= exact.height) return 0.0;
-  vec3 d = shown(exact.pixel_offset + kept.y * across + kept.x) - shown(views[probed].pixel_offset + at.y * exact.width + at.x);
+  uvec2 tile = uvec2(nth / (side * side) % exact.tiles_x, nth / (side * side) / exact.tiles_x);
+  uvec2 in_tile = uvec2(nth % side, nth / side % side);
+  uvec2 kept = tile * side + in_tile;
+  uvec2 at = tile * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + in_tile;
+  if (tile.y >= exact.tiles_y || at.x >= exact.width || at.y >= exact.height) return 0.0;
+  vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) - shown(views[probed].pixel_offset + at.y * exact.width + at.x);
   return dot(d, d);
 }
 
@@ -45,4 +47,7 @@ void main() {
   uint sum = uint(sums[0] * float(PROBE_SCALE));
   uint before = atomicAdd(counters.probe_low, sum);
   if (before + sum < before) atomicAdd(counters.probe_high, 1u);
+  uint square = uint(min(sums[0] * sums[0], 1000.0) * float(PROBE_SCALE));
+  before = atomicAdd(counters.probe_squares_low, square);
+  if (before + square < before) atomicAdd(counters.probe_squares_high, 1u);
 }

@@ -75,6 +75,8 @@ struct Counters {
   uint median_depth;  // bits of a float: of what the last order group drew, world units
   uint probe_low;   // squared error of the probe, summed over pixels and channels, times PROBE_SCALE: low and
   uint probe_high;  // high half
+  uint probe_squares_low;  // squares of such sums of THREADS pixels each, likewise
+  uint probe_squares_high;
   uint long_lists;  // tiles with more than LONG_LIST pairs, and the groups of their launch
   uint long_x, long_y, long_z;
   uint tall;  // splats whose tiles are counted together, and the groups of that launch
@@ -109,7 +111,7 @@ static_assert(sizeof(View) == 160 && offsetof(View, slopes) == 96 && offsetof(Vi
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
-static_assert(sizeof(Counters) == 68 && offsetof(Counters, long_x) == 36 && offsetof(Counters, tall_x) == 52);
+static_assert(sizeof(Counters) == 76 && offsetof(Counters, long_x) == 44 && offsetof(Counters, tall_x) == 60);
 static_assert(sizeof(Amount) == 48 && offsetof(Amount, threads_x) == 8 && offsetof(Amount, sort_x) == 32);
 }  // namespace binosplat::shared
 #endif

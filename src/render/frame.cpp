@@ -219,7 +219,7 @@ void Frame::keep_measurements(const shared::Counters& counters, FrameReport& rep
   if (!shape_.probe) return;
   probed_shape_ = shape_;
   since_probed_ = 0;
-  loss_control_.measured(probed_error(shape_, counters),
+  loss_control_.measured(probed(shape_, counters),
                          shape_.remembers || !measures(shape_.settings.transmittance));
 }
 

@@ -18,11 +18,10 @@ constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 1.0;
 // The same for one probe by itself.
 constexpr double miss_of_one = 1.75;
-// Of the logarithm: a probe that is further from what was expected shows another scene, not another part of
-// it.
-constexpr double surprise = 1.0;
-// What a probe may be off by, one standard deviation of its logarithm, for which it has as many tiles as that
-// takes; at least one of so many.
+// Of what was expected: a probe that errs more shows another scene, not another part of it.
+constexpr double surprise = 2.7;
+// One standard deviation of what a probe tells, as a share: it has as many tiles as that takes, and at least
+// one of so many.
 constexpr double deviation = 0.15;
 constexpr double share_max = 64.0;
 // Attempts at a frame: the last is exact; from the middle on one that is better than need be is good enough.
@@ -134,17 +133,16 @@ double LossControl::searched_loss(double target) const {
   return loss_ * std::clamp(std::pow(target / error, 1.0 / slope_), 1.0 / step_searching, step_searching);
 }
 
-void LossControl::take(double squared_error) {
+void LossControl::take(const Probed& probed) {
   Estimate& view = views_[probe_.view];
   const double expected = view.weight > 0.0 ? view.error : worst();
-  const double off = std::log(std::max(squared_error, 1e-12) / std::max(expected, 1e-12));
-  if (fresh_ || std::abs(off) > surprise) {
+  // What looks much better than before may be a few tiles' luck.
+  if (fresh_ || probed.squared_error > surprise * expected)
     for (Estimate& any : views_) any.weight = 0.0;
-  } else {
-    unevenness_ += (1.0 - fading) * (off * off * probe_tiles_ - unevenness_);
-  }
+  unevenness_ = std::max(probed.unevenness, fading * unevenness_);
   view.weight *= fading;
-  view.error = (view.weight * view.error + probe_tiles_ * squared_error) / (view.weight + probe_tiles_);
+  view.error =
+      (view.weight * view.error + probe_tiles_ * probed.squared_error) / (view.weight + probe_tiles_);
   view.weight += probe_tiles_;
 }
 
@@ -164,10 +162,10 @@ void LossControl::learn(double target) {
   }
 }
 
-void LossControl::measured(double squared_error, bool settled) {
+void LossControl::measured(const Probed& probed, bool settled) {
   holds_ = exact_;
   if (!exact_) {
-    take(squared_error);
+    take(probed);
     if (fresh_) {
       // What is too good costs time only: not all attempts are for that.
       const double above = quality() - settings_.quality - margin;
@@ -176,7 +174,7 @@ void LossControl::measured(double squared_error, bool settled) {
     } else {
       const double wanted = std::pow(10.0, -0.1 * settings_.quality);
       holds_ = settled && worst() <= wanted * std::pow(10.0, 0.1 * miss) &&
-               squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
+               probed.squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
     }
   }
   fresh_ = !holds_;  // further attempts see the whole of a view

@@ -34,9 +34,8 @@ class LossControl {
   /// The loss for the next attempt.
   float next_loss(const FrameSettings& settings);
 
-  /// What its probe showed: the mean squared error over its pixels and channels. `settled`: the frame went by
-  /// all that its successors will go by.
-  void measured(double squared_error, bool settled);
+  /// What its probe showed. `settled`: the frame went by all that its successors will go by.
+  void measured(const Probed& probed, bool settled);
 
   /// Whether the last attempt is the frame.
   bool holds() const { return holds_; }
@@ -59,7 +58,7 @@ class LossControl {
   void begin(const FrameSettings& settings);
   double searched_loss(double target) const;
   double followed_loss(double target) const;
-  void take(double squared_error);
+  void take(const Probed& probed);
   void learn(double target);
   double worst() const;  // of the estimates
   double target() const;
@@ -76,7 +75,7 @@ class LossControl {
   std::uint32_t next_ = 0;    // of the probes, in their order
   Probe probe_;               // of the attempt at hand
   double probe_tiles_ = 0.0;  // of it
-  double unevenness_ = 0.0;   // variance of the error's logarithm from tile to tile, as probes show it
+  double unevenness_ = 0.0;   // of tiles, as probes show it
   std::vector<Estimate> views_;
 };
 

@@ -33,12 +33,20 @@ void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
        {"background_b", std::bit_cast<std::uint32_t>(background.b)}});
 }
 
-double probed_error(const FrameShape& shape, const shared::Counters& counters) {
-  const double sum = (static_cast<double>(counters.probe_high) * 0x1p32 + counters.probe_low) / PROBE_SCALE;
+Probed probed(const FrameShape& shape, const shared::Counters& counters) {
+  const auto sum_of = [](std::uint32_t low, std::uint32_t high) {
+    return (high * 0x1p32 + low) / PROBE_SCALE;
+  };
+  const double sum = sum_of(counters.probe_low, counters.probe_high);
+  const double squares = sum_of(counters.probe_squares_low, counters.probe_squares_high);
   const shared::View& exact = shape.views.back();
   const auto side = static_cast<std::uint32_t>(shape.settings.tile_size);
-  const double across = pixels_along(exact.tiles_x, exact.shift_x, exact.pitch, side, exact.width);
-  return sum / (3.0 * across * pixels_along(exact.tiles_y, exact.shift_y, exact.pitch, side, exact.height));
+  const double pixels =
+      static_cast<double>(pixels_along(exact.tiles_x, exact.shift_x, exact.pitch, side, exact.width)) *
+      pixels_along(exact.tiles_y, exact.shift_y, exact.pitch, side, exact.height);
+  const double parts = std::max(1.0, pixels / THREADS);
+  const double unevenness = sum > 0.0 ? std::max(0.0, parts * squares / (sum * sum) - 1.0) : 0.0;
+  return {sum / (3.0 * pixels), unevenness};
 }
 
 }  // namespace binosplat::render

@@ -30,6 +30,12 @@ struct Probe {
   std::uint32_t row = 0;
 };
 
+/// What a probe showed.
+struct Probed {
+  double squared_error = 0.0;  // mean over its pixels and channels, 8 bits
+  double unevenness = 0.0;     // variance of its tiles' errors, in squares of their mean
+};
+
 /// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
 struct FrameShape {
   FrameSettings settings;

@@ -41,8 +41,8 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
 /// Sums up the squared error of the probe's strip. Nothing to do without one.
 void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
-/// The mean over pixels and channels of what probe() summed up.
-double probed_error(const FrameShape& shape, const shared::Counters& counters);
+/// What probe() summed up.
+Probed probed(const FrameShape& shape, const shared::Counters& counters);
 
 /// WITH_SUBGROUPS, for programs that do the same by subgroups of 32 where there are some.
 gl::Defines::value_type subgroups_define(const gl::Context& context);
