@@ -86,7 +86,6 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
   probe_.column = std::min(place % probe_.step, across - 1);
   probe_.row = std::min(place / probe_.step, down - 1);
   probe_tiles_ = all / places;
-  ++next_;
   return probe_;
 }
 
@@ -98,13 +97,11 @@ float LossControl::next_loss(const FrameSettings& settings) {
   if (!same_rule(settings, settings_)) begin(settings);
   exact_ = ++attempts_ == attempts_max;
   if (exact_) return 0.0f;
-  const double before = loss_;
   if (attempts_ > 1) {
     loss_ = std::clamp(searched_loss(target()), loss_min, loss_max);
   } else if (!fresh_) {
     loss_ = std::clamp(followed_loss(target()), loss_min, loss_max);
   }
-  for (Estimate& view : views_) view.error *= std::pow(loss_ / before, slope_);
   return static_cast<float>(loss_);
 }
 
@@ -132,16 +129,20 @@ double LossControl::searched_loss(double target) const {
 
 void LossControl::take(double squared_error) {
   Estimate& view = views_[probe_.view];
-  const double expected = view.weight > 0.0 ? view.error : worst();
-  const double off = std::log(std::max(squared_error, 1e-12) / std::max(expected, 1e-12));
-  if (fresh_ || std::abs(off) > surprise) {
-    for (Estimate& any : views_) any.weight = 0.0;
-  } else {
-    unevenness_ += (1.0 - fading) * (off * off * probe_tiles_ - unevenness_);
+  const double expected = error_now(view);
+  // Of a view that was not seen yet nothing is expected: the others say nothing of it.
+  if (view.weight > 0.0 && !fresh_) {
+    const double off = std::log(std::max(squared_error, 1e-12) / std::max(expected, 1e-12));
+    if (std::abs(off) > surprise) {
+      for (Estimate& any : views_) any.weight = 0.0;
+    } else {
+      unevenness_ += (1.0 - fading) * (off * off * probe_tiles_ - unevenness_);
+    }
   }
-  view.weight *= fading;
-  view.error = (view.weight * view.error + probe_tiles_ * squared_error) / (view.weight + probe_tiles_);
+  view.weight = fresh_ ? 0.0 : fading * view.weight;
+  view.error = (view.weight * expected + probe_tiles_ * squared_error) / (view.weight + probe_tiles_);
   view.weight += probe_tiles_;
+  view.loss = loss_;
 }
 
 // What two attempts at a frame say of the error's law about here.
@@ -175,14 +176,19 @@ void LossControl::measured(double squared_error, bool settled) {
                squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
     }
   }
-  fresh_ = !holds_;  // further attempts see the whole of a view
+  fresh_ = !holds_;  // further attempts see the whole of this view: two views have no law of error together
+  if (holds_) ++next_;
 }
 
 double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }
 
+double LossControl::error_now(const Estimate& view) const {
+  return view.error > 0.0 ? view.error * std::pow(loss_ / view.loss, slope_) : 0.0;
+}
+
 double LossControl::worst() const {
   double most = 0.0;
-  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, view.error) : most;
+  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, error_now(view)) : most;
   return most;
 }
 
