@@ -18,8 +18,8 @@ constexpr double miss = 0.75;
 constexpr double fresh_below = 0.3, fresh_above = 1.0;
 // The same for one probe by itself.
 constexpr double miss_of_one = 1.75;
-// Of the logarithm: a probe that is further from what was expected shows another scene, not another part of
-// it.
+// Of the logarithm: a probe that is further from what was expected shows another scene, unless it is better
+// and a sample.
 constexpr double surprise = 1.0;
 // What a probe may be off by, one standard deviation of its logarithm, for which it has as many tiles as that
 // takes; at least one of so many.
@@ -133,10 +133,12 @@ void LossControl::take(double squared_error) {
   // Of a view that was not seen yet nothing is expected: the others say nothing of it.
   if (view.weight > 0.0 && !fresh_) {
     const double off = std::log(std::max(squared_error, 1e-12) / std::max(expected, 1e-12));
-    if (std::abs(off) > surprise) {
+    // What the whole of a view is off by is change, not chance.
+    const double uneven = probe_.step > 1 ? std::min(std::abs(off), surprise) : 0.0;
+    unevenness_ += (1.0 - fading) * (uneven * uneven * probe_tiles_ - unevenness_);
+    // That some tiles show little is no promise of the others: larger probes are to tell.
+    if (off > surprise || (off < -surprise && probe_.step == 1)) {
       for (Estimate& any : views_) any.weight = 0.0;
-    } else {
-      unevenness_ += (1.0 - fading) * (off * off * probe_tiles_ - unevenness_);
     }
   }
   view.weight = fresh_ ? 0.0 : fading * view.weight;
