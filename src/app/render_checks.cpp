@@ -71,7 +71,7 @@ std::string threshold_name(const RenderOptions& o) {
 
 std::string transmittance_name(const RenderOptions& o) {
   if (!o.transmittance.empty()) return o.transmittance;
-  return o.quality ? "last" : "one";
+  return "one";
 }
 
 double units_per_metre(const RenderOptions& o) {

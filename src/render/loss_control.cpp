@@ -10,7 +10,7 @@ namespace binosplat::render {
 namespace {
 
 // What a view's probe weighs after each further one of that view.
-constexpr double fading = 0.8;
+constexpr double fading = 0.7;
 // dB that frames aim at above what is asked for: the promise is of the worse view, and of single frames.
 constexpr double margin = 0.3;
 // dB below what is asked for at which a frame is drawn again; and after a cut, about what is aimed at.
@@ -22,12 +22,12 @@ constexpr double miss_of_one = 1.75;
 constexpr double surprise = 2.7;
 // One standard deviation of what a probe tells, as a share: it has as many tiles as that takes, and at least
 // one of so many.
-constexpr double deviation = 0.15;
+constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
 // Attempts at a frame: the last is exact; from the middle on one that is better than need be is good enough.
 constexpr int attempts_max = 8;
 // Of the loss: the most it changes by from one frame to the next and between attempts.
-constexpr double step_up = 1.1, step_down = 2.0, step_searching = 30.0;
+constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 12.0, slope_up_min = 3.0;
 constexpr double loss_min = 1e-9, loss_max = 1e9;
 
@@ -54,7 +54,9 @@ void LossControl::forget() {
 }
 
 bool LossControl::knows(const FrameSettings& settings) const {
-  return !fresh_ && holds_ && !exact_ && same_rule(settings, settings_);
+  const bool saw_all =
+      std::all_of(views_.begin(), views_.end(), [](const Estimate& v) { return v.weight > 0.0; });
+  return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_);
 }
 
 void LossControl::begin(const FrameSettings& settings) {
@@ -89,7 +91,6 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
   probe_.column = std::min(place % probe_.step, across - 1);
   probe_.row = std::min(place / probe_.step, down - 1);
   probe_tiles_ = all / places;
-  ++next_;
   return probe_;
 }
 
@@ -101,13 +102,11 @@ float LossControl::next_loss(const FrameSettings& settings) {
   if (!same_rule(settings, settings_)) begin(settings);
   exact_ = ++attempts_ == attempts_max;
   if (exact_) return 0.0f;
-  const double before = loss_;
   if (attempts_ > 1) {
     loss_ = std::clamp(searched_loss(target()), loss_min, loss_max);
   } else if (!fresh_) {
     loss_ = std::clamp(followed_loss(target()), loss_min, loss_max);
   }
-  for (Estimate& view : views_) view.error *= std::pow(loss_ / before, slope_);
   return static_cast<float>(loss_);
 }
 
@@ -135,15 +134,25 @@ double LossControl::searched_loss(double target) const {
 
 void LossControl::take(const Probed& probed) {
   Estimate& view = views_[probe_.view];
-  const double expected = view.weight > 0.0 ? view.error : worst();
-  // What looks much better than before may be a few tiles' luck.
-  if (fresh_ || probed.squared_error > surprise * expected)
+  const double expected = error_now(view);
+  const double error = probed.squared_error;
+  const bool whole = probe_.step == 1;
+  // Of a view that was not seen yet nothing is expected. That some tiles show little is no promise of the
+  // others.
+  if (view.weight > 0.0 && !fresh_ &&
+      (error > surprise * expected || (whole && surprise * error < expected))) {
     for (Estimate& any : views_) any.weight = 0.0;
+  }
   unevenness_ = std::max(probed.unevenness, fading * unevenness_);
-  view.weight *= fading;
-  view.error =
-      (view.weight * view.error + probe_tiles_ * probed.squared_error) / (view.weight + probe_tiles_);
+  const bool follows = view.weight > 0.0 && expected > 0.0;
+  view.weight = fresh_ || whole ? 0.0 : fading * view.weight;
+  view.error = (view.weight * expected + probe_tiles_ * error) / (view.weight + probe_tiles_);
+  // What changes in one view changes in the others, mostly.
+  if (follows && !fresh_) {
+    for (Estimate& any : views_) any.error *= &any == &view ? 1.0 : std::sqrt(view.error / expected);
+  }
   view.weight += probe_tiles_;
+  view.loss = loss_;
 }
 
 // What two attempts at a frame say of the error's law about here.
@@ -177,14 +186,19 @@ void LossControl::measured(const Probed& probed, bool settled) {
                probed.squared_error <= wanted * std::pow(10.0, 0.1 * miss_of_one);
     }
   }
-  fresh_ = !holds_;  // further attempts see the whole of a view
+  fresh_ = !holds_;  // further attempts see the whole of this view: two views have no law of error together
+  if (holds_) ++next_;
 }
 
 double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }
 
+double LossControl::error_now(const Estimate& view) const {
+  return view.error > 0.0 ? view.error * std::pow(loss_ / view.loss, slope_) : 0.0;
+}
+
 double LossControl::worst() const {
   double most = 0.0;
-  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, view.error) : most;
+  for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, error_now(view)) : most;
   return most;
 }
 

@@ -46,8 +46,9 @@ class LossControl {
 
  private:
   struct Estimate {
-    double error = 0.0;   // squared error of a view at the loss last given: mean of what was seen,
-    double weight = 0.0;  // of so many tiles, fewer the longer ago
+    double error = 0.0;   // squared error of a view: mean of what was seen,
+    double weight = 0.0;  // of so many tiles, fewer the longer ago,
+    double loss = 0.0;    // as of this loss
   };
   // Of the attempts at one frame: the largest loss seen to hold and the smallest seen to miss, and what they
   // cost.
@@ -60,7 +61,8 @@ class LossControl {
   double followed_loss(double target) const;
   void take(const Probed& probed);
   void learn(double target);
-  double worst() const;  // of the estimates
+  double error_now(const Estimate& view) const;  // at the loss last given
+  double worst() const;                          // of the estimates
   double target() const;
 
   FrameSettings settings_;  // of the frames so far
@@ -72,7 +74,7 @@ class LossControl {
   bool exact_ = false;  // the attempt at hand
   int attempts_ = 0;    // at the frame at hand
   Bracket bracket_;
-  std::uint32_t next_ = 0;    // of the probes, in their order
+  std::uint32_t next_ = 0;    // of the probes, in their order: one a frame
   Probe probe_;               // of the attempt at hand
   double probe_tiles_ = 0.0;  // of it
   double unevenness_ = 0.0;   // of tiles, as probes show it

@@ -38,7 +38,7 @@ void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buf
 /// measured.
 void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
-/// Sums up the squared error of the probe's strip. Nothing to do without one.
+/// Sums up the squared error in the probe's tiles. Nothing to do without one.
 void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
 /// What probe() summed up.

@@ -27,6 +27,15 @@ class SubgroupShaders : public testing::Test {
   }
 };
 
+// With a probe and without.
+void expect_compiles(const std::string& name, Defines defines, const std::string& what = "") {
+  defines.emplace_back("PROBED", "0");
+  for (const char* probed : {"0", "1"}) {
+    defines.back().second = probed;
+    EXPECT_EQ(said_of(name, defines, {}), "") << name << " " << what << ", probed " << probed;
+  }
+}
+
 TEST_F(SubgroupShaders, Compile) {
   for (const char* half : {"0", "1"}) {
     for (const char* list_tiles : {"1", "2"}) {
@@ -40,7 +49,7 @@ TEST_F(SubgroupShaders, Compile) {
                            {"CONTRAST", "0"},
                            {"SHOW", "0"}};
         defines.insert(defines.end(), tiles.begin(), tiles.end());
-        EXPECT_EQ(said_of("blend_subgroups.comp", defines, {}), "") << lists << list_tiles << half;
+        expect_compiles("blend_subgroups.comp", defines, std::string(lists) + list_tiles + half);
       }
     }
   }
@@ -48,7 +57,7 @@ TEST_F(SubgroupShaders, Compile) {
     const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "0"},      {"TH", "0"},
                              {"TILE_SIZE", "16"},       {"LIST_TILES", "2"}, {"HALF", "0"},
                              {"WITH_SUBGROUPS", "1"}};
-    EXPECT_EQ(said_of(name, defines, {}), "") << name;
+    expect_compiles(name, defines);
   }
   for (const char* half : {"0", "1"}) {
     const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},      {"TH", "0"},
@@ -56,7 +65,7 @@ TEST_F(SubgroupShaders, Compile) {
                              {"TILE_SIZE", "16"},       {"LIST_TILES", "2"}, {"HALF", half},
                              {"ANTIALIASED", "0"},      {"OFFSETS", "0"},    {"SH_DEGREE", "1"},
                              {"RECORDS", "1"},          {"WEIGHS", "0"},     {"WITH_SUBGROUPS", "1"}};
-    EXPECT_EQ(said_of("project.comp", defines, {}), "") << half;
+    expect_compiles("project.comp", defines, half);
   }
   for (const char* writes : {"0", "1"})
     EXPECT_EQ(

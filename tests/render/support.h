@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "base/image.h"
@@ -56,8 +57,8 @@ inline double psnr(const Picture& a, const Picture& b) {
 /// The stages of a frame run one after another by themselves, with every buffer at hand.
 struct StageRun {
   StageRun(const Model& model, const std::vector<shared::View>& views,
-           const render::FrameSettings& settings = {})
-      : shape(render::make_shape(views, settings, model)),
+           const render::FrameSettings& settings = {}, const std::optional<render::Probe>& probe = {})
+      : shape(render::make_shape(views, settings, model, probe)),
         frame(gl_context()),
         model_buffers(gl_context(), model) {
     if (model_buffers.box) render::limit_keys(shape, *model_buffers.box);

@@ -1,0 +1,242 @@
+// Probes: tiles of a view that are drawn exactly, too, and what they tell of the others.
+
+#include "render/support.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+
+namespace binosplat {
+namespace {
+
+using render::FrameSettings;
+using render::Probe;
+
+constexpr glm::vec3 background{0.2f, 0.4f, 0.6f};
+
+// A frame with a probe, stage by stage.
+struct ProbeRun {
+  ProbeRun(const Model& model, const std::vector<shared::View>& views, FrameSettings settings,
+           const std::optional<Probe>& probe)
+      : run(model, views, settings, probe) {
+    run.shape.records = render::measures(settings.transmittance);
+    run.run_until(render::Stage::ranges);
+    gl::Dispatcher dispatcher(test::gl_context());
+    render::blend(dispatcher, run.shape, run.frame);
+    render::remember(dispatcher, run.shape, run.frame);
+    render::probe(dispatcher, run.shape, run.frame);
+    const auto counters = run.frame.counters.read<shared::Counters>(1).front();
+    EXPECT_EQ(counters.overflow, 0u);
+    if (probe) error = render::probed(run.shape, counters).squared_error;
+  }
+
+  Picture picture(std::uint32_t v) const {
+    const shared::View& view = run.shape.views.at(v);
+    Picture out(static_cast<int>(view.width), static_cast<int>(view.height));
+    out.colour = run.frame.colours.read<glm::vec4>(out.colour.size(), view.pixel_offset);
+    return out;
+  }
+
+  test::StageRun run;
+  double error = 0.0;
+};
+
+// As the screen shows a picture.
+Image shown(const Picture& picture) { return quantised(composite(picture, background)); }
+
+// The mean squared error over a probe's tiles of `side` px: what it should tell.
+double error_in(const Probe& probe, const Picture& drawn, const Picture& exact, int side) {
+  const Image a = shown(drawn), b = shown(exact);
+  double sum = 0;
+  std::size_t count = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) {
+      const auto column = static_cast<std::uint32_t>(x / side), row = static_cast<std::uint32_t>(y / side);
+      if (column % probe.step != probe.column || row % probe.step != probe.row) continue;
+      for (int c = 0; c < 3; ++c, ++count) sum += std::pow(double{a.at(x, y, c)} - b.at(x, y, c), 2);
+    }
+  }
+  return sum / static_cast<double>(count);
+}
+
+// All probes of these steps that begin in a picture of so many tiles, the views taking turns.
+std::vector<Probe> probes(std::initializer_list<std::uint32_t> steps, std::uint32_t across,
+                          std::uint32_t down) {
+  std::vector<Probe> all;
+  for (const std::uint32_t step : steps) {
+    for (std::uint32_t row = 0; row < std::min(step, down); ++row) {
+      for (std::uint32_t column = 0; column < std::min(step, across); ++column)
+        all.push_back({static_cast<std::uint32_t>(all.size() % 2), step, column, row});
+    }
+  }
+  return all;
+}
+
+std::uint32_t tiles_along(int pixels, int side) {
+  return static_cast<std::uint32_t>((pixels + side - 1) / side);
+}
+
+std::vector<shared::View> eyes(int width, int height, double cant = 0.0) {
+  const auto rig = stereo::make_rig(test::front_camera(width, height, width),
+                                    {.ipd = 0.1, .units_per_metre = 1.0, .cant_degrees = cant});
+  return {rig.views.begin(), rig.views.end()};
+}
+
+// Settings without loss, in which a probe must find no error.
+void expect_no_error(const Model& model, const FrameSettings& settings, double cant) {
+  constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
+  const auto views = eyes(width, height, cant);
+  const int side = settings.tile_size;
+  for (const Probe& probe : probes({1, 3}, tiles_along(width, side), tiles_along(height, side))) {
+    EXPECT_EQ(ProbeRun(model, views, settings, probe).error, 0.0)
+        << tiles_choices[settings.tiles].name << ", tile " << side << ", lists of " << settings.list_tiles
+        << ", cant " << cant << ", view " << probe.view << ", step " << probe.step << " from ("
+        << probe.column << ", " << probe.row << ")";
+  }
+}
+
+TEST(Probe, WithoutLossFindsNoErrorWhereverItsTilesLie) {
+  const Model model = test::random_model(101, 1500, 1);
+  for (const int tile_size : {8, 16, 32}) {
+    for (const int list_tiles : {1, 2}) {
+      const FrameSettings settings = {
+          .th = TH_SQUARED, .tile_size = tile_size, .list_tiles = list_tiles, .background = background};
+      expect_no_error(model, settings, list_tiles == 1 ? 0.0 : 4.0);
+    }
+  }
+}
+
+TEST(Probe, WithoutLossFindsNoErrorByAnyTileTest) {
+  const Model model = test::random_model(102, 1500, 0);
+  for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL}) {
+    for (const int list_tiles : {1, 2}) {
+      if (tiles == TILES_ALL && list_tiles == 2) continue;
+      expect_no_error(
+          model, {.tiles = tiles, .th = TH_PERIPHERAL, .list_tiles = list_tiles, .background = background},
+          list_tiles == 1 ? 4.0 : 0.0);
+    }
+  }
+}
+
+TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
+  const Model model = test::random_model(103, 2000, 1);
+  constexpr int width = 100, height = 83;
+  for (const int side : {8, 16, 32}) {
+    for (const double cant : {0.0, 4.0}) {
+      const auto views = eyes(width, height, cant);
+      const FrameSettings settings = {.th = TH_SQUARED,
+                                      .loss = 0.3f,
+                                      .tile_size = side,
+                                      .list_tiles = cant == 0.0 ? 1 : 2,
+                                      .background = background};
+      const auto exact = test::draw(model, views, {.tile_size = side, .background = background});
+      int differing = 0;
+      const std::uint32_t across = tiles_along(width, side);
+      const auto all = probes({1, 2, 3}, across, tiles_along(height, side));
+      for (const Probe& probe : all) {
+        const ProbeRun run(model, views, settings, probe);
+        const Picture drawn = run.picture(probe.view);
+        const double expected = error_in(probe, drawn, exact[probe.view], side);
+        EXPECT_GT(expected, 1e-6);
+        EXPECT_NEAR(run.error, expected, 2e-3 * expected)
+            << side << " " << cant << " " << probe.step << " " << probe.column << " " << probe.row;
+        // Planted fault: the tiles beside these.
+        Probe beside = probe;
+        beside.column = (probe.column + 1) % std::min(probe.step, across);
+        const double other = error_in(beside, drawn, exact[probe.view], side);
+        differing += std::abs(run.error - other) > 0.02 * expected ? 1 : 0;
+      }
+      EXPECT_GE(differing + 2, static_cast<int>(all.size())) << side;  // of step 1 there is but one
+    }
+  }
+}
+
+TEST(Probe, TellsOfLongListsToo) {
+  Model model;
+  test::Uniform uniform(104);
+  for (int i = 0; i < 2 * LONG_LIST; ++i) {
+    test::add(model, glm::vec3(uniform(-0.05, 0.05), uniform(-0.05, 0.05), uniform(1.0, 2.0)),
+              glm::vec3(uniform(0.01, 0.1)), 0.02f, glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)));
+  }
+  const auto views = eyes(64, 48);
+  const auto exact = test::draw(model, views, {.background = background});
+  for (const float loss : {0.0f, 0.02f}) {
+    const FrameSettings settings = {
+        .th = TH_SQUARED, .loss = loss, .list_tiles = 2, .background = background};
+    for (const Probe& probe : probes({1, 2}, 4, 3)) {
+      const ProbeRun run(model, views, settings, probe);
+      if (probe.step == 1) {
+        EXPECT_GT(run.run.frame.counters.read<shared::Counters>(1).front().long_lists, 0u);
+      }
+      const double expected = error_in(probe, run.picture(probe.view), exact[probe.view], 16);
+      EXPECT_NEAR(run.error, expected, 2e-3 * expected) << loss;
+      EXPECT_EQ(expected > 0.0, loss > 0.0f);
+    }
+  }
+}
+
+TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
+  const Model model = test::random_model(105, 2000, 1);
+  const auto views = eyes(96, 80);
+  for (const FrameSettings& settings :
+       {FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_BOTH, .contrast = CONTRAST_FINAL},
+        FrameSettings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST}}) {
+    FrameSettings lossy = settings;
+    lossy.loss = 0.05f;
+    const ProbeRun without(model, views, lossy, {});
+    for (const Probe& probe : probes({2}, 6, 5)) {
+      const ProbeRun with(model, views, lossy, probe);
+      for (std::uint32_t eye = 0; eye < 2; ++eye)
+        EXPECT_TRUE(test::same_bits(with.picture(eye), without.picture(eye))) << probe.step;
+      const std::size_t all = 2 * model.count();
+      EXPECT_EQ(with.run.frame.upper_next->read<float>(all), without.run.frame.upper_next->read<float>(all));
+    }
+  }
+}
+
+TEST(Quality, TheFrameIsThatOfTheLossItTells) {
+  const Model model = test::random_model(99, 3000, 1);
+  const auto views = eyes(96, 80);
+  FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 4};
+  render::Frame steered(test::gl_context(), model), given(test::gl_context(), model);
+  for (int n = 0; n < 6; ++n) {
+    const render::FrameReport report = steered.draw(views, settings);
+    FrameSettings same = settings;
+    same.quality = 0;
+    same.loss = report.loss;
+    const render::FrameReport other = given.draw(views, same);
+    EXPECT_GT(report.pairs, other.pairs);  // the probe's
+    EXPECT_EQ(other.attempts, 1);
+    const auto a = steered.read_pictures(), b = given.read_pictures();
+    ASSERT_EQ(a.size(), 2u);
+    for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(test::same_bits(a[eye], b[eye])) << n;
+  }
+}
+
+TEST(Quality, IsToldFromTheFirstFrameOn) {
+  const Model model = test::random_model(97, 3000, 1);
+  const std::vector views = {make_view(test::front_camera(160, 120, 160))};
+  const auto exact = test::draw(model, views);
+  const FrameSettings settings = {.th = TH_SQUARED, .quality = 34, .background = background};
+  render::Frame frame(test::gl_context(), model);
+  for (int n = 0; n < 8; ++n) {
+    const render::FrameReport report = frame.draw(views, settings);
+    const double db = measure::psnr(shown(frame.read_pictures().front()), shown(exact.front()));
+    EXPECT_NEAR(report.quality, db, n == 0 ? 0.01 : 0.3) << n;  // all tiles are probed
+    EXPECT_GE(db, 33.9) << n;
+    EXPECT_LE(db, 35.5) << n;
+    EXPECT_EQ(report.attempts == 1, n > 0) << n;  // the first loss is far from right here
+  }
+}
+
+TEST(Quality, NeedsARule) {
+  const Model model = test::random_model(100, 10, 0);
+  const shared::View view = make_view(test::front_camera(32, 32, 32));
+  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, {.quality = 40}); }, {"--quality 40", "tau"}));
+  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, {.th = TH_SQUARED, .quality = -1}); },
+                                 {"--quality -1"}));
+  EXPECT_TRUE(test::fails_saying(
+      [&] { test::draw(model, view, {.th = TH_SQUARED, .quality = 40, .probe_tiles = 0}); },
+      {"0 tiles of a view to probe"}));
+}
+
+}  // namespace
+}  // namespace binosplat
