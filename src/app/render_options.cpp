@@ -210,7 +210,8 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->type_name("FILE")
       ->group(group);
   choose(sub, "--transmittance", o.transmittance,
-         "The light that reaches a Gaussian, for --th (one;\nwith --quality last)", transmittance_choices)
+         "The light that reaches a Gaussian, for --th (one;\nlast: for heads that stand still)",
+         transmittance_choices)
       ->group(group);
   choose(sub, "--contrast", o.contrast, "What that light is weighed with, for --th squared (off)",
          contrast_choices)

@@ -15,7 +15,7 @@ constexpr double fading = 0.7;
 constexpr double margin = 0.3;
 // dB below what is asked for at which a frame is drawn again; and after a cut, about what is aimed at.
 constexpr double miss = 0.75;
-constexpr double fresh_below = 0.3, fresh_above = 1.0;
+constexpr double fresh_below = 0.3, fresh_above = 0.6;
 // The same for one probe by itself.
 constexpr double miss_of_one = 1.75;
 // Of what was expected: a probe that errs more shows another scene, not another part of it.
@@ -24,7 +24,7 @@ constexpr double surprise = 2.7;
 // one of so many.
 constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
-// Attempts at a frame: the last is exact; from the middle on one that is better than need be is good enough.
+// Attempts at a frame: the last is exact; those before it may be better than need be.
 constexpr int attempts_max = 8;
 // Of the loss: the most it changes by from one frame to the next and between attempts.
 constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
@@ -144,6 +144,9 @@ void LossControl::take(const Probed& probed) {
     for (Estimate& any : views_) any.weight = 0.0;
   }
   unevenness_ = std::max(probed.unevenness, fading * unevenness_);
+  // These may be the sky: a larger probe is to tell.
+  if (view.weight > 0.0 && !fresh_ && !whole && surprise * error < expected)
+    unevenness_ = std::max(unevenness_, 16.0 * deviation * deviation * probe_tiles_);
   const bool follows = view.weight > 0.0 && expected > 0.0;
   view.weight = fresh_ || whole ? 0.0 : fading * view.weight;
   view.error = (view.weight * expected + probe_tiles_ * error) / (view.weight + probe_tiles_);
@@ -178,7 +181,7 @@ void LossControl::measured(const Probed& probed, bool settled) {
     if (fresh_) {
       // What is too good costs time only: not all attempts are for that.
       const double above = quality() - settings_.quality - margin;
-      holds_ = settled && above >= -fresh_below && (above <= fresh_above || attempts_ > attempts_max / 2);
+      holds_ = settled && above >= -fresh_below && (above <= fresh_above || attempts_ > attempts_max - 3);
       if (settled) learn(target());
     } else {
       const double wanted = std::pow(10.0, -0.1 * settings_.quality);

@@ -78,7 +78,7 @@ TEST(Threshold, AQualityIsComeToWithoutALoss) {
   draw("exact.png", {});
   const auto run = draw("near.png", {"--quality", "36"});
   EXPECT_EQ(run.at("settings").at("th"), "squared");
-  EXPECT_EQ(run.at("settings").at("transmittance"), "last");
+  EXPECT_EQ(run.at("settings").at("transmittance"), "one");
   EXPECT_GT(run.at("views")[0].at("loss").get<double>(), 0.0);
   const test::Outcome compared = test::run_program(
       {"compare", folder / "near.png", folder / "exact.png", "--json", folder / "compared.json"});

@@ -195,7 +195,7 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
 TEST(Quality, TheFrameIsThatOfTheLossItTells) {
   const Model model = test::random_model(99, 3000, 1);
   const auto views = eyes(96, 80);
-  FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 4};
+  FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 4, .probe_every = 1};
   render::Frame steered(test::gl_context(), model), given(test::gl_context(), model);
   for (int n = 0; n < 6; ++n) {
     const render::FrameReport report = steered.draw(views, settings);

@@ -103,7 +103,8 @@ Draw steered(const Walk& walk) {
     const FrameSettings settings = {
         .th = TH_SQUARED, .quality = static_cast<float>(asked), .probe_tiles = 16, .tile_size = tile};
     const auto report = frame.draw(walk.frames[n], settings);
-    return {report.quality, report.attempts, frame.views().back().pitch > tile};
+    const shared::View& last = frame.views().back();  // its probe, if it looked
+    return {report.quality, report.attempts, last.is_probe == 0 || last.pitch > tile};
   };
 }
 
