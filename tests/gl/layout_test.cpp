@@ -78,12 +78,26 @@ TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
 }
 
 TEST(Layout, CountersAndAmountAreWhereTheDriverPutsThem) {
-  const Offsets counters = {AT(Counters, visible),    AT(Counters, order_wanted), AT(Counters, pairs),
-                            AT(Counters, overflow),   AT(Counters, loop_cut),     AT(Counters, median_depth),
-                            AT(Counters, probe_low),  AT(Counters, probe_high),   AT(Counters, long_lists),
-                            AT(Counters, long_x),     AT(Counters, long_y),       AT(Counters, long_z),
-                            AT(Counters, tile_pairs), AT(Counters, tall),         AT(Counters, tall_x),
-                            AT(Counters, tall_y),     AT(Counters, tall_z),       STRIDE(Counters)};
+  const Offsets counters = {AT(Counters, visible),
+                            AT(Counters, order_wanted),
+                            AT(Counters, pairs),
+                            AT(Counters, overflow),
+                            AT(Counters, loop_cut),
+                            AT(Counters, median_depth),
+                            AT(Counters, probe_low),
+                            AT(Counters, probe_high),
+                            AT(Counters, probe_squares_low),
+                            AT(Counters, probe_squares_high),
+                            AT(Counters, long_lists),
+                            AT(Counters, long_x),
+                            AT(Counters, long_y),
+                            AT(Counters, long_z),
+                            AT(Counters, tile_pairs),
+                            AT(Counters, tall),
+                            AT(Counters, tall_x),
+                            AT(Counters, tall_y),
+                            AT(Counters, tall_z),
+                            STRIDE(Counters)};
   EXPECT_EQ(driver_offsets("Counters"), counters);
   const Offsets amount = {AT(Amount, count),     AT(Amount, first),     AT(Amount, threads_x),
                           AT(Amount, threads_y), AT(Amount, threads_z), AT(Amount, scan_x),

@@ -142,7 +142,9 @@ TEST(Tour, GoesAsFastAsAllowedAndNoFaster) {
         const TourSettings settings = settings_for(name, units);
         const Cameras frames = tour(scaled(cameras, units), settings);
         EXPECT_LT(fastest(frames, settings), 1.0 + 1e-6) << name;
-        EXPECT_GT(at_full_speed(frames, settings), 0.7) << name;
+        // At 6 m/s a quarter of a second of speeding up is 0.75 m of these small rooms.
+        EXPECT_GT(at_full_speed(frames, settings), settings.motion.metres_per_second > 2.0 ? 0.4 : 0.7)
+            << name;
         TourSettings slower = settings;  // a head that goes too fast or too slowly would show
         slower.motion.metres_per_second *= 0.97;
         slower.motion.degrees_per_second *= 0.97;
@@ -204,7 +206,7 @@ TEST(Tour, PassesThroughEveryCamera) {
           (settings.motion.metres_per_second + settings.motion.degrees_per_second / 90.0) / 90.0;
       EXPECT_LT(missed(cameras, frames, settings), 1.01 * in_a_frame) << name;
       Cameras other = cameras;  // a camera that is left out would show
-      other[5].position.y += 0.1;
+      other[5].position.y += 4.0 * in_a_frame;
       EXPECT_GT(missed(other, frames, settings), 2.0 * in_a_frame) << name;
     }
   }
