@@ -2,6 +2,7 @@
 // whole numbers, so that equal pictures have 0 and no order of summing shows. One invocation a pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
+#include "shared/bytes.glsl"
 
 layout(local_size_x = THREADS) in;
 
@@ -20,7 +21,7 @@ void main() {
   uint self = gl_LocalInvocationIndex;
   sums[self] = 0u;
   if (pixel < pixel_count) {
-    ivec3 drawn = ivec3(floor(clamp(colours[first_pixel + pixel].rgb, 0.0, 1.0) * 255.0 + 0.5));
+    ivec3 drawn = ivec3(in_bytes(colours[first_pixel + pixel].rgb));
     uint word = kept[first_kept + pixel];
     ivec3 d = drawn - ivec3(word & 255u, word >> 8u & 255u, word >> 16u & 255u);
     sums[self] = uint(d.r * d.r + d.g * d.g + d.b * d.b);

@@ -2,6 +2,7 @@
 // invocation a pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
+#include "shared/bytes.glsl"
 
 layout(local_size_x = THREADS) in;
 
@@ -14,6 +15,6 @@ uniform uint pixel_count;
 void main() {
   uint pixel = thread_index();
   if (pixel >= pixel_count) return;
-  uvec3 bytes = uvec3(floor(clamp(colours[first_pixel + pixel].rgb, 0.0, 1.0) * 255.0 + 0.5));
+  uvec3 bytes = uvec3(in_bytes(colours[first_pixel + pixel].rgb));
   kept[first_kept + pixel] = bytes.r | bytes.g << 8u | bytes.b << 16u;
 }

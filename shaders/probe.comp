@@ -4,6 +4,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "shared/bytes.glsl"
 
 layout(local_size_x = THREADS) in;
 
@@ -18,8 +19,7 @@ shared float sums[THREADS];
 
 vec3 shown(uint pixel) {
   vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
-  vec3 colour = colours[pixel].rgb + colours[pixel].a * background;
-  return floor(255.0 * clamp(colour, 0.0, 1.0) + 0.5) / 255.0;
+  return in_bytes(colours[pixel].rgb + colours[pixel].a * background) / 255.0;
 }
 
 float squared_error(uint nth) {

@@ -145,12 +145,11 @@ uint touched_lists(Splat splat, View view, uvec4 box) {
 
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
-  if (!is_probe(view)) {
-  // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these.
+  // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose
+  // tiles may not hold it.
   vec2 d = clamp(round(splat.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u)) - splat.mean;
   float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
-  if (q <= ellipse_inner_rho(splat.colour.w)) return true;
-  }
+  if (!is_probe(view) && q <= ellipse_inner_rho(splat.colour.w)) return true;
 #endif
   uvec4 box = tile_box(splat, view);
   uint likely = likely_row(splat, view, box);

@@ -1,7 +1,6 @@
 // binosplat render: from options to pictures, in the order in which mistakes are cheapest to find.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>

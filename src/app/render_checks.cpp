@@ -70,8 +70,7 @@ std::string threshold_name(const RenderOptions& o) {
 }
 
 std::string transmittance_name(const RenderOptions& o) {
-  if (!o.transmittance.empty()) return o.transmittance;
-  return "one";
+  return o.transmittance.empty() ? "one" : o.transmittance;
 }
 
 double units_per_metre(const RenderOptions& o) {

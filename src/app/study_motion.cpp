@@ -118,18 +118,27 @@ std::vector<Camera> toured(const Driven& driven, const Motion& motion) {
   return tour(driven.cameras, {motion, frames_per_second, driven.metre.units});
 }
 
+/// How long a stretch of a tour is, without its stop, in frames; and where they begin.
+std::size_t stretch_length(const std::vector<Camera>& tour, const MotionOptions& options) {
+  return std::min(tour.size(), options.lengths.lead + options.lengths.moving);
+}
+
+std::vector<std::size_t> starts_of(const std::vector<Camera>& tour, const MotionOptions& options) {
+  return study::stretch_starts(tour.size(), stretch_length(tour, options),
+                               options.segments.value_or(segments_default));
+}
+
 study::MotionPath along_tour(const Driven& driven, const Motion& motion, const MotionOptions& options) {
   study::MotionPath path{
       motion.name,
       fmt::format("{:g} m/s, {:g} degrees a second", motion.metres_per_second, motion.degrees_per_second),
       {}};
   const std::vector<Camera> cameras = toured(driven, motion);
-  const std::size_t length = std::min(cameras.size(), options.lengths.lead + options.lengths.moving);
-  for (const std::size_t start :
-       study::stretch_starts(cameras.size(), length, options.segments.value_or(segments_default))) {
+  for (const std::size_t start : starts_of(cameras, options)) {
     const auto first = cameras.begin() + static_cast<std::ptrdiff_t>(start);
     path.segments.push_back(study::segment_of(
-        frames_of(driven, {first, first + static_cast<std::ptrdiff_t>(length)}), options.lengths));
+        frames_of(driven, {first, first + static_cast<std::ptrdiff_t>(stretch_length(cameras, options))}),
+        options.lengths));
   }
   return path;
 }
@@ -144,9 +153,7 @@ std::vector<std::string> all_motions() {
 study::MotionPath standing(const Driven& driven, const MotionOptions& options) {
   study::MotionPath path{still_name, "no motion", {}};
   const std::vector<Camera> cameras = toured(driven, head_motions().front());
-  const std::size_t length = std::min(cameras.size(), options.lengths.lead + options.lengths.moving);
-  for (const std::size_t start :
-       study::stretch_starts(cameras.size(), length, options.segments.value_or(segments_default)))
+  for (const std::size_t start : starts_of(cameras, options))
     path.segments.push_back(
         study::still_segment(frames_of(driven, {cameras[start]}).front(), options.lengths));
   return path;

@@ -71,7 +71,8 @@ shared::View view_between(const shared::View& left, const shared::View& right) {
 }
 
 // Appends a view, or a probe of it, in the last order group if that sees the same depths.
-void add_view(FrameShape& shape, shared::View view, const Probe& tiles = {}, bool is_probe = false) {
+void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& probe = {}) {
+  const Probe tiles = probe.value_or(Probe{});
   const auto tile = static_cast<std::uint32_t>(shape.settings.tile_size);
   const std::uint32_t v = shape.view_count();
   if (view.width == 0 || view.height == 0)
@@ -87,10 +88,10 @@ void add_view(FrameShape& shape, shared::View view, const Probe& tiles = {}, boo
   view.tiles_y = tiles_in(view.height, tiles.row);
   view.list_offset = shape.list_count;
   view.pixel_offset = static_cast<std::uint32_t>(shape.pixel_count);
-  shape.pixel_count += is_probe ? std::int64_t{view.tiles_x} * view.tiles_y * tile * tile
-                                : std::int64_t{view.width} * view.height;
+  shape.pixel_count += probe ? std::int64_t{view.tiles_x} * view.tiles_y * tile * tile
+                             : std::int64_t{view.width} * view.height;
   if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
-  view.is_probe = is_probe ? 1 : 0;
+  view.is_probe = probe ? 1 : 0;
   const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t along) {
     return (along + side - 1) / side;
   };
@@ -158,7 +159,7 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   shape.asked = static_cast<std::uint32_t>(views.size());
   for (const shared::View& view : views) add_view(shape, view);
   shape.probe = probe;
-  if (probe) add_view(shape, views[probe->view], *probe, true);
+  if (probe) add_view(shape, views[probe->view], probe);
   if (settings.th_eyes == TH_EYES_CYCLOPEAN) {
     for (std::uint32_t v = 0; v < shape.asked; ++v) shape.views[v].th_view = shape.view_count() + v / 2;
     for (std::uint32_t v = 0; v < shape.asked; v += 2)

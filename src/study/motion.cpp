@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "measure/depth_table.h"
@@ -21,7 +22,6 @@ namespace {
 
 constexpr std::size_t table_views = 16;
 
-using Clock = std::chrono::steady_clock;
 using nlohmann::ordered_json;
 using Tell = std::function<void(const std::string&, std::size_t, std::size_t)>;
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "base/clock.h"
 #include "base/statistics.h"
 #include "measure/search.h"
 #include "stereo/disagreement.h"
@@ -18,8 +19,6 @@
 namespace binosplat::study {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr double near_target_db = 0.3;  // rules nearer than this to the target are compared
 constexpr double tolerance_db = 0.1;
