@@ -31,13 +31,6 @@ layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  /
 layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat: bits of floats, or two words of a sum
 shared uint batch_measured[BATCH];
 #endif
-#if RECORDS
-uniform uint remembers;  // whether `colours` still holds this view's last frame
-#if CONTRAST != CONTRAST_OFF
-uniform uint background_r, background_g, background_b;  // bits of floats
-vec3 last[COLUMN];  // the pixel's colour in the last frame, background included
-#endif
-#endif
 #if SHOW != SHOW_PICTURE
 layout(std430, binding = 8) writeonly buffer Shown { float shown[]; };  // below 0: nothing to tell
 float told[COLUMN];
@@ -64,24 +57,14 @@ float z_sum[COLUMN];
 float transmittance[COLUMN];  // 0 once the pixel is done,
 float least[COLUMN];          // and this -T; until then the T that the blend stops at
 
-// The most that a splat's alpha counts for in any pixel: T, times its contrast (METHOD 5, squared). A maximum in shared
-// memory, and one a tile in the buffer, cost little beside the blend. Or what it counts for in all pixels together, as a
-// whole number, so that the order of the additions does not matter.
+// The most that a splat's alpha counts for in any pixel: T (METHOD 5). A maximum in shared memory, and one a tile in the
+// buffer, cost little beside the blend. Or what it counts for in all pixels together, as a whole number, so that the order
+// of the additions does not matter.
 void measure(uint at, uint p, float alpha) {
 #if WEIGHS
   atomicAdd(batch_measured[at], uint(alpha * transmittance[p] * float(WEIGHT_SCALE) + 0.5));
 #elif RECORDS
-  float contrast = 1.0;
-#if CONTRAST != CONTRAST_OFF
-  vec3 other = last[p];
-#if CONTRAST == CONTRAST_BEHIND
-  // Of all that lies behind, as if it were seen without what is in front.
-  other = (last[p] - colour[p] - alpha * transmittance[p] * batch_colour[at].rgb) / (transmittance[p] * (1.0 - alpha));
-#endif
-  vec3 d = batch_colour[at].rgb - other;
-  if (remembers != 0u) contrast = min(1.0, sqrt(dot(d, d) / 3.0));
-#endif
-  atomicMax(batch_measured[at], floatBitsToUint(transmittance[p] * contrast));
+  atomicMax(batch_measured[at], floatBitsToUint(transmittance[p]));
 #endif
 }
 
@@ -211,7 +194,7 @@ uint begin = 0u, end = 0u;  // its list
 
 // Whether there is anything for this work group to draw; else it must end.
 bool find_tile() {
-  // A frame that is to be drawn again must leave the last one's colours, which contrast is measured against.
+  // It is to be drawn again.
   if (counters.overflow != 0u) return false;
 #if LISTS == LISTS_LONG
   if (group_index() >= counters.long_lists) return false;
@@ -252,14 +235,6 @@ void begin_pixels(uvec2 in_tile) {
     z_sum[p] = 0.0;
     transmittance[p] = inside ? 1.0 : 0.0;
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
-#if RECORDS && CONTRAST != CONTRAST_OFF
-    last[p] = vec3(0.0);
-    if (inside && remembers != 0u) {
-      uint from = place_of(view, p);
-      vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
-      last[p] = colours[from].rgb + colours[from].a * background;
-    }
-#endif
 #if SHOW != SHOW_PICTURE
     told[p] = 0.0;
 #endif

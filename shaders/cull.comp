@@ -48,7 +48,7 @@ uint key_of(uint i) {
 #endif
     Splat splat;
     bool projected = is_kept(i, v) && project(views[v], g, axes, splat);
-    if (projected) splat.colour.w = tile_level(v, page_first + i, g, axes, splat);
+    if (projected) splat.colour.w = tile_level(v, page_first + i, splat);
 #if HALF
     if (projected) splat = rounded(splat);  // or an eye could get what it has not alone
 #endif

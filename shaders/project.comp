@@ -59,7 +59,7 @@ void main() {
     Splat splat;
     uint touched = 0u;
     if (is_here && is_kept(i, v) && project(view, g, axes, splat)) {
-      splat.colour.w = tile_level(v, indices[slot], g, axes, splat);
+      splat.colour.w = tile_level(v, indices[slot], splat);
 #if HALF
       splat = rounded(splat);  // as `pairs` will find it
 #endif

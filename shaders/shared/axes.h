@@ -18,19 +18,8 @@
 // --transmittance: where T_upper comes from, the most light that reaches a Gaussian.
 #define TRANSMITTANCE_ONE 0
 #define TRANSMITTANCE_DEPTH 1
-#define TRANSMITTANCE_LAST 2  // from here on measured by frames
-#define TRANSMITTANCE_OTHER_EYE 3
-#define TRANSMITTANCE_BOTH 4
+#define TRANSMITTANCE_LAST 2  // measured by frames
 
-// --contrast: what that light is multiplied with, for --th squared.
-#define CONTRAST_OFF 0
-#define CONTRAST_FINAL 1
-#define CONTRAST_BEHIND 2
-
-// --th-eyes: what the two eyes of a pair make of each other's Th.
-#define TH_EYES_PER_EYE 0
-#define TH_EYES_SHARED_MIN 1
-#define TH_EYES_CYCLOPEAN 2
 // --decode: for which eye the networks of Scaffold-GS make Gaussians.
 #define DECODE_EYES 0
 #define DECODE_CYCLOPEAN 1
@@ -99,21 +88,7 @@ inline constexpr Choice th_choices[] = {
 inline constexpr Choice transmittance_choices[] = {
     {"one", "all of it"},
     {"depth", "AdaGScale's table: the most that reaches each depth of the scene"},
-    {"last", "as the last frame measured it in the same eye"},
-    {"other-eye", "as the last frame measured it in the other eye"},
-    {"both", "the larger of the two"},
-};
-
-inline constexpr Choice contrast_choices[] = {
-    {"off", "1"},
-    {"final", "the Gaussian's colour against the pixel's, as the last frame left it"},
-    {"behind", "the Gaussian's colour against what lies behind it"},
-};
-
-inline constexpr Choice th_eyes_choices[] = {
-    {"per-eye", "each eye its own"},
-    {"shared-min", "the smaller of the two for both"},
-    {"cyclopean", "that of an eye between them"},
+    {"last", "as the last frame measured it: for heads that stand still"},
 };
 
 inline constexpr Choice decode_choices[] = {

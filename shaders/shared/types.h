@@ -32,11 +32,11 @@ struct View {
   uint list_offset;   // this view's first list in the frame's lists of pairs
   uint pixel_offset;  // this view's first pixel in the frame's pixel buffers
   uint order_group;   // views of equal number share one depth order
-  uint th_view;       // with --th-eyes cyclopean: the view between the eyes, which Th is taken from
   uint pitch;  // px from one of its tiles to the next: a tile's side, more in a probe, whose tiles lie apart
   uint shift_x;  // px, where its first tile begins
   uint shift_y;
   uint is_probe;  // 1: only tiles that lie apart, drawn exactly
+  uint unused;
 };
 
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
@@ -107,7 +107,7 @@ struct Amount {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(View) == 160 && offsetof(View, slopes) == 96 && offsetof(View, is_probe) == 156);
+static_assert(sizeof(View) == 160 && offsetof(View, slopes) == 96 && offsetof(View, is_probe) == 152);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);

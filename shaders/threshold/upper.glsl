@@ -1,5 +1,5 @@
-// T_upper of a Gaussian in a view, or W with contrast: the most that its alpha counted for in a pixel of the last frame
-// (METHOD 5). 1 where nothing is known: at first, after a cut, outside the view, beyond the table of depths.
+// T_upper of a Gaussian in a view, the most light that reaches it: 1 where nothing is known, at first, after a cut, outside
+// the view, beyond the table of depths (METHOD 5).
 
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -25,16 +25,8 @@ layout(std430, binding = 7) readonly buffer Upper { float upper[]; };  // (view,
 uniform uint gaussian_count;                                           // of the model
 uniform uint remembers;                                                // 0: the last frame tells nothing of this one
 
-// Eyes of a pair are views 2k and 2k + 1.
 float upper_of(uint gaussian, uint view, float depth) {
-  if (remembers == 0u) return 1.0;
-  float own = upper[view * gaussian_count + gaussian];
-#if TRANSMITTANCE == TRANSMITTANCE_LAST
-  return own;
-#else
-  float other = upper[(view ^ 1u) * gaussian_count + gaussian];
-  return TRANSMITTANCE == TRANSMITTANCE_BOTH ? max(own, other) : other;
-#endif
+  return remembers == 0u ? 1.0 : upper[view * gaussian_count + gaussian];
 }
 
 #endif

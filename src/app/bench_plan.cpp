@@ -49,9 +49,6 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
     for (const std::string& size : plan.axes.sizes) {
       plan.cases.push_back({scene, eyes, size, plan.json["points"].size()});
       for (const render::FrameSettings& settings : plan.axes.settings) {
-        const bool pair =
-            settings.transmittance == TRANSMITTANCE_OTHER_EYE || settings.transmittance == TRANSMITTANCE_BOTH;
-        if (pair && eyes < 2) fail("{}: both eyes' transmittance with eyes of 1", plan.axes.name);
         plan.json["points"].push_back({{"scene", plan.scenes[scene].name},
                                        {"eyes", eyes},
                                        {"size", size},
@@ -71,9 +68,8 @@ void add_calibrated(const std::string& file, study::Axes& axes) {
     render::FrameSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;
-    settings.contrast = entry.contrast;
     settings.loss = static_cast<float>(entry.loss);
-    study::check(file, settings, 1);
+    study::check(file, settings);
     if (known.insert(study::to_json(settings).dump()).second) axes.settings.push_back(settings);
   }
 }

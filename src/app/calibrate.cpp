@@ -31,12 +31,11 @@ void print(const study::Calibration& c, const CalibrateOptions& o) {
                   : fmt::format("target: {} dB against the exact pictures", c.target.db));
   fmt::print("light by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.upper.size(),
              c.depth_table.far, c.depth_table_seconds);
-  fmt::print("{:<12}{:<8}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "T from", "contrast", "loss",
+  fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "T from", "loss",
              drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
   for (const study::CalibrationEntry& e : c.entries) {
-    fmt::print("{:<12}{:<8}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n",
-               th_choices[e.th].name, transmittance_choices[e.transmittance].name,
-               contrast_choices[e.contrast].name, e.loss, e.reached_db, e.worst_db, e.worst_view,
+    fmt::print("{:<12}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n", th_choices[e.th].name,
+               transmittance_choices[e.transmittance].name, e.loss, e.reached_db, e.worst_db, e.worst_view,
                -100 * e.pairs_removed, e.seconds);
   }
   fmt::print("\n{}\n", o.output);

@@ -15,8 +15,6 @@ render::FrameSettings exact(render::FrameSettings settings) {
   settings.th = TH_TAU;
   settings.loss = 0.0f;
   settings.transmittance = TRANSMITTANCE_ONE;
-  settings.contrast = CONTRAST_OFF;
-  settings.th_eyes = TH_EYES_PER_EYE;
   return settings;
 }
 
@@ -27,11 +25,10 @@ CalibratedSettings::CalibratedSettings(const RenderOptions& options, const Model
   calibration_ = study::load_calibration(options.calibration);
   render::FrameSettings asked;
   asked.th = number_of(threshold_name(options), th_choices);
-  asked.transmittance = number_of(transmittance_name(options), transmittance_choices);
-  asked.contrast = number_of(options.contrast, contrast_choices);
+  asked.transmittance = number_of(options.transmittance, transmittance_choices);
   if (!study::calibrated(*calibration_, asked, calibration_->focal))
-    fail("--calibration {} has no entry for --th {} --transmittance {} --contrast {}", options.calibration,
-         th_choices[asked.th].name, transmittance_name(options), options.contrast);
+    fail("--calibration {} has no entry for --th {} --transmittance {}", options.calibration,
+         th_choices[asked.th].name, options.transmittance);
   other_model_ = !study::is_of(*calibration_, model);
   if (other_model_)
     log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly",

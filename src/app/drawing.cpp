@@ -28,9 +28,7 @@ render::FrameSettings settings_of(const RenderOptions& options) {
   settings.tiles = number_of(options.tiles, tiles_choices);
   settings.th = number_of(threshold_name(options), th_choices);
   settings.loss = options.loss.value_or(0.0f);
-  settings.transmittance = number_of(transmittance_name(options), transmittance_choices);
-  settings.contrast = number_of(options.contrast, contrast_choices);
-  settings.th_eyes = number_of(options.th_eyes, th_eyes_choices);
+  settings.transmittance = number_of(options.transmittance, transmittance_choices);
   settings.quality = options.quality.value_or(0.0f);
   settings.decode = options.decode.empty() ? DECODE_EYES : number_of(options.decode, decode_choices);
   settings.tile_size = options.tile == "auto" ? TILE_SIZE_DEFAULT : std::stoi(options.tile);

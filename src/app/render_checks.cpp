@@ -10,7 +10,7 @@ namespace binosplat::app {
 namespace {
 
 void check_threshold(const RenderOptions& o) {
-  const std::string th = threshold_name(o), transmittance = transmittance_name(o);
+  const std::string th = threshold_name(o);
   const int givers = int(o.loss.has_value()) + int(o.quality.has_value()) + int(!o.calibration.empty());
   const char* const giver = o.loss ? "--loss" : o.quality ? "--quality" : "--calibration";
   if (givers > 1) {
@@ -20,23 +20,12 @@ void check_threshold(const RenderOptions& o) {
   if (th != "tau" && givers == 0)
     fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
   if (th == "tau" && givers > 0) fail("{} has no effect with --th tau, which is exact", giver);
-  if (o.contrast != "off" && (th != "squared" || transmittance == "one" || transmittance == "depth")) {
-    fail("--contrast {} is for --th squared with a measured --transmittance", o.contrast);
-  }
-  if ((transmittance == "other-eye" || transmittance == "both") && (o.mono || !o.only.empty())) {
-    fail("--transmittance {} needs both eyes: leave --mono and --only out", transmittance);
-  }
-  if (o.th_eyes != "per-eye" && (th == "tau" || o.mono || !o.only.empty())) {
-    fail("--th-eyes {} is for thresholds of both eyes: leave --mono and --only out, and give --loss",
-         o.th_eyes);
-  }
   if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
     fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
-  if (!o.reference_until.empty() &&
-      (transmittance != "one" || o.quality || !o.calibration.empty() || o.th_eyes != "per-eye")) {
+  if (!o.reference_until.empty() && (o.transmittance != "one" || o.quality || !o.calibration.empty())) {
     fail(
-        "--reference-until: the reference goes by no earlier frame and one eye: leave --transmittance, "
-        "--quality, --calibration and --th-eyes out");
+        "--reference-until: the reference goes by no earlier frame: leave --transmittance, --quality and "
+        "--calibration out");
   }
 }
 
@@ -67,10 +56,6 @@ void check_cameras(const RenderOptions& o) {
 std::string threshold_name(const RenderOptions& o) {
   if (!o.th.empty()) return o.th;
   return o.loss || o.quality || !o.calibration.empty() ? "squared" : "tau";
-}
-
-std::string transmittance_name(const RenderOptions& o) {
-  return o.transmittance.empty() ? "one" : o.transmittance;
 }
 
 double units_per_metre(const RenderOptions& o) {

@@ -209,14 +209,8 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
   sub.add_option("--calibration", o.calibration, "Take the loss from a file of binosplat calibrate")
       ->type_name("FILE")
       ->group(group);
-  choose(sub, "--transmittance", o.transmittance,
-         "The light that reaches a Gaussian, for --th (one;\nlast: for heads that stand still)",
+  choose(sub, "--transmittance", o.transmittance, "The light that reaches a Gaussian, for --th (one)",
          transmittance_choices)
-      ->group(group);
-  choose(sub, "--contrast", o.contrast, "What that light is weighed with, for --th squared (off)",
-         contrast_choices)
-      ->group(group);
-  choose(sub, "--th-eyes", o.th_eyes, "Whose threshold an eye goes by (per-eye)", th_eyes_choices)
       ->group(group);
   choose(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
          decode_choices)

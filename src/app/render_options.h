@@ -67,9 +67,7 @@ struct RenderOptions {
   std::string tiles = "ellipse";
   std::string th;             // empty: tau, or squared with a loss
   std::optional<float> loss;  // K or kappa
-  std::string transmittance;  // empty: transmittance_name()
-  std::string contrast = "off";
-  std::string th_eyes = "per-eye";
+  std::string transmittance = "one";
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
   std::string decode;            // of a Scaffold-GS model; empty: eyes
@@ -114,10 +112,6 @@ void add_view_options(CLI::App& sub, RenderOptions& options);
 /// What --th is: squared where only a loss, a quality or a calibration is given, which costs less at equal
 /// error than the paper's rule (METHOD 8).
 std::string threshold_name(const RenderOptions& options);
-
-/// What --transmittance is: `last` where the loss is found for a quality, which costs least
-/// (docs/stability.md); a loss that is given belongs to `one` unless said otherwise.
-std::string transmittance_name(const RenderOptions& options);
 
 /// What --units-per-metre is: as given, as saved, or 1.
 double units_per_metre(const RenderOptions& options);

@@ -171,9 +171,7 @@ ordered_json settings_json(const RenderReport& report) {
                        {"kernel_px2", report.model.kernel_px2},
                        {"th", threshold_name(o)}};
   if (o.loss) json["loss"] = *o.loss;
-  json["transmittance"] = transmittance_name(o);
-  json["contrast"] = o.contrast;
-  json["th_eyes"] = o.th_eyes;
+  json["transmittance"] = o.transmittance;
   if (report.model.scaffold) json["decode"] = o.decode.empty() ? decode_choices[DECODE_EYES].name : o.decode;
   if (o.detail) json["detail_px"] = *o.detail;
   if (o.quality) json["quality_db"] = *o.quality;

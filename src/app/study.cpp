@@ -18,7 +18,6 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "study/carried.h"
-#include "study/eyes.h"
 #include "study/motion_page.h"
 #include "study/rules.h"
 #include "study/stability_page.h"
@@ -45,8 +44,7 @@ Studied open(const StudyOptions& options) {
 }
 
 Variant variant_of(const StudyOptions& o) {
-  return {number_of(o.th, th_choices), number_of(o.transmittance, transmittance_choices),
-          number_of(o.contrast, contrast_choices), number_of(o.th_eyes, th_eyes_choices)};
+  return {number_of(o.th, th_choices), number_of(o.transmittance, transmittance_choices)};
 }
 
 ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
@@ -90,33 +88,6 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
   return json;
 }
 
-ordered_json eyes(gl::Context& context, const StudyOptions& options, const Studied& studied) {
-  Progress progress("--th-eyes", std::size(th_eyes_choices));
-  std::size_t done = 0;
-  const auto results = study::run_eyes(context, *studied.model, views_of(studied.shots.front()),
-                                       variant_of(options), options.target, [&] { progress.update(++done); });
-  fmt::print(
-      "| rule | loss | pairs | removed | left dB | right dB | disagreement dB | both eyes dB | `per-eye` at "
-      "as many pairs, dB |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
-  ordered_json json;
-  for (const study::EyesResult& r : results) {
-    fmt::print("| {} | {:.4g} | {:.0f} | {:.1f} % | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
-               r.variant.name(), r.variant.loss, r.pairs, 100.0 * r.removed, r.left_db, r.right_db,
-               r.disagreement_db, r.db, r.per_eye_db);
-    json.push_back({{"variant", r.variant.name()},
-                    {"loss", r.variant.loss},
-                    {"pairs", r.pairs},
-                    {"removed", r.removed},
-                    {"left_db", r.left_db},
-                    {"right_db", r.right_db},
-                    {"disagreement_db", r.disagreement_db},
-                    {"db", r.db},
-                    {"per_eye_db_at_as_many_pairs", r.per_eye_db}});
-  }
-  return json;
-}
-
 void print_rules(const std::vector<study::RuleResult>& results) {
   constexpr const char* shown[] = {"project", "order", "pairs", "tile_sort", "ranges", "blend"};
   fmt::print(
@@ -144,7 +115,7 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
   const int frames = options.frames.value_or(96);
   const Shot& shot = studied.shots.front();
   study::Still still(context, *studied.model, views_of(shot));
-  std::vector<Variant> variants = study::rules_of(still.views().size());
+  std::vector<Variant> variants = study::all_variants();
   std::size_t done = 0;
   {
     Progress progress("losses", variants.size());
@@ -173,14 +144,13 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
 }
 
 /// Which study the options ask for, beside the analyses.
-enum class Kind { analyses, stability, eyes, rules, motion, carried };
+enum class Kind { analyses, stability, rules, motion, carried };
 
 Kind kind_of(const StudyOptions& o) {
   const bool path = !o.scene.path.empty() && !o.motion.chosen;  // --motion goes along one, too
-  if (int{o.stability} + int{o.eyes} + int{o.rules} + int{o.motion.chosen} + int{path} > 1)
-    fail("study: --stability, --eyes, --rules, --motion and --path FILE are studies of their own");
+  if (int{o.stability} + int{o.rules} + int{o.motion.chosen} + int{path} > 1)
+    fail("study: --stability, --rules, --motion and --path FILE are studies of their own");
   return o.stability       ? Kind::stability
-         : o.eyes          ? Kind::eyes
          : o.rules         ? Kind::rules
          : o.motion.chosen ? Kind::motion
          : path            ? Kind::carried
@@ -191,13 +161,11 @@ void check(const StudyOptions& options, Kind kind) {
   const bool of_page = kind == Kind::stability || kind == Kind::motion;
   if (!options.test.empty() || !options.scene.photos.empty())
     fail(
-        "study: --test and --photos are for the analyses, without --stability, --eyes, --rules, --motion and "
-        "--path");
+        "study: --test and --photos are for the analyses, without --stability, --rules, --motion and --path");
   if (options.frames && kind != Kind::rules && kind != Kind::motion)
     fail("--frames goes with --rules and --motion, or with the analyses");
   if (options.scene.views.size() > 1) fail("--view: this study is of one view");
   if (kind == Kind::motion && !options.scene.views.empty()) fail("--view: --motion goes through all cameras");
-  if (kind == Kind::eyes && options.scene.mono) fail("--mono: --eyes compares the eyes of a pair");
   if (!options.output.empty() && !of_page)
     fail("study: -o is for the analyses, --stability and --motion: --json keeps the numbers of the others");
 }
@@ -207,7 +175,6 @@ ordered_json studied(const StudyOptions& options, Kind kind) {
   const Studied studied = open(options);
   const auto context = open_context(options.scene);
   return kind == Kind::stability ? study_stability(*context, options, studied)
-         : kind == Kind::eyes    ? eyes(*context, options, studied)
          : kind == Kind::rules   ? rules(*context, options, studied)
                                  : carried(*context, options, studied);
 }
@@ -216,7 +183,7 @@ ExitCode study_scene(const StudyOptions& options) {
   const Kind kind = kind_of(options);
   if (kind == Kind::analyses) {
     if (!options.not_for_analyses.empty())
-      fail("study: {} {} with --stability, --eyes, --rules, --motion or --path FILE",
+      fail("study: {} {} with --stability, --rules, --motion or --path FILE",
            fmt::join(options.not_for_analyses, ", "), options.not_for_analyses.size() > 1 ? "go" : "goes");
     return analyse_scene({options.scene, options.test, options.frames.value_or(24),
                           options.output.empty() ? "out/study" : options.output});
@@ -237,10 +204,9 @@ ExitCode study_scene(const StudyOptions& options) {
 void add_scene_options(CLI::App& sub, StudyOptions& o) {
   sub.add_option("--cameras", o.scene.cameras, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
-  sub.add_option(
-         "--view", o.scene.views,
-         "The camera to study from; default: the first. Without --stability, --eyes, --rules,\n"
-         "--motion and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
+  sub.add_option("--view", o.scene.views,
+                 "The camera to study from; default: the first. Without --stability, --rules, --motion\n"
+                 "and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
       ->type_name("NAME...");
   sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
   sub.add_option("--photos", o.scene.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB")
@@ -273,12 +239,9 @@ void add_study(CLI::App& program, Command& command) {
   const auto options = std::make_shared<StudyOptions>();
   StudyOptions& o = *options;
   sub->add_option("SCENE", o.scene.scene, "A model, or demo:room or demo:city")->required();
-  sub->add_flag("--stability", o.stability,
-                "Every rule, source, contrast and eye rule on every failure case");
-  sub->add_flag("--eyes", o.eyes,
-                "One rule with each --th-eyes on a still pair (both eyes' light by default)");
-  auto* rules = sub->add_flag("--rules", o.rules,
-                              "Every rule, source and contrast at one error on a still pair, timed");
+  sub->add_flag("--stability", o.stability, "Every rule and source on every failure case");
+  auto* rules =
+      sub->add_flag("--rules", o.rules, "Every rule and source at one error on a still pair, timed");
   CLI::Option* motion = add_motion_options(*sub, o.motion);
   sub->add_option(
          "--frames", o.frames,
@@ -314,8 +277,6 @@ void add_study(CLI::App& program, Command& command) {
   };
   choose("--th", o.th, th_choices);
   choose("--transmittance", o.transmittance, transmittance_choices);
-  choose("--contrast", o.contrast, contrast_choices);
-  choose("--th-eyes", o.th_eyes, th_eyes_choices);
   add_scene_options(*sub, o);
   sub->footer(
       "By itself it repeats AdaGScale's analyses on the scene, as a page with plots.\n"
@@ -325,8 +286,8 @@ void add_study(CLI::App& program, Command& command) {
       "  binosplat study garden.ply --motion --rule squared,one --rule squared,last --size 1280x1120\n"
       "  binosplat study garden.ply --stability --size 320x320");
   sub->callback([options, sub, &command] {
-    for (const char* name : {"--case", "--target", "--loss", "--quality", "--th", "--transmittance",
-                             "--contrast", "--th-eyes", "--mono", "--json"}) {
+    for (const char* name :
+         {"--case", "--target", "--loss", "--quality", "--th", "--transmittance", "--mono", "--json"}) {
       if (sub->count(name) > 0) options->not_for_analyses.emplace_back(name);
     }
     options->motion.lengths.moving = static_cast<std::size_t>(options->frames.value_or(60));

@@ -47,26 +47,21 @@ std::vector<std::string> words(const std::string& text) {
   return found;
 }
 
-/// TH,SOURCE[,CONTRAST[,EYES]] by their names.
-Variant rule_of(const std::string& text, std::size_t eyes) {
+/// TH,SOURCE by their names.
+Variant rule_of(const std::string& text) {
   const std::vector<std::string> names = words(text);
-  if (names.size() < 2 || names.size() > 4) fail("--rule {}: expected TH,SOURCE[,CONTRAST[,EYES]]", text);
+  if (names.size() != 2) fail("--rule {}: expected TH,SOURCE", text);
   const std::string place = "--rule " + text;
   Variant rule{.th = study::find_choice(place, names[0], th_choices),
                .transmittance = study::find_choice(place, names[1], transmittance_choices)};
-  if (names.size() > 2) rule.contrast = study::find_choice(place, names[2], contrast_choices);
-  if (names.size() > 3) rule.th_eyes = study::find_choice(place, names[3], th_eyes_choices);
   if (rule.th == TH_TAU) fail("{}: {} is exact, and always measured", place, names[0]);
-  Variant at_a_loss = rule;
-  at_a_loss.loss = 1.0f;
-  study::check(place, at_a_loss.settings(), static_cast<int>(eyes));
   return rule;
 }
 
-std::vector<Variant> rules_for(const StudyOptions& options, std::size_t eyes) {
+std::vector<Variant> rules_for(const StudyOptions& options) {
   std::vector<Variant> rules;
-  for (const std::string& text : options.motion.rules) rules.push_back(rule_of(text, eyes));
-  if (rules.empty()) rules = study::rules_of(eyes);
+  for (const std::string& text : options.motion.rules) rules.push_back(rule_of(text));
+  if (rules.empty()) rules = study::all_variants();
   return rules;
 }
 
@@ -235,10 +230,8 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
       ->delimiter(',')
       ->type_name("NAME,...")
       ->check(CLI::IsMember(names).description(""));
-  sub.add_option(
-         "--rule", options.rules,
-         "TH,SOURCE[,CONTRAST[,EYES]] as --th, --transmittance, --contrast and\n--th-eyes name them; may be "
-         "given again; default: all")
+  sub.add_option("--rule", options.rules,
+                 "TH,SOURCE as --th and --transmittance name them; may be given again;\ndefault: all")
       ->needs(motion)
       ->type_name("RULE")
       ->allow_extra_args(false);
@@ -270,7 +263,7 @@ ordered_json study_motion(const StudyOptions& options) {
   const Driven driven = open(options);
   const std::vector<study::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
-  const std::vector<Variant> rules = rules_for(options, views.size());
+  const std::vector<Variant> rules = rules_for(options);
   const auto context = open_context(options.scene);
   const study::MotionSettings settings{.quality = options.scene.quality.value_or(40.0f),
                                        .target = options.target,

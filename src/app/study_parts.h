@@ -19,7 +19,7 @@ namespace binosplat::app {
 struct MotionOptions {
   bool chosen = false;
   std::vector<std::string> motions;  // empty: all
-  std::vector<std::string> rules;    // TH,SOURCE[,CONTRAST[,EYES]]; empty: all
+  std::vector<std::string> rules;    // TH,SOURCE; empty: all
   std::optional<std::size_t> segments;
   study::SegmentLengths lengths;
   int rounds = 2;
@@ -29,7 +29,6 @@ struct MotionOptions {
 struct StudyOptions {
   RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
   bool stability = false;
-  bool eyes = false;
   bool rules = false;
   MotionOptions motion;
   std::optional<int> frames;  // timed of each rule in each round
@@ -37,7 +36,7 @@ struct StudyOptions {
   std::string output;
   std::vector<std::string> cases;
   double target = 40.0;  // dB
-  std::string th = "squared", transmittance = "last", contrast = "off", th_eyes = "per-eye";
+  std::string th = "squared", transmittance = "one";
   std::string json;
   std::vector<std::string> not_for_analyses;  // options given that these know nothing of
 };

@@ -46,9 +46,7 @@ ordered_json to_json(const study::StabilityBounds& b) {
 void find_losses(study::Still& still, double target, std::vector<Variant>& variants) {
   Progress progress("losses", variants.size());
   for (std::size_t k = 0; k < variants.size(); ++k) {
-    // The eyes' rules are compared at one loss.
-    variants[k].loss =
-        variants[k].th_eyes == TH_EYES_PER_EYE ? still.loss_at(variants[k], target) : variants[k - 1].loss;
+    variants[k].loss = still.loss_at(variants[k], target);
     progress.update(k + 1);
   }
 }
@@ -104,7 +102,7 @@ ordered_json study_stability(gl::Context& context, const StudyOptions& options, 
   fmt::print("Losses for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.scene,
              head.name, head.width, head.height);
   for (const Variant& variant : variants) {
-    if (variant.th_eyes == TH_EYES_PER_EYE) fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
+    fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
     json["losses"][variant.name()] = variant.loss;
   }
   for (const study::StabilityCase& one : cases) {

@@ -75,9 +75,6 @@ bool draw_thresholds(render::FrameSettings& s) {
   s.loss = std::max(0.0f, s.loss);
   // The depth table needs cameras to be measured from: `binosplat render` has it.
   changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
-  if (s.th == TH_SQUARED && render::measures(s.transmittance))
-    changed |= combo("contrast", s.contrast, contrast_choices);
-  changed |= combo("th-eyes", s.th_eyes, th_eyes_choices);
   return changed;
 }
 

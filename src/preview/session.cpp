@@ -49,9 +49,7 @@ void make_consistent(Choices& choices) {
   if (s.th == TH_TAU) {
     s.loss = 0.0f;
     s.transmittance = TRANSMITTANCE_ONE;
-    s.th_eyes = TH_EYES_PER_EYE;
   }
-  if (s.th != TH_SQUARED || !render::measures(s.transmittance)) s.contrast = CONTRAST_OFF;
   s.background = choices.background;
 }
 

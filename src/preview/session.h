@@ -28,7 +28,7 @@ struct Choices {
 };
 
 /// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no loss without
-/// one, no contrast but of a measured light with TH_SQUARED, and so on (METHOD 5).
+/// one, and so on (METHOD 5).
 void make_consistent(Choices& choices);
 
 class Session {

@@ -1,7 +1,6 @@
 #pragma once
 // How much of each Gaussian a view shows: what Th may go by in the next frame (METHOD.md section 5).
 
-#include <glm/glm.hpp>
 #include <vector>
 
 #include "reference/project.h"
@@ -12,15 +11,11 @@ namespace binosplat::reference {
 /// What is said of a Gaussian in no tile's list: outside the view or left out by Th.
 constexpr double not_seen = -1.0;
 
-/// For each Gaussian the largest T in front of it, times contrast, over the pixels that blend it: max(T), or
-/// W for TH_SQUARED, one maximum of the product. `contrast` is a CONTRAST_ of shared/axes.h: 1, or the RMS
-/// over channels of the Gaussian's colour against the pixel's final colour, or against the colour of all that
-/// lies behind it there. 0 where no pixel blends it, because each had ended before it or because its alpha is
-/// below tau in all; not_seen where no tile has it. `background` is behind all; only the contrast depends on
-/// it. The same bits with any number of threads.
+/// For each Gaussian the largest T in front of it over the pixels that blend it, max(T). 0 where no pixel
+/// blends it, because each had ended before it or because its alpha is below tau in all; not_seen where no
+/// tile has it. The same bits with any number of threads.
 std::vector<double> measure_transmittance(const std::vector<Splat>& splats, const TileLists& lists,
-                                          const shared::View& view, int contrast = CONTRAST_OFF,
-                                          const glm::dvec3& background = glm::dvec3(0.0));
+                                          const shared::View& view);
 
 /// For each Gaussian the largest alpha T over the pixels that blend it, what it contributes to the one that
 /// shows it best. 0 and not_seen as above.

@@ -1,4 +1,3 @@
-#include <bit>
 #include <cstddef>
 
 #include "render/stages.h"
@@ -10,7 +9,6 @@ namespace {
 struct Variant {
   bool records = false;
   bool weighs = false;
-  int contrast = CONTRAST_OFF;
   int show = SHOW_PICTURE;
 };
 
@@ -40,14 +38,12 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
                                 {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                                 {"RECORDS", variant.records ? "1" : "0"},
                                 {"WEIGHS", variant.weighs ? "1" : "0"},
-                                {"CONTRAST", std::to_string(variant.contrast)},
                                 {"SHOW", std::to_string(variant.show)}});
 }
 
 void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,
          const gl::Buffer& measured) {
   gl::Context& context = dispatcher.context();
-  const glm::vec3& background = shape.settings.background;
   const auto draw = [&](Lists lists, const gl::Work& work) {
     dispatcher.start(program(context, shape, variant, lists), work,
                      {{"Views", buffers.views},
@@ -61,10 +57,6 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"Measured", measured},
                       {"Shown", buffers.shown}},
                      {{"view_count", shape.view_count()},
-                      {"remembers", shape.remembers ? 1u : 0u},
-                      {"background_r", std::bit_cast<std::uint32_t>(background.r)},
-                      {"background_g", std::bit_cast<std::uint32_t>(background.g)},
-                      {"background_b", std::bit_cast<std::uint32_t>(background.b)},
                       {"tile_count", shape.tile_count()},
                       {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
   };
@@ -84,9 +76,8 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
                     {"FrameCounters", buffers.counters}},
                    {{"tile_count", shape.tile_count()}});
   }
-  const FrameSettings& settings = shape.settings;
-  run(dispatcher, shape, buffers,
-      {.records = shape.records, .weighs = settings.weigh, .contrast = settings.contrast}, buffers.measured);
+  run(dispatcher, shape, buffers, {.records = shape.records, .weighs = shape.settings.weigh},
+      buffers.measured);
 }
 
 void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what) {

@@ -211,9 +211,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       context_(context) {}
 
 void FrameBuffers::upload(const FrameShape& shape) {
-  std::vector<shared::View> all = shape.views;
-  all.insert(all.end(), shape.between.begin(), shape.between.end());
-  views.upload(all);
+  views.upload(shape.views);
   if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = shape.settings.depth_table.upper;
   for (float& upper_of_bin : table)

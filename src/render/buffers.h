@@ -108,8 +108,8 @@ struct FrameBuffers {
 
   std::vector<std::unique_ptr<DrawnBuffers>> drawn;  // by order group
 
-  // What is remembered for the next frame's Th, float (view, Gaussian): T_upper, or W with contrast; written
-  // while the last frame's is read. Empty where nothing is measured.
+  // What is remembered for the next frame's Th, T_upper as float (view, Gaussian); written while the last
+  // frame's is read. Empty where nothing is measured.
   std::unique_ptr<gl::Buffer> upper;
   std::unique_ptr<gl::Buffer> upper_next;
   gl::Buffer measured;     // uint by splat, bits of the largest float; two, low first, where weighed

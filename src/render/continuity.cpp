@@ -42,8 +42,6 @@ bool continues(const FrameShape& before, const FrameShape& now, double median_de
 
 bool remembers(const FrameShape& before, const FrameShape& now, double median_depth) {
   return measures(before.settings.transmittance) && measures(now.settings.transmittance) &&
-         before.settings.contrast == now.settings.contrast &&
-         before.settings.background == now.settings.background &&
          before.settings.decode == now.settings.decode && continues(before, now, median_depth);
 }
 

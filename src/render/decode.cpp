@@ -8,8 +8,8 @@ namespace {
 
 bool reuses(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  return s.anchor_reuse && measures(s.transmittance) && s.th != TH_TAU && s.th_eyes == TH_EYES_PER_EYE &&
-         !shape.probe && shape.kernel_px2 == KERNEL_PX2;
+  return s.anchor_reuse && measures(s.transmittance) && s.th != TH_TAU && !shape.probe &&
+         shape.kernel_px2 == KERNEL_PX2;
 }
 
 // Of shared memory: what every driver has.
@@ -24,7 +24,6 @@ gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networ
           {"TILE_SIZE", std::to_string(ANCHOR_TILE)},
           {"TH", std::to_string(reuse ? s.th : TH_TAU)},
           {"TH_NAME", th_choices[reuse ? s.th : TH_TAU].name},
-          {"TH_EYES", std::to_string(TH_EYES_PER_EYE)},
           {"TRANSMITTANCE", std::to_string(reuse ? s.transmittance : TRANSMITTANCE_ONE)},
           {"ANTIALIASED", "0"},
           {"HIDDEN", std::to_string(networks.hidden)},

@@ -41,7 +41,7 @@ struct FrameReport {
 struct MeasuredGaussian {
   std::uint32_t index = 0;     // in the model
   float depth = 0.0f;          // view z, world units
-  float transmittance = 0.0f;  // max(T), or W with contrast, not floored; 0 where no pixel blends it
+  float transmittance = 0.0f;  // max(T), not floored; 0 where no pixel blends it
 };
 
 /// A Gaussian that a frame drew in a view, and how much of the picture it is.

@@ -37,13 +37,11 @@ constexpr double loss_min = 1e-9, loss_max = 1e9;
 double careful_loss_at_40_db(const FrameSettings& s, double focal) {
   const double smaller = std::pow(std::min(1.0, focal / 700.0), 1.75);
   if (s.th == TH_PERIPHERAL) return 1.0 * smaller;
-  if (s.contrast == CONTRAST_FINAL) return 0.006 * smaller;
-  return (s.contrast == CONTRAST_BEHIND ? 0.008 : 0.1) * smaller;
+  return 0.1 * smaller;
 }
 
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
-  return a.quality == b.quality && a.th == b.th && a.contrast == b.contrast &&
-         a.transmittance == b.transmittance;
+  return a.quality == b.quality && a.th == b.th && a.transmittance == b.transmittance;
 }
 
 }  // namespace

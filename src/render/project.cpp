@@ -97,7 +97,6 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TH", std::to_string(s.th)},
                          {"TH_NAME", th_choices[s.th].name},
                          {"TRANSMITTANCE", std::to_string(s.transmittance)},
-                         {"TH_EYES", std::to_string(s.th_eyes)},
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},
                          {"LIST_TILES", std::to_string(s.list_tiles)},

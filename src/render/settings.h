@@ -25,17 +25,15 @@ struct DepthTable {
 };
 
 /// Whether frames measure what their successors go by.
-constexpr bool measures(int transmittance) { return transmittance >= TRANSMITTANCE_LAST; }
+constexpr bool measures(int transmittance) { return transmittance == TRANSMITTANCE_LAST; }
 
-/// Frames after a cut until what they measure of themselves has settled: with a contrast seven, else three.
+/// Frames after a cut by which what they measure of themselves has settled; most have after three.
 constexpr int settling_frames = 8;
 
 struct FrameSettings {
   int tiles = TILES_ELLIPSE;              // TILES_ of shared/axes.h
   int th = TH_TAU;                        // TH_ of shared/axes.h
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_ of shared/axes.h: where Th takes T_upper from
-  int contrast = CONTRAST_OFF;            // CONTRAST_; with TH_SQUARED and a measured transmittance only
-  int th_eyes = TH_EYES_PER_EYE;          // TH_EYES_; others need views in pairs, the eyes at 2k and 2k + 1
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
   /// With a measured transmittance: measuring makes a frame slower, and what was measured holds for a while.
   /// Measured are at least 1 of so many frames, so many after a cut, and whenever the eyes have gone a third
@@ -54,10 +52,11 @@ struct FrameSettings {
   /// The frame sums the weight alpha * T of each Gaussian over the pixels, for Frame::read_weights; the
   /// pictures are the same. Not with a measured transmittance.
   bool weigh = false;
-  int decode = DECODE_EYES;  // DECODE_; of Scaffold-GS only, cyclopean for views in pairs as above
-  bool anchor_cull = true;   // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
+  /// DECODE_; of Scaffold-GS only. Cyclopean needs views in pairs, the eyes at 2k and 2k + 1.
+  int decode = DECODE_EYES;
+  bool anchor_cull = true;  // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
   /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
-  /// become, is not decoded. With a measured transmittance, each eye's own Th, and no quality to probe.
+  /// become, is not decoded. With a measured transmittance, and no quality to probe.
   bool anchor_reuse = true;
   /// px: 8, 16 or 32, on which an exact picture does not depend.
   int tile_size = TILE_SIZE_DEFAULT;
@@ -65,7 +64,7 @@ struct FrameSettings {
   /// picture depends on it. 0: the frame chooses.
   int list_tiles = 0;
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
-  glm::vec3 background{0.0f};      // behind the scene, for contrast only: the pictures are without
+  glm::vec3 background{0.0f};      // behind the scene, for the probe only: the pictures are without
   /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong
   /// picture is bisected to its stage.
   std::optional<Stage> reference_until;

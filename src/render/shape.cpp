@@ -28,16 +28,7 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
   if (s.quality > 0.0f && s.th == TH_TAU) fail("--quality {} with --th tau, which is exact", s.quality);
   if (s.probe_every < 1) fail("looking at one of {} frames: expected at least one", s.probe_every);
   if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
-  if (s.transmittance > TRANSMITTANCE_LAST && views % 2 != 0) {
-    fail("--transmittance {}: only for both eyes together", transmittance_choices[s.transmittance].name);
-  }
-  if (s.th_eyes != TH_EYES_PER_EYE && views % 2 != 0) {
-    fail("--th-eyes {}: only for both eyes together", th_eyes_choices[s.th_eyes].name);
-  }
   if (s.record_every < 1) fail("measuring one of {} frames: expected at least one", s.record_every);
-  if (s.contrast != CONTRAST_OFF && !measures(s.transmittance)) {
-    fail("--contrast {}: only with a measured --transmittance", contrast_choices[s.contrast].name);
-  }
   if (s.weigh && measures(s.transmittance)) {
     fail("--transmittance {}: not in a frame that weighs", transmittance_choices[s.transmittance].name);
   }
@@ -51,23 +42,6 @@ void check_threshold(const FrameSettings& s, std::size_t views) {
        !std::all_of(table.upper.begin(), table.upper.end(), is_share))) {
     fail("--transmittance depth: its table needs a far end above 0 and values from 0 to 1");
   }
-}
-
-// Between the eyes of a pair, looking their mean way. Its picture is not drawn, so it has no tiles.
-shared::View view_between(const shared::View& left, const shared::View& right) {
-  shared::View view = left;
-  const glm::dvec3 eye = 0.5 * (glm::dvec3(left.eye) + glm::dvec3(right.eye));
-  const glm::dvec3 z = glm::normalize(glm::dvec3(left.row_z) + glm::dvec3(right.row_z));
-  const glm::dvec3 across = glm::dvec3(left.row_x) + glm::dvec3(right.row_x);
-  const glm::dvec3 x = glm::normalize(across - glm::dot(across, z) * z);
-  const glm::dvec3 y = glm::cross(z, x);
-  view.eye = glm::vec4(glm::vec3(eye), 0.0f);
-  view.row_x = glm::vec4(glm::dvec4(x, -glm::dot(x, eye)));
-  view.row_y = glm::vec4(glm::dvec4(y, -glm::dot(y, eye)));
-  view.row_z = glm::vec4(glm::dvec4(z, -glm::dot(z, eye)));
-  view.lens = 0.5f * (left.lens + right.lens);
-  view.slopes = 0.5f * (left.slopes + right.slopes);
-  return view;
 }
 
 // Appends a view, or a probe of it, in the last order group if that sees the same depths.
@@ -160,11 +134,6 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   for (const shared::View& view : views) add_view(shape, view);
   shape.probe = probe;
   if (probe) add_view(shape, views[probe->view], probe);
-  if (settings.th_eyes == TH_EYES_CYCLOPEAN) {
-    for (std::uint32_t v = 0; v < shape.asked; ++v) shape.views[v].th_view = shape.view_count() + v / 2;
-    for (std::uint32_t v = 0; v < shape.asked; v += 2)
-      shape.between.push_back(view_between(shape.views[v], shape.views[v + 1]));
-  }
   return shape;
 }
 

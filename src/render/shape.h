@@ -49,7 +49,6 @@ struct FrameShape {
   std::vector<shared::View> views;  // those asked for, then the probe's
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
-  std::vector<shared::View> between;  // the eyes of each pair, with TH_EYES_CYCLOPEAN; not drawn
   std::vector<OrderGroup> groups;
   std::uint32_t list_count = 0;  // lists of pairs, over all views
   std::int64_t pixel_count = 0;  // over all views

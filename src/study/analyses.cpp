@@ -65,8 +65,7 @@ ordered_json from_targets(const ordered_json& targets, const std::vector<double>
     for (const ordered_json& entry : targets) {
       const ordered_json& s = entry["settings"];
       if (entry["target_db"] != all[all.size() / 2] || s["th"] != th_choices[system.th].name ||
-          s["transmittance"] != transmittance_choices[system.transmittance].name ||
-          s.value("contrast", "off") != "off")
+          s["transmittance"] != transmittance_choices[system.transmittance].name)
         continue;
       ordered_json& added = systems.emplace_back(entry);
       added["name"] = fmt::format("{}, {:g} dB", system.name, all[all.size() / 2]);

@@ -96,8 +96,6 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
   const Key keys[] = {
       choice("th", &S::th, th_choices),
       choice("transmittance", &S::transmittance, transmittance_choices),
-      choice("contrast", &S::contrast, contrast_choices),
-      choice("th_eyes", &S::th_eyes, th_eyes_choices),
       choice("tiles", &S::tiles, tiles_choices),
       choice("precision", &S::precision, precision_choices),
       {"tile", TILE_SIZE_DEFAULT, [&block](S& s, const json& v) { s.tile_size = tile_of(block, v); }},
@@ -151,11 +149,10 @@ Axes parse_axes(const std::string& name, const std::string& text) {
   int number = 0;
   for (const json& object : root["settings"]) {
     const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
-                      {"tiles", "tile", "th", "precision", "transmittance", "contrast", "th_eyes", "loss"});
+                      {"tiles", "tile", "th", "precision", "transmittance", "loss"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);
-    for (std::size_t i = before; i < axes.settings.size(); ++i)
-      check(block.place(), axes.settings[i], *std::min_element(axes.eyes.begin(), axes.eyes.end()));
+    for (std::size_t i = before; i < axes.settings.size(); ++i) check(block.place(), axes.settings[i]);
   }
   remove_repeated(axes.settings);
   return axes;

@@ -132,25 +132,20 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
   const measure::FoundLoss found = measure::find_loss(value, sign * target_db, search);
   settings.loss = static_cast<float>(found.loss);
   const Cost reached = cost(settings);
-  return {settings.th,       settings.transmittance, settings.contrast,          found.loss,
-          reached.mean_db,   reached.worst_db,       names_[reached.worst_view], reached.pairs_removed,
-          found.evaluations, seconds_since(start)};
+  return {settings.th,           settings.transmittance, found.loss,
+          reached.mean_db,       reached.worst_db,       names_[reached.worst_view],
+          reached.pairs_removed, found.evaluations,      seconds_since(start)};
 }
 
 std::vector<render::FrameSettings> calibrated_settings() {
   std::vector<render::FrameSettings> all;
   for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
     for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
-      const bool weighed = th == TH_SQUARED && transmittance == TRANSMITTANCE_LAST;
-      for (const int contrast : {CONTRAST_OFF, CONTRAST_FINAL, CONTRAST_BEHIND}) {
-        if (contrast != CONTRAST_OFF && !weighed) continue;
-        render::FrameSettings settings;
-        settings.th = th;
-        settings.transmittance = transmittance;
-        settings.contrast = contrast;
-        settings.loss = th == TH_PERIPHERAL ? 1.0f : contrast == CONTRAST_OFF ? 0.1f : 0.01f;
-        all.push_back(settings);
-      }
+      render::FrameSettings settings;
+      settings.th = th;
+      settings.transmittance = transmittance;
+      settings.loss = th == TH_PERIPHERAL ? 1.0f : 0.1f;
+      all.push_back(settings);
     }
   }
   return all;

@@ -66,6 +66,7 @@ class Reader {
     return find_choice(place_ + ", '" + key + "'", text(key), choices);
   }
   Reader object(const char* key) const { return {place_ + ", '" + key + "'", need(key)}; }
+  bool has(const char* key) const { return object_.contains(key); }
   const std::string& place() const { return place_; }
 
  private:
@@ -93,11 +94,22 @@ render::DepthTable parse_table(const Reader& table) {
   return out;
 }
 
+/// Files of earlier versions may hold rules that are gone.
+void refuse_gone(const Reader& entry) {
+  const auto refuse = [&](const char* key) {
+    fail("{}: '{}' '{}': there is no such rule any more: make the file anew with binosplat calibrate",
+         entry.place(), key, entry.text(key));
+  };
+  if (entry.has("contrast") && entry.text("contrast") != "off") refuse("contrast");
+  const std::string source = entry.text("transmittance");
+  if (source == "other-eye" || source == "both") refuse("transmittance");
+}
+
 CalibrationEntry parse_entry(const Reader& entry) {
+  refuse_gone(entry);
   CalibrationEntry e;
   e.th = entry.choice("th", th_choices);
   e.transmittance = entry.choice("transmittance", transmittance_choices);
-  e.contrast = entry.choice("contrast", contrast_choices);
   e.loss = entry.number("loss", 0.0);
   if (!std::isfinite(static_cast<float>(e.loss))) fail("{}: 'loss' is too large", entry.place());
   e.reached_db = entry.number("reached_db");
@@ -161,7 +173,6 @@ ordered_json to_json(const Calibration& c) {
   for (const CalibrationEntry& e : c.entries) {
     json["entries"].push_back({{"th", th_choices[e.th].name},
                                {"transmittance", transmittance_choices[e.transmittance].name},
-                               {"contrast", contrast_choices[e.contrast].name},
                                {"loss", e.loss},
                                {"reached_db", e.reached_db},
                                {"worst_db", e.worst_db},
@@ -230,9 +241,8 @@ bool covers(const Calibration& calibration, const glm::dvec3& position) {
 
 std::optional<render::FrameSettings> calibrated(const Calibration& calibration,
                                                 render::FrameSettings settings, double focal) {
-  const int source = render::measures(settings.transmittance) ? TRANSMITTANCE_LAST : settings.transmittance;
   for (const CalibrationEntry& e : calibration.entries) {
-    if (e.th != settings.th || e.transmittance != source || e.contrast != settings.contrast) continue;
+    if (e.th != settings.th || e.transmittance != settings.transmittance) continue;
     settings.loss = static_cast<float>(e.loss * std::pow(focal / calibration.focal, loss_power));
     settings.depth_table = calibration.depth_table;
     return settings;

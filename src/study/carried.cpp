@@ -18,7 +18,6 @@ class SamePairs {
  public:
   SamePairs(render::Frame& frame, Variant variant) : frame_(frame), variant_(variant) {
     variant_.transmittance = TRANSMITTANCE_ONE;
-    variant_.contrast = CONTRAST_OFF;
   }
 
   double draw(const std::vector<shared::View>& views, double wanted) {
@@ -73,7 +72,7 @@ std::vector<CarriedFrame> run_carried(gl::Context& context, const Model& model,
     result.signed_mean = errors.signed_mean;
     result.pairs = static_cast<double>(report.pairs);
     result.removed = 1.0 - result.pairs / exact_pairs;
-    result.fell_back = !report.remembered;
+    result.fell_back = render::measures(variant.transmittance) && !report.remembered;
     if (quality == 0.0f) {
       if (results.size() == 1) one.start_at(variant.loss);
       if (result.fell_back) {
@@ -101,7 +100,7 @@ float carried_loss(gl::Context& context, const Model& model,
     frame.draw(frames[1], variant.settings());
     return error.psnr(frame.colours());
   };
-  const double start = variant.th == TH_PERIPHERAL ? 1.5 : variant.contrast == CONTRAST_OFF ? 0.15 : 0.01;
+  const double start = variant.th == TH_PERIPHERAL ? 1.5 : 0.15;
   return static_cast<float>(measure::find_loss(at, target, {.start = start, .tolerance = 0.1}).loss);
 }
 

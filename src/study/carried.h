@@ -1,5 +1,5 @@
 #pragma once
-// A measured source carried along a path, frame by frame beside `one` with as many pairs: what the memory is
+// A source carried along a path, frame by frame beside `one` with as many pairs: what the memory is
 // worth, and whether it ever does harm.
 
 #include <functional>
@@ -15,7 +15,7 @@ struct CarriedFrame {
   double pairs = 0.0;
   double removed = 0.0;  // share of the exact frame's pairs
   double signed_mean = 0.0;
-  bool fell_back = false;   // it went by no last frame: the first one, a cut
+  bool fell_back = false;   // a measured source went by no last frame: the first one, a cut
   bool equals_one = false;  // equal bit for bit to `one` at the same loss; asked where it fell back
   double one_db = 0.0;      // of `one` at the loss that makes as many pairs, within 1 %
   double one_pairs = 0.0;

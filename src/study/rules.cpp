@@ -24,10 +24,9 @@ constexpr double near_target_db = 0.3;  // rules nearer than this to the target 
 constexpr double tolerance_db = 0.1;
 constexpr int evaluations_max = 20;
 constexpr int warm_up_frames = 5;
-// With a contrast, what frames measure of themselves settles in seven frames. From then on single frames
-// swing (by 0.5 dB and 15 % of the pairs on fox) in a round of twelve, as what was left out ages until it is
-// measured again: the mean over a round is what a rule costs. Frames that are not timed all measure: those
-// that do not are the next one's likes.
+// Once what frames measure of themselves has settled, single frames swing in a round of twelve, as what was
+// left out ages until it is measured again: the mean over a round is what a rule costs. Frames that are not
+// timed all measure: those that do not are the next one's likes.
 constexpr int round_frames = 12;
 
 std::string problem_of(const RuleResult& result, double target) {
@@ -81,18 +80,10 @@ double frame_ms_of(const std::vector<RuleResult>& results, const Is& is) {
 
 }  // namespace
 
-std::vector<Variant> rules_of(std::size_t views) {
-  std::vector<Variant> rules = all_variants();
-  std::erase_if(rules, [&](const Variant& rule) {
-    return rule.th_eyes != TH_EYES_PER_EYE || (views < 2 && rule.transmittance > TRANSMITTANCE_LAST);
-  });
-  return rules;
-}
-
 void find_losses(Still& still, std::vector<Variant>& rules, double target,
                  const std::function<void()>& progress) {
-  // The loss of the last rule that weighs with the same contrast is near.
-  std::map<std::pair<int, int>, double> starts;
+  // The loss of the last rule with the same threshold is near.
+  std::map<int, double> starts;
   for (Variant& rule : rules) {
     const auto db_at = [&](double loss) {
       if (loss == 0.0) return std::numeric_limits<double>::infinity();  // every rule is exact there
@@ -100,8 +91,7 @@ void find_losses(Still& still, std::vector<Variant>& rules, double target,
       return settled(still, rule).db;
     };
     if (rule.th != TH_TAU) {
-      const double first = rule.th == TH_PERIPHERAL ? 1.0 : rule.contrast == CONTRAST_OFF ? 0.1 : 0.01;
-      double& start = starts.try_emplace({rule.th, rule.contrast}, first).first->second;
+      double& start = starts.try_emplace(rule.th, rule.th == TH_PERIPHERAL ? 1.0 : 0.1).first->second;
       const double loss =
           measure::find_loss(db_at, target,
                              {.start = start, .tolerance = tolerance_db, .evaluations = evaluations_max})

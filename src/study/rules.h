@@ -24,10 +24,6 @@ struct RuleResult {
   std::string problem;                  // why it cannot be compared with the others; empty: it can
 };
 
-/// Every threshold, source and contrast that go together in so many views, each eye by its own; --th tau
-/// comes first.
-std::vector<Variant> rules_of(std::size_t views);
-
 /// Gives each rule the loss at which it comes to `target` dB, at most 0.1 dB above; 0 where none does.
 /// `progress` is called after each.
 void find_losses(Still& still, std::vector<Variant>& rules, double target,

@@ -28,8 +28,6 @@ nlohmann::ordered_json to_json(const render::FrameSettings& s) {
   if (s.precision != PRECISION_FULL) json["precision"] = precision_choices[s.precision].name;
   if (s.th == TH_TAU) return json;
   json["transmittance"] = transmittance_choices[s.transmittance].name;
-  if (s.th == TH_SQUARED) json["contrast"] = contrast_choices[s.contrast].name;
-  if (s.th_eyes != TH_EYES_PER_EYE) json["th_eyes"] = th_eyes_choices[s.th_eyes].name;
   json["loss"] = std::stod(fmt::format("{}", s.loss));  // the decimal number that was meant
   return json;
 }
@@ -40,8 +38,6 @@ std::string describe_family(const render::FrameSettings& s) {
   if (s.th != TH_TAU) {
     words.emplace_back(th_choices[s.th].name);
     if (s.transmittance != TRANSMITTANCE_ONE) words.emplace_back(transmittance_choices[s.transmittance].name);
-    if (s.contrast != CONTRAST_OFF) words.emplace_back(contrast_choices[s.contrast].name);
-    if (s.th_eyes != TH_EYES_PER_EYE) words.emplace_back(th_eyes_choices[s.th_eyes].name);
   }
   if (s.tile_size != TILE_SIZE_DEFAULT) words.push_back(fmt::format("tile {}", s.tile_size));
   if (s.precision != PRECISION_FULL) words.emplace_back(precision_choices[s.precision].name);
@@ -52,18 +48,12 @@ std::string describe(const render::FrameSettings& s) {
   return s.th == TH_TAU ? describe_family(s) : fmt::format("{}, {:g}", describe_family(s), s.loss);
 }
 
-void check(const std::string& place, const render::FrameSettings& s, int eyes) {
+void check(const std::string& place, const render::FrameSettings& s) {
   const auto wrong = [&](const char* why) { fail("{}: {}: {}", place, to_json(s).dump(), why); };
   if (s.th != TH_TAU && !(s.loss > 0.0f)) wrong("th needs a loss above 0");
   if (s.th == TH_TAU && s.loss != 0.0f) wrong("a loss has no effect with tau, which is exact");
   if (s.th == TH_TAU && s.transmittance != TRANSMITTANCE_ONE)
     wrong("transmittance has no effect with tau, which is exact");
-  if (s.contrast != CONTRAST_OFF && (s.th != TH_SQUARED || !render::measures(s.transmittance)))
-    wrong("contrast is for squared with a measured transmittance");
-  const bool other = s.transmittance == TRANSMITTANCE_OTHER_EYE || s.transmittance == TRANSMITTANCE_BOTH;
-  if (other && eyes < 2) wrong("this transmittance needs eyes of 2");
-  if (s.th_eyes != TH_EYES_PER_EYE && s.th == TH_TAU) wrong("th_eyes has no effect with tau");
-  if (s.th_eyes != TH_EYES_PER_EYE && eyes < 2) wrong("this th_eyes needs eyes of 2");
 }
 
 bool is_exact(const render::FrameSettings& s) {

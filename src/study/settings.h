@@ -16,21 +16,20 @@ constexpr double equal_db = 100.0;
 /// name that is not in it; the text lists those that are.
 int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices);
 
-/// What decides the picture and its time: tiles, tile, th and, where they matter, precision, transmittance,
-/// contrast, th_eyes and loss.
+/// What decides the picture and its time: tiles, tile, th and, where they matter, precision, transmittance
+/// and loss.
 nlohmann::ordered_json to_json(const render::FrameSettings& settings);
 
-/// One line for legends: "ellipse", "peripheral, last, 0.5", "squared, last, final, 0.01"; tiles are named
-/// where they are not `ellipse`, tiles of another size than 16 px as "tile 8".
+/// One line for legends: "ellipse", "peripheral, last, 0.5"; tiles are named where they are not `ellipse`,
+/// tiles of another size than 16 px as "tile 8".
 std::string describe(const render::FrameSettings& settings);
 
 /// The same without the loss: what a line of the chart joins.
 std::string describe_family(const render::FrameSettings& settings);
 
 /// Throws Error, beginning with `place`, for settings that contradict each other, as the options do: a
-/// threshold without a loss or tau with one, a contrast without what it weighs, what needs both eyes with
-/// one.
-void check(const std::string& place, const render::FrameSettings& settings, int eyes);
+/// threshold without a loss, or tau with one or with a transmittance.
+void check(const std::string& place, const render::FrameSettings& settings);
 
 /// Whether the picture is exact by definition: no pair that could be seen is left out, nothing is in fp16.
 bool is_exact(const render::FrameSettings& settings);

@@ -112,28 +112,19 @@ StabilityResult run_variant(render::Frame& frame, const StabilityCase& one, cons
 }  // namespace
 
 render::FrameSettings Variant::settings() const {
-  return {.th = th, .transmittance = transmittance, .contrast = contrast, .th_eyes = th_eyes, .loss = loss};
+  return {.th = th, .transmittance = transmittance, .loss = loss};
 }
 
 std::string Variant::name() const {
   if (th == TH_TAU) return th_choices[th].name;
-  return fmt::format("{}, {}, {}, {}", th_choices[th].name, transmittance_choices[transmittance].name,
-                     contrast_choices[contrast].name, th_eyes_choices[th_eyes].name);
+  return fmt::format("{}, {}", th_choices[th].name, transmittance_choices[transmittance].name);
 }
 
 std::vector<Variant> all_variants() {
   std::vector<Variant> variants = {{.th = TH_TAU}};
   for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-    for (int source = TRANSMITTANCE_ONE; source <= TRANSMITTANCE_BOTH; ++source) {
-      const bool contrasts = th == TH_SQUARED && render::measures(source);
-      for (int contrast = CONTRAST_OFF; contrast <= (contrasts ? CONTRAST_BEHIND : CONTRAST_OFF);
-           ++contrast) {
-        const bool of_eyes = source == TRANSMITTANCE_LAST || source == TRANSMITTANCE_BOTH;
-        const int last_rule = of_eyes ? TH_EYES_CYCLOPEAN : TH_EYES_PER_EYE;
-        for (int th_eyes = TH_EYES_PER_EYE; th_eyes <= last_rule; ++th_eyes)
-          variants.push_back({th, source, contrast, th_eyes});
-      }
-    }
+    for (const int source : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST})
+      variants.push_back({th, source});
   }
   return variants;
 }

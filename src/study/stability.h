@@ -1,6 +1,6 @@
 #pragma once
-// The stability study: every threshold, source, contrast and eye rule on every failure case, judged frame by
-// frame against exact frames, with verdicts that follow from stated bounds.
+// The stability study: every threshold and source on every failure case, judged frame by frame against exact
+// frames, with verdicts that follow from stated bounds.
 
 #include <functional>
 #include <string>
@@ -17,16 +17,14 @@ namespace binosplat::study {
 struct Variant {
   int th = TH_SQUARED;
   int transmittance = TRANSMITTANCE_ONE;
-  int contrast = CONTRAST_OFF;
-  int th_eyes = TH_EYES_PER_EYE;
   float loss = 0.0f;
 
   render::FrameSettings settings() const;
-  std::string name() const;  // "squared, last, final, per-eye"
+  std::string name() const;  // "squared, last"
 };
 
-/// Every threshold, source and contrast that go together, and the eyes' rules with what each eye measured
-/// (`last`) and what both did (`both`); --th tau once, since nothing else matters to it. Losses are 0.
+/// Every threshold with every source; --th tau once and first, since nothing else matters to it. Losses are
+/// 0.
 std::vector<Variant> all_variants();
 
 /// What a verdict follows from. A case holds if none of these is broken.

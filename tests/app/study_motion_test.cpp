@@ -45,7 +45,7 @@ TEST_F(MotionCommand, GoesThroughTheCamerasAndLeavesAPage) {
   ASSERT_EQ(walk.at("lengths").size(), 2u);
   EXPECT_EQ(walk.at("lengths")[0], nlohmann::json({{"lead", 2}, {"moving", 3}, {"stop", 1}}));
   ASSERT_EQ(walk.at("rules").size(), 2u);
-  EXPECT_EQ(walk.at("rules")[1].at("name"), "peripheral, last, off, per-eye");
+  EXPECT_EQ(walk.at("rules")[1].at("name"), "peripheral, last");
   EXPECT_EQ(walk.at("rules")[0].at("asked").at("segments")[1].at("true_db").size(), 6u);
   const auto& at_target = walk.at("rules")[0].at("at_target");
   const bool near = std::abs(at_target.at("moving").at("true_db").get<double>() - 38.0) <= 0.1;
@@ -90,8 +90,7 @@ TEST_F(MotionCommand, WhatMakesNoSenseIsNamed) {
       {{"--motion", "--rule", "squared"}, "expected TH,SOURCE"},
       {{"--motion", "--rule", "squared,first"}, "'first' is not one of one"},
       {{"--motion", "--rule", "tau,one"}, "is exact, and always measured"},
-      {{"--motion", "--rule", "peripheral,last,final"}, "contrast is for squared"},
-      {{"--motion", "--rule", "squared,last,off,cyclopean", "--mono"}, "needs eyes of 2"},
+      {{"--motion", "--rule", "squared,last,off"}, "expected TH,SOURCE"},
       {{"--motion", "--cameras", folder / "alone.json"}, "two cameras or more"},
       {{"--motion", "--path", folder / "alone.json"}, "two cameras or more"},
       {{"--motion", "--photos", folder / "."}, "--test and --photos are for the analyses"},

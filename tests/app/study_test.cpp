@@ -22,13 +22,14 @@ TEST(Study, APathIsCarriedAndTold) {
                           n > 0 ? "," : "", n, 0.005 * n);
   }
   test::write_text(folder / "path.json", "[" + frames + "]");
-  const test::Outcome outcome = test::run_program(
-      {"study", "demo:room", "--path", folder / "path.json", "--loss", "0.05", "--json", folder / "s.json"});
+  const test::Outcome outcome =
+      test::run_program({"study", "demo:room", "--path", folder / "path.json", "--transmittance", "last",
+                         "--loss", "0.05", "--json", folder / "s.json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("fell back: equals `one`"), std::string::npos) << outcome.out;
   const auto json = nlohmann::json::parse(test::read_text(folder / "s.json"));
   ASSERT_EQ(json.at("frames").size(), 3u);
-  EXPECT_EQ(json.at("variant"), "squared, last, off, per-eye");
+  EXPECT_EQ(json.at("variant"), "squared, last");
   EXPECT_GT(json.at("frames")[2].at("removed").get<double>(), 0.0);
 }
 
@@ -77,7 +78,7 @@ TEST_F(RulesCommand, PrintsARowForEachRuleAndKeepsAll) {
   const auto json = rules({"--view", "pair", "--target", "1"});
   const std::string renderer = json.at("renderer");
   EXPECT_EQ(printed.rfind(renderer + ": " + model + ", pair, 2 x 72 x 48 px, 1 dB\n", 0), 0u) << printed;
-  ASSERT_EQ(json.at("rules").size(), 17u);
+  ASSERT_EQ(json.at("rules").size(), 7u);
   for (const auto& rule : json.at("rules")) {
     const std::string name = rule.at("name");
     SCOPED_TRACE(name);
@@ -97,10 +98,10 @@ TEST_F(RulesCommand, PrintsARowForEachRuleAndKeepsAll) {
 TEST_F(RulesCommand, DrawsTheOneView) {
   const auto json = rules({"--view", "front", "--mono", "--target", "36"});
   EXPECT_EQ(json.at("eyes"), 1);
-  ASSERT_EQ(json.at("rules").size(), 9u);
+  ASSERT_EQ(json.at("rules").size(), 7u);
   EXPECT_TRUE(json.at("rules")[0].at("psnr_db").is_null());
   EXPECT_EQ(json.at("rules")[0].at("pairs_removed"), 0.0);
-  for (std::size_t k = 1; k < 9; ++k) {
+  for (std::size_t k = 1; k < 7; ++k) {
     const auto& rule = json.at("rules")[k];
     EXPECT_TRUE(rule.at("disagreement_db").is_null());
     const bool near = std::abs(rule.at("psnr_db").get<double>() - 36.0) <= 0.3;
@@ -132,7 +133,7 @@ TEST_F(AnalysesCommand, LeavesAPageAndItsNumbers) {
   EXPECT_EQ(json.at("width"), 36);
   EXPECT_EQ(json.at("views").at("calibration"), nlohmann::json({"front"}));
   EXPECT_EQ(json.at("views").at("test"), nlohmann::json({"side"}));
-  EXPECT_EQ(json.at("targets").size(), 5 * 8u);
+  EXPECT_EQ(json.at("targets").size(), 5 * 6u);
   EXPECT_EQ(json.at("systems").size(), 6u);
   EXPECT_NE(test::read_text(out + "/report.html").find("Pairs removed (table IV)"), std::string::npos);
   EXPECT_NE(outcome.out.find("Where the time goes"), std::string::npos) << outcome.out;
@@ -159,13 +160,12 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--rules", "-o", folder / "out"}, "-o is for the analyses, --stability and --motion"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
-      {{"--eyes", "--view", "all"}, "--view all"},
-      {{"--eyes", "--mono"}, "compares the eyes"},
-      {{"--rules", "--eyes"}, "are studies of their own"},
+      {{"--rules", "--view", "all"}, "--view all"},
+      {{"--rules", "--stability"}, "are studies of their own"},
       {{"--rules", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--th", "squared"}, "--rules"},
       {{"--rules", "--loss", "0.1"}, "--loss"},
-      {{"--eyes", "--frames", "5"}, "--rules"},
+      {{"--stability", "--frames", "5"}, "--rules"},
       {{"--path", "no_such.json"}, "no_such.json"},
       {{"--stability", "--json", folder / "file/s.json"}, "file"},
   };

@@ -34,7 +34,7 @@ TEST(Threshold, ALossMakesFewerPairs) {
   EXPECT_EQ(lossy.at("settings").at("th"), "squared");
   EXPECT_LT(lossy.at("views")[0].at("pairs"), exact.at("views")[0].at("pairs"));
   EXPECT_LT(paper.at("views")[0].at("pairs"), exact.at("views")[0].at("pairs"));
-  const auto repeated = pairs_of(folder, {"--loss", "0.1", "--transmittance", "both", "--frames", "3"});
+  const auto repeated = pairs_of(folder, {"--loss", "0.1", "--transmittance", "last", "--frames", "3"});
   EXPECT_LT(repeated.at("views")[0].at("pairs"), lossy.at("views")[0].at("pairs"));
 }
 
@@ -44,16 +44,9 @@ TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
       {{"--th", "tau", "--quality", "40"}, "--quality has no effect"},
       {{"--loss", "1", "--quality", "40"}, "--loss with --quality"},
       {{"--quality", "-3"}, "--quality"},
-      {{"--th-eyes", "cyclopean"}, "--th-eyes cyclopean"},
-      {{"--loss", "1", "--th-eyes", "shared-min", "--mono"}, "--th-eyes shared-min"},
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
       {{"--th", "tau", "--loss", "1"}, "--loss has no effect"},
       {{"--loss", "-1"}, "--loss"},
-      {{"--loss", "1", "--contrast", "final"}, "--contrast final"},
-      {{"--loss", "1", "--transmittance", "depth", "--contrast", "final"}, "--contrast final"},
-      {{"--th", "peripheral", "--loss", "1", "--transmittance", "last", "--contrast", "final"},
-       "--contrast final"},
-      {{"--loss", "1", "--transmittance", "both", "--mono"}, "needs both eyes"},
       {{"--loss", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
       {{"--path", "x.json", "--frames", "3"}, "--path names its own cameras"},
   };
@@ -87,16 +80,13 @@ TEST(Threshold, AQualityIsComeToWithoutALoss) {
   EXPECT_NEAR(psnr.get<double>(), 36.0, 1.0);
 }
 
-TEST(Threshold, EyesShareTheirsAndDepthsHaveATable) {
+TEST(Threshold, DepthsHaveATable) {
   const test::TempFolder folder;
   const auto pairs = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--loss", "0.1"});
     return pairs_of(folder, more).at("views")[0].at("pairs").get<double>();
   };
-  const double own = pairs({});
-  EXPECT_GT(pairs({"--th-eyes", "shared-min"}), own);
-  EXPECT_NEAR(pairs({"--th-eyes", "cyclopean"}), own, 0.1 * own);
-  EXPECT_LE(pairs({"--transmittance", "depth"}), own);
+  EXPECT_LE(pairs({"--transmittance", "depth"}), pairs({}));
 }
 
 TEST(Path, DrawsEveryFrameByWhatTheLastOneMeasured) {

@@ -46,7 +46,6 @@ TEST_F(SubgroupShaders, Compile) {
                            {"LISTS", lists},
                            {"RECORDS", "0"},
                            {"WEIGHS", "0"},
-                           {"CONTRAST", "0"},
                            {"SHOW", "0"}};
         defines.insert(defines.end(), tiles.begin(), tiles.end());
         expect_compiles("blend_subgroups.comp", defines, std::string(lists) + list_tiles + half);
@@ -60,11 +59,11 @@ TEST_F(SubgroupShaders, Compile) {
     expect_compiles(name, defines);
   }
   for (const char* half : {"0", "1"}) {
-    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},      {"TH", "0"},
-                             {"TH_NAME", "tau"},        {"TH_EYES", "0"},    {"TRANSMITTANCE", "0"},
-                             {"TILE_SIZE", "16"},       {"LIST_TILES", "2"}, {"HALF", half},
-                             {"ANTIALIASED", "0"},      {"OFFSETS", "0"},    {"SH_DEGREE", "1"},
-                             {"RECORDS", "1"},          {"WEIGHS", "0"},     {"WITH_SUBGROUPS", "1"}};
+    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},         {"TH", "0"},
+                             {"TH_NAME", "tau"},        {"TRANSMITTANCE", "0"}, {"TILE_SIZE", "16"},
+                             {"LIST_TILES", "2"},       {"HALF", half},         {"ANTIALIASED", "0"},
+                             {"OFFSETS", "0"},          {"SH_DEGREE", "1"},     {"RECORDS", "1"},
+                             {"WEIGHS", "0"},           {"WITH_SUBGROUPS", "1"}};
     expect_compiles("project.comp", defines, half);
   }
   for (const char* writes : {"0", "1"})

@@ -15,11 +15,9 @@ Splat coloured(double depth, double opacity, const glm::dvec3& colour, double va
   return splat;
 }
 
-std::vector<double> measure(const std::vector<Splat>& splats, int contrast = CONTRAST_OFF,
-                            const glm::dvec3& background = glm::dvec3(0.0), int size = 16) {
+std::vector<double> measure(const std::vector<Splat>& splats, int size = 16) {
   const shared::View view = view_of(size, size);
-  return measure_transmittance(splats, make_lists(splats, depth_order(splats), view, TILES_ELLIPSE), view,
-                               contrast, background);
+  return measure_transmittance(splats, make_lists(splats, depth_order(splats), view, TILES_ELLIPSE), view);
 }
 
 /// A wall has the same alpha everywhere.
@@ -29,18 +27,11 @@ TEST(Transmittance, LayersByHand) {
   const std::vector<Splat> splats = {coloured(3, 0.5, {0.0, 1.0, 0.5}, wall),
                                      coloured(1, 0.6, {1.0, 0.0, 0.0}, wall),
                                      coloured(2, 0.5, {0.5, 0.5, 0.5}, wall)};
-  const glm::dvec3 white(1.0);
-  const auto expect = [&](int contrast, const std::array<double, 3>& wanted) {
-    const std::vector<double> got = measure(splats, contrast, white);
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(got[i], wanted[i], 1e-6) << i;
-  };
   // T: 1, 0.4, 0.2, 0.1.
-  expect(CONTRAST_OFF, {0.2, 1.0, 0.4});
-  // Behind the last is white; behind the middle (0.5, 1, 0.75); behind the first (0.5, 0.75, 0.625). In the
-  // end (0.8, 0.3, 0.25).
-  const auto rms = [](double r, double g, double b) { return std::sqrt((r * r + g * g + b * b) / 3); };
-  expect(CONTRAST_BEHIND, {0.2 * rms(1, 0, 0.5), rms(0.5, 0.75, 0.625), 0.4 * rms(0, 0.5, 0.25)});
-  expect(CONTRAST_FINAL, {0.2 * rms(0.8, 0.7, 0.25), rms(0.2, 0.3, 0.25), 0.4 * rms(0.3, 0.2, 0.25)});
+  const std::vector<double> got = measure(splats);
+  EXPECT_NEAR(got[0], 0.2, 1e-6);
+  EXPECT_NEAR(got[1], 1.0, 1e-6);
+  EXPECT_NEAR(got[2], 0.4, 1e-6);
 }
 
 TEST(Transmittance, WeightsByHand) {
@@ -102,50 +93,6 @@ std::vector<Splat> faint_splats() {
   return splats;
 }
 
-glm::dvec3 over(const Picture& picture, std::size_t pixel, const glm::dvec3& background) {
-  const glm::dvec4 c = picture.colour[pixel];
-  return glm::dvec3(c) + c.a * background;
-}
-
-/// T * contrast against what is behind, from its meaning: taking Gaussian i out of a pixel changes it by
-/// alpha T (c_i - C_behind).
-double by_taking_out(std::vector<Splat> splats, std::size_t i, const glm::dvec3& background) {
-  const shared::View view = view_of(48, 48);
-  const Picture with = picture_of(splats, view, TILES_ALL, 48);
-  const Splat taken = splats[i];
-  splats[i].drawn = false;
-  const Picture without = picture_of(splats, view, TILES_ALL, 48);
-  double largest = 0.0;
-  for (std::size_t pixel = 0; pixel < with.colour.size(); ++pixel) {
-    const glm::dvec2 d = glm::dvec2(pixel % 48, pixel / 48) - taken.mean;
-    const double q = taken.conic.x * d.x * d.x + 2 * taken.conic.y * d.x * d.y + taken.conic.z * d.y * d.y;
-    const double alpha = taken.opacity * std::exp(-q / 2);
-    if (alpha < ALPHA_MIN) continue;
-    const glm::dvec3 change = over(with, pixel, background) - over(without, pixel, background);
-    largest = std::max(largest, std::sqrt(glm::dot(change, change) / 3.0) / alpha);
-  }
-  return largest;
-}
-
-/// How many Gaussians' measured W is not what taking them out of the picture shows.
-int disagreements(int contrast) {
-  const std::vector<Splat> splats = faint_splats();
-  const glm::dvec3 background(0.9, 0.5, 0.1);
-  const std::vector<double> measured = measure(splats, contrast, background, 48);
-  int wrong = 0;
-  for (std::size_t i = 0; i < splats.size(); ++i) {
-    // The pictures are floats: 1e-7 over an alpha of at least tau.
-    if (std::abs(std::max(0.0, measured[i]) - by_taking_out(splats, i, background)) > 5e-5) ++wrong;
-  }
-  return wrong;
-}
-
-TEST(Transmittance, BehindIsWhatTakingOutChanges) {
-  EXPECT_EQ(disagreements(CONTRAST_BEHIND), 0);
-  EXPECT_GT(disagreements(CONTRAST_FINAL), 10) << "another contrast goes unnoticed";
-  EXPECT_GT(disagreements(CONTRAST_OFF), 10);
-}
-
 /// max(T) pixel by pixel, by the letter: the product of 1 - alpha of all nearer splats that reach tau.
 std::vector<double> by_products(const std::vector<Splat>& splats) {
   const auto alpha_at = [](const Splat& s, int x, int y) {
@@ -172,10 +119,10 @@ std::vector<double> by_products(const std::vector<Splat>& splats) {
 
 TEST(Transmittance, AgreesWithProductsOfAllThatIsNearer) {
   const std::vector<Splat> splats = faint_splats();
-  const std::vector<double> wanted = by_products(splats), got = measure(splats, CONTRAST_OFF, {}, 48);
+  const std::vector<double> wanted = by_products(splats), got = measure(splats, 48);
   std::vector<Splat> farther = splats;
   for (Splat& splat : farther) splat.depth = 10 - splat.depth;
-  const std::vector<double> reversed = measure(farther, CONTRAST_OFF, {}, 48);
+  const std::vector<double> reversed = measure(farther, 48);
   int wrong_order = 0;
   for (std::size_t i = 0; i < splats.size(); ++i) {
     EXPECT_NEAR(std::max(0.0, got[i]), wanted[i], 1e-12) << i;
@@ -188,15 +135,13 @@ TEST(Transmittance, DoesNotDependOnTheTiles) {
   const std::vector<Splat> splats = random_splats(10, 400, 75, 53);
   const shared::View view = view_of(75, 53);
   const std::vector<std::uint32_t> order = depth_order(splats);
-  const auto with = [&](int tiles, int tile_size, int contrast) {
-    return measure_transmittance(splats, make_lists(splats, order, view, tiles, tile_size), view, contrast);
+  const auto with = [&](int tiles, int tile_size) {
+    return measure_transmittance(splats, make_lists(splats, order, view, tiles, tile_size), view);
   };
-  for (const int contrast : {CONTRAST_OFF, CONTRAST_FINAL, CONTRAST_BEHIND}) {
-    const std::vector<double> expected = with(TILES_ELLIPSE, 16, contrast);
-    EXPECT_EQ(with(TILES_ELLIPSE, 16, contrast), expected) << "two runs differ";
-    const std::vector<double> all = with(TILES_ALL, 32, contrast);
-    for (std::size_t i = 0; i < splats.size(); ++i) EXPECT_EQ(std::max(0.0, expected[i]), all[i]);
-  }
+  const std::vector<double> expected = with(TILES_ELLIPSE, 16);
+  EXPECT_EQ(with(TILES_ELLIPSE, 16), expected) << "two runs differ";
+  const std::vector<double> all = with(TILES_ALL, 32);
+  for (std::size_t i = 0; i < splats.size(); ++i) EXPECT_EQ(std::max(0.0, expected[i]), all[i]);
 }
 
 }  // namespace

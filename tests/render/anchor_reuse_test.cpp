@@ -62,7 +62,7 @@ std::size_t reused(const Model& model, const FrameSettings& settings,
 }
 
 const FrameSettings squared{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.1f};
-const FrameSettings peripheral{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_BOTH, .loss = 8.0f};
+const FrameSettings peripheral{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST, .loss = 8.0f};
 
 TEST(AnchorReuse, WhatIsHiddenIsNotDecodedAgain) {
   const Model model = wall();

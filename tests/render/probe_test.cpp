@@ -177,7 +177,7 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
   const Model model = test::random_model(105, 2000, 1);
   const auto views = eyes(96, 80);
   for (const FrameSettings& settings :
-       {FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_BOTH, .contrast = CONTRAST_FINAL},
+       {FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST},
         FrameSettings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST}}) {
     FrameSettings lossy = settings;
     lossy.loss = 0.05f;

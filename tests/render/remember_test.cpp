@@ -1,4 +1,4 @@
-// What one frame measures for the next: the largest transmittance, and contrast, of each Gaussian.
+// What one frame measures for the next: the largest transmittance of each Gaussian.
 
 #include <algorithm>
 #include <cmath>
@@ -56,12 +56,9 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
   const Model model = test::random_model(81, 4000, 1);
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture exact = test::draw(model, view);
-  for (const int contrast : {CONTRAST_OFF, CONTRAST_FINAL, CONTRAST_BEHIND}) {
-    render::Frame frame(test::gl_context(), model);
-    const FrameSettings settings = {.transmittance = TRANSMITTANCE_LAST, .contrast = contrast};
-    for (int n = 0; n < 3; ++n) frame.draw(std::vector{view}, settings);
-    EXPECT_TRUE(same_bits(frame.read_pictures().front(), exact)) << contrast_choices[contrast].name;
-  }
+  render::Frame frame(test::gl_context(), model);
+  for (int n = 0; n < 3; ++n) frame.draw(std::vector{view}, {.transmittance = TRANSMITTANCE_LAST});
+  EXPECT_TRUE(same_bits(frame.read_pictures().front(), exact));
 }
 
 TEST(Remember, MeasuresWhatTheReferenceMeasures) {
@@ -116,8 +113,7 @@ TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
 TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
   const Model model = wall();
   const FrameSettings one = {.th = TH_SQUARED, .loss = 0.05f};
-  const FrameSettings last = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_FINAL, .loss = 0.05f};
+  const FrameSettings last = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.05f};
   const Picture expected = test::draw(model, front(), one);
   render::Frame frame(test::gl_context(), model);
   frame.draw(std::vector{front()}, last);
@@ -164,12 +160,11 @@ TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
   EXPECT_GT(db, 35.0);
 }
 
-TEST(Remember, BothEyesServeEachOther) {
+TEST(Remember, EachEyeGoesByWhatItMeasured) {
   const Model model = test::random_model(82, 4000, 1);
   const auto rig = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.06});
-  std::uint64_t pairs[TRANSMITTANCE_BOTH + 1] = {};
-  for (const int source :
-       {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST, TRANSMITTANCE_OTHER_EYE, TRANSMITTANCE_BOTH}) {
+  std::uint64_t pairs[TRANSMITTANCE_LAST + 1] = {};
+  for (const int source : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
     render::Frame frame(test::gl_context(), model);
     for (int n = 0; n < 3; ++n) {
       pairs[source] =
@@ -177,15 +172,12 @@ TEST(Remember, BothEyesServeEachOther) {
     }
   }
   EXPECT_LT(pairs[TRANSMITTANCE_LAST], pairs[TRANSMITTANCE_ONE]);
-  EXPECT_LT(pairs[TRANSMITTANCE_OTHER_EYE], pairs[TRANSMITTANCE_ONE]);
-  EXPECT_GE(pairs[TRANSMITTANCE_BOTH], pairs[TRANSMITTANCE_LAST]);  // the larger of the two keeps more
 }
 
 TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   const Model model = test::random_model(83, 4000, 1);
   const std::vector views = {make_view(test::front_camera(120, 90, 110))};
-  FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_FINAL, .loss = 0.05f};
+  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.05f};
   render::Frame ample(test::gl_context(), model);
   render::Frame tight(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) {
@@ -197,30 +189,8 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   }
 }
 
-TEST(Remember, ContrastIsAgainstTheBackgroundThatIsThere) {
-  // One pale splat: it counts for much before black, and for nothing before a wall of its own colour.
-  Model model;
-  test::add(model, {0, 0, 2}, glm::vec3(0.2f), 0.5f, glm::vec3(0.8f));
-  const auto measured = [&](const glm::vec3& background) {
-    FrameSettings settings = {
-        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_BEHIND, .loss = 0.01f};
-    settings.background = background;
-    render::Frame frame(test::gl_context(), model);
-    std::uint64_t pairs = 0;
-    for (int n = 0; n < 3; ++n) pairs = frame.draw(std::vector{front()}, settings).pairs;
-    return pairs;
-  };
-  EXPECT_GT(measured(glm::vec3(0.0f)), 1u);
-  EXPECT_LT(measured(glm::vec3(0.8f)), measured(glm::vec3(0.0f)));
-}
-
 TEST(Remember, WhatMakesNoSenseIsNamed) {
   const Model model = test::random_model(84, 10, 0);
-  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, front(), {.transmittance = TRANSMITTANCE_BOTH}); },
-                                 {"--transmittance both", "both eyes"}));
-  EXPECT_TRUE(
-      test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .contrast = CONTRAST_FINAL}); },
-                         {"--contrast final"}));
   EXPECT_TRUE(
       test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .loss = -1}); }, {"--loss -1"}));
 }

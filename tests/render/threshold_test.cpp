@@ -1,4 +1,4 @@
-// Th on the GPU against the reference's: by depth, and shared between eyes.
+// Th on the GPU against the reference's: each eye's own, and by depth.
 
 #include <algorithm>
 #include <cmath>
@@ -46,49 +46,31 @@ Compared compare(const test::StageRun& run, std::uint32_t view, const Model& mod
   return result;
 }
 
-std::vector<double> smaller(std::vector<double> a, const std::vector<double>& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (b[i] > 0) a[i] = std::min(a[i], b[i]);
-  }
-  return a;
-}
-
-TEST(ThEyes, EachEyeGoesByItsOwnOrTheSmallerOrTheOneBetween) {
+TEST(ThEyes, EachEyeGoesByItsOwn) {
   // Near and large, so that the eyes see different sizes.
   const Model model = test::random_model(91, 3000, 0);
   const auto eyes = rig().views;
-  const shared::View between = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0}).views[0];
   for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-    const auto left = thresholds(model, eyes[0], th), right = thresholds(model, eyes[1], th);
-    const auto both = smaller(left, right), middle = thresholds(model, between, th);
-    const std::vector<double>* expected[3][2] = {{&left, &right}, {&both, &both}, {&middle, &middle}};
-    for (const int th_eyes : {TH_EYES_PER_EYE, TH_EYES_SHARED_MIN, TH_EYES_CYCLOPEAN}) {
-      test::StageRun run(model, {eyes[0], eyes[1]},
-                         {.th = th, .th_eyes = th_eyes, .loss = static_cast<float>(loss)});
-      run.run_until(render::Stage::project);
-      for (std::uint32_t eye = 0; eye < 2; ++eye) {
-        const Compared c = compare(run, eye, model, *expected[th_eyes][eye]);
-        EXPECT_EQ(c.wrong, 0) << th_eyes_choices[th_eyes].name << " of " << c.all;
-        EXPECT_GT(c.all, 300);
-        // Every other choice would be told apart.
-        for (int other = 0; other < 3; ++other) {
-          if (other == th_eyes) continue;
-          EXPECT_GT(compare(run, eye, model, *expected[other][eye]).wrong, c.all / 20);
-        }
-      }
+    const std::vector<double> expected[2] = {thresholds(model, eyes[0], th), thresholds(model, eyes[1], th)};
+    test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .loss = static_cast<float>(loss)});
+    run.run_until(render::Stage::project);
+    for (std::uint32_t eye = 0; eye < 2; ++eye) {
+      const Compared c = compare(run, eye, model, expected[eye]);
+      EXPECT_EQ(c.wrong, 0) << "of " << c.all;
+      EXPECT_GT(c.all, 300);
+      // The other eye's would be told apart.
+      EXPECT_GT(compare(run, eye, model, expected[1 - eye]).wrong, c.all / 20);
     }
   }
 }
 
-TEST(ThEyes, CantedEyesShareTheirTh) {
+TEST(ThEyes, CantedEyesGoByTheirOwn) {
   const Model model = test::random_model(92, 3000, 0);
   const auto eyes = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3, .cant_degrees = 5}).views;
-  const auto both = smaller(thresholds(model, eyes[0], TH_SQUARED), thresholds(model, eyes[1], TH_SQUARED));
-  test::StageRun run(model, {eyes[0], eyes[1]},
-                     {.th = TH_SQUARED, .th_eyes = TH_EYES_SHARED_MIN, .loss = static_cast<float>(loss)});
+  test::StageRun run(model, {eyes[0], eyes[1]}, {.th = TH_SQUARED, .loss = static_cast<float>(loss)});
   run.run_until(render::Stage::project);
   // The stage runs once an order group, and the last one's splats are in the order of its own indices.
-  const Compared c = compare(run, 1, model, both);
+  const Compared c = compare(run, 1, model, thresholds(model, eyes[1], TH_SQUARED));
   EXPECT_EQ(c.wrong, 0);
   EXPECT_GT(c.all, 300);
 }
@@ -98,20 +80,10 @@ TEST(ThEyes, LossOfZeroIsExactBitForBit) {
   const auto eyes = rig().views;
   const std::vector views(eyes.begin(), eyes.end());
   const auto exact = test::draw(model, views);
-  for (const int th_eyes : {TH_EYES_SHARED_MIN, TH_EYES_CYCLOPEAN}) {
-    for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-      const auto drawn = test::draw(model, views, {.th = th, .th_eyes = th_eyes});
-      for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(test::same_bits(drawn[eye], exact[eye]));
-    }
+  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
+    const auto drawn = test::draw(model, views, {.th = th});
+    for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(test::same_bits(drawn[eye], exact[eye]));
   }
-}
-
-TEST(ThEyes, ViewsWithoutAPartnerAreRefused) {
-  const Model model = test::random_model(94, 10, 0);
-  const shared::View view = make_view(test::front_camera(32, 32, 32));
-  EXPECT_TRUE(test::fails_saying(
-      [&] { test::draw(model, view, {.th = TH_SQUARED, .th_eyes = TH_EYES_CYCLOPEAN, .loss = 1}); },
-      {"--th-eyes cyclopean", "both eyes"}));
 }
 
 TEST(DepthTable, EachDepthHasItsTransmittance) {

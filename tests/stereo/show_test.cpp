@@ -147,8 +147,7 @@ TEST_F(ShowTest, TheRangeIsARoundNumber) {
 }
 
 TEST_F(ShowTest, WhatTheFrameRemembersStays) {
-  const render::FrameSettings last = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .contrast = CONTRAST_FINAL, .loss = 0.2f};
+  const render::FrameSettings last = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.2f};
   render::Frame other(test::gl_context(), model);
   render::FrameReport report;
   for (int n = 0; n < 3; ++n) {

@@ -28,8 +28,8 @@ Calibration sample() {
   c.target = {CalibrationTarget::Kind::drop, 0.5};
   c.depth_table = {8.5f, {1.0f, 0.25f, 0.0f}};
   c.views = {{"a", {0, 0, 0}}, {"b", {1, 0, 0}}, {"c", {1, 3, 0}}};
-  c.entries = {{TH_PERIPHERAL, TRANSMITTANCE_ONE, CONTRAST_OFF, 2.0, 0.499, 0.75, "b", 0.25, 12, 0.5},
-               {TH_SQUARED, TRANSMITTANCE_LAST, CONTRAST_FINAL, 0.01, 0.498, 0.6, "c", 0.5, 11, 0.25}};
+  c.entries = {{TH_PERIPHERAL, TRANSMITTANCE_ONE, 2.0, 0.499, 0.75, "b", 0.25, 12, 0.5},
+               {TH_SQUARED, TRANSMITTANCE_LAST, 0.01, 0.498, 0.6, "c", 0.5, 11, 0.25}};
   return c;
 }
 
@@ -39,7 +39,7 @@ TEST(Calibration, ComesBackAsItWas) {
   EXPECT_EQ(to_json(read).dump(), text);
   EXPECT_EQ(read.hash, sample().hash);
   EXPECT_EQ(read.target.kind, CalibrationTarget::Kind::drop);
-  EXPECT_EQ(read.entries[1].contrast, CONTRAST_FINAL);
+  EXPECT_EQ(read.entries[1].transmittance, TRANSMITTANCE_LAST);
   EXPECT_EQ(read.depth_table.upper, sample().depth_table.upper);
   Calibration other = sample();
   other.target.kind = CalibrationTarget::Kind::quality;
@@ -65,6 +65,8 @@ TEST(Calibration, ErrorsNameTheKey) {
       {"/entries/0/th", "none", "entry 1, 'th': 'none' is not one of tau"},
       {"/entries/1/loss", -1, "entry 2: 'loss' -1: expected a number of 0 or more"},
       {"/entries/1/loss", 1e300, "'loss' is too large"},
+      {"/entries/1/contrast", "final", "entry 2: 'contrast' 'final': there is no such rule any more: make"},
+      {"/entries/0/transmittance", "both", "entry 1: 'transmittance' 'both': there is no such rule any more"},
       {"/entries", "many", "'entries': expected a list"},
   };
   for (const auto& c : cases) {
@@ -98,11 +100,17 @@ TEST(Calibration, GivesTheLossOfItsEntry) {
   EXPECT_FLOAT_EQ(calibrated(sample(), settings, 200.0)->loss, 2.0f * std::pow(2.0f, 1.25f));
   settings.transmittance = TRANSMITTANCE_DEPTH;
   EXPECT_FALSE(calibrated(sample(), settings, 100.0)) << "no entry of this source";
-  settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_BOTH, .contrast = CONTRAST_FINAL};
+  settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
   found = calibrated(sample(), settings, 100.0);
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->loss, 0.01f) << "both eyes go by last's";
-  EXPECT_EQ(found->transmittance, TRANSMITTANCE_BOTH);
+  EXPECT_EQ(found->loss, 0.01f);
+  EXPECT_EQ(found->transmittance, TRANSMITTANCE_LAST);
+}
+
+TEST(Calibration, OfAnEarlierVersionIsReadWhereItsRulesAreStillThere) {
+  ordered_json json = to_json(sample());
+  for (ordered_json& entry : json["entries"]) entry["contrast"] = "off";
+  EXPECT_EQ(to_json(parse_calibration("c", json.dump())), to_json(sample()));
 }
 
 TEST(Calibration, KnowsItsModelAndItsViews) {

@@ -76,19 +76,19 @@ TEST(MotionPage, SaysWhoKeepsTheirWordAndWhatThatTakes) {
   EXPECT_EQ(page.data, study);
   ASSERT_EQ(page.sections.size(), 2u + 2 * 3);
   // 39.5 and 40.5 dB in the two stretches: just what was asked for, and 2 or 4 dB less.
-  EXPECT_NE(page.sentence.find("“squared, one, off, per-eye” falls least below: moving "
+  EXPECT_NE(page.sentence.find("“squared, one” falls least below: moving "
                                "frames come to 40.0 dB in the mean where it does worst (calm); “squared, "
-                               "last, off, per-eye” falls most: 36.5 dB (walk)."),
+                               "last” falls most: 36.5 dB (walk)."),
             std::string::npos)
       << page.sentence;
   const Table& words = *page.sections[0].table;
   EXPECT_EQ(words.columns[2], "walk: true dB");
-  EXPECT_EQ(words.rows[1][0], "squared, last, off, per-eye");
+  EXPECT_EQ(words.rows[1][0], "squared, last");
   EXPECT_EQ(words.rows[1][2], 36.5);
   EXPECT_EQ(words.rows[1][6], 3.5) << "told minus true, walk";
   const Table& gains = *page.sections[1].table;
   EXPECT_EQ(gains.columns[1], "calm: ms of `one`");
-  EXPECT_EQ(gains.rows[1], ordered_json({"squared, last, off, per-eye", 1.0, 1.0, 1.0, 1.0, 0.375, 0.75}));
+  EXPECT_EQ(gains.rows[1], ordered_json({"squared, last", 1.0, 1.0, 1.0, 1.0, 0.375, 0.75}));
   EXPECT_NE(page.sections[1].sentence.find("at most 0.75 of the exact frame's time (walk)"),
             std::string::npos)
       << page.sections[1].sentence;
@@ -103,7 +103,7 @@ TEST(MotionPage, DrawsEveryFrame) {
       << page.sections[5].sentence;
   const Plot& quality = *page.sections[5].plot;
   ASSERT_EQ(quality.series.size(), 4u);
-  EXPECT_EQ(quality.series[3].name, "squared, last, off, per-eye: told");
+  EXPECT_EQ(quality.series[3].name, "squared, last: told");
   const Series& last = quality.series[2];
   ASSERT_EQ(last.points.size(), 8u);
   EXPECT_EQ(last.points[3].y, 36.0);
@@ -136,7 +136,7 @@ TEST(MotionPage, WhatDoesNotComeToTheTargetIsNotPraised) {
   for (auto& path : study["paths"]) path["rules"][1]["at_target"]["problem"] = "not within 0.1 dB of 40 dB";
   study["paths"][1]["rules"][0]["at_target"]["ms_of_exact"] = 0.8;
   const Page page = motion_page(study);
-  EXPECT_NE(page.sections[1].sentence.find("“squared, one, off, per-eye”: at most 0.80"), std::string::npos)
+  EXPECT_NE(page.sections[1].sentence.find("“squared, one”: at most 0.80"), std::string::npos)
       << page.sections[1].sentence;
   EXPECT_EQ(page.sections[1].table->rows[1].back(), "not within 0.1 dB of 40 dB");
   for (auto& path : study["paths"]) path["rules"][0]["at_target"]["problem"] = "neither";

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
 #include "stereo/rig.h"
 #include "support/gl.h"
@@ -39,16 +38,8 @@ struct Rules : testing::Test {
   }
 };
 
-TEST_F(Rules, AreAllThatSoManyEyesCanGoBy) {
-  std::set<std::string> names;
-  for (const Variant& rule : rules_of(2)) names.insert(rule.name());
-  EXPECT_EQ(names.size(), 1u + 5 + (2 + 3 * 3));
-  EXPECT_EQ(rules_of(1).size(), 1u + 3 + (2 + 3));
-  for (const Variant& rule : rules_of(1)) EXPECT_LE(rule.transmittance, TRANSMITTANCE_LAST) << rule.name();
-}
-
 TEST_F(Rules, ComeToTheTargetAndAreTimed) {
-  std::vector<Variant> rules = rules_of(2);
+  std::vector<Variant> rules = all_variants();
   find_losses(still, rules, target, [] {});
   constexpr int frames = 96;  // in which what ages and is measured again goes round once
   int done = 0;
