@@ -11,6 +11,8 @@ namespace {
 
 // What a view's probe weighs after each further one of that view.
 constexpr double fading = 0.7;
+// Of what a new probe weighs, the most that all before it do: the whole of a view was seen long ago, too.
+constexpr double carried_max = 1.25;
 // dB that frames aim at above what is asked for: the promise is of the worse view, and of single frames.
 constexpr double margin = 0.3;
 // dB below what is asked for at which a frame is drawn again; and after a cut, about what is aimed at.
@@ -28,7 +30,7 @@ constexpr double share_max = 64.0;
 constexpr int attempts_max = 8;
 // Of the loss: the most it changes by from one frame to the next and between attempts.
 constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
-constexpr double slope_min = 1.0, slope_max = 12.0, slope_up_min = 3.0;
+constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double loss_min = 1e-9, loss_max = 1e9;
 
 // METHOD 8: losses that gave 40 dB or a little more on every shared scene at a focal length of 700 px. In
@@ -36,8 +38,7 @@ constexpr double loss_min = 1e-9, loss_max = 1e9;
 // in proportion.
 double careful_loss_at_40_db(const FrameSettings& s, double focal) {
   const double smaller = std::pow(std::min(1.0, focal / 700.0), 1.75);
-  if (s.th == TH_PERIPHERAL) return 1.0 * smaller;
-  return 0.1 * smaller;
+  return (s.th == TH_PERIPHERAL ? 1.0 : 0.1) * smaller;
 }
 
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
@@ -48,7 +49,7 @@ bool same_rule(const FrameSettings& a, const FrameSettings& b) {
 
 void LossControl::forget() {
   for (Estimate& view : views_) view.weight = 0.0;
-  fresh_ = true;
+  fresh_ = cut_ = true;
 }
 
 bool LossControl::knows(const FrameSettings& settings) const {
@@ -68,10 +69,11 @@ void LossControl::begin(const FrameSettings& settings) {
 Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
   if (views_.size() != views.size()) {
     views_.assign(views.size(), {});
-    fresh_ = true;
+    fresh_ = cut_ = true;
   }
   const auto count = static_cast<std::uint32_t>(views.size());
-  probe_ = {.view = next_ % count};
+  if (holds_) found_ = 0;
+  probe_ = {.view = static_cast<std::uint32_t>(next_ + found_) % count};
   const shared::View& view = views[probe_.view];
   focal_ = view.lens.y;
   const auto side = static_cast<std::uint32_t>(settings.tile_size);
@@ -143,14 +145,20 @@ void LossControl::take(const Probed& probed) {
   }
   unevenness_ = std::max(probed.unevenness, fading * unevenness_);
   // These may be the sky: a larger probe is to tell.
-  if (view.weight > 0.0 && !fresh_ && !whole && surprise * error < expected)
-    unevenness_ = std::max(unevenness_, 16.0 * deviation * deviation * probe_tiles_);
+  const bool doubtful = view.weight > 0.0 && !fresh_ && !whole && surprise * error < expected;
+  if (doubtful) unevenness_ = std::max(unevenness_, 16.0 * deviation * deviation * probe_tiles_);
   const bool follows = view.weight > 0.0 && expected > 0.0;
-  view.weight = fresh_ || whole ? 0.0 : fading * view.weight;
+  view.weight *= fresh_ || whole ? 0.0 : fading;
+  if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
   view.error = (view.weight * expected + probe_tiles_ * error) / (view.weight + probe_tiles_);
-  // What changes in one view changes in the others, mostly.
-  if (follows && !fresh_) {
-    for (Estimate& any : views_) any.error *= &any == &view ? 1.0 : std::sqrt(view.error / expected);
+  // What changes in one view changes in the others, mostly; what another loss changes, always.
+  if (follows && view.error > 0.0) {
+    const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);
+    for (Estimate& any : views_) {
+      if (&any == &view) continue;
+      any.error = trend * error_now(any);
+      any.loss = loss_;
+    }
   }
   view.weight += probe_tiles_;
   view.loss = loss_;
@@ -179,8 +187,14 @@ void LossControl::measured(const Probed& probed, bool settled) {
     if (fresh_) {
       // What is too good costs time only: not all attempts are for that.
       const double above = quality() - settings_.quality - margin;
-      holds_ = settled && above >= -fresh_below && (above <= fresh_above || attempts_ > attempts_max - 3);
+      const bool too_good = above > fresh_above && found_ == 0 && attempts_ <= attempts_max - 3;
+      holds_ = settled && above >= -fresh_below && !too_good;
       if (settled) learn(target());
+      if (holds_ && cut_ && ++found_ < views_.size()) {  // others may err more at this loss
+        holds_ = false;
+        attempts_ = 0;
+        bracket_ = {};
+      }
     } else {
       const double wanted = std::pow(10.0, -0.1 * settings_.quality);
       holds_ = settled && worst() <= wanted * std::pow(10.0, 0.1 * miss) &&
@@ -188,7 +202,10 @@ void LossControl::measured(const Probed& probed, bool settled) {
     }
   }
   fresh_ = !holds_;  // further attempts see the whole of this view: two views have no law of error together
-  if (holds_) ++next_;
+  if (holds_) {
+    cut_ = false;
+    ++next_;
+  }
 }
 
 double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }

@@ -16,8 +16,8 @@ namespace binosplat::render {
 /// kappa^10 where thousands of like Gaussians go at once), which each search after a cut finds anew; so the
 /// loss falls at once and rises carefully.
 ///
-/// A frame that does not hold is to be drawn again: one after a cut, of which nothing was known, or one whose
-/// probe shows what nobody could foresee. Each attempt is
+/// A frame that does not hold is to be drawn again: one after a cut, until every view was seen to hold, or
+/// one whose probe shows what nobody could foresee. Each attempt is
 ///   next_probe(), next_loss(), the drawing, measured(), and again unless holds().
 class LossControl {
  public:
@@ -28,7 +28,7 @@ class LossControl {
   bool knows(const FrameSettings& settings) const;
   float loss() const { return static_cast<float>(loss_); }
 
-  /// The tiles that the next attempt draws exactly, too: after a cut all of them.
+  /// The tiles that the next attempt draws exactly, too: after a cut all of a view's.
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
 
   /// The loss for the next attempt.
@@ -69,10 +69,12 @@ class LossControl {
   double slope_ = 1.0;      // squared error grows about as loss^slope_ here
   double loss_ = 0.0;       // of the last attempt that was not exact
   double focal_ = 0.0;      // px
-  bool fresh_ = true;       // no frame was kept since the cut
+  bool cut_ = true;         // no frame was kept since the cut
+  bool fresh_ = true;       // nor did the last attempt hold: all of a view is to be seen
+  std::size_t found_ = 0;   // views that hold in the frame after a cut
   bool holds_ = true;
   bool exact_ = false;  // the attempt at hand
-  int attempts_ = 0;    // at the frame at hand
+  int attempts_ = 0;    // at the frame at hand, to find this view's loss
   Bracket bracket_;
   std::uint32_t next_ = 0;    // of the probes, in their order: one a frame
   Probe probe_;               // of the attempt at hand

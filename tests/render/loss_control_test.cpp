@@ -143,7 +143,7 @@ TEST(LossControl, FindsTheLossForTheFirstFrameWhateverTheSceneIsLike) {
       const Course course = follow(control, scene, 60);
       EXPECT_GT(course.least, 40.0) << loss << " ^ " << power;
       EXPECT_LT(course.most, 40.6) << loss << " ^ " << power;
-      EXPECT_LT(course.told_off, 0.2) << loss << " ^ " << power;
+      EXPECT_LT(course.told_off, 0.25) << loss << " ^ " << power;  // half of it is one sample
       EXPECT_EQ(course.attempts, 60) << loss << " ^ " << power;
       // Planted fault: the first loss that comes to mind, kept whatever it costs.
       if (std::abs(std::log10(loss / 0.1)) < 0.5) continue;  // for which it is right
@@ -207,12 +207,17 @@ TEST(LossControl, TheWorseViewDecides) {
     for (const std::vector<double>& views : {std::vector{1.0, ratio}, {ratio, 1.0}}) {
       SimulatedScene scene = scene_for(1.5, 0.05, views);
       LossControl control;
-      draw_frame(control, scene);  // has seen one view only
-      EXPECT_TRUE(keeps(draw_frame(control, scene), 39.5, 41.0, 0.3)) << views[0] << " " << views[1];
+      EXPECT_TRUE(keeps(draw_frame(control, scene), 39.99, 41.31, 0.01)) << views[0] << " " << views[1];
+      SimulatedScene blind_scene = scene_for(1.5, 0.05, {views[0]});
+      LossControl blind;  // planted fault: only the first view is looked at
+      const float blind_loss = draw_frame(blind, blind_scene).loss;
+      EXPECT_TRUE(views[1] < views[0] || scene.worse_db(blind_loss) < 39.6) << ratio;
+      control.forget();  // the other view comes first
+      EXPECT_TRUE(keeps(draw_frame(control, scene), 39.99, 41.31, 0.01)) << views[0] << " " << views[1];
       const Course course = follow(control, scene, 60);
       EXPECT_GT(course.least, 39.9) << views[0] << " " << views[1];
       EXPECT_LT(course.most, 40.8) << views[0] << " " << views[1];
-      EXPECT_LT(course.told_off, 0.2) << views[0] << " " << views[1];
+      EXPECT_LT(course.told_off, 0.25) << views[0] << " " << views[1];
       EXPECT_EQ(course.attempts, 60) << views[0] << " " << views[1];
     }
   }
