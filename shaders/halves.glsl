@@ -1,12 +1,36 @@
 // --precision half: what a frame keeps of Gaussians and splats in 32 bytes each, most of it in fp16. Both are computed with in
 // fp32. C++ packs the same in render/halves.h. `precise` because several programs pack, and a last bit can turn a half.
 
+// A unit quaternion without its largest number, which the others tell, in 20 bits each: fp16's eleven would let a needle of
+// thousands of pixels point beside.
+#define ROTATION_STEPS 741454.0  // to 1: 2^19 - 1 at sqrt(1/2)
+
+vec4 unpack_rotation(uvec2 bits) {
+  uvec3 steps = uvec3(bits.x, bits.x >> 20 | bits.y << 12, bits.y >> 8) & 0xFFFFFu;
+  vec3 q = (vec3(steps) - 524288.0) / ROTATION_STEPS;
+  float largest = sqrt(max(0.0, 1.0 - dot(q, q)));
+  switch (bits.y >> 28) {
+    case 0u: return vec4(largest, q);
+    case 1u: return vec4(q.x, largest, q.yz);
+    case 2u: return vec4(q.xy, largest, q.z);
+    default: return vec4(q, largest);
+  }
+}
+
+uvec2 packed_rotation(vec4 q) {
+  vec4 size = abs(q);
+  float most = max(max(size.x, size.y), max(size.z, size.w));
+  uint largest = size.x == most ? 0u : size.y == most ? 1u : size.z == most ? 2u : 3u;
+  vec3 others = largest == 0u ? q.yzw : largest == 1u ? q.xzw : largest == 2u ? q.xyw : q.xyz;
+  uvec3 steps = uvec3(round(others * (q[largest] < 0.0 ? -ROTATION_STEPS : ROTATION_STEPS)) + 524288.0);
+  return uvec2(steps.x | steps.y << 20, steps.y >> 12 | steps.z << 8 | largest << 28);
+}
+
 // Position, and the largest scale; the scales as shares of it, opacity, rotation.
 Gaussian unpack_gaussian(uvec4 low, uvec4 high) {
   vec2 xy = unpackHalf2x16(high.x), z_opacity = unpackHalf2x16(high.y);
   vec4 place = uintBitsToFloat(low);
-  vec4 rotation = vec4(unpackHalf2x16(high.z), unpackHalf2x16(high.w));
-  return Gaussian(vec4(place.xyz, z_opacity.y), rotation, vec4(place.w * vec3(xy, z_opacity.x), 0.0));
+  return Gaussian(vec4(place.xyz, z_opacity.y), unpack_rotation(high.zw), vec4(place.w * vec3(xy, z_opacity.x), 0.0));
 }
 
 uvec4 packed_place(Gaussian g) {
@@ -15,20 +39,20 @@ uvec4 packed_place(Gaussian g) {
 
 uvec4 packed_shape(Gaussian g) {
   precise vec3 shares = g.scale.xyz / max(max(g.scale.x, max(g.scale.y, g.scale.z)), 1e-37);
-  return uvec4(packHalf2x16(shares.xy), packHalf2x16(vec2(shares.z, g.position.w)), packHalf2x16(g.rotation.xy),
-               packHalf2x16(g.rotation.zw));
+  return uvec4(packHalf2x16(shares.xy), packHalf2x16(vec2(shares.z, g.position.w)), packed_rotation(g.rotation));
 }
 
 // Mean, depth and rho in fp32. Of the conic Q = L L^T the factor L, whose rounding cannot turn an ellipse inside out, times a
-// power of two: fp16 then holds splats from 1/255 to four million px.
+// power of two: fp16 then holds splats from 1/255 to four million px. L.yx is the sum of two, for L.xx as it is kept: their ratio
+// is the direction of a needle.
 #define HALF_FACTOR 256.0
 #define HALF_LEAST 6.1035156e-05
 #define HALF_MOST 65504.0
 
 Splat unpack_splat(uvec4 low, uvec4 high) {
-  vec2 xx_yx = unpackHalf2x16(high.x) / HALF_FACTOR, yy_opacity = unpackHalf2x16(high.y), b = unpackHalf2x16(high.z);
+  vec2 xx_yx = unpackHalf2x16(high.x) / HALF_FACTOR, yy_opacity = unpackHalf2x16(high.y), b_yx = unpackHalf2x16(high.z);
   precise float xx = xx_yx.x;
-  precise float yx = xx_yx.y;
+  precise float yx = xx_yx.y + b_yx.y / HALF_FACTOR;
   precise float yy = yy_opacity.x / HALF_FACTOR;
   precise vec4 conic = vec4(xx * xx, xx * yx, yx * yx + yy * yy, 1.0 / (xx * yy));
   vec2 rg = unpackHalf2x16(low.w);
@@ -37,7 +61,7 @@ Splat unpack_splat(uvec4 low, uvec4 high) {
   splat.depth = uintBitsToFloat(low.z);
   splat.opacity = yy_opacity.y;
   splat.conic = conic;
-  splat.colour = vec4(rg, b.x, uintBitsToFloat(high.w));
+  splat.colour = vec4(rg, b_yx.x, uintBitsToFloat(high.w));
   return splat;
 }
 
@@ -51,10 +75,12 @@ uvec4 packed_shape(Splat splat) {
   precise float xx = splat.conic.x * inverse;
   precise float yx = splat.conic.y * inverse;
   precise float yy = inversesqrt(splat.conic.w * splat.conic.w * splat.conic.x);
-  precise vec3 factor =
-      clamp(HALF_FACTOR * vec3(xx, yx, yy), vec3(HALF_LEAST, -HALF_MOST, HALF_LEAST), vec3(HALF_MOST));
-  return uvec4(packHalf2x16(factor.xy), packHalf2x16(vec2(factor.z, splat.opacity)),
-               packHalf2x16(vec2(min(splat.colour.b, HALF_MOST), 0.0)), floatBitsToUint(splat.colour.w));
+  precise vec2 factor = clamp(HALF_FACTOR * vec2(xx, yy), vec2(HALF_LEAST), vec2(HALF_MOST));
+  precise float kept_xx = unpackHalf2x16(packHalf2x16(vec2(factor.x, 0.0))).x;
+  precise float leaning = clamp(yx / xx * kept_xx, -HALF_MOST, HALF_MOST);
+  precise float rest = leaning - unpackHalf2x16(packHalf2x16(vec2(leaning, 0.0))).x;
+  return uvec4(packHalf2x16(vec2(factor.x, leaning)), packHalf2x16(vec2(factor.y, splat.opacity)),
+               packHalf2x16(vec2(min(splat.colour.b, HALF_MOST), rest)), floatBitsToUint(splat.colour.w));
 }
 
 // What is left of a splat that was written.

@@ -1,7 +1,5 @@
 // A Gaussian as a view sees it (METHOD 2), all but its colour. `precise` because several programs compute it and must get the
 // same bits.
-#include "shared/exact.glsl"
-
 // Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of METHOD 2.
 mat3 scaled_axes(Gaussian g) {
   precise float w = g.rotation.x;
@@ -39,32 +37,34 @@ void axes_on_picture(View view, vec3 v, mat3 axes, out vec3 across, out vec3 dow
   down = vec3(dot_precise(jy, axes[0]), dot_precise(jy, axes[1]), dot_precise(jy, axes[2]));
 }
 
-// (Q.xx, Q.xy, Q.yy, sqrt(det C2)); det not positive is told by w = 0.
-vec4 conic_of(float xx, float xy, float yy) {
+// (Q.xx, Q.xy, Q.yy, sqrt(det C2)), and the share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P
+// being C2 without it (Mip-Splatting, Yu 2024). With s the low-pass, det P = |across x down|^2 and
+// det C2 = det P + s (|across|^2 + |down|^2) + s^2: all are positive, so that nothing cancels however long and thin it is, as it
+// would in xx yy - xy^2. What is not drawn is told by w = 0.
+vec4 conic_of(vec3 across, vec3 down, out float kept) {
+  const float s = float(KERNEL_PX2);
+  precise float xx = dot_precise(across, across) + s;
+  precise float xy = dot_precise(across, down);
+  precise float yy = dot_precise(down, down) + s;
+  kept = 0.0;
   // A power of two takes the size out, so that no product overflows.
-  uint exponent = floatBitsToUint(max(xx, yy)) & 0x7f800000u;
-  precise float size = uintBitsToFloat(exponent);
-  precise float inverse = uintBitsToFloat(0x7f000000u - exponent);
-  precise float a = xx * inverse;
-  precise float b = xy * inverse;
-  precise float c = yy * inverse;
-  precise float det = difference_of_products(a, c, b, b);
-  if (!(det > 0.0) || exponent >= 0x7f000000u) return vec4(0.0);
-  precise vec3 q = vec3(c, -b, a) / det * inverse;
-  return vec4(q, sqrt(det) * size);
-}
-
-// The share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P being C2 without it (Mip-Splatting,
-// Yu 2024). The axes' cross product has the length sqrt(det P), without the cancellation of long thin ellipses.
-float mass_kept(vec3 across, vec3 down, float root_det) {
-  precise vec3 n = vec3(difference_of_products(across.y, down.z, across.z, down.y),
-                        difference_of_products(across.z, down.x, across.x, down.z),
-                        difference_of_products(across.x, down.y, across.y, down.x));
-  precise float size = max(abs(n.x), max(abs(n.y), abs(n.z)));
-  if (!(size > 0.0)) return 0.0;
-  precise vec3 direction = n / size;
-  precise float kept = size * sqrt(dot_precise(direction, direction)) / root_det;
-  return min(kept, 1.0);
+  int exponent = int(floatBitsToUint(max(xx, yy)) >> 23);
+  if (exponent == 0 || exponent >= 254) return vec4(0.0);
+  int size = (exponent - 127) >> 1;
+  float unit = uintBitsToFloat(uint(127 - size) << 23);
+  precise vec3 a = unit * across;
+  precise vec3 d = unit * down;
+  precise float low_pass = unit * s * unit;
+  precise vec3 n = vec3(a.y * d.z - a.z * d.y, a.z * d.x - a.x * d.z, a.x * d.y - a.y * d.x);
+  precise float det_p = dot_precise(n, n);
+  precise float det = det_p + low_pass * (dot_precise(a, a) + dot_precise(d, d) + low_pass);
+  if (!(det > 0.0)) return vec4(0.0);
+  precise vec3 q = unit * vec3(yy, -xy, xx) * unit / det * unit * unit;
+  precise float root = sqrt(det);
+  precise float share = sqrt(det_p) / root;
+  kept = min(share, 1.0);
+  precise float root_det = root / unit / unit;
+  return vec4(q, root_det);
 }
 
 // Everything but the colour and the level of Th. False where this view does not draw it.
@@ -75,17 +75,15 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   vec3 across;
   vec3 down;
   axes_on_picture(view, v, axes, across, down);
-  precise float xx = dot_precise(across, across) + float(KERNEL_PX2);
-  precise float xy = dot_precise(across, down);
-  precise float yy = dot_precise(down, down) + float(KERNEL_PX2);
-  splat.conic = conic_of(xx, xy, yy);
+  float kept;
+  splat.conic = conic_of(across, down, kept);
   if (splat.conic.w == 0.0) return false;
   precise vec2 mean = view.lens.xy * (v.xy / v.z) + view.lens.zw - 0.5;
   splat.mean = mean;
   splat.depth = v.z;
   splat.opacity = g.position.w;
 #if ANTIALIASED
-  splat.opacity *= mass_kept(across, down, splat.conic.w);
+  splat.opacity *= kept;
 #endif
   splat.colour = vec4(0.0);
   return true;

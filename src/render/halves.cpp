@@ -16,6 +16,22 @@ std::uint32_t pair(float a, float b) {
   return glm::packHalf2x16(glm::vec2(std::clamp(a, -most, most), std::clamp(b, -most, most)));
 }
 
+// A unit quaternion without its largest number, in 20 bits each and two that say which.
+std::array<std::uint32_t, 2> pack_rotation(const glm::vec4& q) {
+  int largest = 0;
+  for (int k = 1; k < 4; ++k) largest = std::abs(q[k]) > std::abs(q[largest]) ? k : largest;
+  const float steps_to_one = std::copysign(741454.0f, q[largest]);
+  std::array<std::uint32_t, 3> steps{};
+  auto step = steps.begin();
+  for (int k = 0; k < 4; ++k) {
+    if (k != largest) *step++ = static_cast<std::uint32_t>(std::round(q[k] * steps_to_one) + 524288.0f);
+  }
+  return {steps[0] | steps[1] << 20,
+          steps[1] >> 12 | steps[2] << 8 | static_cast<std::uint32_t>(largest) << 28};
+}
+
+float rounded(float number) { return glm::unpackHalf2x16(pair(number, 0.0f)).x; }
+
 std::uint32_t word(float number) { return std::bit_cast<std::uint32_t>(number); }
 
 }  // namespace
@@ -23,14 +39,9 @@ std::uint32_t word(float number) { return std::bit_cast<std::uint32_t>(number); 
 Halves pack(const shared::Gaussian& g) {
   const float largest = std::max({g.scale.x, g.scale.y, g.scale.z});
   const glm::vec3 shares = glm::vec3(g.scale) / std::max(largest, 1e-37f);
-  return {word(g.position.x),
-          word(g.position.y),
-          word(g.position.z),
-          word(largest),
-          pair(shares.x, shares.y),
-          pair(shares.z, g.position.w),
-          pair(g.rotation.x, g.rotation.y),
-          pair(g.rotation.z, g.rotation.w)};
+  const auto rotation = pack_rotation(g.rotation);
+  return {word(g.position.x),       word(g.position.y),           word(g.position.z), word(largest),
+          pair(shares.x, shares.y), pair(shares.z, g.position.w), rotation[0],        rotation[1]};
 }
 
 Halves pack(const shared::Splat& s) {
@@ -38,13 +49,15 @@ Halves pack(const shared::Splat& s) {
   const float xx = std::sqrt(s.conic.x);
   const float yx = s.conic.y / xx;
   const float yy = 1.0f / (s.conic.w * xx);
+  const float kept_xx = rounded(std::max(factor * xx, least));
+  const float leaning = std::clamp(yx / xx * kept_xx, -most, most);
   return {word(s.mean.x),
           word(s.mean.y),
           word(s.depth),
           pair(s.colour.r, s.colour.g),
-          pair(std::max(factor * xx, least), factor * yx),
+          pair(kept_xx, leaning),
           pair(std::max(factor * yy, least), s.opacity),
-          pair(s.colour.b, 0.0f),
+          pair(s.colour.b, leaning - rounded(leaning)),
           word(s.colour.w)};
 }
 

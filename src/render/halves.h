@@ -12,10 +12,11 @@ namespace binosplat::render {
 
 using Halves = std::array<std::uint32_t, 8>;
 
-/// Position and largest scale in fp32; the scales as shares of it, opacity and rotation in fp16.
+/// Position and largest scale in fp32; the scales as shares of it and opacity in fp16, rotation in 62 bits.
 Halves pack(const shared::Gaussian& gaussian);
 
-/// Mean, depth and rho in fp32; the lower Cholesky factor of the conic, opacity and colour in fp16.
+/// Mean, depth and rho in fp32; the lower Cholesky factor L of the conic, opacity and colour in fp16, L.yx as
+/// the sum of two.
 Halves pack(const shared::Splat& splat);
 
 /// Two to a word, the first in the low half; `packed` has room for all of them and zeros beyond.

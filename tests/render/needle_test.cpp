@@ -1,0 +1,89 @@
+// Long thin Gaussians at a headset's focal lengths: of thousands of pixels' length and a pixel's width, fp32
+// has no digits to lose.
+
+#include <fmt/format.h>
+
+#include "render/faulty_shaders.h"
+#include "render/support.h"
+
+namespace binosplat {
+namespace {
+
+struct Needle {
+  double length, width;  // standard deviations, metres
+};
+constexpr Needle shortest = {0.5, 0.0005}, longest = {20.0, 0.004};
+
+// 40 wires through the picture, 1 to 4 m away, all ways.
+Model wires(const Needle& needle, std::uint32_t seed, double kernel_px2 = KERNEL_PX2) {
+  test::Uniform uniform(seed);
+  Model model;
+  model.name = "wires";
+  model.degree = 0;
+  model.kernel_px2 = kernel_px2;
+  for (int n = 0; n < 40; ++n) {
+    const double z = uniform(1.0, 4.0);
+    const glm::vec3 position(uniform(-0.03, 0.03) * z, uniform(-0.03, 0.03) * z, z);
+    const glm::vec4 rotation(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+    const glm::vec3 colour(uniform(0, 1), uniform(0, 1), uniform(0, 1));
+    test::add(model, position, glm::vec3(needle.length, needle.width, needle.width),
+              static_cast<float>(uniform(0.3, 1.0)), colour, rotation);
+  }
+  return model;
+}
+
+shared::View view_of(double focal) { return make_view(test::front_camera(128, 96, focal)); }
+
+// The least over needles, focal lengths and seeds.
+double least_db(const render::FrameSettings& settings, double kernel_px2 = KERNEL_PX2) {
+  double least = 1e9;
+  for (const Needle& needle : {shortest, Needle{2, 0.001}, Needle{5, 0.002}, longest}) {
+    for (const double focal : {300.0, 1536.0, 4000.0}) {
+      for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+        const Model model = wires(needle, seed, kernel_px2);
+        const double db =
+            test::psnr(test::draw(model, view_of(focal), settings), reference::render(model, view_of(focal)));
+        if (db < least) fmt::print("{} x {} m, {} px: {:.1f} dB\n", needle.length, needle.width, focal, db);
+        least = std::min(least, db);
+      }
+    }
+  }
+  return least;
+}
+
+TEST(Needles, AreExactAtEveryFocalLength) {
+  for (const int tiles : {TILES_SNUG, TILES_ELLIPSE, TILES_ALL})
+    EXPECT_GE(least_db({.tiles = tiles}), 68.0) << tiles;
+  EXPECT_GE(least_db({}, 0.1), 68.0) << "Mip-Splatting's low-pass";
+}
+
+TEST(Needles, TheDeterminantOfTheCovarianceWouldNotDo) {
+  const test::FaultyShaders fault(
+      "projection.glsl",
+      "precise float det = det_p + low_pass * (dot_precise(a, a) + dot_precise(d, d) + low_pass);",
+      "precise float det = (dot_precise(a, a) + low_pass) * (dot_precise(d, d) + low_pass) - dot_precise(a, "
+      "d) * "
+      "dot_precise(a, d);");
+  EXPECT_LT(least_db({}), 45.0);
+}
+
+TEST(Needles, LeaveNoTileOut) {
+  for (const Needle& needle : {shortest, longest}) {
+    for (const double focal : {300.0, 4000.0}) {
+      const Model model = wires(needle, 9);
+      const Picture all = test::draw(model, view_of(focal), {.tiles = TILES_ALL});
+      for (const int tiles : {TILES_SNUG, TILES_ELLIPSE})
+        EXPECT_TRUE(test::same_bits(test::draw(model, view_of(focal), {.tiles = tiles}), all)) << tiles;
+    }
+  }
+}
+
+TEST(Needles, AreOf68DbInHalfPrecision) {
+  EXPECT_GE(least_db({.precision = PRECISION_HALF}), 68.0);
+  // Planted fault: the direction of the conic in fp16.
+  const test::FaultyShaders fault("halves.glsl", "xx_yx.y + b_yx.y / HALF_FACTOR", "xx_yx.y");
+  EXPECT_LT(least_db({.precision = PRECISION_HALF}), 68.0);
+}
+
+}  // namespace
+}  // namespace binosplat
