@@ -18,7 +18,7 @@ constexpr int rounds = 24;  // of Lloyd's: later ones change the error by less t
 /// Sums of the values up to each, so that the mean of any stretch of them is at hand.
 std::vector<double> sums_of(const std::vector<float>& values) {
   std::vector<double> sums(values.size() + 1, 0.0);
-  std::partial_sum(values.begin(), values.end(), sums.begin() + 1, std::plus<double>());
+  std::inclusive_scan(values.begin(), values.end(), sums.begin() + 1, std::plus<>(), 0.0);
   return sums;
 }
 

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "base/error.h"
+#include "formats/model_file.h"
 #include "formats/model_writers.h"
 
 namespace binosplat {
@@ -24,6 +25,25 @@ Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmo
       break;
   }
   return write_spz(file, model, harmonic_bits);
+}
+
+// That what was written can be read, all of it: numbers that a format has no room for show here.
+void read_back(OutputFile& file, const Model& model, ModelFormat format) {
+  const char* name = model_format_names[static_cast<int>(format)];
+  file.flush();
+  std::size_t count = 0;
+  try {
+    count = load_model(file.path()).count();
+  } catch (const Error& error) {
+    throw Error(
+        error.code(),
+        fmt::format("{}: {} cannot hold it; what was written cannot be read back ({}). Try another format",
+                    model.name, name, error.what()));
+  }
+  if (count != model.count()) {
+    fail("{}: {} cannot hold it; of {} Gaussians written {} can be read back. Try another format", model.name,
+         name, model.count(), count);
+  }
 }
 
 }  // namespace
@@ -70,6 +90,7 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
          model_format_names[static_cast<int>(format)], axes_of(format));
   }
   Losses losses = write(file, model, format, harmonic_bits);
+  read_back(file, model, format);
   const bool kernel_kept =
       model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model));
   if (!kernel_kept) {

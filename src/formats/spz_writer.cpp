@@ -11,16 +11,24 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint32_t version = 3;
-constexpr int fraction_bits_most = 12;  // what other writers always use
+constexpr int fraction_bits_usual = 12;  // what other writers always take
+constexpr int fraction_bits_most = 24;
 constexpr double position_most = (1 << 23) - 1;
+constexpr double steps_least = 1 << 14;  // to the outermost position: of a small model 12 bits leave few
 
-/// How many bits of fraction the positions leave room for; they have 24 with the sign.
-int fraction_bits(const Model& model) {
+double outermost(const Model& model) {
   double most = 0.0;
   for (const glm::vec3& p : model.position) {
     for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(static_cast<double>(p[c])));
   }
-  int bits = fraction_bits_most;
+  return most;
+}
+
+/// How many bits of fraction the positions get: they have 24 with the sign.
+int fraction_bits(const Model& model) {
+  const double most = outermost(model);
+  int bits = fraction_bits_usual;
+  while (bits < fraction_bits_most && std::ldexp(most, bits) < steps_least) ++bits;
   while (bits >= 0 && std::ldexp(most, bits) > position_most) --bits;
   if (bits < 0)
     fail("{}: positions reach {:.4g}, and spz has room for {} only", model.name, most, position_most);
@@ -81,9 +89,14 @@ void write_rows(RowWriter& rows, const Model& model, int bits, int harmonic_bits
 }
 
 Losses losses_of(const Model& model, int bits, int harmonic_bits) {
+  const double reach = std::ldexp(1.0, bits) * outermost(model);
   const std::size_t values = model.sh.size() / model.count();
   Losses losses;
-  if (bits < fraction_bits_most)
+  if (reach > 0.0 && reach < steps_least)
+    losses.push_back(
+        fmt::format("the model is so small that spz keeps positions in steps of {:.4g} only, {:.2g} of it",
+                    std::ldexp(1.0, -bits), 1.0 / reach));
+  if (bits < fraction_bits_usual)
     losses.push_back(fmt::format("the model is so large that spz keeps positions in steps of {:.4g} only",
                                  std::ldexp(1.0, -bits)));
   // Up to half a step beyond the last one is rounding.

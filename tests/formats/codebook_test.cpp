@@ -61,6 +61,27 @@ TEST(Codebook, ManyAreNearOneAndMostNearer) {
   EXPECT_GT(faulty, 1.5 * error);
 }
 
+// Sums of a million numbers have no room in a float: their means would be beside them.
+TEST(Codebook, MillionsKeepTheirDigits) {
+  Uniform uniform(7);
+  std::vector<float> values;
+  for (int i = 0; i < 1 << 20; ++i) values.push_back(static_cast<float>(uniform(-8, -4)));
+  const Codebook book(values);
+  double error = 0.0;
+  for (const float v : values)
+    error += std::pow(static_cast<double>(v) - book.entries()[book.nearest(v)], 2) / (1 << 20);
+  const double even = std::pow(4.0 / 256, 2) / 12;  // of 256 even steps, the best there is
+  EXPECT_LT(error, 1.4 * even);
+  EXPECT_GT(error, 0.99 * even);
+}
+
+TEST(Codebook, HugeValuesStayFinite) {
+  std::vector<float> values;
+  for (int i = 0; i < 1000; ++i) values.push_back(static_cast<float>(i % 2 == 0 ? 3e38 : -3e38 + i * 1e34));
+  const Codebook book(values);
+  for (const float e : book.entries()) EXPECT_TRUE(std::isfinite(e));
+}
+
 struct Rows {
   std::vector<float> numbers;
   std::size_t size;

@@ -121,6 +121,7 @@ inline Expected of_spz(const Model& model, std::size_t i, int harmonic_bits) {
   for (const glm::vec3& p : model.position)
     most = std::max({most, std::abs(double{p.x}), std::abs(double{p.y}), std::abs(double{p.z})});
   int bits = 12;
+  while (bits < 24 && most * std::exp2(bits) < 16384) ++bits;
   while (most * std::exp2(bits) > 8388607) --bits;
   e.position_error = glm::dvec3(0.5 * std::exp2(-bits)) + glm::abs(e.position) * rounding;
   e.log_scale = glm::clamp(e.log_scale, -10.0, 255 / 16.0 - 10);
