@@ -7,6 +7,7 @@
 #include <set>
 
 #include "app/command.h"
+#include "app/content_key.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "scene/demo_city.h"
@@ -35,12 +36,15 @@ ordered_json scene_json(const BenchScene& scene) {
     json["count"] = city_settings(scene.options).count;
     json["seed"] = city_settings(scene.options).seed;
   } else if (scene.name.rfind("demo:", 0) != 0) {
-    json["bytes"] = fs::file_size(scene.options.scene);
+    json["content"] = content_key(fs::path(scene.options.scene));
   }
   json["cameras"] = ordered_json::array();
   for (const Camera& camera : scene.list.cameras) json["cameras"].push_back(camera.name);
   if (!scene.options.views.empty()) json["views"] = scene.options.views;
+  if (!scene.list.cameras.empty()) json["poses"] = content_key(scene.list.cameras);
+  if (scene.options.near_plane) json["near"] = *scene.options.near_plane;
   json["photos"] = !scene.options.photos.empty();
+  if (!scene.options.photos.empty()) json["photos_content"] = content_key(fs::path(scene.options.photos));
   return json;
 }
 
@@ -130,7 +134,9 @@ BenchFolder::BenchFolder(fs::path folder, const ordered_json& plan)
   }
   if (load_json(file) != plan) {
     fail(
-        "{} holds the points of another run: other scenes, cameras, axes or another version (see plan.json). "
+        "{} holds the points of another run: other scenes, cameras or photos (by content), axes or another "
+        "version (see "
+        "plan.json). "
         "Name another folder with -o, or remove it",
         folder_.string());
   }

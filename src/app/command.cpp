@@ -7,6 +7,7 @@
 #include <cstring>
 #include <thread>
 
+#include "base/inputs.h"
 #include "base/output_file.h"
 
 namespace binosplat::app {
@@ -31,7 +32,7 @@ fs::path& unfinished() {
 void end_cleanly_on_signals() {
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
     // A job in the background may have been started with signals ignored, and is left alone then.
     struct sigaction action = {};
     if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
@@ -67,6 +68,7 @@ Unfinished::~Unfinished() {
 void check_output(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) fail("cannot write {}: it is a folder", path.string());
+  check_no_input(path);
   fs::path folder = fs::absolute(path).parent_path();
   while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
   if (!fs::is_directory(folder, error)) {

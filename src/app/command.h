@@ -28,7 +28,7 @@ void add_convert(CLI::App& program, Command& command);
 void add_trim(CLI::App& program, Command& command);
 void add_info(CLI::App& program, Command& command);
 
-/// From now on SIGINT and SIGTERM end the program at once, or after the file that is being written
+/// From now on SIGHUP, SIGINT and SIGTERM end the program at once, or after the file that is being written
 /// (Uninterrupted), so that no half file is left. Call it before any thread is made.
 void end_cleanly_on_signals();
 
@@ -51,7 +51,8 @@ class Unfinished {
 };
 
 /// Throws Error if `path` cannot become an output: a file stands where a folder is needed, no permission, or
-/// it is a folder itself. Leaves no trace; call it before long work.
+/// it is a folder itself, or a file that this run reads (base/inputs.h). Leaves no trace; call it before long
+/// work.
 void check_output(const std::filesystem::path& path);
 
 /// Writes `value` for people and programs to read. Numbers that are not finite become null, as JSON has none.

@@ -69,7 +69,7 @@ ModelFormat format_of(const ConvertOptions& o) {
 }
 
 void check(const ConvertOptions& o, ModelFormat format) {
-  check_model_output(o.output, o.render.scene);
+  check_output(o.output);
   if (o.harmonic_bits && format != ModelFormat::spz)
     fail("--sh-bits {}: only spz has a choice of them", *o.harmonic_bits);
   if (!o.json.empty()) check_output(o.json);

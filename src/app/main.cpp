@@ -1,11 +1,14 @@
 // The command line: finds the sub-command, runs it, and turns what went wrong into a line and an exit code.
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <system_error>
 
 #include "app/command.h"
+#include "app/command_line.h"
 #include "base/log.h"
 
 namespace {
@@ -44,8 +47,12 @@ int run(int argc, char** argv) {
   binosplat::app::add_bench(program, command);
   binosplat::app::add_calibrate(program, command);
   try {
+    binosplat::app::check_arguments(argc, argv);
     program.parse(argc, argv);
-    return static_cast<int>(command());
+    binosplat::app::note_inputs(program);
+    const ExitCode code = command();
+    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
+    return static_cast<int>(code);
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {
@@ -58,6 +65,11 @@ int run(int argc, char** argv) {
     return end(
         ExitCode::out_of_memory,
         "out of memory: the model and the pictures do not fit; try a smaller --size, or fewer Gaussians");
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) == 0)
+      return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+    return end(ExitCode::bad_input,
+               fmt::format("cannot write to standard output: {}", error.code().message()));
   } catch (const std::exception& error) {
     return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
   }
@@ -68,6 +80,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Writing beyond a limit of file size then fails like a full disk, with an error that can be reported.
   std::signal(SIGXFSZ, SIG_IGN);
+  binosplat::app::spare_full_disk();
   binosplat::app::end_cleanly_on_signals();
 
   return run(argc, argv);

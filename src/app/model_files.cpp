@@ -24,13 +24,6 @@ fs::path model_file(const std::string& scene) {
   return find_point_cloud(scene).value_or("");
 }
 
-void check_model_output(const std::string& output, const std::string& scene) {
-  check_output(output);
-  std::error_code ignored;
-  if (fs::equivalent(model_file(scene), output, ignored))
-    fail("-o {} is the model itself, which would be lost; name another file", output);
-}
-
 void refuse_scaffold(const Model& model, const std::string& scene) {
   if (model.scaffold) {
     fail(

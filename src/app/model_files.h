@@ -17,9 +17,6 @@ ModelFormat output_format(const std::string& output, const std::string& hint = "
 /// none.
 std::filesystem::path model_file(const std::string& scene);
 
-/// Throws Error if `output` cannot become a file, or is the model itself.
-void check_model_output(const std::string& output, const std::string& scene);
-
 /// Throws Error for a Scaffold-GS model, which no file of Gaussians can hold.
 void refuse_scaffold(const Model& model, const std::string& scene);
 

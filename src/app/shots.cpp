@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/inputs.h"
 #include "base/log.h"
 #include "formats/cameras_file.h"
 #include "scene/axes.h"
@@ -191,7 +192,10 @@ CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera
   std::string file = options.path.empty() ? options.cameras : options.path;
   if (file.empty() && built_in.empty()) {
     const auto found = find_cameras(options.scene);
-    if (found) file = found->string();
+    if (found) {
+      file = found->string();
+      note_input(*found);
+    }
   }
   CameraList list = file.empty() ? CameraList{options.scene, built_in} : CameraList{file, load_cameras(file)};
   list.listed = !list.cameras.empty();

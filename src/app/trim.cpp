@@ -46,7 +46,7 @@ struct Names {
 ModelFormat check(const TrimOptions& o) {
   check_target("trim", "a bound", o.bound, o.render);
   const ModelFormat format = output_format(o.output);
-  check_model_output(o.output, o.render.scene);
+  check_output(o.output);
   if (!o.json.empty()) check_output(o.json);
   return format;
 }

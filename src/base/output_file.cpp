@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/inputs.h"
 
 namespace binosplat {
 
@@ -23,6 +24,7 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     fail("cannot write {}: it is a device or a pipe, which a finished file cannot replace", path.string());
   }
+  check_no_input(target_);
   const fs::path folder = target_.parent_path();
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);

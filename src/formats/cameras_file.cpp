@@ -1,6 +1,7 @@
 #include "formats/cameras_file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -151,6 +152,10 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
   std::vector<Camera> cameras = load_any(path);
   std::set<std::string> names;
   for (const Camera& camera : cameras) {
+    // They become names of files, and stand on terminals.
+    if (std::any_of(camera.name.begin(), camera.name.end(),
+                    [](unsigned char c) { return std::iscntrl(c) != 0; }))
+      fail("{}: the name {:?} has a control character; take it out", path.string(), camera.name);
     if (!names.insert(camera.name).second)
       log_warning("{}: the name '{}' occurs twice", path.string(), camera.name);
   }

@@ -48,6 +48,8 @@ std::filesystem::path ProgramCache::file(const std::string& key) const {
 bool ProgramCache::load(const Functions& gl, std::uint32_t program, const std::string& source) const {
   if (folder_.empty()) return false;
   const std::string wanted = key(source);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file(wanted), ignored)) return false;
   std::ifstream in(file(wanted), std::ios::binary);
   const std::string content((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   GLenum format = 0;

@@ -146,6 +146,26 @@ TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
   }
 }
 
+TEST_F(BenchTest, GoesOnWithTheSameContentOnly) {
+  const std::string bytes = read_text(model), cameras = read_text(folder / "cameras.json");
+  ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
+  EXPECT_TRUE(good(measure(out, {"--shard", "15/16"})));
+  std::string other = bytes;
+  ++other[other.size() - 100];  // of as many bytes
+  write_text(model, other);
+  EXPECT_TRUE(ended(measure(out, {"--shard", "14/16"}), 2, "holds the points of another run"));
+  write_text(model, bytes);
+  std::string moved = cameras;
+  const std::size_t position = moved.find("position");
+  ASSERT_NE(position, std::string::npos);
+  const std::size_t digit = moved.find_first_of("0123456789", position);
+  moved[digit] = moved[digit] == '9' ? '8' : static_cast<char>(moved[digit] + 1);
+  write_text(folder / "cameras.json", moved);  // the same names
+  EXPECT_TRUE(ended(measure(out, {"--shard", "14/16"}), 2, "holds the points of another run"));
+  write_text(folder / "cameras.json", cameras);
+  EXPECT_TRUE(good(measure(out, {"--shard", "14/16"})));
+}
+
 TEST_F(BenchTest, ErrorsSayWhatToDo) {
   ASSERT_TRUE(good(measure(out, {"--shard", "16/16"})));
   write_text(folder / "other.json", R"({"settings": [{}], "views": 1, "frames": 1, "repeats": 1})");

@@ -112,13 +112,13 @@ TEST_F(ConvertTest, HarmonicsAreTurned) {
 TEST_F(ConvertTest, ErrorsSayWhatToDo) {
   const std::string before = test::read_text(model);
   EXPECT_TRUE(ended(convert("m.obj"), 2, "its ending names no format that can be written"));
-  EXPECT_TRUE(ended(convert("model.ply"), 2, "is the model itself"));
+  EXPECT_TRUE(ended(convert("model.ply"), 2, "this run reads it"));
   std::filesystem::create_hard_link(model, folder / "link.spz");
-  EXPECT_TRUE(ended(convert("link.spz"), 2, "is the model itself"));
+  EXPECT_TRUE(ended(convert("link.spz"), 2, "this run reads it"));
   std::filesystem::create_directories(folder / "trained/point_cloud/iteration_7");
   const std::string ply = folder / "trained/point_cloud/iteration_7/point_cloud.ply";
   test::write_text(ply, before);
-  EXPECT_TRUE(ended(run_program({"convert", folder / "trained", "-o", ply}), 2, "is the model itself"));
+  EXPECT_TRUE(ended(run_program({"convert", folder / "trained", "-o", ply}), 2, "this run reads it"));
   EXPECT_TRUE(ended(convert("m.spz", {"--to", "ksplat"}), 2, "--to"));
   EXPECT_TRUE(ended(convert("m.ply", {"--sh-bits", "4"}), 2, "only spz"));
   EXPECT_TRUE(ended(convert("m.spz", {"--sh-bits", "9"}), 2, "--sh-bits"));

@@ -186,7 +186,7 @@ TEST_F(TrimTest, ErrorsSayWhatToDo) {
   EXPECT_TRUE(ended(trim("m.ply", {"--max-drop", "1", "--photos", folder.path()}), 2,
                     "there is no photo of any view"));
   EXPECT_TRUE(ended(trim("m.obj", {"--quality", "40"}), 2, "its ending names no format that can be written"));
-  EXPECT_TRUE(ended(trim("model.ply", {"--quality", "40"}), 2, "is the model itself"));
+  EXPECT_TRUE(ended(trim("model.ply", {"--quality", "40"}), 2, "this run reads it"));
   EXPECT_TRUE(ended(trim("m.ply", {"--quality", "40", "--test", "nowhere"}), 2, "nowhere"));
   EXPECT_TRUE(ended(trim("m.ply", {"--quality", "40", "--test", "view0", "view1", "view2", "view3", "view4"}),
                     2, "which needs two at least"));

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "app/command.h"
+#include "app/command_line.h"
 #include "app/drawing.h"
 #include "app/followed.h"
 #include "app/open_scene.h"
@@ -129,7 +130,9 @@ int run(int argc, char** argv) {
   const auto options = std::make_shared<RenderOptions>();
   try {
     add_view_options(program, *options);
+    check_arguments(argc, argv);
     program.parse(argc, argv);
+    note_inputs(program);
     view(options);
     return 0;
   } catch (const CLI::Success& asked) {
@@ -151,5 +154,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
+  binosplat::app::spare_full_disk();
   return binosplat::app::run(argc, argv);
 }

@@ -1,0 +1,18 @@
+#pragma once
+// What holds for the arguments of every sub-command.
+
+#include <CLI/CLI.hpp>
+
+namespace binosplat::app {
+
+/// Throws Error for an argument that is empty, as an unset variable of a script leaves it.
+void check_arguments(int argc, const char* const* argv);
+
+/// Where the disk of the user's caches is full, drivers are told to keep no shaders there: they write into
+/// mapped files, and SIGBUS would end the program. Says so. Call it before any context is made.
+void spare_full_disk();
+
+/// Notes the files that a parsed command line names to be read (base/inputs.h): all but its outputs.
+void note_inputs(const CLI::App& program);
+
+}  // namespace binosplat::app
