@@ -29,9 +29,12 @@ void note(const std::string& value) {
   for (const char* name : {"meta.json", "lod-meta.json"}) note_input(fs::path(value) / name);
 }
 
-void note_files_in(const std::string& folder) {
+void note_pictures_in(const std::string& folder) {
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) note_input(entry.path());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string ending = CLI::detail::to_lower(entry.path().extension().string());
+    if (ending == ".jpg" || ending == ".jpeg" || ending == ".png") note_input(entry.path());
+  }
 }
 
 }  // namespace
@@ -72,7 +75,7 @@ void note_inputs(const CLI::App& program) {
     if (output) continue;
     for (const std::string& value : option->results()) {
       note(value);
-      if (option->check_name("--photos")) note_files_in(value);
+      if (option->check_name("--photos")) note_pictures_in(value);
     }
   }
 }
