@@ -40,6 +40,21 @@ TEST_F(Info, TellsWhatWasLeftOutAndRefusesWhatIsNoModel) {
   EXPECT_EQ(test::run_program({"info", model}).code, 2);
 }
 
+TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
+  // Many nodes at the end of a long way, which each of them would spell out.
+  std::string tree = "{}";
+  for (int i = 0; i < 400000; ++i) tree += ",{}";
+  for (int i = 0; i < 240; ++i) tree = R"({"children":[)" + tree + "]}";
+  test::write_text(folder / "lod-meta.json",
+                   R"({"lodLevels":1,"filenames":["0/meta.json"],"tree":)" + tree + "}");
+  const test::Outcome outcome = test::run_program({"info", folder / "lod-meta.json"});
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("lod-meta.json holds no Gaussians"), std::string::npos) << outcome.err;
+#if !defined(__SANITIZE_ADDRESS__)
+  EXPECT_LT(outcome.peak_kib, 300 << 10);  // 1.2 GB with the ways spelled out
+#endif
+}
+
 TEST(InfoOfFixtures, KnowsTheirFormats) {
   REQUIRE_FIXTURES(folder);
   const std::vector<std::pair<std::string, std::string>> expected = {
