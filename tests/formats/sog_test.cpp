@@ -224,16 +224,23 @@ TEST(SogErrors, Pictures) {
 TEST(SogErrors, PromisesThatBytesCannotHold) {
   // A picture of one colour takes a few bytes, however large it is.
   const test::TempFolder folder;
-  const std::vector<std::uint8_t> grey(std::size_t{4} * 4096 * 4096, 77);
-  const std::string bomb = test::webp(4096, 4096, grey);
-  json meta = {{"version", 2}, {"count", 4096 * 4096}};
-  meta["means"] = {{"mins", {0, 0, 0}}, {"maxs", {1, 1, 1}}, {"files", {"a.webp", "a.webp"}}};
-  meta["scales"] = {{"codebook", std::vector<float>(256, 0.0f)}, {"files", {"a.webp"}}};
-  meta["sh0"] = meta["scales"];
-  meta["quats"] = {{"files", {"a.webp"}}};
-  test::write_text(folder / "m.sog", test::zipped({{"meta.json", meta.dump()}, {"a.webp", bomb}}));
-  EXPECT_TRUE(
-      test::fails_saying([&] { load_model(folder / "m.sog"); }, {"m.sog: 16777216 Gaussians are promised"}));
+  const auto refuses_pictures = [&](int width, int height, std::size_t padding,
+                                    std::initializer_list<std::string> parts) {
+    const std::vector<std::uint8_t> grey(static_cast<std::size_t>(4 * width * height), 77);
+    const std::string picture = test::webp(width, height, grey) + std::string(padding, '\0');
+    json meta = {{"version", 2}, {"count", width * height}};
+    meta["means"] = {{"mins", {0, 0, 0}}, {"maxs", {1, 1, 1}}, {"files", {"a.webp", "a.webp"}}};
+    meta["scales"] = {{"codebook", std::vector<float>(256, 0.0f)}, {"files", {"a.webp"}}};
+    meta["sh0"] = meta["scales"];
+    meta["quats"] = {{"files", {"a.webp"}}};
+    const std::string zip = test::zipped({{"meta.json", meta.dump()}, {"a.webp", picture}}, true);
+    test::write_text(folder / "m.sog", zip);
+    return test::fails_saying([&] { load_model(folder / "m.sog"); }, parts);
+  };
+  EXPECT_TRUE(refuses_pictures(4096, 4096, 0, {"m.sog: 16777216 Gaussians are promised"}));
+  // Padded with zeros, which take no room in an archive.
+  EXPECT_TRUE(refuses_pictures(2048, 1024, 100000, {"m.sog: 2097152 Gaussians are promised"}));
+  EXPECT_TRUE(refuses_pictures(2048, 1024, 3000000, {"m.sog: its file 'a.webp' promises 3000", "at most 2"}));
 }
 
 TEST(SogErrors, Archives) {
