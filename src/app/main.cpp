@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 
 namespace {
 
@@ -69,6 +70,7 @@ int main(int argc, char** argv) {
   // Writing beyond a limit of file size then fails like a full disk, with an error that can be reported.
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::end_cleanly_on_signals();
+  binosplat::end_cleanly_on_cut_files();
 
   return run(argc, argv);
 }

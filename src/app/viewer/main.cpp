@@ -14,6 +14,7 @@
 #include "app/render_outputs.h"
 #include "app/shots.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 #include "preview/window.h"
 
 namespace binosplat::app {
@@ -151,5 +152,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
+  binosplat::end_cleanly_on_cut_files();
   return binosplat::app::run(argc, argv);
 }
