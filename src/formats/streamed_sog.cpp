@@ -60,8 +60,9 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
   }
   std::set<int> there;
   std::optional<fs::path> missing;
+  const auto of_levels = levels.missing();
   for (int level = 0; level < levels.count(); ++level) {
-    const auto absent = levels.missing(level);
+    const auto& absent = of_levels[static_cast<std::size_t>(level)];
     if (!absent) there.insert(level);
     if (absent && (!missing || level == lod)) missing = absent;
   }
