@@ -1,11 +1,15 @@
 // binosplat compare: by how much two pictures differ, and where.
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "app/command.h"
+#include "app/option_checks.h"
 #include "formats/image_file.h"
 #include "measure/flip.h"
 #include "measure/metrics.h"
@@ -14,11 +18,16 @@ namespace binosplat::app {
 
 namespace {
 
+/// Bytes that a pixel of both pictures takes at most: 119 of grey, 169 of colour and alpha were seen, most of
+/// them FLIP's.
+constexpr std::uint64_t bytes_per_pixel = 170;
+
 struct CompareOptions {
   std::string a;
   std::string b;
   std::optional<double> min_psnr;
   double pixels_per_degree = measure::flip_pixels_per_degree;
+  std::optional<double> max_memory;  // MB
   std::string difference;
   std::string json;
 };
@@ -29,6 +38,14 @@ struct Comparison {
   double flip = 0.0;
   measure::Difference largest;
 };
+
+/// What --max-memory says; three quarters of the machine's memory by themselves.
+PictureLimit limit_of(const CompareOptions& options) {
+  const double machine =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double most = options.max_memory ? 1e6 * *options.max_memory : 0.75 * machine;
+  return {static_cast<std::uint64_t>(std::min(most, 1e18)), bytes_per_pixel, "; --max-memory allows more"};
+}
 
 // Grey as three equal channels, so that it can be compared with colour.
 Image as_colour(const Image& grey) {
@@ -103,8 +120,9 @@ nlohmann::ordered_json to_json(const CompareOptions& options, const Comparison& 
 ExitCode compare(const CompareOptions& options) {
   if (!options.difference.empty()) check_output(options.difference);
   if (!options.json.empty()) check_output(options.json);
-  Image a = load_image(options.a);
-  Image b = load_image(options.b);
+  const PictureLimit limit = limit_of(options);
+  Image a = load_image(options.a, limit);
+  Image b = load_image(options.b, limit);
   make_comparable(options, a, b);
   // What a screen shows: an EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
   a = measure::clamped(a);
@@ -138,6 +156,11 @@ void add_compare(CLI::App& program, Command& command) {
   sub->add_option("--ppd", options->pixels_per_degree, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(CLI::Range(1.0, 1000.0).description(""))
       ->type_name("N");
+  sub->add_option(
+         "--max-memory", options->max_memory,
+         "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)")
+      ->check(positive)
+      ->type_name("MB");
   sub->add_option("--difference", options->difference, "Write the absolute error, amplified, as PNG")
       ->type_name("FILE");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");

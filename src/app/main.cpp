@@ -10,6 +10,7 @@
 #include "app/command.h"
 #include "app/command_line.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 
 namespace {
 
@@ -82,6 +83,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::spare_full_disk();
   binosplat::app::end_cleanly_on_signals();
+  binosplat::end_cleanly_on_cut_files();
 
   return run(argc, argv);
 }

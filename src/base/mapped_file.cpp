@@ -5,14 +5,76 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdint>
 #include <cstring>
 
 #include "base/error.h"
 
 namespace binosplat {
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
+namespace {
+
+/// What a signal's handler may look at: it can take no lock, and threads map and unmap meanwhile.
+struct Mapping {
+  std::atomic<const std::byte*> data = nullptr;  // none: the place is free
+  std::atomic<std::size_t> size = 0;
+  std::atomic<const char*> name = nullptr;
+};
+
+/// More than are ever mapped at a time; those beyond have no name in the handler.
+std::array<Mapping, 256> mappings;
+static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<std::size_t>::is_always_lock_free);
+
+void remember(const std::byte* data, std::size_t size, const char* name) {
+  for (Mapping& mapping : mappings) {
+    const std::byte* none = nullptr;
+    if (!mapping.data.compare_exchange_strong(none, data)) continue;
+    mapping.name = name;
+    mapping.size = size;
+    return;
+  }
+}
+
+void forget(const std::byte* data) {
+  for (Mapping& mapping : mappings) {
+    if (mapping.data != data) continue;
+    mapping.size = 0;
+    mapping.data = nullptr;
+    return;
+  }
+}
+
+/// Calls nothing but what a handler may (signal-safety(7)).
+void on_cut_file(int, siginfo_t* info, void*) {
+  const auto say = [](const char* text) {
+    static_cast<void>(!write(STDERR_FILENO, text, std::strlen(text)));
+  };
+  const auto at = reinterpret_cast<std::uintptr_t>(info->si_addr);
+  for (const Mapping& mapping : mappings) {
+    const auto from = reinterpret_cast<std::uintptr_t>(mapping.data.load());
+    if (from == 0 || at < from || at - from >= mapping.size) continue;
+    say("binosplat: ");
+    say(mapping.name);
+    say(" was cut short while it was read: leave it alone until this is done, and start again\n");
+    _exit(static_cast<int>(ExitCode::bad_input));
+  }
+  std::signal(SIGBUS, SIG_DFL);  // nothing of a file: the fault comes again
+}
+
+}  // namespace
+
+void end_cleanly_on_cut_files() {
+  struct sigaction action = {};
+  action.sa_sigaction = on_cut_file;
+  action.sa_flags = SA_SIGINFO;
+  sigaction(SIGBUS, &action, nullptr);
+}
+
+MappedFile::MappedFile(const std::filesystem::path& path) : name_(path.string()) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) fail("cannot read {}: {}", path.string(), std::strerror(errno));
   struct stat status {};
@@ -25,6 +87,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     } else {
       data_ = static_cast<const std::byte*>(data);
       size_ = static_cast<std::size_t>(status.st_size);
+      remember(data_, size_, name_.c_str());
     }
   }
   close(file);
@@ -34,7 +97,9 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
 }
 
 MappedFile::~MappedFile() {
-  if (data_ != nullptr) munmap(const_cast<std::byte*>(data_), size_);
+  if (data_ == nullptr) return;
+  forget(data_);
+  munmap(const_cast<std::byte*>(data_), size_);
 }
 
 }  // namespace binosplat

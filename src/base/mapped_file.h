@@ -4,8 +4,14 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace binosplat {
+
+/// From now on a file that another program cuts short while it is mapped ends this one with
+/// ExitCode::bad_input and a line that names the file, where the system would end it with SIGBUS and say
+/// nothing. For `main`: a handler is the whole process's.
+void end_cleanly_on_cut_files();
 
 class MappedFile {
  public:
@@ -19,6 +25,7 @@ class MappedFile {
   std::span<const std::byte> bytes() const { return {data_, size_}; }
 
  private:
+  std::string name_;
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;
 };

@@ -143,8 +143,7 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
 }
 
 /// Reads the wanted channels as they are stored, and whether they are display values.
-Image read_channels(const std::filesystem::path& path, std::span<const std::byte> bytes, bool& display) {
-  check_exr_header(path, bytes);
+Image read_channels(const std::filesystem::path& path, bool& display) {
   Imf::InputFile file(path.c_str());
   const Imath::Box2i window = file.header().dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
@@ -229,12 +228,14 @@ void save_exr(const std::filesystem::path& path, const Picture& left, const Pict
   save(path, {&left, &right}, {"left", "right"}, options);
 }
 
-Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes,
+               const PictureLimit& limit) {
+  check_exr_header(path, bytes, limit);
   bool display = false;
   Image image;
   use_all_cores();
   try {
-    image = read_channels(path, bytes, display);
+    image = read_channels(path, display);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -67,8 +67,8 @@ struct Part {
 /// first.
 class Walker {
  public:
-  Walker(const std::filesystem::path& path, std::span<const std::byte> bytes)
-      : path_(path), text_(as_text(bytes)) {}
+  Walker(const std::filesystem::path& path, std::span<const std::byte> bytes, const PictureLimit& limit)
+      : path_(path), text_(as_text(bytes)), limit_(limit) {}
 
   void check() {
     if (text_.size() < 8) fail_broken();
@@ -146,6 +146,7 @@ class Walker {
       check_size(path_, width, height, text_.size(), static_cast<std::uint64_t>(most));
     };
     check(part.width, part.height);
+    check_room(path_, part.width, part.height, limit_);
 
     // OpenEXR reads blocks of whole lines or rows of tiles, and makes room for a whole one even where the
     // picture is smaller.
@@ -168,13 +169,15 @@ class Walker {
 
   const std::filesystem::path& path_;
   std::string_view text_;
+  const PictureLimit& limit_;
   std::size_t at_ = 8;
 };
 
 }  // namespace
 
-void check_exr_header(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  Walker(path, bytes).check();
+void check_exr_header(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                      const PictureLimit& limit) {
+  Walker(path, bytes, limit).check();
 }
 
 }  // namespace binosplat

@@ -4,11 +4,13 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "base/log.h"
 #include "formats/gltf_document.h"
+#include "formats/plausible.h"
 #include "formats/spz.h"
 
 namespace binosplat {
@@ -20,9 +22,6 @@ constexpr const char* packed_names[] = {"KHR_gaussian_splatting_compression_spz_
                                         "KHR_gaussian_splatting_compression_spz",
                                         "KHR_spz_gaussian_splats_compression", "KHR_spz_compression"};
 constexpr std::uint64_t most = std::uint64_t{1} << 40;
-/// Nodes may share a mesh, and meshes their numbers: a few bytes each, however many Gaussians they add. So
-/// many may be there beyond one a byte; a Gaussian that is there once takes 10 bytes and more.
-constexpr std::size_t most_copies = std::size_t{1} << 20;
 
 /// A node's own transform: a matrix, or translation, rotation and scale.
 glm::dmat4 transform_of(const JsonValue& node) {
@@ -133,17 +132,23 @@ class GltfReader {
     };
     const std::size_t scene = root.has("scene") ? root.at("scene").whole(most) : 0;
     enter(root.at("scenes").at(scene).at("nodes"), glm::dmat4(1.0));
+    std::vector<Shown> shown;
     while (!open.empty()) {
       const auto [index, parent] = open.back();
       open.pop_back();
       const JsonValue node = nodes.at(index);
       const glm::dmat4 matrix = parent * transform_of(node);
-      if (node.has("mesh")) read_mesh(node, matrix);
+      if (node.has("mesh")) {
+        const std::size_t mesh = node.at("mesh").whole(most);
+        shown.push_back({node, matrix, mesh});
+        ++meshes_[mesh].left;
+      }
       if (node.has("children")) enter(node.at("children"), matrix);
     }
+    for (const Shown& node : shown) show(node);
     if (model_.count() == 0 && model_.left_out == 0) {
       fail("{} is a glTF scene without Gaussians ({}): {} meshes, {} points", path_.string(), extension,
-           meshes_, points_);
+           others_, points_);
     }
     model_.format = packed_ ? "glTF with spz" : "glTF";
     model_.axes = "LUF";
@@ -151,14 +156,41 @@ class GltfReader {
   }
 
  private:
-  void read_mesh(const JsonValue& node, const glm::dmat4& matrix) {
-    const JsonValue primitives =
-        document_.root().at("meshes").at(node.at("mesh").whole(most)).at("primitives");
+  /// A node with a mesh.
+  struct Shown {
+    JsonValue node;
+    glm::dmat4 matrix;  // in the world of the scene
+    std::size_t mesh;
+  };
+
+  /// What any number of nodes may share is read once: nodes times primitives may be far more than the file
+  /// has bytes.
+  struct Mesh {
+    std::size_t left = 0;  // nodes that are still to show it
+    bool known = false;
+    Model model;
+    std::size_t others = 0, points = 0;  // primitives that are no Gaussians
+  };
+
+  void show(const Shown& shown) {
+    Mesh& mesh = meshes_[shown.mesh];
+    if (!mesh.known) read_mesh(shown, mesh);
+    others_ += mesh.others;
+    points_ += mesh.points;
+    read_ += mesh.model.count() + mesh.model.left_out;
+    check_copies(shown.node, read_);
+    Model part = --mesh.left > 0 ? mesh.model : std::move(mesh.model);
+    move(shown.node, shown.matrix, part);
+    append(model_, std::move(part));
+  }
+
+  void read_mesh(const Shown& shown, Mesh& mesh) {
+    const JsonValue primitives = document_.root().at("meshes").at(shown.mesh).at("primitives");
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       const JsonValue primitive = primitives.at(i);
       const bool is_points = primitive.has("mode") && primitive.at("mode").whole(100) == 0;
       if (!primitive.has("extensions") || !primitive.at("extensions").has(extension)) {
-        ++(is_points ? points_ : meshes_);
+        ++(is_points ? mesh.points : mesh.others);
         continue;
       }
       const JsonValue splatting = primitive.at("extensions").at(extension);
@@ -167,14 +199,19 @@ class GltfReader {
       Model part = packed ? load_spz(fmt::format("{}: its spz data", path_.string()), document_.view(*packed))
                           : read_points(primitive.at("attributes"));
       packed_ = packed_ || packed.has_value();
-      read_ += part.count() + part.left_out;
-      if (read_ > document_.size() + most_copies) {
-        node.fail_here(
-            "its mesh makes that {} Gaussians of a file of {} bytes, by showing the same ones many times",
-            read_, document_.size());
-      }
-      move(node, matrix, part);
-      append(model_, std::move(part));
+      check_copies(shown.node,
+                   read_ + mesh.model.count() + mesh.model.left_out + part.count() + part.left_out);
+      append(mesh.model, std::move(part));
+    }
+    mesh.known = true;
+  }
+
+  void check_copies(const JsonValue& node, std::size_t count) const {
+    // Nodes may share a mesh, and meshes their numbers: a few bytes each, however many Gaussians they add.
+    if (count > most_gaussians_in(document_.size())) {
+      node.fail_here(
+          "its mesh makes that {} Gaussians of a file of {} bytes, by showing the same ones many times",
+          count, document_.size());
     }
   }
 
@@ -250,8 +287,9 @@ class GltfReader {
   GltfDocument document_;
   Model model_;
   bool packed_ = false;
+  std::map<std::size_t, Mesh> meshes_;
   std::size_t read_ = 0;                 // Gaussians, of all nodes
-  std::size_t meshes_ = 0, points_ = 0;  // primitives that are no Gaussians
+  std::size_t others_ = 0, points_ = 0;  // primitives that are no Gaussians
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "base/mapped_file.h"
 #include "formats/bytes.h"
 #include "formats/content.h"
 #include "formats/zip_file.h"
@@ -121,23 +120,27 @@ std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
     if (index != 0 || binary_.empty()) buffer.fail_here("it has no uri, and the file no binary chunk for it");
     return binary_;
   }
+  // A URI may hold megabytes of data, and any number of views may ask for them.
+  if (const auto known = buffers_.find(index); known != buffers_.end()) return known->second;
   const JsonValue uri = buffer.at("uri");
   const std::string text = uri.text();
-  const auto known = buffers_.find(text);
-  if (known != buffers_.end()) return known->second;
   if (text.starts_with("data:")) {
     const std::size_t comma = text.find(";base64,");
     if (comma == std::string::npos) uri.fail_here("expected base64 in a data: URI");
-    return buffers_[text] = decode_base64(uri, std::string_view(text).substr(comma + 8));
+    return buffers_[index] = decode_base64(uri, std::string_view(text).substr(comma + 8));
   }
-  const std::filesystem::path file = path_.parent_path() / text;
+  const std::filesystem::path file = (path_.parent_path() / text).lexically_normal();
   std::error_code ignored;
   if (!stays_below(text)) uri.fail_here("a buffer must lie beside the file or below; it is named '{}'", text);
   if (!std::filesystem::is_regular_file(file, ignored))
     uri.fail_here("{} is missing; fetch or export it again", file.string());
-  const MappedFile mapped(file);
-  size_ += mapped.bytes().size();
-  return buffers_[text] = {mapped.bytes().begin(), mapped.bytes().end()};
+  // Buffers may share a file, which is kept once.
+  auto& known = files_[file];
+  if (!known) {
+    known = std::make_unique<MappedFile>(file);
+    size_ += known->bytes().size();
+  }
+  return known->bytes();
 }
 
 std::span<const std::byte> GltfDocument::view(std::size_t index) {
@@ -194,6 +197,8 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
 void GltfDocument::read_sparse(const JsonValue& sparse, std::size_t components, int type, bool normalized,
                                std::vector<float>& values) {
   const std::size_t count = sparse.at("count").whole(most);
+  if (count > values.size() / components)
+    sparse.fail_here("{} elements are replaced, of {}", count, values.size() / components);
   const JsonValue indices = sparse.at("indices"), replaced = sparse.at("values");
   const int index_type = static_cast<int>(indices.at("componentType").whole(65535));
   const std::size_t index_size = index_type == uint32   ? 4

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/mapped_file.h"
 #include "formats/json_file.h"
 
 namespace binosplat {
@@ -44,8 +45,9 @@ class GltfDocument {
   std::filesystem::path path_;
   nlohmann::json json_;
   std::unique_ptr<JsonValue> root_;
-  std::span<const std::byte> binary_;                      // of a .glb
-  std::map<std::string, std::vector<std::byte>> buffers_;  // by their URIs, decoded or read from files
+  std::span<const std::byte> binary_;                                   // of a .glb
+  std::map<std::size_t, std::vector<std::byte>> buffers_;               // of data: URIs
+  std::map<std::filesystem::path, std::unique_ptr<MappedFile>> files_;  // of other URIs
   std::size_t size_;
 };
 

@@ -7,16 +7,16 @@
 
 namespace binosplat {
 
-Image load_image(const std::filesystem::path& path) {
+Image load_image(const std::filesystem::path& path, const PictureLimit& limit) {
   const MappedFile file(path);
   const Content content = content_of(file.bytes());
   switch (content) {
     case Content::png:
-      return load_png(path, file.bytes());
+      return load_png(path, file.bytes(), limit);
     case Content::jpeg:
-      return load_jpeg(path, file.bytes());
+      return load_jpeg(path, file.bytes(), limit);
     case Content::exr:
-      return load_exr(path, file.bytes());
+      return load_exr(path, file.bytes(), limit);
     default:
       break;
   }
@@ -34,6 +34,16 @@ void check_size(const std::filesystem::path& path, std::int64_t width, std::int6
     fail("{} is damaged or cut short: its header promises {} x {} px, which {} bytes cannot hold",
          path.string(), width, height, file_bytes);
   }
+}
+
+void check_room(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
+                const PictureLimit& limit) {
+  const auto pixels = static_cast<std::uint64_t>(width * height);  // at most 2^31: check_size
+  const std::uint64_t bytes = pixels * limit.bytes_per_pixel;
+  if (bytes <= limit.bytes) return;
+  throw Error(ExitCode::out_of_memory,
+              fmt::format("{}: {} x {} px take {} MB of memory here, and {} may be taken{}", path.string(),
+                          width, height, bytes / 1'000'000, limit.bytes / 1'000'000, limit.advice));
 }
 
 }  // namespace binosplat

@@ -10,7 +10,8 @@
 
 namespace binosplat {
 
-Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes,
+                const PictureLimit& limit) {
   const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
   if (decoder == nullptr) fail("{}: {}", path.string(), tjGetErrorStr2(nullptr));
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
@@ -25,6 +26,7 @@ Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> by
   if (colours == TJCS_CMYK || colours == TJCS_YCCK) fail("{}: a CMYK JPEG; convert it to RGB", path.string());
   check_size(path, width, height, bytes.size(),
              1024);  // two bits a block of 8 x 8 make 256, progressive ones less
+  check_room(path, width, height, limit);
 
   const int channels = colours == TJCS_GRAY ? 1 : 3;
   Image image(width, height, channels);

@@ -50,10 +50,21 @@ json parse_json(const std::string& source, std::string_view text) {
   }
 }
 
-JsonValue JsonValue::inner(const json& value, std::string where) const {
-  JsonValue result(source_, value);
-  result.where_ = std::move(where);
+JsonValue JsonValue::inner(const json& value, std::string name) const {
+  JsonValue result(*this);
+  result.value_ = &value;
+  result.step_ = std::make_shared<Step>(Step{step_, std::move(name)});
   return result;
+}
+
+std::string JsonValue::where() const {
+  std::vector<const std::string*> names;
+  for (const Step* step = step_.get(); step != nullptr; step = step->before.get())
+    names.push_back(&step->name);
+  std::string text;
+  for (std::size_t i = names.size(); i-- > 0;)
+    text += (text.empty() || names[i]->front() == '[' ? "" : ".") + *names[i];
+  return text;
 }
 
 bool JsonValue::has(const std::string& key) const {
@@ -65,15 +76,15 @@ bool JsonValue::has(const std::string& key) const {
 JsonValue JsonValue::at(const std::string& key) const {
   if (!value_->is_object()) fail_here("expected an object with the key '{}'", key);
   const auto found = value_->find(key);
+  if (found == value_->end())
+    fail("{}: the key '{}{}{}' is missing", source(), where(), step_ ? "." : "", key);
   // Keys of the file go into errors' texts as they are; the ones asked for here are the program's own.
-  const std::string where = where_.empty() ? key : where_ + "." + key;
-  if (found == value_->end()) fail("{}: the key '{}' is missing", source_, where);
-  return inner(*found, where);
+  return inner(*found, key);
 }
 
 JsonValue JsonValue::at(std::size_t index) const {
   if (index >= size()) fail_here("expected a list of more than {} values", index);
-  return inner((*value_)[index], fmt::format("{}[{}]", where_, index));
+  return inner((*value_)[index], fmt::format("[{}]", index));
 }
 
 std::size_t JsonValue::size() const {

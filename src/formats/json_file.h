@@ -2,6 +2,7 @@
 // JSON from files: values that know where they stand, so that every error can say so.
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -19,10 +20,11 @@ nlohmann::json parse_json(const std::string& source, std::string_view text);
 /// lead there, as in "scene/meta.json, key 'means.files[1]': expected text in quotes".
 class JsonValue {
  public:
-  JsonValue(std::string source, const nlohmann::json& root) : source_(std::move(source)), value_(&root) {}
+  JsonValue(std::string source, const nlohmann::json& root)
+      : source_(std::make_shared<std::string>(std::move(source))), value_(&root) {}
 
   const nlohmann::json& value() const { return *value_; }
-  const std::string& source() const { return source_; }
+  const std::string& source() const { return *source_; }
 
   /// Whether an object has this key, with a value other than null.
   bool has(const std::string& key) const;
@@ -37,16 +39,24 @@ class JsonValue {
   template <typename... Args>
   [[noreturn]] void fail_here(fmt::format_string<Args...> format, Args&&... args) const {
     const std::string text = fmt::format(format, std::forward<Args>(args)...);
-    if (where_.empty()) fail("{}: {}", source_, text);
-    fail("{}, key '{}': {}", source_, where_, text);
+    if (!step_) fail("{}: {}", source(), text);
+    fail("{}, key '{}': {}", source(), where(), text);
   }
 
  private:
-  JsonValue inner(const nlohmann::json& value, std::string where) const;
+  /// A key, or an index as in "[3]", and what stands before it. Values share the steps that lead to them, and
+  /// only an error spells them out: a tree of many long paths costs no more than its nodes.
+  struct Step {
+    std::shared_ptr<const Step> before;
+    std::string name;
+  };
 
-  std::string source_;
+  JsonValue inner(const nlohmann::json& value, std::string name) const;
+  std::string where() const;  // as in "frames[3].w"
+
+  std::shared_ptr<const std::string> source_;
   const nlohmann::json* value_;
-  std::string where_;  // "" for the root, else as in "frames[3].w"
+  std::shared_ptr<const Step> step_;  // none for the root
 };
 
 }  // namespace binosplat

@@ -132,7 +132,8 @@ bool write_image(Writer& writer, const Image& image, int bits) {
 
 }  // namespace
 
-Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes,
+               const PictureLimit& limit) {
   Reader reader{path, bytes};
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error<Reader>, on_warning);
   if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
@@ -143,6 +144,7 @@ Image load_png(const std::filesystem::path& path, std::span<const std::byte> byt
   const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
   constexpr std::uint64_t best_deflate = 1032;  // bytes out of one byte of a zlib stream
   check_size(path, width, height, bytes.size(), best_deflate * 8 / static_cast<std::uint64_t>(bits) + 1);
+  check_room(path, width, height, limit);
   if (!expand(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
 
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);

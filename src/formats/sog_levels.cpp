@@ -26,6 +26,7 @@ SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json)
     : folder_(path.parent_path()), root_(path.string(), json) {
   count_ = static_cast<int>(root_.at("lodLevels").whole(most_levels));
   if (count_ == 0) root_.at("lodLevels").fail_here("expected one level at least");
+  for (int level = 0; level < count_; ++level) keys_.push_back(std::to_string(level));
   const JsonValue names = root_.at("filenames");
   std::set<fs::path> named;  // twice, a file could be taken any number of times
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -61,30 +62,44 @@ std::vector<std::vector<SogLevels::Taken>> SogLevels::taken(int level) const {
   return taken([level](std::size_t) { return level; });
 }
 
-std::vector<DetailPart> SogLevels::leaves() const {
+std::vector<bool> SogLevels::found() const {
   std::vector<bool> found;
   for (std::size_t i = 0; i < files_.size(); ++i) found.push_back(there(i));
+  return found;
+}
+
+std::vector<DetailPart> SogLevels::leaves() const {
+  const std::vector<bool> is_there = found();
   std::vector<DetailPart> result;
   walk([&](const JsonValue& node) {
     const JsonValue bound = node.at("bound"), lods = node.at("lods");
     DetailPart leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
     for (int level = 0; level < count_; ++level) {
-      const std::string key = std::to_string(level);
+      const std::string& key = keys_[static_cast<std::size_t>(level)];
       if (!lods.has(key)) continue;
       const auto [index, range] = part(lods.at(key));
-      if (found[index]) leaf.levels.push_back({level, range.count});
+      if (is_there[index]) leaf.levels.push_back({level, range.count});
     }
     result.push_back(std::move(leaf));
   });
   return result;
 }
 
-std::optional<fs::path> SogLevels::missing(int level) const {
-  const auto wanted = taken(level);
-  for (std::size_t i = 0; i < files_.size(); ++i) {
-    if (!wanted[i].empty() && !there(i)) return files_[i];
-  }
-  return std::nullopt;
+std::vector<std::optional<fs::path>> SogLevels::missing() const {
+  const std::vector<bool> is_there = found();
+  std::vector<std::size_t> first(keys_.size(), files_.size());
+  walk([&](const JsonValue& node) {
+    const JsonValue lods = node.at("lods");
+    for (std::size_t level = 0; level < keys_.size(); ++level) {
+      if (!lods.has(keys_[level])) continue;
+      const auto [index, range] = part(lods.at(keys_[level]));
+      if (range.count > 0 && !is_there[index]) first[level] = std::min(first[level], index);
+    }
+  });
+  std::vector<std::optional<fs::path>> result(keys_.size());
+  for (std::size_t level = 0; level < keys_.size(); ++level)
+    if (first[level] < files_.size()) result[level] = files_[first[level]];
+  return result;
 }
 
 fs::path SogLevels::file(const JsonValue& value) const {

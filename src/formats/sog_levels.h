@@ -39,11 +39,12 @@ class SogLevels {
   /// The tree's leaves, with the levels whose files are there.
   std::vector<DetailPart> leaves() const;
 
-  /// The first file that a level needs and that is not there.
-  std::optional<std::filesystem::path> missing(int level) const;
+  /// For each level the first file that it needs and that is not there.
+  std::vector<std::optional<std::filesystem::path>> missing() const;
 
  private:
   std::filesystem::path file(const JsonValue& value) const;
+  std::vector<bool> found() const;
   void walk(const std::function<void(const JsonValue&)>& see) const;
   std::pair<std::size_t, SogSource::Range> part(const JsonValue& lod) const;
   void sort(std::vector<Taken>& taken, std::size_t index) const;
@@ -51,6 +52,7 @@ class SogLevels {
   std::filesystem::path folder_;
   JsonValue root_;
   int count_ = 0;
+  std::vector<std::string> keys_;  // of levels: "0", "1" ...
   std::vector<std::filesystem::path> files_;
   std::optional<std::filesystem::path> environment_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/plausible.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
 
@@ -85,10 +86,12 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
     read_tables_v1(meta);
   }
   if (meta.has("shN")) read_harmonics(meta.at("shN"));
-  // The low bytes of positions are noise: what takes less than a byte for 256 of them is forged.
+  // The low bytes of positions are noise, which no picture packs: they tell how many Gaussians there may be.
+  // What takes less than a byte for 256 of them is forged, however few they are.
   const std::vector<std::byte> low = read_(files_[means_l]);
+  bytes_ = low.size();
   const WebpSize size = webp_size(named(files_[means_l]), low);
-  if (size.texels() < count_ || count_ / 256 > low.size()) {
+  if (size.texels() < count_ || count_ / 256 > bytes_ || count_ > most_gaussians_in(bytes_)) {
     fail("{}: {} Gaussians are promised, but {} has {} x {} texels in {} bytes", source_, count_,
          files_[means_l], size.width, size.height, low.size());
   }

@@ -33,6 +33,8 @@ class SogSource {
   SogSource(std::string source, const nlohmann::json& json, ReadFile read);
 
   std::size_t count() const { return count_; }
+  /// Bytes of the picture that is hardest to pack (formats/plausible.h).
+  std::uint64_t bytes() const { return bytes_; }
   int degree() const { return degree_; }
   bool antialiased() const { return antialiased_; }
 
@@ -56,6 +58,7 @@ class SogSource {
   std::string source_;
   ReadFile read_;
   std::size_t count_ = 0;
+  std::uint64_t bytes_ = 0;
   int degree_ = 0;
   bool antialiased_ = false;
   std::array<std::string, 5> files_;  // means_l, means_u, quats, scales, sh0

@@ -10,6 +10,7 @@
 #include "formats/bytes.h"
 #include "formats/content.h"
 #include "formats/gzip.h"
+#include "formats/plausible.h"
 
 namespace binosplat {
 
@@ -60,11 +61,11 @@ Header read_header(const std::string& source, std::span<const std::byte> bytes) 
   return header;
 }
 
-/// The bytes of all attributes, if `packed` ones may unfold to as many as `least` a Gaussian: room is made
-/// for no more than that.
+/// The bytes of all attributes, if `packed` ones may be so many Gaussians and unfold to as many as `least`
+/// each: room is made for no more than that.
 std::size_t attribute_bytes(const std::string& source, const SpzContents& contents, std::size_t least,
                             std::size_t packed) {
-  if (contents.count * least / most_growth > packed) {
+  if (contents.count > most_gaussians_in(packed) || contents.count * least / most_growth > packed) {
     fail(
         "{} is damaged or cut short: its header promises {} Gaussians of degree {}, which {} bytes cannot "
         "hold",

@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
+#include "formats/plausible.h"
 #include "formats/sog_levels.h"
 #include "formats/sog_source.h"
 
@@ -44,6 +45,13 @@ void check_taken(const fs::path& lod_meta, const fs::path& file, const SogSource
        last.first + last.count - 1, file.string(), source.count());
 }
 
+/// Each file may have its million without a reason, but not a thousand files.
+void check_total(const fs::path& lod_meta, std::size_t total, std::uint64_t bytes) {
+  if (total <= most_gaussians_in(bytes)) return;
+  fail("{}: {} Gaussians are wanted of files whose positions take {} bytes, which cannot hold them",
+       lod_meta.string(), total, bytes);
+}
+
 /// The finest level that is there, or the one that was asked for.
 int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
   const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
@@ -52,8 +60,9 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
   }
   std::set<int> there;
   std::optional<fs::path> missing;
+  const auto of_levels = levels.missing();
   for (int level = 0; level < levels.count(); ++level) {
-    const auto absent = levels.missing(level);
+    const auto& absent = of_levels[static_cast<std::size_t>(level)];
     if (!absent) there.insert(level);
     if (absent && (!missing || level == lod)) missing = absent;
   }
@@ -199,7 +208,9 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
   model.name = lod_meta.filename().string();
   model.format = choice.name;
   std::size_t total = 0;
+  std::uint64_t bytes = 0;
   for (Part& part : parts) {
+    bytes += part.source.bytes();
     model.degree = std::max(model.degree, part.source.degree());
     model.antialiased = model.antialiased || part.source.antialiased();
     for (SogLevels::Taken& taken : part.taken) {
@@ -208,6 +219,7 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
     }
   }
   if (total == 0) fail("{} holds no Gaussians ({})", lod_meta.string(), choice.name);
+  check_total(lod_meta, total, bytes);
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
   Progress progress("reading " + lod_meta.string(), total);
@@ -238,6 +250,10 @@ struct StreamedSog::Source {
       if (levels.there(i)) files[i] = open_part(levels.files()[i]);
     });
     if (levels.environment()) files.emplace_back(open_part(*levels.environment()));
+  }
+
+  const fs::path& name(std::size_t file) const {
+    return file == levels.files().size() ? *levels.environment() : levels.files()[file];
   }
 
   /// What is taken of each of the files, where leaf number i of so many has level_of(i).
@@ -298,14 +314,19 @@ Model StreamedSog::read() {
   std::vector<Taken> taken = source_->wanted(level_of, leaves_.size());
   std::vector<Span> spans(leaves_.size() + 1);
   std::size_t total = 0;
-  for (Taken& of_file : taken) {
-    for (SogLevels::Taken& of_leaf : of_file) {
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (taken[i].empty()) continue;
+    check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
+    bytes += source_->files[i]->bytes();
+    for (SogLevels::Taken& of_leaf : taken[i]) {
       of_leaf.range.slot = total;
       total += of_leaf.range.count;
       spans[of_leaf.leaf] = {of_leaf.range.slot, of_leaf.range.count};
     }
   }
   if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), model_.format);
+  check_total(source_->path, total, bytes);
   Model model = empty_model();
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
@@ -332,9 +353,6 @@ void StreamedSog::fill(Model& model, std::vector<std::uint8_t>& kept, std::span<
     std::fill_n(kept.begin() + static_cast<std::ptrdiff_t>(of_leaf.range.slot), before.count, 1);
   }
   if (changed.empty()) return;
-  const bool around = file == source_->levels.files().size();
-  const fs::path& name = around ? *source_->levels.environment() : source_->levels.files()[file];
-  check_taken(source_->path, name, *source_->files[file], taken);
   source_->files[file]->decode(model, changed, kept);
 }
 

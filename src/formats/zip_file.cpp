@@ -117,9 +117,6 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
     fail_entry(name, fmt::format("is compressed by method {}; only stored and deflated ones can be read",
                                  status.comp_method));
   }
-  if (status.size > bytes_max) {
-    fail_entry(name, fmt::format("promises {} bytes; expected at most {}", status.size, bytes_max));
-  }
   if (status.comp_size > bytes_) {
     fail_entry(name, fmt::format("promises {} compressed bytes in an archive of {}; it is damaged",
                                  status.comp_size, bytes_));
@@ -127,6 +124,9 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
   if (status.size / most_growth > status.comp_size) {
     fail_entry(name, fmt::format("promises {} bytes, which {} compressed ones cannot hold; it is damaged",
                                  status.size, status.comp_size));
+  }
+  if (status.size > bytes_max) {
+    fail_entry(name, fmt::format("promises {} bytes; expected at most {}", status.size, bytes_max));
   }
   const std::unique_ptr<zip_file_t, CloseEntry> entry(zip_fopen_index(archive_.get(), at, 0));
   if (!entry) fail_entry(name, fmt::format("cannot be read: {}", zip_strerror(archive_.get())));

@@ -152,6 +152,7 @@ TEST_F(Compare, WhatCannotBeComparedIsCodeTwo) {
       {{"compare", a}, "see: binosplat compare --help"},
       {{"compare", a, a, "--min-psnr", "loud"}, "see: binosplat compare --help"},
       {{"compare", a, a, "--ppd", "0"}, "see: binosplat compare --help"},
+      {{"compare", a, a, "--max-memory", "0"}, "see: binosplat compare --help"},
   };
   const auto before = folder.files();
   for (const auto& c : cases) {
@@ -161,6 +162,27 @@ TEST_F(Compare, WhatCannotBeComparedIsCodeTwo) {
         << "expected '" << c.said << "' in: " << outcome.err;
   }
   EXPECT_EQ(folder.files(), before);
+}
+
+TEST_F(Compare, PicturesBeyondAllMemoryAreRefusedBeforeTheyAreRead) {
+  // Rows of one colour take hardly any bytes. Neither is read to its end, where each is cut short.
+  const std::string small = png("small.png", Image(1000, 1000, 1));
+  const std::string text = test::read_text(small);
+  test::write_text(small, text.substr(0, text.size() - 20));
+  const Outcome outcome = run_program({"compare", small, small, "--max-memory", "100"});
+  EXPECT_EQ(outcome.code, 4) << outcome.err;
+  EXPECT_NE(outcome.err.find("small.png: 1000 x 1000 px take 170 MB of memory here, and 100 may be taken; "
+                             "--max-memory allows more"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(run_program({"compare", small, small, "--max-memory", "171"}).err.find("broken PNG"),
+            std::string::npos);
+  for (const char* name : {"alpha_float.exr", "grey.jpg"}) {
+    const std::filesystem::path file =
+        std::filesystem::path(BINOSPLAT_SOURCE_DIR) / "tests/fuzz/corpus/image" / name;
+    EXPECT_EQ(run_program({"compare", file, file, "--max-memory", "0.001"}).code, 4) << name;
+    EXPECT_EQ(run_program({"compare", file, file, "--max-memory", "10"}).code, 0) << name;
+  }
 }
 
 #if !defined(__SANITIZE_ADDRESS__)  // which needs more address space than any limit leaves

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/scene.h"
+#include "base/clock.h"
 #include "support/fixtures.h"
 
 namespace binosplat {
@@ -38,6 +39,24 @@ TEST_F(Info, TellsWhatWasLeftOutAndRefusesWhatIsNoModel) {
   EXPECT_NE(outcome.out.find("299 (1 more left out"), std::string::npos) << outcome.out;
   test::write_text(model, "no model");
   EXPECT_EQ(test::run_program({"info", model}).code, 2);
+}
+
+TEST_F(Info, TreesTakeNoMoreThanTheirNodes) {
+  // Many nodes at the end of a long way, which each of them would spell out.
+  std::string tree = "{}";
+  for (int i = 0; i < 400000; ++i) tree += ",{}";
+  for (int i = 0; i < 240; ++i) tree = R"({"children":[)" + tree + "]}";
+  test::write_text(folder / "lod-meta.json",
+                   R"({"lodLevels":100,"filenames":["0/meta.json"],"tree":)" + tree + "}");
+  const Clock::time_point start = Clock::now();
+  const test::Outcome outcome = test::run_program({"info", folder / "lod-meta.json"});
+  const double ms = ms_since(start);
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("lod-meta.json holds no Gaussians"), std::string::npos) << outcome.err;
+#if !defined(__SANITIZE_ADDRESS__)
+  EXPECT_LT(ms, 5000.0);                   // 0.3 s; 9 with a walk for each of 100 levels
+  EXPECT_LT(outcome.peak_kib, 300 << 10);  // 1.2 GB with the ways spelled out
+#endif
 }
 
 TEST(InfoOfFixtures, KnowsTheirFormats) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "formats/model_file.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
@@ -125,6 +127,18 @@ TEST_F(Gltf, CopiesHaveALimit) {
   EXPECT_TRUE(refuses_bytes(copies(2000), {"a.glb, key 'nodes[", "showing the same ones many times"}));
 }
 
+TEST(GltfNodes, ShareMeshesInLinearTime) {
+  constexpr std::size_t n = 20000;
+  json root = {{"asset", {{"version", "2.0"}}}, {"buffers", json::array()}, {"scenes", {{{"nodes", {}}}}}};
+  for (std::size_t i = 0; i < n; ++i) root["scenes"][0]["nodes"].push_back(i);
+  root["nodes"] = json(n, json{{"mesh", 0}});
+  root["meshes"] = {{{"primitives", json(n, json::object())}}};
+  const std::clock_t start = std::clock();
+  EXPECT_TRUE(test::fails_saying([&] { load(root.dump(), "a.gltf"); },
+                                 {"a.gltf", "without Gaussians", "400000000 meshes, 0 points"}));
+  EXPECT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC);  // 0.2 s; each primitive of each node took minutes
+}
+
 TEST_F(Gltf, BuffersMayLieBeside) {
   const test::TempFolder temporary;
   Glb glb(good);
@@ -135,6 +149,18 @@ TEST_F(Gltf, BuffersMayLieBeside) {
   fs::remove(temporary / "data.bin");
   EXPECT_TRUE(test::fails_saying([&] { load_model(temporary / "a.gltf"); },
                                  {"a.gltf, key 'buffers[0].uri'", "data.bin is missing"}));
+}
+
+TEST_F(Gltf, BuffersMayShareAFile) {
+  const test::TempFolder temporary;
+  Glb glb(good);
+  glb.root["buffers"][0]["uri"] = "data.bin";
+  glb.root["buffers"].push_back(glb.root["buffers"][0]);
+  glb.root["buffers"][1]["uri"] = "./data.bin";
+  glb.root["bufferViews"][glb.accessor("POSITION")["bufferView"].get<std::size_t>()]["buffer"] = 1;
+  test::write_text(temporary / "a.gltf", glb.root.dump());
+  test::write_text(temporary / "data.bin", glb.binary);
+  EXPECT_EQ(load_model(temporary / "a.gltf").position, load(good).position);
 }
 
 TEST_F(Gltf, NumbersMayBeIntegersAndSparse) {
@@ -157,6 +183,9 @@ TEST_F(Gltf, NumbersMayBeIntegersAndSparse) {
   EXPECT_EQ(model.opacity[4],
             static_cast<float>(static_cast<unsigned char>(glb.binary[first + 16])) / 255.0f);
   EXPECT_EQ(model.opacity[5], 0.2f);
+  accessor["sparse"]["count"] = 1001;
+  EXPECT_TRUE(refuses_bytes(glb.bytes(), {"sparse'", "1001 elements are replaced, of 1000"}));
+  accessor["sparse"]["count"] = 1;
   accessor["sparse"]["indices"]["componentType"] = 5126;
   EXPECT_TRUE(refuses_bytes(glb.bytes(), {"sparse.indices.componentType'", "no type of an index"}));
   accessor["sparse"]["indices"]["componentType"] = 5123;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/model_file.h"
+#include "formats/streamed_sog.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 
@@ -221,19 +222,58 @@ TEST(SogErrors, Pictures) {
   }
 }
 
-TEST(SogErrors, PromisesThatBytesCannotHold) {
-  // A picture of one colour takes a few bytes, however large it is.
-  const test::TempFolder folder;
-  const std::vector<std::uint8_t> grey(std::size_t{4} * 4096 * 4096, 77);
-  const std::string bomb = test::webp(4096, 4096, grey);
-  json meta = {{"version", 2}, {"count", 4096 * 4096}};
+/// The meta.json of a SOG whose pictures are all a.webp.
+std::string meta_of(int count) {
+  json meta = {{"version", 2}, {"count", count}};
   meta["means"] = {{"mins", {0, 0, 0}}, {"maxs", {1, 1, 1}}, {"files", {"a.webp", "a.webp"}}};
   meta["scales"] = {{"codebook", std::vector<float>(256, 0.0f)}, {"files", {"a.webp"}}};
   meta["sh0"] = meta["scales"];
   meta["quats"] = {{"files", {"a.webp"}}};
-  test::write_text(folder / "m.sog", test::zipped({{"meta.json", meta.dump()}, {"a.webp", bomb}}));
-  EXPECT_TRUE(
-      test::fails_saying([&] { load_model(folder / "m.sog"); }, {"m.sog: 16777216 Gaussians are promised"}));
+  return meta.dump();
+}
+
+/// A picture of one colour, which takes a few bytes, however large it is.
+std::string grey_webp(int width, int height) {
+  return test::webp(width, height,
+                    std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height), 77));
+}
+
+TEST(SogErrors, PromisesThatBytesCannotHold) {
+  const test::TempFolder folder;
+  const auto refuses_pictures = [&](int width, int height, std::size_t padding,
+                                    std::initializer_list<std::string> parts) {
+    const std::string picture = grey_webp(width, height) + std::string(padding, '\0');
+    const std::string zip = test::zipped({{"meta.json", meta_of(width * height)}, {"a.webp", picture}}, true);
+    test::write_text(folder / "m.sog", zip);
+    return test::fails_saying([&] { load_model(folder / "m.sog"); }, parts);
+  };
+  EXPECT_TRUE(refuses_pictures(4096, 4096, 0, {"m.sog: 16777216 Gaussians are promised"}));
+  // Padded with zeros, which take no room in an archive.
+  EXPECT_TRUE(refuses_pictures(2048, 1024, 100000, {"m.sog: 2097152 Gaussians are promised"}));
+  EXPECT_TRUE(refuses_pictures(2048, 1024, 3000000, {"m.sog: its file 'a.webp' promises 3000", "at most 2"}));
+}
+
+TEST(SogErrors, ManyFilesThatPromiseMuch) {
+  const test::TempFolder folder;
+  json levels = {{"lodLevels", 1}, {"filenames", json::array()}, {"tree", {{"children", json::array()}}}};
+  for (int i = 0; i < 2; ++i) {
+    const std::string name = std::to_string(i);
+    fs::create_directory(folder / name);
+    test::write_text(folder / name / "meta.json", meta_of(1024 * 600));
+    test::write_text(folder / name / "a.webp", grey_webp(1024, 600) + std::string(3000, '\0'));
+    levels["filenames"].push_back(name + "/meta.json");
+    const json lod = {{"file", i}, {"offset", 0}, {"count", 1024 * 600}};
+    levels["tree"]["children"].push_back(
+        {{"bound", {{"min", {0, 0, 0}}, {"max", {1, 1, 1}}}}, {"lods", {{"0", lod}}}});
+  }
+  test::write_text(folder / "lod-meta.json", levels.dump());
+  const std::initializer_list<std::string> parts = {"lod-meta.json: 1228800 Gaussians are wanted",
+                                                    "cannot hold them"};
+  EXPECT_EQ(load_model(folder / "0").count(), 614400u);
+  EXPECT_TRUE(test::fails_saying([&] { load_model(folder / "lod-meta.json"); }, parts));
+  StreamedSog followed(folder / "lod-meta.json");
+  followed.choose({}, {});
+  EXPECT_TRUE(test::fails_saying([&] { followed.read(); }, parts));
 }
 
 TEST(SogErrors, Archives) {

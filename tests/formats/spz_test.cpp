@@ -132,6 +132,34 @@ TEST(SpzErrors, Streams) {
   EXPECT_EQ(end, good.size());
 }
 
+/// Zeros as a zstd frame of a few bytes: blocks that repeat one byte.
+std::string zeros_in_zstd(std::uint32_t size) {
+  constexpr std::uint32_t most = 1u << 17, repeated = 1u << 1;
+  std::string frame = "\x28\xb5\x2f\xfd\xa0" + little(size);
+  for (std::uint32_t left = size; left > 0;) {
+    const std::uint32_t block = std::min(left, most);
+    left -= block;
+    frame += little(block << 3 | repeated | (left == 0 ? 1u : 0u)).substr(0, 3) + std::string(1, '\0');
+  }
+  return frame;
+}
+
+TEST(SpzErrors, GaussiansThatBytesCannotHold) {
+  // The rest of the file is there for the positions, which zstd packs without a bound.
+  const auto of_zeros = [](std::uint32_t count) {
+    std::string streams, table;
+    for (const std::uint32_t bytes : {9u, 1u, 3u, 3u, 4u}) {
+      const std::string frame = zeros_in_zstd(count * bytes);
+      table += little(std::uint64_t{frame.size()}) + little(std::uint64_t{count} * bytes);
+      streams += frame;
+    }
+    return "NGSP" + little(4u) + little(count) + std::string("\0\x0c\0\x05", 4) + little(32u) +
+           std::string(12, '\0') + table + streams + std::string(20000, '\0');
+  };
+  EXPECT_EQ(load(of_zeros(100000)).count(), 100000u);
+  EXPECT_TRUE(refuses(of_zeros(2000000), {"promises 2000000 Gaussians of degree 0, which 2"}));
+}
+
 TEST(SpzErrors, Extensions) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "spz/synthetic-v4-extensions.spz");

@@ -132,5 +132,17 @@ TEST(StreamedSog, SaysWhatItCannotOpen) {
                                  {"lod-meta.json", "none of its levels of detail is there"}));
 }
 
+TEST(StreamedSog, RoomIsMadeForWhatIsThere) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    meta["tree"]["children"][1]["children"][1]["lods"]["0"]["count"] = 4'000'000'000u;
+  });
+  StreamedSog scene(copy.path());
+  scene.choose(std::vector{at(beside_last)}, {0.0});
+  EXPECT_TRUE(test::fails_saying([&] { scene.read(); },
+                                 {"Gaussians 752 to 4000000751 of", "0_0/meta.json", "which has 1000"}));
+}
+
 }  // namespace
 }  // namespace binosplat

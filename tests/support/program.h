@@ -74,6 +74,7 @@ struct Outcome {
   int code = 0;
   std::string out;
   std::string err;
+  long peak_kib = 0;  // of memory
 };
 
 struct Surroundings {
@@ -96,9 +97,10 @@ class Program {
 
   Outcome wait() {
     int status = 0;
-    waitpid(pid_, &status, 0);
+    rusage usage{};
+    wait4(pid_, &status, 0, &usage);
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-    return {code, read_text(out()), read_text(err())};
+    return {code, read_text(out()), read_text(err()), usage.ru_maxrss};
   }
 
   /// What it has said so far.

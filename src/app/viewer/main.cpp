@@ -15,6 +15,7 @@
 #include "app/render_outputs.h"
 #include "app/shots.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 #include "preview/window.h"
 
 namespace binosplat::app {
@@ -155,5 +156,6 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::spare_full_disk();
+  binosplat::end_cleanly_on_cut_files();
   return binosplat::app::run(argc, argv);
 }
