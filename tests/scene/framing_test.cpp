@@ -109,6 +109,18 @@ TEST(Framing, NearSuitsSmallModels) {
   EXPECT_NEAR(near_for(ball({0, 0, 0}, 0.05f)), 0.005, 1e-4);
 }
 
+TEST(Framing, FarFromTheOriginThereIsRoomForACamera) {
+  for (const float far : {1e3f, 1e10f, 1e20f, 1e30f}) {
+    Model model;
+    add(model, {0.0f, far, -far}, 0.1f);
+    const Camera camera = frame_model(model, 160, 120, 50.0, {0, -1, 0});
+    EXPECT_GT(glm::length(camera.position - glm::dvec3(0.0, far, -far)), 1e-8 * static_cast<double>(far))
+        << far;
+    EXPECT_LT(glm::length(camera.position - glm::dvec3(0.0, far, -far)),
+              1.0 + 1e-6 * static_cast<double>(far));
+  }
+}
+
 TEST(Framing, OddModels) {
   EXPECT_THROW(frame_model(Model{}, 640, 360), Error);
   Model one;

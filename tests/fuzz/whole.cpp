@@ -1,0 +1,288 @@
+// fuzz_whole COUNT [SEED]: mutated files through the whole program, as users would meet them. Each must be
+// taken or refused with a clear error: no signal, no internal error, little time and memory, nothing
+// half-written; and what `convert` wrote must be read back with as many Gaussians. Seeds are the corpus
+// beside this, the models that `convert` writes, and with BINOSPLAT_FORMATS the files there. The same SEED
+// makes the same files.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cctype>
+#include <charconv>
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <random>
+#include <thread>
+
+#include "support/program.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using binosplat::test::Outcome;
+using binosplat::test::run_program;
+using binosplat::test::TempFolder;
+
+constexpr std::size_t seed_most = 300000;  // bytes
+constexpr double seconds_most = 20.0;      // a run, on a busy machine
+constexpr long kib_most = 400 * 1024;  // a run: what a million Gaussians take, which a small file may promise
+constexpr const char* written_as[] = {"ply", "compressed.ply", "splat", "spz", "sog"};
+
+struct Seed {
+  std::string kind;  // model, picture or cameras
+  std::string name;
+  std::string bytes;
+};
+
+// What became of the files of one ending.
+struct Tally {
+  int files = 0, taken = 0, converted = 0;
+  double seconds = 0.0;  // the most of a run
+  long kib = 0;
+};
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  std::size_t below(std::size_t end) { return end == 0 ? 0 : engine_() % end; }
+  template <typename T, std::size_t N>
+  T of(const T (&choices)[N]) {
+    return choices[below(N)];
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+std::string kind_of(const fs::path& path) {
+  const std::string ending = path.extension();
+  for (const char* model : {".ply", ".spz", ".splat", ".ksplat", ".glb", ".gltf", ".sog"})
+    if (ending == model) return "model";
+  for (const char* picture : {".png", ".jpg", ".exr"})
+    if (ending == picture) return "picture";
+  return ending == ".json" && path.string().find("camera") != std::string::npos ? "cameras" : "";
+}
+
+void add_seeds(const fs::path& folder, std::vector<Seed>& seeds) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.file_size() <= seed_most) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    const bool cameras = folder.filename() == "corpus" && file.parent_path().filename() == "json";
+    const std::string kind = cameras ? "cameras" : kind_of(file);
+    if (!kind.empty()) seeds.push_back({kind, file.filename(), binosplat::test::read_text(file)});
+  }
+}
+
+void replace_number(std::string& bytes, Random& random) {
+  const std::size_t from = random.below(bytes.size());
+  const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  const auto begin = std::find_if(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(), digit);
+  const auto end = std::find_if_not(begin, bytes.end(), digit);
+  const char* numbers[] = {"0",   "-1",     "1e39", "-1e400", "4294967296", "99999999999999999999",
+                           "nan", "1e-320", ""};
+  bytes.replace(begin, end, random.of(numbers));
+}
+
+std::string mutated(std::string bytes, const std::vector<Seed>& seeds, Random& random) {
+  const float floats[] = {0.0f, -0.0f, 1e38f, -1e38f, 1e-40f, INFINITY, NAN, 1e6f, -700.0f, 88.0f};
+  const std::uint32_t words[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x10000, 1000000};
+  // Most changes are of values, behind the header, so that files are taken; the others may be of anything.
+  const bool gentle = random.below(10) < 6;
+  for (std::size_t n = 1 + random.below(gentle ? 3 : 6); n > 0 && !bytes.empty(); --n) {
+    const std::size_t header = gentle ? bytes.size() - bytes.size() / 4 : 0;
+    const std::size_t at = header + random.below(bytes.size() - header);
+    const std::size_t length = 1 + random.below(std::min<std::size_t>(64, bytes.size() - at));
+    const auto put = [&](auto number) {
+      for (std::size_t k = 0; k < sizeof(number) && at + k < bytes.size(); ++k)
+        bytes[at + k] = reinterpret_cast<const char*>(&number)[k];
+    };
+    switch (random.below(gentle ? 4 : 9)) {
+      case 0:
+        bytes[at] = static_cast<char>(bytes[at] ^ 1 << random.below(8));
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(random.below(256));
+        break;
+      case 2:
+        put(random.of(floats));
+        break;
+      case 3:
+        put(random.of(words));
+        break;
+      case 4:
+        bytes.resize(at);
+        break;
+      case 5:
+        bytes.erase(at, length);
+        break;
+      case 6:
+        bytes.insert(random.below(bytes.size()), bytes.substr(at, length));
+        break;
+      case 7:
+        replace_number(bytes, random);
+        break;
+      default: {
+        const std::string& other = seeds[random.below(seeds.size())].bytes;
+        bytes.replace(at, length, other.substr(random.below(other.size()), length));
+      }
+    }
+  }
+  return bytes;
+}
+
+class Campaign {
+ public:
+  Campaign(std::uint64_t seed, fs::path findings) : seed_(seed), findings_(std::move(findings)) {
+    const TempFolder made;
+    for (const char* ending : written_as) {
+      const std::string file = made / (std::string("room.") + ending);
+      if (run_program({"convert", BINOSPLAT_SOURCE_DIR "/tests/fuzz/corpus/ply/degree_3.ply", "-o", file})
+                  .code == 0 ||
+          run_program({"convert", BINOSPLAT_SOURCE_DIR "/tests/fuzz/corpus/ply/ascii.ply", "-o", file})
+                  .code == 0)
+        seeds_.push_back({"model", fs::path(file).filename(), binosplat::test::read_text(file)});
+    }
+    add_seeds(BINOSPLAT_SOURCE_DIR "/tests/fuzz/corpus", seeds_);
+    if (const char* formats = std::getenv("BINOSPLAT_FORMATS")) add_seeds(formats, seeds_);
+  }
+
+  std::size_t seeds() const { return seeds_.size(); }
+
+  // File number n, whichever thread takes it.
+  void try_file(int n) {
+    Random random(seed_ * 1000003 + static_cast<std::uint64_t>(n));
+    const Seed& seed = seeds_[static_cast<std::size_t>(n) % seeds_.size()];
+    const TempFolder folder;
+    const fs::path file = folder / seed.name;
+    const std::string bytes = mutated(seed.bytes, seeds_, random);
+    binosplat::test::write_text(file, bytes);
+    Tally tally{.files = 1};
+    std::string problem;
+    if (seed.kind == "model") {
+      problem = try_model(file, folder, random.of(written_as), tally);
+    } else if (seed.kind == "picture") {
+      Outcome outcome;
+      problem = run({"compare", file, file}, {0, 1, 2, 4}, tally, outcome);
+      tally.taken = outcome.code < 2 ? 1 : 0;
+    } else {
+      Outcome outcome;
+      const std::string model = BINOSPLAT_SOURCE_DIR "/tests/fuzz/corpus/ply/ascii.ply";
+      problem = run({"render", model, "--cameras", file, "--mono", "--size", "16x12", "-o", folder / "out"},
+                    {0, 2, 4}, tally, outcome);
+      tally.taken = outcome.code == 0 ? 1 : 0;
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Tally& all = tallies_[fs::path(seed.name).extension()];
+    all.files += tally.files;
+    all.taken += tally.taken;
+    all.converted += tally.converted;
+    all.seconds = std::max(all.seconds, tally.seconds);
+    all.kib = std::max(all.kib, tally.kib);
+    if (problem.empty()) return;
+    fs::create_directories(findings_);
+    const fs::path kept = findings_ / fmt::format("whole-{}-{}-{}", seed_, n, seed.name);
+    binosplat::test::write_text(kept, bytes);
+    fmt::print("{}: {}\n", kept.string(), problem);
+    std::fflush(stdout);
+    ++found_;
+  }
+
+  int report() const {
+    fmt::print("{:<10}{:>8}{:>8}{:>11}{:>11}{:>9}\n", "ending", "files", "taken", "converted", "most s",
+               "most MB");
+    for (const auto& [ending, tally] : tallies_)
+      fmt::print("{:<10}{:>8}{:>8}{:>11}{:>11.2f}{:>9}\n", ending, tally.files, tally.taken, tally.converted,
+                 tally.seconds, tally.kib / 1024);
+    fmt::print("{} findings\n", found_);
+    return found_ == 0 ? 0 : 1;
+  }
+
+ private:
+  // What is wrong with how a run ended; empty: nothing.
+  static std::string run(const std::vector<std::string>& arguments, std::initializer_list<int> codes,
+                         Tally& tally, Outcome& outcome) {
+    const auto start = std::chrono::steady_clock::now();
+    outcome = run_program(arguments);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    tally.seconds = std::max(tally.seconds, seconds);
+    tally.kib = std::max(tally.kib, outcome.peak_kib);
+    const auto odd = [](unsigned char c) {
+      return std::iscntrl(c) != 0 && c != '\n' && c != '\r' && c != '\t';
+    };
+    const std::string said = outcome.out + outcome.err;
+    if (std::find(codes.begin(), codes.end(), outcome.code) == codes.end())
+      return fmt::format("{} ended with {}: {}", arguments[0], outcome.code, outcome.err);
+    if (outcome.err.find("internal error") != std::string::npos) return arguments[0] + ": " + outcome.err;
+    if (outcome.code >= 2 && outcome.err.empty()) return arguments[0] + " failed and said nothing";
+    if (std::any_of(said.begin(), said.end(), odd)) return arguments[0] + " printed control characters";
+    if (seconds > seconds_most) return fmt::format("{} took {:.1f} s", arguments[0], seconds);
+    if (outcome.peak_kib > kib_most)
+      return fmt::format("{} took {} MB", arguments[0], outcome.peak_kib / 1024);
+    return "";
+  }
+
+  static long gaussians(const Outcome& info) {
+    const std::string label = "Gaussians";
+    std::size_t at = info.out.find(label);
+    if (at == std::string::npos) return -1;
+    at = info.out.find_first_not_of(' ', at + label.size());
+    long count = -1;
+    std::from_chars(info.out.data() + at, info.out.data() + info.out.size(), count);
+    return count;
+  }
+
+  static std::string try_model(const fs::path& file, const TempFolder& folder, const std::string& ending,
+                               Tally& tally) {
+    Outcome info, convert, back;
+    std::string problem = run({"info", file}, {0, 2, 4}, tally, info);
+    if (!problem.empty() || info.code != 0) return problem;
+    tally.taken = 1;
+    const std::string written = folder / ("written." + ending);
+    problem = run({"convert", file, "-o", written}, {0, 2, 4}, tally, convert);
+    if (!problem.empty()) return problem;
+    for (const std::string& name : folder.files())
+      if (name.find(".part-") != std::string::npos) return "left behind: " + name;
+    if (convert.code != 0) return fs::exists(written) ? "convert failed and left " + written : "";
+    tally.converted = 1;
+    problem = run({"info", written}, {0}, tally, back);
+    if (!problem.empty()) return problem + " of what convert wrote";
+    if (gaussians(info) < 1 || gaussians(back) != gaussians(info))
+      return fmt::format("{} Gaussians were written as {}, {} read back", gaussians(info), ending,
+                         gaussians(back));
+    return "";
+  }
+
+  std::uint64_t seed_;
+  fs::path findings_;
+  std::vector<Seed> seeds_;
+  std::mutex mutex_;
+  std::map<std::string, Tally> tallies_;
+  int found_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 0;
+  if (count < 1) {
+    fmt::print(stderr, "fuzz_whole COUNT [SEED]\n");
+    return 2;
+  }
+  const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
+  Campaign campaign(seed, fs::path(BINOSPLAT_SOURCE_DIR) / "build/fuzz/findings");
+  fmt::print("{} files of {} seeds, seed {}\n", count, campaign.seeds(), seed);
+  std::fflush(stdout);
+  std::atomic<int> next = 0;
+  std::vector<std::thread> threads;
+  for (unsigned k = 0; k < std::max(1u, std::thread::hardware_concurrency()); ++k)
+    threads.emplace_back([&] {
+      for (int n = next++; n < count; n = next++) campaign.try_file(n);
+    });
+  for (std::thread& thread : threads) thread.join();
+  return campaign.report();
+}
