@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
+#include "formats/plausible.h"
 
 namespace binosplat::app {
 
@@ -19,6 +20,7 @@ namespace {
 // Options that name outputs, and older results, which may give way to new ones.
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare", "--merge"};
 
+constexpr double gaussian_bytes = 400.0;         // in memory, while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes: more than shaders take
 
 void note(const std::string& value) {
@@ -65,6 +67,17 @@ void spare_full_disk() {
   setenv("MESA_GLSL_CACHE_DISABLE", "1", 0);
   setenv("__GL_SHADER_DISK_CACHE", "0", 0);
   log_warning("{}: the disk is full; drivers keep no shaders there in this run", folder.string());
+}
+
+void add_max_memory(CLI::App& sub) {
+  sub.add_option_function<double>(
+         "--max-memory",
+         [](double megabytes) {
+           gaussians_allowed = static_cast<std::uint64_t>(1e6 * megabytes / gaussian_bytes);
+         },
+         "Believe a file that is small that its model takes so much memory")
+      ->check(CLI::Range(1.0, 1e9).description(""))
+      ->type_name("MB");
 }
 
 void note_inputs(const CLI::App& program) {

@@ -12,6 +12,10 @@ void check_arguments(int argc, const char* const* argv);
 /// mapped files, and SIGBUS would end the program. Says so. Call it before any context is made.
 void spare_full_disk();
 
+/// --max-memory for a sub-command that reads a model: how much of it is believed of a file that is small
+/// (formats/plausible.h).
+void add_max_memory(CLI::App& sub);
+
 /// Notes the files that a parsed command line names to be read (base/inputs.h): all but its outputs.
 void note_inputs(const CLI::App& program);
 

@@ -47,6 +47,10 @@ int run(int argc, char** argv) {
   binosplat::app::add_study(program, command);
   binosplat::app::add_bench(program, command);
   binosplat::app::add_calibrate(program, command);
+  for (CLI::App* sub : program.get_subcommands({})) {
+    const std::string name = sub->get_name();
+    if (name != "compare" && name != "devices" && name != "view") binosplat::app::add_max_memory(*sub);
+  }
   try {
     binosplat::app::check_arguments(argc, argv);
     program.parse(argc, argv);

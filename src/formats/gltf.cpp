@@ -210,8 +210,8 @@ class GltfReader {
     // Nodes may share a mesh, and meshes their numbers: a few bytes each, however many Gaussians they add.
     if (count > most_gaussians_in(document_.size())) {
       node.fail_here(
-          "its mesh makes that {} Gaussians of a file of {} bytes, by showing the same ones many times",
-          count, document_.size());
+          "its mesh makes that {} Gaussians of a file of {} bytes, by showing the same ones many times{}",
+          count, document_.size(), more_may_be_allowed);
     }
   }
 

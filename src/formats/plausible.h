@@ -1,13 +1,23 @@
 #pragma once
 // What a file may unpack to, asked before memory is taken for it: a kilobyte of zeros unpacks to gigabytes.
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
 
 namespace binosplat {
 
+/// Gaussians that are taken of any file, whatever its size: who trusts a file says so (--max-memory).
+inline std::atomic<std::uint64_t> gaussians_allowed{0};
+
 /// The most Gaussians in a file of so many bytes as they lie on the disk: one a byte, while real models take
 /// three and more however they are packed, and a million that need no reason, as made-up ones of equal values
 /// need them.
-constexpr std::uint64_t most_gaussians_in(std::uint64_t bytes) { return bytes + (std::uint64_t{1} << 20); }
+inline std::uint64_t most_gaussians_in(std::uint64_t bytes) {
+  return std::max(bytes + (std::uint64_t{1} << 20), gaussians_allowed.load());
+}
+
+/// How an error says so.
+constexpr const char* more_may_be_allowed = "; if it is right, --max-memory MB allows more";
 
 }  // namespace binosplat

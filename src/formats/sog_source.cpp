@@ -92,8 +92,8 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   bytes_ = low.size();
   const WebpSize size = webp_size(named(files_[means_l]), low);
   if (size.texels() < count_ || count_ / 256 > bytes_ || count_ > most_gaussians_in(bytes_)) {
-    fail("{}: {} Gaussians are promised, but {} has {} x {} texels in {} bytes", source_, count_,
-         files_[means_l], size.width, size.height, low.size());
+    fail("{}: {} Gaussians are promised, but {} has {} x {} texels in {} bytes{}", source_, count_,
+         files_[means_l], size.width, size.height, low.size(), more_may_be_allowed);
   }
 }
 

@@ -68,8 +68,8 @@ std::size_t attribute_bytes(const std::string& source, const SpzContents& conten
   if (contents.count > most_gaussians_in(packed) || contents.count * least / most_growth > packed) {
     fail(
         "{} is damaged or cut short: its header promises {} Gaussians of degree {}, which {} bytes cannot "
-        "hold",
-        source, contents.count, contents.degree, packed);
+        "hold{}",
+        source, contents.count, contents.degree, packed, more_may_be_allowed);
   }
   return contents.count * spz_sizes(contents.version, contents.degree).sum();
 }

@@ -48,8 +48,8 @@ void check_taken(const fs::path& lod_meta, const fs::path& file, const SogSource
 /// Each file may have its million without a reason, but not a thousand files.
 void check_total(const fs::path& lod_meta, std::size_t total, std::uint64_t bytes) {
   if (total <= most_gaussians_in(bytes)) return;
-  fail("{}: {} Gaussians are wanted of files whose positions take {} bytes, which cannot hold them",
-       lod_meta.string(), total, bytes);
+  fail("{}: {} Gaussians are wanted of files whose positions take {} bytes, which cannot hold them{}",
+       lod_meta.string(), total, bytes, more_may_be_allowed);
 }
 
 /// The finest level that is there, or the one that was asked for.

@@ -5,6 +5,7 @@
 
 #include "formats/gzip.h"
 #include "formats/model_file.h"
+#include "formats/plausible.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 
@@ -157,7 +158,12 @@ TEST(SpzErrors, GaussiansThatBytesCannotHold) {
            std::string(12, '\0') + table + streams + std::string(20000, '\0');
   };
   EXPECT_EQ(load(of_zeros(100000)).count(), 100000u);
-  EXPECT_TRUE(refuses(of_zeros(2000000), {"promises 2000000 Gaussians of degree 0, which 2"}));
+  EXPECT_TRUE(
+      refuses(of_zeros(2000000), {"promises 2000000 Gaussians of degree 0, which 2", "--max-memory"}));
+  gaussians_allowed = 2000000;
+  EXPECT_EQ(load(of_zeros(2000000)).count(), 2000000u);
+  EXPECT_TRUE(refuses(of_zeros(2100000), {"promises 2100000 Gaussians"}));
+  gaussians_allowed = 0;
 }
 
 TEST(SpzErrors, Extensions) {

@@ -131,6 +131,7 @@ int run(int argc, char** argv) {
   const auto options = std::make_shared<RenderOptions>();
   try {
     add_view_options(program, *options);
+    add_max_memory(program);
     check_arguments(argc, argv);
     program.parse(argc, argv);
     note_inputs(program);
