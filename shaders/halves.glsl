@@ -7,8 +7,9 @@
 
 vec4 unpack_rotation(uvec2 bits) {
   uvec3 steps = uvec3(bits.x, bits.x >> 20 | bits.y << 12, bits.y >> 8) & 0xFFFFFu;
-  vec3 q = (vec3(steps) - 524288.0) / ROTATION_STEPS;
-  float largest = sqrt(max(0.0, 1.0 - dot(q, q)));
+  precise vec3 q = (vec3(steps) - 524288.0) / ROTATION_STEPS;
+  precise float rest = 1.0 - fma(q.x, q.x, fma(q.y, q.y, q.z * q.z));
+  precise float largest = sqrt(max(0.0, rest));
   switch (bits.y >> 28) {
     case 0u: return vec4(largest, q);
     case 1u: return vec4(q.x, largest, q.yz);
@@ -22,7 +23,7 @@ uvec2 packed_rotation(vec4 q) {
   float most = max(max(size.x, size.y), max(size.z, size.w));
   uint largest = size.x == most ? 0u : size.y == most ? 1u : size.z == most ? 2u : 3u;
   vec3 others = largest == 0u ? q.yzw : largest == 1u ? q.xzw : largest == 2u ? q.xyw : q.xyz;
-  uvec3 steps = uvec3(round(others * (q[largest] < 0.0 ? -ROTATION_STEPS : ROTATION_STEPS)) + 524288.0);
+  uvec3 steps = uvec3(clamp(round(others * (q[largest] < 0.0 ? -ROTATION_STEPS : ROTATION_STEPS)) + 524288.0, 0.0, 1048575.0));
   return uvec2(steps.x | steps.y << 20, steps.y >> 12 | steps.z << 8 | largest << 28);
 }
 

@@ -39,8 +39,8 @@ void axes_on_picture(View view, vec3 v, mat3 axes, out vec3 across, out vec3 dow
 
 // (Q.xx, Q.xy, Q.yy, sqrt(det C2)), and the share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P
 // being C2 without it (Mip-Splatting, Yu 2024). With s the low-pass, det P = |across x down|^2 and
-// det C2 = det P + s (|across|^2 + |down|^2) + s^2: all are positive, so that nothing cancels however long and thin it is, as it
-// would in xx yy - xy^2. What is not drawn is told by w = 0.
+// det C2 = det P + s (|across|^2 + |down|^2) + s^2: all are positive, so that what is long and thin keeps
+// its width, which xx yy - xy^2 would lose. What is not drawn is told by w = 0.
 vec4 conic_of(vec3 across, vec3 down, out float kept) {
   const float s = float(KERNEL_PX2);
   precise float xx = dot_precise(across, across) + s;

@@ -44,7 +44,7 @@ ordered_json scene_json(const BenchScene& scene) {
   if (!scene.list.cameras.empty()) json["poses"] = content_key(scene.list.cameras);
   if (scene.options.near_plane) json["near"] = *scene.options.near_plane;
   json["photos"] = !scene.options.photos.empty();
-  if (!scene.options.photos.empty()) json["photos_content"] = content_key(fs::path(scene.options.photos));
+  if (!scene.options.photos.empty()) json["photos_content"] = pictures_key(scene.options.photos);
   return json;
 }
 

@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Options that name outputs, and older results, which may give way to new ones.
-constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare", "--merge"};
+// Options that name outputs, older results, which may give way to new ones, and views.
+constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
+                                     "--merge",  "--view", "--test"};
 
 constexpr double gaussian_bytes = 400.0;         // in memory, while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes: more than shaders take
@@ -75,7 +76,8 @@ void add_max_memory(CLI::App& sub) {
          [](double megabytes) {
            gaussians_allowed = static_cast<std::uint64_t>(1e6 * megabytes / gaussian_bytes);
          },
-         "Believe a file that is small that its model takes so much memory")
+         "Believe a small file that its model takes so much memory (0.4 GB,\nor more where the file is "
+         "larger)")
       ->check(CLI::Range(1.0, 1e9).description(""))
       ->type_name("MB");
 }

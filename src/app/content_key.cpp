@@ -9,6 +9,7 @@
 #include <new>
 #include <vector>
 
+#include "base/error.h"
 #include "base/mapped_file.h"
 
 namespace binosplat::app {
@@ -33,28 +34,61 @@ class Hash {
   std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
 };
 
-}  // namespace
+// Not what programs leave beside models.
+bool is_of_a_model(const fs::path& file) {
+  const std::string name = file.filename();
+  if (name == "meta.json" || name == "lod-meta.json") return true;
+  for (const char* ending :
+       {".ply", ".webp", ".pt", ".sog", ".spz", ".splat", ".ksplat", ".glb", ".gltf", ".bin"})
+    if (file.extension() == ending) return true;
+  return false;
+}
 
-std::string content_key(const fs::path& path) {
-  std::vector<fs::path> files;
-  if (fs::is_directory(path)) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
-      if (entry.is_regular_file()) files.push_back(entry.path());
-    }
-  } else {
-    files.push_back(path);
-    for (const fs::directory_entry& entry : fs::directory_iterator(fs::absolute(path).parent_path())) {
-      if (entry.path().extension() == ".pt") files.push_back(entry.path());
-    }
-  }
+std::string key_of(const fs::path& folder, std::vector<fs::path> files) {
   std::sort(files.begin(), files.end());
   Hash hash;
   for (const fs::path& name : files) {
-    if (name != path) hash.add(name.lexically_relative(path).string());
+    hash.add(name.lexically_relative(folder).string());
     const MappedFile file(name);
     hash.add(file.bytes().data(), file.bytes().size());
   }
   return hash.key();
+}
+
+}  // namespace
+
+std::string content_key(const fs::path& path) {
+  std::error_code error;
+  const fs::path whole = fs::absolute(path, error);
+  const bool is_folder = fs::is_directory(whole, error);
+  const bool names_others = whole.extension() == ".json" || whole.extension() == ".gltf";
+  const fs::path folder = is_folder ? whole : whole.parent_path();
+  std::vector<fs::path> files;
+  if (!is_folder) files.push_back(whole);
+  const auto add = [&](const fs::directory_entry& entry, const auto& belongs) {
+    std::error_code ignored;
+    if (entry.path() != whole && entry.is_regular_file(ignored) && belongs(entry.path()))
+      files.push_back(entry.path());
+  };
+  if (is_folder || names_others) {
+    for (auto at = fs::recursive_directory_iterator(folder, error); !error && at != end(at);
+         at.increment(error))
+      add(*at, is_of_a_model);
+  } else {
+    for (auto at = fs::directory_iterator(folder, error); !error && at != end(at); at.increment(error))
+      add(*at, [](const fs::path& file) { return file.extension() == ".pt"; });
+  }
+  if (error) fail("{}: {}", folder.string(), error.message());
+  return key_of(folder, files);
+}
+
+std::string pictures_key(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (auto at = fs::directory_iterator(folder, error); !error && at != end(at); at.increment(error))
+    if (at->is_regular_file()) files.push_back(at->path());
+  if (error) fail("{}: {}", folder.string(), error.message());
+  return key_of(folder, files);
 }
 
 std::string content_key(std::span<const Camera> cameras) {

@@ -9,10 +9,13 @@
 
 namespace binosplat::app {
 
-/// 32 hexadecimal digits (XXH3) that change with any byte of what is read of `path`: a file, with the
-/// networks (*.pt) beside a Scaffold-GS model's, or a folder, with the names of all files in it. Throws Error
-/// for one that cannot be read.
+/// 32 hexadecimal digits (XXH3) that change with any byte of a model: of its file and the networks (*.pt)
+/// beside it, or, where it is a folder or a JSON file that names others, of all files of models in its
+/// folder. Throws Error for what cannot be read.
 std::string content_key(const std::filesystem::path& path);
+
+/// The same of all files in a folder of photos.
+std::string pictures_key(const std::filesystem::path& folder);
 
 /// The same of cameras: poses, lenses, sizes and names.
 std::string content_key(std::span<const Camera> cameras);

@@ -39,6 +39,7 @@ std::vector<std::string> write_model_file(const std::string& output, const Model
   {
     const Unfinished unfinished(file.path());
     losses = write_model(file, model, format, harmonic_bits);
+    read_back(file, model, format);
   }
   const Uninterrupted hold;
   file.commit();

@@ -20,8 +20,8 @@ std::filesystem::path model_file(const std::string& scene);
 /// Throws Error for a Scaffold-GS model, which no file of Gaussians can hold.
 void refuse_scaffold(const Model& model, const std::string& scene);
 
-/// Writes a model in the axes of the format (write_model); a signal leaves nothing half-written. Returns what
-/// the format could not keep.
+/// Writes a model in the axes of the format (write_model), and reads it back; a signal leaves nothing
+/// half-written. Returns what the format could not keep.
 std::vector<std::string> write_model_file(const std::string& output, const Model& model, ModelFormat format,
                                           int harmonic_bits);
 

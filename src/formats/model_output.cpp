@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <new>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "formats/model_file.h"
 #include "formats/model_writers.h"
 
@@ -27,7 +29,8 @@ Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmo
   return write_spz(file, model, harmonic_bits);
 }
 
-// That what was written can be read, all of it: numbers that a format has no room for show here.
+}  // namespace
+
 void read_back(OutputFile& file, const Model& model, ModelFormat format) {
   const char* name = model_format_names[static_cast<int>(format)];
   file.flush();
@@ -45,8 +48,6 @@ void read_back(OutputFile& file, const Model& model, ModelFormat format) {
          name, model.count(), count);
   }
 }
-
-}  // namespace
 
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   std::string name = path.filename().string();
@@ -90,7 +91,6 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
          model_format_names[static_cast<int>(format)], axes_of(format));
   }
   Losses losses = write(file, model, format, harmonic_bits);
-  read_back(file, model, format);
   const bool kernel_kept =
       model.kernel_px2 == KERNEL_PX2 || (format == ModelFormat::ply && is_mip_splatting(model));
   if (!kernel_kept) {

@@ -40,10 +40,14 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 ///  - SOG: version 2 as an archive (formats/sog.h), in Morton order; harmonics of degrees 1 to 3 from a
 ///  palette
 ///    of 65,536 at most (formats/codebook.h).
-/// What was written is read back before it is said to be done, which takes the model's memory once more.
 /// Progress is shown where it takes long. Throws Error where the disk is full, for a model that the format
 /// cannot hold at all, and for a Scaffold-GS model, whose Gaussians no file has.
 std::vector<std::string> write_model(OutputFile& file, const Model& model, ModelFormat format,
                                      int harmonic_bits = 8);
+
+/// Reads back what write_model() wrote of `model`, before it is committed: numbers that a format has no room
+/// for show here. Throws Error where the file cannot be read or has another count; takes the model's memory
+/// once more, and only warns where that is not there.
+void read_back(OutputFile& file, const Model& model, ModelFormat format);
 
 }  // namespace binosplat

@@ -24,7 +24,9 @@ std::array<std::uint32_t, 2> pack_rotation(const glm::vec4& q) {
   std::array<std::uint32_t, 3> steps{};
   auto step = steps.begin();
   for (int k = 0; k < 4; ++k) {
-    if (k != largest) *step++ = static_cast<std::uint32_t>(std::round(q[k] * steps_to_one) + 524288.0f);
+    if (k != largest)
+      *step++ = static_cast<std::uint32_t>(
+          std::clamp(std::round(q[k] * steps_to_one) + 524288.0f, 0.0f, 1048575.0f));
   }
   return {steps[0] | steps[1] << 20,
           steps[1] >> 12 | steps[2] << 8 | static_cast<std::uint32_t>(largest) << 28};

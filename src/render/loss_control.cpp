@@ -49,7 +49,7 @@ bool same_rule(const FrameSettings& a, const FrameSettings& b) {
 
 void LossControl::forget() {
   for (Estimate& view : views_) view.weight = 0.0;
-  fresh_ = cut_ = true;
+  fresh_ = cut_ = holds_ = true;
 }
 
 bool LossControl::knows(const FrameSettings& settings) const {
@@ -71,6 +71,7 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
     views_.assign(views.size(), {});
     fresh_ = cut_ = true;
   }
+  if (!same_rule(settings, settings_)) forget();
   const auto count = static_cast<std::uint32_t>(views.size());
   if (holds_) found_ = 0;
   probe_ = {.view = static_cast<std::uint32_t>(next_ + found_) % count};
@@ -150,7 +151,8 @@ void LossControl::take(const Probed& probed) {
   const bool follows = view.weight > 0.0 && expected > 0.0;
   view.weight *= fresh_ || whole ? 0.0 : fading;
   if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
-  view.error = (view.weight * expected + probe_tiles_ * error) / (view.weight + probe_tiles_);
+  const double together = view.weight + probe_tiles_;
+  view.error = view.weight > 0.0 ? (view.weight * expected + probe_tiles_ * error) / together : error;
   // What changes in one view changes in the others, mostly; what another loss changes, always.
   if (follows && view.error > 0.0) {
     const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);

@@ -144,6 +144,7 @@ TEST(ModelOutput, WhatCannotBeReadBackIsNotWritten) {
     OutputFile file(folder / "huge.splat");
     try {
       write_model(file, model, ModelFormat::splat);
+      read_back(file, model, ModelFormat::splat);
       ADD_FAILURE() << "written";
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find("splat cannot hold it; what was written cannot be read back"),

@@ -94,7 +94,7 @@ std::string mutated(std::string bytes, const std::vector<Seed>& seeds, Random& r
   // Most changes are of values, behind the header, so that files are taken; the others may be of anything.
   const bool gentle = random.below(10) < 6;
   for (std::size_t n = 1 + random.below(gentle ? 3 : 6); n > 0 && !bytes.empty(); --n) {
-    const std::size_t header = gentle ? bytes.size() - bytes.size() / 4 : 0;
+    const std::size_t header = gentle ? std::min(bytes.size() - bytes.size() / 4, bytes.size() - 1) : 0;
     const std::size_t at = header + random.below(bytes.size() - header);
     const std::size_t length = 1 + random.below(std::min<std::size_t>(64, bytes.size() - at));
     const auto put = [&](auto number) {
@@ -231,6 +231,7 @@ class Campaign {
     std::size_t at = info.out.find(label);
     if (at == std::string::npos) return -1;
     at = info.out.find_first_not_of(' ', at + label.size());
+    if (at == std::string::npos) return -1;
     long count = -1;
     std::from_chars(info.out.data() + at, info.out.data() + info.out.size(), count);
     return count;
