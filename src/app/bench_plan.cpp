@@ -135,9 +135,7 @@ BenchFolder::BenchFolder(fs::path folder, const ordered_json& plan)
   if (load_json(file) != plan) {
     fail(
         "{} holds the points of another run: other scenes, cameras or photos (by content), axes or another "
-        "version (see "
-        "plan.json). "
-        "Name another folder with -o, or remove it",
+        "version (see plan.json). Name another folder with -o, or remove it",
         folder_.string());
   }
 }

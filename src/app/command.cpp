@@ -65,12 +65,17 @@ Unfinished::~Unfinished() {
   unfinished().clear();
 }
 
+fs::path folder_there(fs::path folder) {
+  std::error_code ignored;
+  while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
+}
+
 void check_output(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) fail("cannot write {}: it is a folder", path.string());
   check_no_input(path);
-  fs::path folder = fs::absolute(path).parent_path();
-  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  const fs::path folder = folder_there(fs::absolute(path).parent_path());
   if (!fs::is_directory(folder, error)) {
     fail("cannot write {}: {} is a file where a folder is needed", path.string(), folder.string());
   }

@@ -50,6 +50,9 @@ class Unfinished {
   Unfinished& operator=(const Unfinished&) = delete;
 };
 
+/// The folder itself, or the nearest above it that there is.
+std::filesystem::path folder_there(std::filesystem::path folder);
+
 /// Throws Error if `path` cannot become an output: a file stands where a folder is needed, no permission, or
 /// it is a folder itself, or a file that this run reads (base/inputs.h). Leaves no trace; call it before long
 /// work.

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <string>
 
+#include "app/command.h"
 #include "app/model_files.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "formats/plausible.h"
+#include "gl/program_cache.h"
 
 namespace binosplat::app {
 
@@ -53,14 +55,8 @@ void check_arguments(int argc, const char* const* argv) {
 }
 
 void spare_full_disk() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  fs::path folder = cache != nullptr && *cache != '\0' ? cache
-                    : home != nullptr                  ? fs::path(home) / ".cache"
-                                                       : "";
+  const fs::path folder = folder_there(gl::ProgramCache::default_folder());
   std::error_code error;
-  while (!folder.empty() && !fs::exists(folder, error) && folder.has_relative_path())
-    folder = folder.parent_path();
   const fs::space_info space = fs::space(folder, error);
   if (folder.empty() || error || space.available >= cache_room) return;
   // Mesa's, under its names of different years, and NVIDIA's.

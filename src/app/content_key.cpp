@@ -44,6 +44,22 @@ bool is_of_a_model(const fs::path& file) {
   return false;
 }
 
+bool is_of_networks(const fs::path& file) { return file.extension() == ".pt"; }
+
+bool is_any(const fs::path&) { return true; }
+
+/// The files of a folder that belong, and with a recursive iterator of those in it.
+template <typename Iterator>
+std::vector<fs::path> files_in(const fs::path& folder, bool (*belongs)(const fs::path& file)) {
+  std::error_code error, ignored;
+  std::vector<fs::path> files;
+  for (auto at = Iterator(folder, error); !error && at != end(at); at.increment(error)) {
+    if (at->is_regular_file(ignored) && belongs(at->path())) files.push_back(at->path());
+  }
+  if (error) fail("{}: {}", folder.string(), error.message());
+  return files;
+}
+
 std::string key_of(const fs::path& folder, std::vector<fs::path> files) {
   std::sort(files.begin(), files.end());
   Hash hash;
@@ -58,37 +74,21 @@ std::string key_of(const fs::path& folder, std::vector<fs::path> files) {
 }  // namespace
 
 std::string content_key(const fs::path& path) {
-  std::error_code error;
-  const fs::path whole = fs::absolute(path, error);
-  const bool is_folder = fs::is_directory(whole, error);
+  std::error_code ignored;
+  const fs::path whole = fs::absolute(path, ignored);
+  if (fs::is_directory(whole, ignored))
+    return key_of(whole, files_in<fs::recursive_directory_iterator>(whole, is_of_a_model));
+  const fs::path folder = whole.parent_path();
   const bool names_others = whole.extension() == ".json" || whole.extension() == ".gltf";
-  const fs::path folder = is_folder ? whole : whole.parent_path();
-  std::vector<fs::path> files;
-  if (!is_folder) files.push_back(whole);
-  const auto add = [&](const fs::directory_entry& entry, const auto& belongs) {
-    std::error_code ignored;
-    if (entry.path() != whole && entry.is_regular_file(ignored) && belongs(entry.path()))
-      files.push_back(entry.path());
-  };
-  if (is_folder || names_others) {
-    for (auto at = fs::recursive_directory_iterator(folder, error); !error && at != end(at);
-         at.increment(error))
-      add(*at, is_of_a_model);
-  } else {
-    for (auto at = fs::directory_iterator(folder, error); !error && at != end(at); at.increment(error))
-      add(*at, [](const fs::path& file) { return file.extension() == ".pt"; });
-  }
-  if (error) fail("{}: {}", folder.string(), error.message());
+  std::vector<fs::path> files = names_others
+                                    ? files_in<fs::recursive_directory_iterator>(folder, is_of_a_model)
+                                    : files_in<fs::directory_iterator>(folder, is_of_networks);
+  if (std::find(files.begin(), files.end(), whole) == files.end()) files.push_back(whole);
   return key_of(folder, files);
 }
 
 std::string pictures_key(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (auto at = fs::directory_iterator(folder, error); !error && at != end(at); at.increment(error))
-    if (at->is_regular_file()) files.push_back(at->path());
-  if (error) fail("{}: {}", folder.string(), error.message());
-  return key_of(folder, files);
+  return key_of(folder, files_in<fs::directory_iterator>(folder, is_any));
 }
 
 std::string content_key(std::span<const Camera> cameras) {

@@ -83,7 +83,7 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
   do {
     const Probe probe = loss_control_.next_probe(views, chosen);
     shape_ = make_shape(views, chosen, model_, probe);
-    shape_.settings.loss = loss_control_.next_loss(chosen);
+    shape_.settings.loss = loss_control_.next_loss();
     add(attempt(), report);
   } while (!loss_control_.holds());
   report.quality = loss_control_.quality();

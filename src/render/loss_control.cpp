@@ -58,12 +58,12 @@ bool LossControl::knows(const FrameSettings& settings) const {
   return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_);
 }
 
-void LossControl::begin(const FrameSettings& settings) {
+void LossControl::begin(const FrameSettings& settings, double focal) {
   forget();
   settings_ = settings;
   slope_ = settings.th == TH_PERIPHERAL ? 2.0 : 1.5;
   unevenness_ = 0.0;
-  loss_ = careful_loss_at_40_db(settings, focal_) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
+  loss_ = careful_loss_at_40_db(settings, focal) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }
 
 Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
@@ -71,12 +71,11 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
     views_.assign(views.size(), {});
     fresh_ = cut_ = true;
   }
-  if (!same_rule(settings, settings_)) forget();
+  if (!same_rule(settings, settings_)) begin(settings, views.front().lens.y);
   const auto count = static_cast<std::uint32_t>(views.size());
   if (holds_) found_ = 0;
   probe_ = {.view = static_cast<std::uint32_t>(next_ + found_) % count};
   const shared::View& view = views[probe_.view];
-  focal_ = view.lens.y;
   const auto side = static_cast<std::uint32_t>(settings.tile_size);
   const std::uint32_t across = (view.width + side - 1) / side, down = (view.height + side - 1) / side;
   // After a cut all of it; then more, the more tiles differ.
@@ -95,12 +94,11 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
   return probe_;
 }
 
-float LossControl::next_loss(const FrameSettings& settings) {
+float LossControl::next_loss() {
   if (holds_) {
     attempts_ = 0;
     bracket_ = {};
   }
-  if (!same_rule(settings, settings_)) begin(settings);
   exact_ = ++attempts_ == attempts_max;
   if (exact_) return 0.0f;
   if (attempts_ > 1) {

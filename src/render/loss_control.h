@@ -32,7 +32,7 @@ class LossControl {
   Probe next_probe(std::span<const shared::View> views, const FrameSettings& settings);
 
   /// The loss for the next attempt.
-  float next_loss(const FrameSettings& settings);
+  float next_loss();
 
   /// What its probe showed. `settled`: the frame went by all that its successors will go by.
   void measured(const Probed& probed, bool settled);
@@ -56,7 +56,7 @@ class LossControl {
     double held = 0.0, held_error = 0.0;
     double missed = 0.0, missed_error = 0.0;
   };
-  void begin(const FrameSettings& settings);
+  void begin(const FrameSettings& settings, double focal);
   double searched_loss(double target) const;
   double followed_loss(double target) const;
   void take(const Probed& probed);
@@ -68,7 +68,6 @@ class LossControl {
   FrameSettings settings_;  // of the frames so far
   double slope_ = 1.0;      // squared error grows about as loss^slope_ here
   double loss_ = 0.0;       // of the last attempt that was not exact
-  double focal_ = 0.0;      // px
   bool cut_ = true;         // no frame was kept since the cut
   bool fresh_ = true;       // nor did the last attempt hold: all of a view is to be seen
   std::size_t found_ = 0;   // views that hold in the frame after a cut

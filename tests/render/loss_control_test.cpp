@@ -85,7 +85,7 @@ Drawn draw_frame(LossControl& control, const SimulatedScene& scene, bool redraws
   Drawn drawn;
   do {
     drawn.probe = control.next_probe(scene.views, settings);
-    drawn.loss = control.next_loss(settings);
+    drawn.loss = control.next_loss();
     control.measured(scene.probed(drawn.probe, drawn.loss), true);
     ++drawn.attempts;
   } while (redraws && !control.holds());
@@ -275,7 +275,7 @@ TEST(LossControl, ASmallPictureIsProbedAsAWhole) {
     const render::Probe probe = control.next_probe(views, squared);
     EXPECT_EQ(probe.step, 1u);
     EXPECT_EQ(probe.column + probe.row, 0u);
-    control.next_loss(squared);
+    control.next_loss();
     control.measured({1e-4}, true);
   }
 }
@@ -300,7 +300,7 @@ TEST(LossControl, ASampleThatShowsNothingIsNotTheView) {
   const Drawn first = draw_frame(control, scene);
   EXPECT_EQ(first.probe.step, 1u);
   control.next_probe(scene.views, squared);
-  control.next_loss(squared);
+  control.next_loss();
   control.measured({}, true);
   EXPECT_TRUE(control.holds());
   EXPECT_NEAR(control.quality(), 40.3, 0.6);
@@ -308,7 +308,7 @@ TEST(LossControl, ASampleThatShowsNothingIsNotTheView) {
   // Planted fault: of the whole view it is the truth.
   control.forget();
   control.next_probe(scene.views, squared);
-  control.next_loss(squared);
+  control.next_loss();
   control.measured({}, true);
   EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
 }
@@ -319,7 +319,7 @@ int attempts_at(LossControl& control, const std::vector<shared::View>& views, do
   int attempts = 0;
   do {
     control.next_probe(views, squared);
-    const float loss = control.next_loss(squared);
+    const float loss = control.next_loss();
     control.measured({loss > 0.0f ? error : 0.0}, settled);
   } while (++attempts < 100 && !control.holds());
   return attempts;
@@ -347,7 +347,7 @@ TEST(LossControl, WhereNoLossErrsItRisesAndEnds) {
   for (int n = 0; n < 1000; ++n) EXPECT_EQ(attempts_at(control, scene.views, 0.0), 1);
   EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
   control.next_probe(scene.views, squared);
-  EXPECT_LE(control.next_loss(squared), 1e9f);
+  EXPECT_LE(control.next_loss(), 1e9f);
 }
 
 }  // namespace
