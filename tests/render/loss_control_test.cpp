@@ -34,7 +34,8 @@ class SimulatedScene {
       double sum = 0;
       for (int tile = 0; tile < across * down; ++tile) {
         // A gradient, since neighbours are alike, and what is of each tile alone.
-        const double g = 1.5 * (2.0 * (tile / across) / down - 1.0) + uniform(-1, 1);
+        const int row = tile / across;
+        const double g = 1.5 * (2.0 * row / down - 1.0) + uniform(-1, 1);
         sum += of_view.emplace_back(std::exp(uneven * g));
       }
       for (double& tile : of_view) tile *= across * down / sum;
@@ -49,9 +50,9 @@ class SimulatedScene {
   render::Probed probed(const render::Probe& probe, double loss) const {
     double sum = 0, squares = 0;
     int count = 0;
-    for (auto y = static_cast<int>(probe.row); y < down; y += static_cast<int>(probe.step)) {
-      for (auto x = static_cast<int>(probe.column); x < across; x += static_cast<int>(probe.step), ++count) {
-        const double tile = by_tile_.at(probe.view).at(static_cast<std::size_t>(y * across + x));
+    for (std::size_t y = probe.row; y < down; y += probe.step) {
+      for (std::size_t x = probe.column; x < across; x += probe.step, ++count) {
+        const double tile = by_tile_.at(probe.view).at(y * across + x);
         sum += tile;
         squares += tile * tile;
       }
