@@ -10,7 +10,7 @@
 #include "app/content_key.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
-#include "scene/demo_city.h"
+#include "demo/city.h"
 #include "study/calibration.h"
 #include "study/settings.h"
 

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "formats/model_file.h"
-#include "scene/demo_room.h"
+#include "demo/room.h"
 #include "scene/repeat.h"
 
 namespace binosplat::app {

@@ -6,7 +6,7 @@
 
 #include "app/render_options.h"
 #include "scene/camera.h"
-#include "scene/demo_city.h"
+#include "demo/city.h"
 #include "scene/model.h"
 
 namespace binosplat::app {

@@ -2,7 +2,7 @@
 
 #include "app/render_options.h"
 #include "base/error.h"
-#include "scene/demo_city.h"
+#include "demo/city.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {

@@ -202,7 +202,7 @@ SpzContents unpack_4(const std::string& source, std::span<const std::byte> bytes
 }  // namespace
 
 SpzSizes spz_sizes(std::uint32_t version, int degree) {
-  const auto bands = static_cast<std::size_t>(degree + 1);
+  const std::size_t bands = static_cast<std::size_t>(degree) + 1;
   const std::size_t harmonics = 3 * (bands * bands - 1);
   return {version == 1 ? 6u : 9u, 1, 3, 3, version < 3 ? 3u : 4u, harmonics};
 }

@@ -3,13 +3,11 @@
 #include <cmath>
 #include <functional>
 
-#include "scene/procedural.h"
+#include "base/random.h"
 
 namespace binosplat::study {
 
 namespace {
-
-using procedural::Random;
 
 constexpr int width = 128, height = 96;
 constexpr double focal = 96.0;
@@ -25,8 +23,8 @@ void add(Model& model, const glm::vec3& position, const glm::vec3& scale, float 
   for (int c = 0; c < 3; ++c) model.sh.push_back(static_cast<float>((colour[c] - 0.5) / sh_c0));
 }
 
-// Gaussians side by side at depth z, beyond the picture's edges: `step` px apart, `size` steps wide, coloured
-// by their place in px.
+// Gaussians side by side at depth z, beyond the picture's edges: `step` px apart, `size` steps wide,
+// coloured by their place in px.
 void add_wall(Model& model, double z, double step, double size, float opacity,
               const std::function<glm::vec3(double x, double y)>& colour, double from_x = -0.75 * width) {
   const double unit = z / focal;  // of a px at that depth

@@ -15,7 +15,7 @@
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "render/frame.h"
-#include "scene/demo_city.h"
+#include "demo/city.h"
 #include "scene/repeat.h"
 #include "stereo/rig.h"
 

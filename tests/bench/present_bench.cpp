@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "preview/panel.h"
-#include "scene/demo_room.h"
+#include "demo/room.h"
 #include "stereo/layout.h"
 
 namespace binosplat {

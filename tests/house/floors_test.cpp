@@ -25,6 +25,7 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"shared", {}},
     {"base", {"shared"}},
     {"scene", {"base", "shared"}},
+    {"demo", {"scene", "base", "shared"}},
     {"formats", {"scene", "base", "shared"}},
     {"gl", {"base", "shared"}},
     {"reference", {"scene", "base", "shared"}},
@@ -37,8 +38,8 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"preview",
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"app",
-     {"preview", "study", "stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene",
-      "base", "shared"}},
+     {"demo", "preview", "study", "stereo", "measure", "render", "primitives", "gl", "reference", "formats",
+      "scene", "base", "shared"}},
 };
 
 // Files of more than 400 lines, each with the reason why it is better whole.

@@ -12,7 +12,7 @@
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "render/support.h"
-#include "scene/demo_room.h"
+#include "demo/room.h"
 #include "stereo/rig.h"
 
 namespace binosplat {

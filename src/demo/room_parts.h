@@ -1,7 +1,7 @@
 #pragma once
 // What demo:room is put together from. Every function adds one thing to the stage, at its place in the room.
 
-#include "scene/procedural.h"
+#include "demo/procedural.h"
 
 namespace binosplat::procedural {
 

@@ -1,4 +1,4 @@
-#include "scene/demo_city.h"
+#include "demo/city.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

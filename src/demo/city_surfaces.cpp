@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "scene/demo_city_parts.h"
+#include "demo/city_parts.h"
 
 namespace binosplat::city {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scene/demo_room.h"
+#include "demo/room.h"
 
 namespace binosplat {
 

@@ -1,4 +1,4 @@
-#include "scene/baked_light.h"
+#include "demo/baked_light.h"
 
 #include <algorithm>
 #include <array>

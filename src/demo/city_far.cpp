@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/demo_city_parts.h"
+#include "demo/city_parts.h"
 
 namespace binosplat::city {
 

@@ -1,4 +1,4 @@
-#include "scene/procedural.h"
+#include "demo/procedural.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,12 +15,6 @@ constexpr double overlap = 0.74;
 constexpr double inset = 1.1;
 /// Thickness of a disc as a share of its smaller side.
 constexpr double flatness = 0.08;
-
-std::uint64_t scramble(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return z ^ (z >> 31);
-}
 
 /// How a length is divided into a row of discs.
 struct Row {
@@ -52,8 +46,6 @@ std::vector<double> lengths(const std::vector<Point>& points) {
 }
 
 }  // namespace
-
-std::uint64_t Random::bits() { return scramble(state_ += 0x9e3779b97f4a7c15ull); }
 
 double hash(std::int64_t a, std::int64_t b) {
   const std::uint64_t mixed = scramble(static_cast<std::uint64_t>(a) * 0x9e3779b97f4a7c15ull + 1);

@@ -1,4 +1,4 @@
-#include "scene/demo_city.h"
+#include "demo/city.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "scene/demo_city_parts.h"
+#include "demo/city_parts.h"
 
 namespace binosplat {
 

@@ -1,4 +1,4 @@
-#include "scene/demo_room.h"
+#include "demo/room.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "scene/demo_city.h"
-#include "scene/procedural.h"
+#include "demo/city.h"
+#include "demo/procedural.h"
 
 namespace binosplat::city {
 
@@ -24,7 +24,6 @@ using procedural::hash;
 using procedural::mix;
 using procedural::noise;
 using procedural::ramp;
-using procedural::Random;
 
 // The plan, in metres. Streets lie along z, narrower side streets along x.
 constexpr int streets_beside = 5;  // on either side of the main street, which is at x = 0

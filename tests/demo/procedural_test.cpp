@@ -1,4 +1,4 @@
-#include "scene/procedural.h"
+#include "demo/procedural.h"
 
 #include <gtest/gtest.h>
 

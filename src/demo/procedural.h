@@ -1,6 +1,6 @@
 #pragma once
 // A small vocabulary for scenes made of Gaussians: flat discs on surfaces, long ones along wires, and the
-// solids that cast their shadows. scene/baked_light.h turns the discs into a Model. Deterministic: no
+// solids that cast their shadows. demo/baked_light.h turns the discs into a Model. Deterministic: no
 // library's random distributions, and no two random numbers in one expression, whose order compilers choose
 // freely.
 //
@@ -12,6 +12,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/random.h"
+
 namespace binosplat::procedural {
 
 using glm::dmat3;
@@ -19,18 +21,6 @@ using glm::dvec2;
 using glm::dvec3;
 
 constexpr double pi = 3.14159265358979323846;
-
-/// Random numbers (SplitMix64, Steele et al. 2014).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t bits();
-  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  // in [0, 1)
-  double uniform(double low, double high) { return low + (high - low) * uniform(); }
-
- private:
-  std::uint64_t state_;
-};
 
 /// A random number in [0, 1) that belongs to a pair of integers.
 double hash(std::int64_t a, std::int64_t b);

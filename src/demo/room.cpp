@@ -1,7 +1,7 @@
-#include "scene/demo_room.h"
+#include "demo/room.h"
 
-#include "scene/baked_light.h"
-#include "scene/demo_room_parts.h"
+#include "demo/baked_light.h"
+#include "demo/room_parts.h"
 
 namespace binosplat {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scene/model.h"
-#include "scene/procedural.h"
+#include "demo/procedural.h"
 
 namespace binosplat::procedural {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "scene/demo_room_parts.h"
+#include "demo/room_parts.h"
 
 namespace binosplat::procedural {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/demo_room_parts.h"
+#include "demo/room_parts.h"
 
 namespace binosplat::procedural {
 
