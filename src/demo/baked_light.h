@@ -6,8 +6,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "scene/model.h"
 #include "demo/procedural.h"
+#include "scene/model.h"
 
 namespace binosplat::procedural {
 
