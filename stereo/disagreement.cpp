@@ -1,13 +1,12 @@
 #include "stereo/disagreement.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace binosplat::stereo {
 
@@ -97,7 +96,7 @@ Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<co
   result.picture = Image(left.width, left.height, 3);
   // One sum a row, added up in order: the same number whatever the threads do.
   std::vector<Counted> rows(static_cast<std::size_t>(left.height));
-  tbb::parallel_for(0, left.height, [&](int y) {
+  parallel_for(left.height, [&](int y) {
     Counted& row = rows[static_cast<std::size_t>(y)];
     for (int x = 0; x < left.width; ++x) {
       const auto at = partner(views, left_depth, right_depth, x, y);

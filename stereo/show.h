@@ -27,8 +27,8 @@ struct Shown {
 /// Makes them of the last frame that was drawn, whatever it went by.
 class Show {
  public:
-  /// The model must outlive it. Context as for render::Frame.
-  Show(gl::Context& context, const Model& model) : context_(context), model_(model) {}
+  /// Of frames of this model. Context as for render::Frame.
+  explicit Show(std::shared_ptr<render::GpuModel> model) : model_(std::move(model)) {}
 
   /// `pictures` are the frame's own, `views` what it was asked to draw, left eye first. All views go by one
   /// range, which ends at the first of 1, 2, 5, 10 and so on that 99 of 100 pixels do not exceed, of a
@@ -38,8 +38,8 @@ class Show {
              std::span<const Picture> pictures, const render::FrameSettings& settings,
              const Background& background, double split = 0.5);
 
-  /// The exact pictures of these views. They are drawn by a frame of their own, with the model a second time
-  /// on the GPU, so that what the other one remembers stays.
+  /// The exact pictures of these views. They are drawn by a frame of their own, so that what the other one
+  /// remembers stays.
   std::vector<Picture> exact(std::span<const shared::View> views, const render::FrameSettings& settings);
 
   /// Gives the memory of that frame back.
@@ -50,8 +50,7 @@ class Show {
                          std::span<const Picture> pictures, const render::FrameSettings& settings,
                          const Background& background);
 
-  gl::Context& context_;
-  const Model& model_;
+  std::shared_ptr<render::GpuModel> model_;
   std::unique_ptr<render::Frame> exact_;
 };
 

@@ -1,7 +1,7 @@
 #include "app/detail.h"
 
 #include "app/drawing.h"
-#include "render/buffers.h"
+#include "render/memory.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {

@@ -2,7 +2,7 @@
 
 #include "gl/devices.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>

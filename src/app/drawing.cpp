@@ -1,8 +1,9 @@
 #include "app/drawing.h"
 
-#include <iterator>
+#include <algorithm>
 
 #include "base/log.h"
+#include "measure/twins.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {
@@ -34,11 +35,18 @@ render::FrameSettings settings_of(const RenderOptions& options) {
   settings.tile_size = options.tile == "auto" ? TILE_SIZE_DEFAULT : std::stoi(options.tile);
   settings.precision = number_of(options.precision, precision_choices);
   settings.background = options.background.value_or(settings.background);
-  for (std::size_t i = 0; i < std::size(render::stage_names); ++i) {
-    if (options.reference_until == render::stage_names[i])
-      settings.reference_until = static_cast<render::Stage>(i);
-  }
   return settings;
+}
+
+render::Workings workings_of(const RenderOptions& options) {
+  render::Workings workings;
+  const auto* const found =
+      std::find(render::stage_names.begin(), render::stage_names.end(), options.reference_until);
+  if (found != render::stage_names.end()) {
+    workings.stand_in =
+        measure::reference_until(static_cast<render::Stage>(found - render::stage_names.begin()));
+  }
+  return workings;
 }
 
 }  // namespace binosplat::app

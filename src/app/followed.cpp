@@ -61,7 +61,7 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
     read(model);
     show.release();
     const auto start = Clock::now();
-    frame.reload();
+    frame.model()->reload();
     levels.upload_ms = ms_since(start);
     if (options_.detail_report)
       levels.switch_psnr = psnr(options_, before, exact(frame, views, settings.tile_size));
@@ -77,7 +77,7 @@ double FollowedLevels::against_finest(gl::Context& context, std::span<const shar
   if (!finest_) {
     finest_ = load_model(options_.scene);
     set_as_asked(options_, *finest_);
-    show_finest_.emplace(context, *finest_);
+    show_finest_.emplace(std::make_shared<render::GpuModel>(context, *finest_));
   }
   return psnr(options_, pictures, show_finest_->exact(views, settings));
 }

@@ -84,9 +84,11 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
               Model& model, std::optional<FollowedLevels>& followed, RenderReport& report) {
   const RenderOptions& options = report.options;
   render::FrameSettings settings = settings_of(options);
+  const render::Workings workings = workings_of(options);
   if (!along_path(options)) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
-  render::Frame frame(context, report.model, settings.precision);
-  stereo::Show show(context, report.model);
+  const auto gpu_model = std::make_shared<render::GpuModel>(context, report.model, settings.precision);
+  render::Frame frame(gpu_model);
+  stereo::Show show(gpu_model);
   const CalibratedSettings calibrated(options, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && options.calibration.empty())
     settings.depth_table = depth_table(frame, options, list, report.near_plane, report.model.axes);
@@ -100,7 +102,7 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
     if (followed) drawn.levels = followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < options.frames; ++n) {
-      drawn.report = frame.draw(views, of_shot);
+      drawn.report = frame.draw(views, of_shot, workings);
       report.times.add(drawn.report);
       progress.update(++done);
     }

@@ -6,6 +6,7 @@
 #include "app/option_checks.h"
 #include "app/tour.h"
 #include "base/error.h"
+#include "render/stage.h"
 #include "scene/axes.h"
 #include "shared/axes.h"
 
@@ -226,7 +227,9 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
          "--reference-until", o.reference_until,
          "Take the stages up to this one from the float64 reference: decode\n(Scaffold-GS), project, order, "
          "pairs, tile_sort, ranges or blend")
-      ->check(one_of<std::string>({"decode", "project", "order", "pairs", "tile_sort", "ranges", "blend"}))
+      ->check(CLI::IsMember(std::vector<std::string>(render::stage_names.begin(),
+                                                     render::stage_names.begin() + render::stages_with_twins))
+                  .description(""))
       ->type_name("STAGE")
       ->group(group);
   sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")

@@ -11,8 +11,8 @@
 #include "app/render_options.h"
 #include "app/shots.h"
 #include "gl/context.h"
-#include "render/buffers.h"
 #include "render/frame.h"
+#include "render/memory.h"
 #include "scene/model.h"
 #include "stereo/comfort.h"
 

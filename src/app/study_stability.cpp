@@ -1,6 +1,6 @@
 // binosplat study --stability.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdio>

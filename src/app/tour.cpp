@@ -1,5 +1,7 @@
 #include "app/tour.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <sstream>
 

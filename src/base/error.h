@@ -2,7 +2,7 @@
 // Errors that end a command. Their text is for the user: it names the file, the place in it, what was
 // expected and what to do.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // Lines for the user on standard error; standard output is kept for results.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <string>
 #include <utility>

@@ -1,12 +1,10 @@
 #include "demo/city.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "demo/city_parts.h"
 
@@ -69,11 +67,9 @@ void fill_all(const City& plan, const std::vector<Surface>& surfaces, const std:
   constexpr std::size_t parts = 64;
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t begin = surfaces.size() * part / parts, end = surfaces.size() * (part + 1) / parts;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 8), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k < range.end(); ++k) {
-        fill(plan, light, surfaces[k], begins[k], model);
-      }
-    });
+    parallel_for(
+        end - begin, [&](std::size_t k) { fill(plan, light, surfaces[begin + k], begins[begin + k], model); },
+        8);
     progress.update(end);
   }
 }

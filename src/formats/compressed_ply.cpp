@@ -1,13 +1,11 @@
 #include "formats/compressed_ply.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/parallel.h"
 #include "formats/bytes.h"
 #include "formats/ply_layout.h"
 
@@ -79,9 +77,8 @@ class CompressedPlyReader {
     model.antialiased = is_antialiased(header_, false);
     model.resize(count_);
     std::vector<std::uint8_t> kept(count_);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count_, 2048), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i) kept[i] = decode(model, i) ? 1 : 0;
-    });
+    parallel_for(
+        count_, [&](std::size_t i) { kept[i] = decode(model, i) ? 1 : 0; }, 2048);
     keep_only(model, kept);
     return model;
   }

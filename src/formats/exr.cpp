@@ -10,7 +10,6 @@
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 #include <half.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <cstring>
@@ -20,6 +19,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
+#include "base/parallel.h"
 #include "formats/picture_readers.h"
 
 namespace binosplat {
@@ -71,7 +71,7 @@ std::vector<Plane> planes_of(const Picture& picture, const std::string& prefix, 
   std::vector<Plane> planes{{"R", {}, {}}, {"G", {}, {}}, {"B", {}, {}}, {"A", {}, {}}};
   if (options.background) planes.push_back({coverage_name, {}, {}});
   for (Plane& plane : planes) plane.values.resize(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+  parallel_for(count, [&](std::size_t k) {
     const float coverage = 1.0f - picture.colour[k].a;
     const float alpha = options.background ? 1.0f : coverage;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -245,7 +245,7 @@ Image load_exr(const std::filesystem::path& path, std::span<const std::byte> byt
   }
   const auto channels = static_cast<std::size_t>(image.channels);
   const std::size_t colours = channels == 4 ? 3 : channels;
-  tbb::parallel_for(std::size_t{0}, image.data.size() / channels, [&](std::size_t k) {
+  parallel_for(image.data.size() / channels, [&](std::size_t k) {
     float* pixel = &image.data[k * channels];
     const float alpha = channels == 4 ? pixel[3] : 1.0f;
     for (std::size_t c = 0; c < colours; ++c) {

@@ -1,6 +1,6 @@
 #include "formats/morton.h"
+#include "base/parallel.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> morton_order(std::span<const glm::vec3> positions) {
     high = glm::max(high, glm::dvec3(p));
   }
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(positions.size());
-  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {
+  parallel_for(keys.size(), [&](std::size_t i) {
     std::uint64_t key = 0;
     for (int c = 0; c < 3; ++c) {
       const double extent = high[c] - low[c];

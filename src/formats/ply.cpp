@@ -1,8 +1,5 @@
 #include "formats/ply.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,6 +10,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/compressed_ply.h"
 #include "formats/content.h"
@@ -125,10 +123,10 @@ class PlyReader {
       find_offsets(element, at_, offsets);
       for (std::size_t begin = 0; begin < element.count; begin += progress_block) {
         const std::size_t end = std::min<std::size_t>(begin + progress_block, element.count);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, end, 2048), [&](const auto& range) {
-          for (std::size_t i = range.begin(); i != range.end(); ++i)
-            keep(i, gather(bytes_.data() + at_ + i * row, offsets));
-        });
+        parallel_for(
+            end - begin,
+            [&](std::size_t k) { keep(begin + k, gather(bytes_.data() + at_ + (begin + k) * row, offsets)); },
+            2048);
         progress_.update(end);
       }
     }

@@ -1,15 +1,13 @@
 #pragma once
 // Rows of one size, made on all cores and written in blocks, so that no file is in memory as a whole.
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "base/progress.h"
 
 namespace binosplat {
@@ -28,10 +26,8 @@ class RowWriter {
     for (std::size_t begin = 0; begin < count; begin += most) {
       const std::size_t rows = std::min(most, count - begin);
       block_.assign(rows * bytes, std::byte{0});
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows, 1024), [&](const auto& range) {
-        for (std::size_t k = range.begin(); k != range.end(); ++k)
-          encode(begin + k, block_.data() + k * bytes);
-      });
+      parallel_for(
+          rows, [&](std::size_t k) { encode(begin + k, block_.data() + k * bytes); }, 1024);
       sink_(block_);
       progress_.update(done_ += rows);
     }

@@ -1,8 +1,5 @@
 #include "formats/scaffold_anchors.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/parallel.h"
 #include "formats/ply_header.h"
 
 namespace binosplat {
@@ -49,9 +47,8 @@ class AnchorReader {
     scaffold_.offset.resize(count * k);
     scaffold_.feature.resize(count * scaffold_.feature_count);
     std::vector<std::uint8_t> good(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
-      for (std::size_t n = range.begin(); n != range.end(); ++n) good[n] = decode(n) ? 1 : 0;
-    });
+    parallel_for(
+        count, [&](std::size_t n) { good[n] = decode(n) ? 1 : 0; }, 1024);
     keep_only(good);
   }
 

@@ -1,11 +1,9 @@
 #include "formats/sog_source.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "formats/plausible.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
@@ -170,7 +168,7 @@ SogSource::Textures SogSource::read_textures() const {
   std::copy(files_.begin(), files_.end(), names.begin());
   names[labels] = labels_file_;
   Textures textures;
-  tbb::parallel_for(std::size_t{0}, std::size_t{texture_count}, [&](std::size_t i) {
+  parallel_for(std::size_t{texture_count}, [&](std::size_t i) {
     if (!names[i].empty()) textures.data[i] = texels(names[i]);
   });
   return textures;
@@ -218,10 +216,10 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
 void SogSource::decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const {
   const Textures textures = read_textures();
   for (const Range& range : ranges) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, range.count, 2048), [&](const auto& block) {
-      for (std::size_t i = block.begin(); i != block.end(); ++i)
-        kept[range.slot + i] = decode_one(textures, range.first + i, model, range.slot + i) ? 1 : 0;
-    });
+    const auto decode_at = [&](std::size_t i) {
+      kept[range.slot + i] = decode_one(textures, range.first + i, model, range.slot + i) ? 1 : 0;
+    };
+    parallel_for(range.count, decode_at, 2048);
   }
 }
 

@@ -1,7 +1,5 @@
 // PlayCanvas' SOG, version 2, as an archive.
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -10,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/codebook.h"
 #include "formats/model_writers.h"
@@ -78,7 +77,7 @@ class SogWriter {
     entries[0] = {"meta.json", {text.begin(), text.end()}};
     Progress progress("writing", textures_.size());
     std::atomic<std::size_t> done = 0;
-    tbb::parallel_for(std::size_t{0}, textures_.size(), [&](std::size_t k) {
+    parallel_for(textures_.size(), [&](std::size_t k) {
       const Texture& t = textures_[k];
       entries[k + 1] = {t.name, webp_file(t.texels, t.width, t.height)};
       progress.update(++done);
@@ -91,8 +90,7 @@ class SogWriter {
   template <typename Value>
   std::string add(const std::string& name, const Value& value) {
     Texture& texture = textures_.emplace_back(name + ".webp", width_, height_);
-    tbb::parallel_for(std::size_t{0}, order_.size(),
-                      [&](std::size_t k) { texture.set(k, value(order_[k])); });
+    parallel_for(order_.size(), [&](std::size_t k) { texture.set(k, value(order_[k])); });
     return texture.name;
   }
 
@@ -100,7 +98,7 @@ class SogWriter {
   template <typename Get>
   Codebook codebook(const Get& get) const {
     std::vector<float> values(3 * model_.count());
-    tbb::parallel_for(std::size_t{0}, model_.count(), [&](std::size_t i) {
+    parallel_for(model_.count(), [&](std::size_t i) {
       for (std::size_t c = 0; c < 3; ++c) values[3 * i + c] = get(i, c);
     });
     return Codebook(std::move(values));

@@ -1,12 +1,10 @@
 #include "formats/splat.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "formats/bytes.h"
 
 namespace binosplat {
@@ -55,17 +53,16 @@ Model load_splat(const std::string& source, std::span<const std::byte> bytes) {
   model.format = ".splat";
   model.resize(bytes.size() / record_bytes);
   std::vector<std::uint8_t> kept(model.count());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, kept.size(), 2048), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const std::byte* record = &bytes[i * record_bytes];
-      float sh[3];
-      for (int c = 0; c < 3; ++c)
-        sh[c] = static_cast<float>((std::to_integer<int>(record[24 + c]) / 255.0 - 0.5) / sh_c0);
-      const float opacity = static_cast<float>(std::to_integer<int>(record[27]) / 255.0);
-      kept[i] =
-          place(model, i, load_vec3(record), load_vec3(record + 12), load_rotation(record + 28), opacity, sh);
-    }
-  });
+  const auto decode = [&](std::size_t i) {
+    const std::byte* record = &bytes[i * record_bytes];
+    float sh[3];
+    for (int c = 0; c < 3; ++c)
+      sh[c] = static_cast<float>((std::to_integer<int>(record[24 + c]) / 255.0 - 0.5) / sh_c0);
+    const float opacity = static_cast<float>(std::to_integer<int>(record[27]) / 255.0);
+    kept[i] =
+        place(model, i, load_vec3(record), load_vec3(record + 12), load_rotation(record + 28), opacity, sh);
+  };
+  parallel_for(kept.size(), decode, 2048);
   keep_only(model, kept);
   return model;
 }

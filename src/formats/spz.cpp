@@ -1,14 +1,12 @@
 #include "formats/spz.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include "base/log.h"
+#include "base/parallel.h"
 #include "formats/bytes.h"
 #include "formats/spz_container.h"
 
@@ -100,9 +98,8 @@ Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   model.resize(contents.count);
   const SpzDecoder decoder(contents);
   std::vector<std::uint8_t> kept(contents.count);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, contents.count, 2048), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) kept[i] = decoder.decode(model, i) ? 1 : 0;
-  });
+  parallel_for(
+      contents.count, [&](std::size_t i) { kept[i] = decoder.decode(model, i) ? 1 : 0; }, 2048);
   keep_only(model, kept);
   return model;
 }

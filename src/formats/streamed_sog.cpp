@@ -1,7 +1,5 @@
 #include "formats/streamed_sog.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <mutex>
 #include <set>
@@ -9,6 +7,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
@@ -225,7 +224,7 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
   Progress progress("reading " + lod_meta.string(), total);
   std::mutex counting;
   std::size_t done = 0;
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+  parallel_for(parts.size(), [&](std::size_t i) {
     const std::vector<SogSource::Range> ranges = ranges_of(parts[i].taken);
     parts[i].source.decode(model, ranges, kept);
     const std::lock_guard<std::mutex> lock(counting);
@@ -246,7 +245,7 @@ struct StreamedSog::Source {
   explicit Source(const fs::path& asked)
       : path(lod_meta_of(asked)), json(levels_json(path, asked)), levels(path, json) {
     files.resize(levels.files().size());
-    tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+    parallel_for(files.size(), [&](std::size_t i) {
       if (levels.there(i)) files[i] = open_part(levels.files()[i]);
     });
     if (levels.environment()) files.emplace_back(open_part(*levels.environment()));
@@ -330,7 +329,7 @@ Model StreamedSog::read() {
   Model model = empty_model();
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
-  tbb::parallel_for(std::size_t{0}, taken.size(), [&](std::size_t i) { fill(model, kept, taken[i], i); });
+  parallel_for(taken.size(), [&](std::size_t i) { fill(model, kept, taken[i], i); });
   close_gaps(spans, kept);
   keep_only(model, kept);
   model_ = model;

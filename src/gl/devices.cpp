@@ -1,6 +1,6 @@
 #include "gl/devices.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/error.h"
 

@@ -1,6 +1,6 @@
 #include "gl/program_cache.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdlib>
 #include <cstring>

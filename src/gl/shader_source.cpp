@@ -1,6 +1,6 @@
 #include "gl/shader_source.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>

@@ -1,7 +1,5 @@
 #include "measure/flip.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "measure/comparable.h"
 
 namespace binosplat::measure {
@@ -39,7 +38,7 @@ using Planes = std::array<Plane, 3>;
 /// Fills a plane's pixels by `value(x, y)`.
 template <typename Value>
 void fill(Plane& plane, const Value& value) {
-  tbb::parallel_for(0, plane.height, [&](int y) {
+  parallel_for(plane.height, [&](int y) {
     for (int x = 0; x < plane.width; ++x) plane.at(x, y) = value(x, y);
   });
 }
@@ -185,7 +184,7 @@ Seen see(const Image& image, double ppd) {
   const Plane empty(image.width, image.height);
   Planes planes = {empty, empty, empty};
   Plane luminance = empty;
-  tbb::parallel_for(0, image.height, [&](int y) {
+  parallel_for(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       glm::dvec3 rgb;
       for (int c = 0; c < 3; ++c)
@@ -196,7 +195,7 @@ Seen see(const Image& image, double ppd) {
     }
   });
   for (std::size_t c = 0; c < 3; ++c) planes[c] = seen(planes[c], sensitivities[c], ppd);
-  tbb::parallel_for(0, image.height, [&](int y) {
+  parallel_for(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       const glm::dvec3 v(planes[0].at(x, y), planes[1].at(x, y), planes[2].at(x, y));
       const glm::dvec3 lab = hunt_lab(glm::clamp(rgb_of_ycxcz(v), 0.0, 1.0));
@@ -218,7 +217,7 @@ double colour_difference(const glm::dvec3& a, const glm::dvec3& b) {
 Image map_of_colours(const Image& a, const Image& b, double ppd) {
   const Seen sa = see(a, ppd), sb = see(b, ppd);
   Image map(a.width, a.height, 1);
-  tbb::parallel_for(0, a.height, [&](int y) {
+  parallel_for(a.height, [&](int y) {
     for (int x = 0; x < a.width; ++x) {
       const auto lab = [&](const Planes& p) {
         return glm::dvec3(p[0].at(x, y), p[1].at(x, y), p[2].at(x, y));

@@ -1,7 +1,5 @@
 #include "measure/metrics.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "base/parallel.h"
 #include "measure/comparable.h"
 
 namespace binosplat::measure {
@@ -119,7 +118,7 @@ double ssim(const Image& a, const Image& b) {
   const std::array<double, window_size> window = gaussian_window();
   // One sum a row, added up in order: the same number whatever the threads do.
   std::vector<double> sums(static_cast<std::size_t>(rows));
-  tbb::parallel_for(0, rows, [&](int y) {
+  parallel_for(rows, [&](int y) {
     for (int c = 0; c < a.channels; ++c) sums[static_cast<std::size_t>(y)] += ssim_row(a, b, y, c, window);
   });
   return std::accumulate(sums.begin(), sums.end(), 0.0) / (double(columns) * rows * a.channels);

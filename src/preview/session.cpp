@@ -64,7 +64,7 @@ Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras,
       folder_(std::move(folder)),
       frame_(context, model_, choices.settings.precision),
       presenter_(context),
-      show_(context, model_),
+      show_(frame_.model()),
       shown_colours_(context, "pixels to show") {}
 
 void Session::change() {
@@ -127,7 +127,7 @@ void Session::make_shown(std::span<const shared::View> views) {
 void Session::replace(Model model) {
   model_ = std::move(model);
   show_.release();
-  frame_.reload();
+  frame_.model()->reload();
   change();
 }
 

@@ -1,9 +1,8 @@
 #include "reference/blend.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "reference/blend_pixel.h"
 
 namespace binosplat::reference {
@@ -44,7 +43,7 @@ Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const sh
               Faults faults, BlendCounts* counts) {
   Picture picture(static_cast<int>(view.width), static_cast<int>(view.height));
   std::vector<BlendCounts> of_tiles(lists.begin.size() - 1);
-  tbb::parallel_for(std::size_t{0}, of_tiles.size(), [&](std::size_t t) {
+  parallel_for(of_tiles.size(), [&](std::size_t t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
     of_tiles[t] = blend_tile(splats, lists, tx, ty, faults, picture);

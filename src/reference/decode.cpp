@@ -1,10 +1,9 @@
 #include "reference/decode.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "reference/tiles.h"
 
 namespace binosplat::reference {
@@ -118,7 +117,7 @@ std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::Vi
   glm::dvec3 eye(0.0);
   for (const shared::View& view : views) eye += eye_of(view) / static_cast<double>(views.size());
   std::vector<std::vector<Decoded>> by_anchor(scaffold.anchor_count());
-  tbb::parallel_for(std::size_t{0}, by_anchor.size(), [&](std::size_t n) {
+  parallel_for(by_anchor.size(), [&](std::size_t n) {
     const auto sees = [&](const shared::View& view) { return sees_anchor(scaffold, n, view); };
     if (!anchor_cull || std::any_of(views.begin(), views.end(), sees))
       by_anchor[n] = decode_anchor(scaffold, n, eye);
@@ -134,7 +133,7 @@ std::vector<Splat> project_all(const Model& model, const shared::View& view, con
       decoding.views.empty() ? std::span(&view, 1) : std::span(decoding.views);
   const std::vector<Decoded> decoded = decode(*model.scaffold, views, decoding.anchor_cull);
   std::vector<Splat> splats(model.count());
-  tbb::parallel_for(std::size_t{0}, decoded.size(), [&](std::size_t i) {
+  parallel_for(decoded.size(), [&](std::size_t i) {
     Splat splat = project(decoded[i].gaussian, view, {model.kernel_px2, model.antialiased});
     splat.colour = decoded[i].colour;
     splats[decoded[i].id] = splat;

@@ -1,11 +1,10 @@
 #include "reference/project.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "reference/decode.h"
 #include "shared/limits.h"
 
@@ -116,8 +115,7 @@ Splat project(const Model& model, std::size_t i, const shared::View& view) {
 std::vector<Splat> project_all(const Model& model, const shared::View& view) {
   if (model.scaffold) return project_all(model, view, Decoding{});
   std::vector<Splat> splats(model.count());
-  tbb::parallel_for(std::size_t{0}, splats.size(),
-                    [&](std::size_t i) { splats[i] = project(model, i, view); });
+  parallel_for(splats.size(), [&](std::size_t i) { splats[i] = project(model, i, view); });
   return splats;
 }
 

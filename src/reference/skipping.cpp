@@ -1,12 +1,12 @@
 #include "reference/skipping.h"
 
 #include <tbb/combinable.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "reference/blend_pixel.h"
 
 namespace binosplat::reference {
@@ -33,7 +33,7 @@ struct Fragment {
 template <typename Visit>
 void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
                     std::span<const double> upper, const Visit& visit) {
-  tbb::parallel_for(std::size_t{0}, lists.begin.size() - 1, [&](std::size_t t) {
+  parallel_for(lists.begin.size() - 1, [&](std::size_t t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
     const auto list = lists.tile(tx, ty);

@@ -1,9 +1,8 @@
 #include "reference/transmittance.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "reference/blend_pixel.h"
 
 namespace binosplat::reference {
@@ -18,7 +17,7 @@ std::vector<double> measure_pairs(const std::vector<Splat>& splats, const TileLi
                                   const shared::View& view, double start, const Measure& measure,
                                   const Join& join) {
   std::vector<double> of_pairs(lists.pairs(), 0.0);
-  tbb::parallel_for(std::size_t{0}, lists.begin.size() - 1, [&](std::size_t t) {
+  parallel_for(lists.begin.size() - 1, [&](std::size_t t) {
     const int size = static_cast<int>(lists.tile_size);
     const auto tx = static_cast<int>(t % lists.tiles_x), ty = static_cast<int>(t / lists.tiles_x);
     const auto list = lists.tile(static_cast<std::uint32_t>(tx), static_cast<std::uint32_t>(ty));

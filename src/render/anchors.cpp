@@ -1,10 +1,9 @@
 #include "render/anchors.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 
+#include "base/parallel.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
@@ -61,7 +60,7 @@ std::vector<glm::vec4> pack_view_free(const Scaffold& scaffold, std::size_t firs
   const std::array<const Network*, 3> networks{&scaffold.opacity, &scaffold.covariance, &scaffold.colour};
   const std::size_t quads = padded_hidden(scaffold) / 4;
   std::vector<glm::vec4> packed(strides.size() * networks.size() * quads * count, glm::vec4(0.0f));
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+  parallel_for(count, [&](std::size_t k) {
     for (std::size_t level = 0; level < strides.size(); ++level) {
       for (std::size_t i = 0; i < networks.size(); ++i) {
         for (std::size_t unit = 0; unit < networks[i]->hidden; ++unit) {
@@ -140,9 +139,7 @@ AnchorBuffers::AnchorBuffers(gl::Context& context, const Scaffold& scaffold, std
     : count(static_cast<std::uint32_t>(anchor_count)),
       anchors(context, "anchors"),
       offsets(context, "offsets of an anchor's Gaussians"),
-      view_free(context, "networks' first layers without the view"),
-      kept(std::make_unique<gl::Buffer>(context, "Gaussians kept by anchor")),
-      kept_last(std::make_unique<gl::Buffer>(context, "Gaussians kept by the last frame")) {
+      view_free(context, "networks' first layers without the view") {
   anchors.upload(pack_anchors(scaffold, first, anchor_count));
   const std::size_t k = scaffold.offset_count;
   offsets.upload(std::span(scaffold.offset).subspan(first * k, anchor_count * k));

@@ -2,14 +2,13 @@
 // A Scaffold-GS model on the GPU (scene/scaffold.h): what the stage decode reads.
 
 #include <cstdint>
-#include <memory>
 
 #include "gl/buffer.h"
 #include "scene/scaffold.h"
 
 namespace binosplat::render {
 
-/// The anchors of one page of the model, and which of their Gaussians the frame at hand has.
+/// The anchors of one page of the model.
 struct AnchorBuffers {
   /// Uploads anchors [first, first + count).
   AnchorBuffers(gl::Context& context, const Scaffold& scaffold, std::size_t first, std::size_t count);
@@ -18,9 +17,6 @@ struct AnchorBuffers {
   gl::Buffer anchors;    // Anchor
   gl::Buffer offsets;    // float (anchor, K, 3)
   gl::Buffer view_free;  // vec4 (resolution, network, quad, anchor), see networks.glsl
-  // uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN: none is, these are the last frame's.
-  // Written while the last frame's is read.
-  std::unique_ptr<gl::Buffer> kept, kept_last;
 };
 
 /// The networks; without weights for other models.

@@ -41,7 +41,8 @@ void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuff
   if (shape.offset_count == 0) return;
   const gl::Program& program =
       dispatcher.context().program("decode.comp", decode_defines(shape, model.networks));
-  for (const ModelBuffers::Page& page : model.pages) {
+  for (std::size_t p = 0; p < model.pages.size(); ++p) {
+    const ModelBuffers::Page& page = model.pages[p];
     const AnchorBuffers& anchors = *page.anchors;
     dispatcher.run(program, gl::Work::threads(std::uint64_t{shape.decoding_count()} * anchors.count, THREADS),
                    {{"Views", buffers.views},
@@ -51,8 +52,8 @@ void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuff
                     {"ViewFree", anchors.view_free},
                     {"Gaussians", *page.gaussians},
                     {"Harmonics", *page.harmonics},
-                    {"Kept", *anchors.kept},
-                    {"KeptLast", *anchors.kept_last},
+                    {"Kept", *buffers.kept[p]},
+                    {"KeptLast", *buffers.kept_last[p]},
                     {"Upper", *buffers.upper}},
                    {{"anchor_count", anchors.count},
                     {"view_count", shape.asked},

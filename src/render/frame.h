@@ -2,14 +2,20 @@
 // One frame: a model drawn in one or more views (both eyes of a rig) by compute shaders, without a read-back
 // inside.
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "base/image.h"
 #include "gl/dispatch.h"
 #include "render/buffers.h"
+#include "render/gpu_model.h"
+#include "render/history.h"
 #include "render/loss_control.h"
+#include "render/memory.h"
 #include "render/settings.h"
+#include "render/workings.h"
 
 namespace binosplat::render {
 
@@ -30,11 +36,11 @@ struct FrameReport {
   double submit_ms = 0;               // CPU time of handing the last drawing to the driver
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   int tile_size = 0;                  // px
-  int list_tiles = 0;       // tiles along a side of a list: settings.list_tiles, or what the frame chose
-  float loss = 0.0f;        // K or kappa that the frame went by
-  bool remembered = false;  // it went by what an earlier frame measured
-  bool recorded = false;    // it measured for later ones
-  double quality = 0.0;     // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
+  int list_tiles = 0;                 // tiles along a side of a list
+  float loss = 0.0f;                  // K or kappa that the frame went by
+  bool remembered = false;            // it went by what an earlier frame measured
+  bool recorded = false;              // it measured for later ones
+  double quality = 0.0;  // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
 };
 
 /// A Gaussian that a frame drew in a view, and the most light that reached it.
@@ -52,29 +58,31 @@ struct WeighedGaussian {
 
 class Frame {
  public:
-  /// Uploads the model; it must outlive the frame, and the context must be current in every call. Frames of
-  /// another precision than PRECISION_FULL upload it again; `precision` saves them that. `page_gaussians` is
-  /// for tests (see ModelBuffers). Throws Error(out_of_memory) if the GPU has no room.
-  Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL,
-        std::uint32_t page_gaussians = 0);
-
-  /// Uploads the model again, which has changed since: it is the same scene at other levels of detail, so
-  /// that a loss that was found stays, but no measured transmittance. Buffers are used again where they are
-  /// large enough. Nothing can be read of the last frame but its pictures until the next one is drawn. Throws
-  /// as the constructor does.
-  void reload();
+  /// Frames of a model that others may draw, too: each has buffers and a memory of its own. The context must
+  /// be current in every call.
+  explicit Frame(std::shared_ptr<GpuModel> model);
+  /// Of a model that no other frame draws: uploads it. Both must outlive the frame. Throws as GpuModel does.
+  Frame(gl::Context& context, const Model& model, int precision = PRECISION_FULL)
+      : Frame(std::make_shared<GpuModel>(context, model, precision)) {}
 
   /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to
   /// the bit) share one depth order; each eye of a rig has the same bits drawn together with the other or
-  /// alone. A frame that overflows its buffers is drawn again with larger ones. Throws Error: bad views
+  /// alone. A frame that overflows its buffers is drawn again with larger ones. After GpuModel::reload() a
+  /// loss that was found stays, but no measured transmittance. Throws Error: bad views or settings
   /// (bad_input), no room (out_of_memory).
-  FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {});
+  FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
+                   const Workings& workings = {});
+
+  /// As draw() with settings.loss, but no further than stage `last`: what it leaves is read from buffers().
+  /// Only a frame drawn to its end is one that the next goes by.
+  FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
+                         const Workings& workings = {}, const std::optional<Probe>& probe = {});
 
   /// The pictures of the last frame drawn, one a view.
   std::vector<Picture> read_pictures();
 
   /// The next frame goes by nothing that earlier ones measured, as a first one does.
-  void forget() { last_shape_ = recorded_shape_ = {}; }
+  void forget() { history_.forget(); }
 
   /// The next frame is drawn as this Frame's first one was: the loss that was found for a quality goes, too.
   void start_over() {
@@ -82,50 +90,51 @@ class Frame {
     loss_control_ = {};
   }
 
-  /// What the last frame measured in its view `v`, in index order; none unless it did (FrameReport).
+  /// What the last frame measured in its view `v`, in index order; none unless it did (FrameReport), or after
+  /// a reload of the model.
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
   /// What the last frame's blend came by in each pixel, one image of one channel a view: SHOW_ALPHAS to
   /// SHOW_LIGHT of shared/axes.h; below 0 where there is nothing to tell. Walks the frame's lists again.
-  /// Throws Error after a frame with --reference-until blend, whose lists never get to the GPU.
+  /// Throws Error after a frame whose blend something else stood in for: its lists never get to the GPU.
   std::vector<Image> read_shown(int what);
 
   /// What the last frame's view `v` shows of each Gaussian drawn, in index order; none without
   /// settings.weigh. Whole multiples of 1 / WEIGHT_SCALE, each pixel's to the nearest: the same bits always.
   std::vector<WeighedGaussian> read_weights(std::uint32_t v) const;
 
-  /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not with
-  /// --reference-until blend, whose pictures never get there.
+  const std::shared_ptr<GpuModel>& model() const { return model_; }
+  /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not where something
+  /// else stood in for blend, whose pictures never get there.
   const gl::Buffer& colours() const { return buffers_.colours; }
   /// The views of the last frame drawn, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return shape_.views; }
+  const FrameShape& shape() const { return shape_; }
+  FrameBuffers& buffers() { return buffers_; }
+  ModelBuffers& model_buffers() { return *model_buffers_; }
 
  private:
-  FrameReport attempt();
-  shared::Counters draw_once(FrameReport& report);
-  void grow(const shared::Counters& counters);
-  void decide_measuring();
+  void begin(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
+             const std::optional<Probe>& probe = {});
+  FrameReport draw_with_quality(std::span<const shared::View> views, const FrameSettings& settings,
+                                const Workings& workings);
+  FrameReport attempt(const Workings& workings, Stage last = Stage::probe);
+  void run_stages(const Workings& workings, Stage last, FrameReport& report);
+  void fill(FrameReport& report) const;
   template <typename T, typename Take>
   void read_drawn(std::uint32_t v, const Take& take) const;
-  void keep_measurements(const shared::Counters& counters, FrameReport& report);
 
+  std::shared_ptr<GpuModel> model_;
+  int uploads_ = 0;  // of the model, as far as was seen
+  std::shared_ptr<ModelBuffers> model_buffers_;
   gl::Dispatcher dispatcher_;
-  const Model& model_;
-  ModelBuffers model_buffers_;
   FrameBuffers buffers_;
   FrameShape shape_;
-  FrameShape last_shape_;      // of the last frame drawn
-  FrameShape recorded_shape_;  // of the last one that measured
-  FrameShape probed_shape_;    // of the last one with a probe
-  int since_probed_ = 0;       // frames
-  int since_cut_ = 0;          // frames that remembered
-  int since_recorded_ = 0;     // frames
+  shared::Counters counters_{};  // of the last drawing
+  Capacity capacity_;
+  FrameHistory history_;
   LossControl loss_control_;
-  double last_median_depth_ = 0;
-  std::int64_t slots_ = 0;
-  std::int64_t pair_capacity_ = 0;
-  std::int64_t tile_pair_capacity_ = 0;
-  std::vector<Picture> reference_pictures_;  // with --reference-until blend
+  std::vector<Picture> pictures_stood_in_;  // where something else stood in for blend
 };
 
 }  // namespace binosplat::render

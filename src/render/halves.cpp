@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 
+#include "scene/model.h"
+
 namespace binosplat::render {
 
 namespace {
@@ -67,6 +69,11 @@ void pack(std::span<const float> numbers, std::span<std::uint32_t> packed) {
   std::fill(packed.begin(), packed.end(), 0u);
   for (std::size_t k = 0; k < numbers.size(); k += 2)
     packed[k / 2] = pair(numbers[k], k + 1 < numbers.size() ? numbers[k + 1] : 0.0f);
+}
+
+std::int64_t harmonic_bytes(int degree, int precision) {
+  const int in_a_word = precision == PRECISION_HALF ? 2 : 1;
+  return (3 * sh_count(degree) + 4 * in_a_word - 1) / (4 * in_a_word) * 16;
 }
 
 }  // namespace binosplat::render

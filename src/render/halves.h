@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "shared/axes.h"
 #include "shared/types.h"
 
 namespace binosplat::render {
@@ -21,5 +22,15 @@ Halves pack(const shared::Splat& splat);
 
 /// Two to a word, the first in the low half; `packed` has room for all of them and zeros beyond.
 void pack(std::span<const float> numbers, std::span<std::uint32_t> packed);
+
+/// Bytes of one thing in a PRECISION_ of shared/axes.h; of one Gaussian's harmonics with the padding that
+/// vec4s need.
+constexpr std::int64_t gaussian_bytes(int precision) {
+  return precision == PRECISION_HALF ? sizeof(Halves) : sizeof(shared::Gaussian);
+}
+constexpr std::int64_t splat_bytes(int precision) {
+  return precision == PRECISION_HALF ? sizeof(Halves) : sizeof(shared::Splat);
+}
+std::int64_t harmonic_bytes(int degree, int precision);
 
 }  // namespace binosplat::render

@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <bit>
 #include <cstddef>
@@ -10,8 +10,8 @@ namespace binosplat::render {
 namespace {
 
 // Of models that are not decoded no shader looks at it.
-const gl::Buffer& kept_of(const ModelBuffers::Page& page) {
-  return page.anchors ? *page.anchors->kept : *page.gaussians;
+const gl::Buffer& kept_of(const ModelBuffers& model, std::size_t page, const FrameBuffers& buffers) {
+  return model.pages[page].anchors ? *buffers.kept[page] : *model.pages[page].gaussians;
 }
 
 constexpr std::uint32_t fills_a_gpu = 1u << 20;  // Gaussians: some times what an H200 has in work
@@ -34,11 +34,12 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
   gl::Defines defines = projecting(shape);
   defines.emplace_back("EYES", end - views.begin > 1 && !asks_both ? "2" : "1");
   const gl::Program& program = dispatcher.context().program("cull.comp", defines);
-  for (const ModelBuffers::Page& page : model.pages) {
+  for (std::size_t p = 0; p < model.pages.size(); ++p) {
+    const ModelBuffers::Page& page = model.pages[p];
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
                    {{"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
-                    {"Kept", kept_of(page)},
+                    {"Kept", kept_of(model, p, buffers)},
                     {"DepthKeys", buffers.depth_keys},
                     {"Upper", *buffers.upper},
                     {"DepthTable", buffers.depth_table},
@@ -99,7 +100,7 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TRANSMITTANCE", std::to_string(s.transmittance)},
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},
-                         {"LIST_TILES", std::to_string(s.list_tiles)},
+                         {"LIST_TILES", std::to_string(shape.list_tiles)},
                          {"PROBED", shape.probe ? "1" : "0"},
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
@@ -120,11 +121,12 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   defines.emplace_back("WEIGHS", shape.settings.weigh ? "1" : "0");
   defines.push_back(subgroups_define(dispatcher.context()));
   const gl::Program& program = dispatcher.context().program("project.comp", defines);
-  for (const ModelBuffers::Page& page : model.pages) {
+  for (std::size_t p = 0; p < model.pages.size(); ++p) {
+    const ModelBuffers::Page& page = model.pages[p];
     dispatcher.run(program, gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
                    {{"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
-                    {"Kept", kept_of(page)},
+                    {"Kept", kept_of(model, p, buffers)},
                     {"Harmonics", *page.harmonics},
                     {"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},

@@ -20,9 +20,9 @@ void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffe
   start_clear(dispatcher, buffers.tile_ranges, shape.tile_count());
   const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
   const auto program = [&](const char* writes) -> const gl::Program& {
-    return context.program("tile_lists.comp", {{"LIST_TILES", std::to_string(shape.settings.list_tiles)},
-                                               subgroups_define(context),
-                                               {"WRITES", writes}});
+    return context.program(
+        "tile_lists.comp",
+        {{"LIST_TILES", std::to_string(shape.list_tiles)}, subgroups_define(context), {"WRITES", writes}});
   };
   buffers.tile_amount.upload(
       std::vector{primitives::make_amount(shape.tiles_a_list() * blocks, context.limits().groups)});
@@ -48,7 +48,7 @@ void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffe
 }  // namespace
 
 void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (shape.settings.list_tiles > 1) {
+  if (shape.list_tiles > 1) {
     split_lists(dispatcher, shape, buffers);
     return;
   }

@@ -3,18 +3,12 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 #include <vector>
 
 #include "shared/axes.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {
-
-/// The stages of a frame, in order; `decode` of Scaffold-GS only. Each is a shader, a file here and a test of
-/// one name.
-enum class Stage { decode, project, order, pairs, tile_sort, ranges, blend };
-constexpr const char* stage_names[] = {"decode", "project", "order", "pairs", "tile_sort", "ranges", "blend"};
 
 /// What TRANSMITTANCE_DEPTH goes by: the largest T in front of any Gaussian whose view depth lies in a bin
 /// (AdaGScale, section 4.1), in equal bins over [0, far) world units. 1 beyond, and in a bin of 0, which no
@@ -60,18 +54,8 @@ struct FrameSettings {
   bool anchor_reuse = true;
   /// px: 8, 16 or 32, on which an exact picture does not depend.
   int tile_size = TILE_SIZE_DEFAULT;
-  /// So many tiles along each side share a list of pairs, 1 or 2: with 2 there are fewer pairs to sort. No
-  /// picture depends on it. 0: the frame chooses.
-  int list_tiles = 0;
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
   glm::vec3 background{0.0f};      // behind the scene, for the probe only: the pictures are without
-  /// Stages up to this one are taken from the float64 reference on the CPU, the GPU does the rest: a wrong
-  /// picture is bisected to its stage.
-  std::optional<Stage> reference_until;
-  /// Room to start with, in Gaussians in view and in pairs; 0: chosen by the frame. A frame that needs more
-  /// grows its buffers and is drawn again.
-  std::int64_t order_capacity = 0;
-  std::int64_t pair_capacity = 0;
 };
 
 }  // namespace binosplat::render

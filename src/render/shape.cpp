@@ -7,12 +7,11 @@
 
 #include "base/error.h"
 #include "render/anchors.h"
+#include "render/memory.h"
 
 namespace binosplat::render {
 
 namespace {
-
-constexpr std::uint32_t slots_start = 1u << 20;
 
 // Equal to the bit in all that decides a Gaussian's depth.
 bool same_depths(const shared::View& a, const shared::View& b) {
@@ -66,7 +65,7 @@ void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& 
                              : std::int64_t{view.width} * view.height;
   if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
   view.is_probe = probe ? 1 : 0;
-  const auto lists = [side = static_cast<std::uint32_t>(shape.settings.list_tiles)](std::uint32_t along) {
+  const auto lists = [side = static_cast<std::uint32_t>(shape.list_tiles)](std::uint32_t along) {
     return (along + side - 1) / side;
   };
   shape.list_count += lists(view.tiles_x) * lists(view.tiles_y);
@@ -102,23 +101,17 @@ void limit_keys(FrameShape& shape, const Bounds& box) {
   }
 }
 
-std::uint32_t starting_slots(std::uint32_t gaussians) {
-  return std::max(gaussians / 2, std::min(gaussians, slots_start));
-}
-
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                      const std::optional<Probe>& probe) {
+                      int list_tiles, const std::optional<Probe>& probe) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   const int tile = settings.tile_size;
   if (tile != 8 && tile != 16 && tile != 32) fail("--tile {}: expected 8, 16 or 32", tile);
-  const int side = std::max(settings.list_tiles, 1);
-  if (side > 2 || settings.list_tiles < 0)
-    fail("lists of {0} x {0} tiles: expected 1 or 2", settings.list_tiles);
+  if (list_tiles != 1 && list_tiles != 2) fail("lists of {0} x {0} tiles: expected 1 or 2", list_tiles);
   check_threshold(settings, views.size());
   FrameShape shape;
   shape.settings = settings;
-  shape.settings.list_tiles = side;
+  shape.list_tiles = list_tiles;
   shape.degree = model.degree;
   shape.kernel_px2 = model.kernel_px2;
   shape.antialiased = model.antialiased;
@@ -128,8 +121,7 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
     shape.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
     shape.anchor_bytes = anchor_bytes(*model.scaffold);
   }
-  // The reference's results need all the room they take at once.
-  shape.slots = settings.reference_until ? shape.gaussian_count : starting_slots(shape.gaussian_count);
+  shape.slots = starting_slots(shape.gaussian_count);
   shape.asked = static_cast<std::uint32_t>(views.size());
   for (const shared::View& view : views) add_view(shape, view);
   shape.probe = probe;

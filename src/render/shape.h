@@ -39,6 +39,7 @@ struct Probed {
 /// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
 struct FrameShape {
   FrameSettings settings;
+  int list_tiles = 1;              // tiles along a side of what shares a list of pairs
   int degree = 0;                  // of the model's SH
   double kernel_px2 = KERNEL_PX2;  // of the model
   bool antialiased = false;
@@ -61,9 +62,7 @@ struct FrameShape {
   /// Tiles that the lists are of, over all views: a few more than the pictures have where lists are of
   /// several.
   std::uint32_t tile_count() const { return list_count * tiles_a_list(); }
-  std::uint32_t tiles_a_list() const {
-    return static_cast<std::uint32_t>(settings.list_tiles * settings.list_tiles);
-  }
+  std::uint32_t tiles_a_list() const { return static_cast<std::uint32_t>(list_tiles * list_tiles); }
   /// Bits that tell the lists apart by which pairs are sorted: of tiles, or views with --tiles all.
   std::uint32_t list_bits() const;
   /// How often each anchor is decoded. A probe shares the Gaussians of its view.
@@ -71,14 +70,10 @@ struct FrameShape {
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
 
-/// Room that a frame starts with for the Gaussians it draws: of a small model all may be in view; of a large
-/// one hardly ever, and what is missing is grown.
-std::uint32_t starting_slots(std::uint32_t gaussians);
-
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
 /// contradict each other or the views.
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                      const std::optional<Probe>& probe = {});
+                      int list_tiles = 1, const std::optional<Probe>& probe = {});
 
 /// Keys of only so many bits as depths of Gaussians within `box` (world) need, in each order group.
 void limit_keys(FrameShape& shape, const Bounds& box);

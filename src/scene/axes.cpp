@@ -1,11 +1,9 @@
 #include "scene/axes.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "scene/harmonics.h"
 
 namespace binosplat {
@@ -55,17 +53,16 @@ void bring_into_axes(Model& model, std::string_view letters) {
   const HarmonicsTurn harmonics(turn);
   const double hand = glm::determinant(turn);
   const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, model.count(), 2048), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      model.position[i] = turn * glm::dvec3(model.position[i]);
-      // D R S S R^T D^T = (D R D^T) (D S S D^T) (D R D^T)^T: the axes of the ellipsoid change places with
-      // those of the frame, and of its rotation's axis a mirror changes the sense. No number is rounded.
-      model.scale[i] = glm::abs(turn * glm::dvec3(model.scale[i]));
-      const glm::vec4 q = model.rotation[i];
-      model.rotation[i] = glm::dvec4(q.x, hand * (turn * glm::dvec3(q.y, q.z, q.w)));
-      harmonics.apply(&model.sh[i * values], model.degree);
-    }
-  });
+  const auto bring = [&](std::size_t i) {
+    model.position[i] = turn * glm::dvec3(model.position[i]);
+    // D R S S R^T D^T = (D R D^T) (D S S D^T) (D R D^T)^T: the axes of the ellipsoid change places with
+    // those of the frame, and of its rotation's axis a mirror changes the sense. No number is rounded.
+    model.scale[i] = glm::abs(turn * glm::dvec3(model.scale[i]));
+    const glm::vec4 q = model.rotation[i];
+    model.rotation[i] = glm::dvec4(q.x, hand * (turn * glm::dvec3(q.y, q.z, q.w)));
+    harmonics.apply(&model.sh[i * values], model.degree);
+  };
+  parallel_for(model.count(), bring, 2048);
 }
 
 Camera into_axes(Camera camera, std::string_view letters) {

@@ -1,6 +1,6 @@
 #include "study/analyses.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "study/bench.h"
 #include "study/contributions.h"

@@ -1,6 +1,6 @@
 // The page of AdaGScale's analyses: each figure and table of the paper, on this scene.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "study/bench.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -137,11 +137,15 @@ ordered_json summary_of_quality(const ordered_json& views) {
 
 Bench::Bench(gl::Context& context, const Model& model, std::vector<BenchView> views,
              const shared::View& small, const BenchEffort& effort)
-    : context_(context), model_(model), views_(std::move(views)), small_(small), effort_(effort) {}
+    : model_(model),
+      gpu_model_(std::make_shared<render::GpuModel>(context, model)),
+      views_(std::move(views)),
+      small_(small),
+      effort_(effort) {}
 
 const std::vector<Bench::Exact>& Bench::exact() {
   if (!exact_.empty()) return exact_;
-  render::Frame frame(context_, model_);
+  render::Frame frame(gpu_model_);
   for (const BenchView& view : views_) {
     frame.draw(view.eyes);
     Exact& one = exact_.emplace_back();
@@ -157,7 +161,7 @@ const render::DepthTable& Bench::depth_table() {
   if (!depth_table_.upper.empty()) return depth_table_;
   std::vector<shared::View> views;
   for (const BenchView& view : views_) views.push_back(view.eyes.front());
-  render::Frame frame(context_, model_);
+  render::Frame frame(gpu_model_);
   depth_table_ = measure::measure_depth_table(frame, views);
   return depth_table_;
 }
@@ -165,7 +169,7 @@ const render::DepthTable& Bench::depth_table() {
 // What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
 // with all others.
 std::string Bench::verify(const render::FrameSettings& settings) {
-  render::Frame frame(context_, model_, settings.precision);
+  render::Frame frame(gpu_model_);
   if (settings.transmittance == TRANSMITTANCE_ONE) {
     frame.draw(std::span(&small_, 1), settings);
     const Image drawn = composite(frame.read_pictures().front(), black);
@@ -225,7 +229,7 @@ ordered_json Bench::compare(const BenchView& view, const Exact& exact,
 }
 
 void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
-  render::Frame frame(context_, model_, settings.precision);
+  render::Frame frame(gpu_model_);
   Times all;
   render::FrameReport report;
   std::vector<double> repeats;  // means over the views
@@ -262,7 +266,7 @@ void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
 }
 
 void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
-  render::Frame frame(context_, model_, settings.precision);
+  render::Frame frame(gpu_model_);
   ordered_json views = ordered_json::array();
   ordered_json photographed = ordered_json::array();
   FrameWork work{.precision = settings.precision};
@@ -303,7 +307,7 @@ void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
 
 ordered_json Bench::measure(render::FrameSettings settings) {
   if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table();
-  ordered_json point = {{"device", context_.renderer()}};
+  ordered_json point = {{"device", gpu_model_->context().renderer()}};
   const std::string problem = verify(settings);
   if (!problem.empty()) {
     point["problem"] = problem;

@@ -2,6 +2,7 @@
 // One point of the chart: a way to draw, first verified, then timed, then compared with the exact picture and
 // with the photos.
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "base/image.h"
 #include "gl/context.h"
 #include "measure/flip.h"
+#include "render/gpu_model.h"
 #include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
@@ -60,8 +62,8 @@ class Bench {
   nlohmann::ordered_json compare(const BenchView& view, const Exact& exact,
                                  const std::vector<Picture>& drawn) const;
 
-  gl::Context& context_;
   const Model& model_;
+  std::shared_ptr<render::GpuModel> gpu_model_;
   std::vector<BenchView> views_;
   shared::View small_;
   BenchEffort effort_;

@@ -1,7 +1,7 @@
 // The page of a bench run: a chart of accuracy against time, the stages' times and the numbers, by scene,
 // eyes and size.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>

@@ -58,7 +58,7 @@ std::vector<CarriedFrame> run_carried(gl::Context& context, const Model& model,
   render::FrameSettings settings = variant.settings();
   settings.quality = quality;
   // `one` measures nothing and goes by nothing: it takes turns with the exact frames.
-  render::Frame still(context, model), carried(context, model);
+  render::Frame still(context, model), carried(still.model());
   SamePairs one(still, variant);
   std::vector<CarriedFrame> results;
   for (const std::vector<shared::View>& views : frames) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace binosplat::study {
 
@@ -14,13 +15,14 @@ bool same_views(const std::vector<shared::View>& a, const std::vector<shared::Vi
 
 }  // namespace
 
-ExactFrames::ExactFrames(gl::Context& context, const Model& model, std::int64_t bytes_max)
-    : context_(context), model_(model), bytes_max_(bytes_max), bytes_(context) {}
+ExactFrames::ExactFrames(std::shared_ptr<render::GpuModel> model, std::int64_t bytes_max)
+    : model_(std::move(model)), bytes_max_(bytes_max), bytes_(model_->context()) {}
 
 gl::Buffer* ExactFrames::room_for(const std::vector<shared::View>& views) {
   const std::int64_t bytes = BytePictures::bytes(views);
   if (bytes * static_cast<std::int64_t>(taken_ + 1) > bytes_max_) return nullptr;
-  if (taken_ == buffers_.size()) buffers_.push_back(std::make_unique<gl::Buffer>(context_, "exact pictures"));
+  if (taken_ == buffers_.size())
+    buffers_.push_back(std::make_unique<gl::Buffer>(model_->context(), "exact pictures"));
   return buffers_[taken_++].get();
 }
 
@@ -52,8 +54,8 @@ std::vector<double> ExactFrames::psnr(const render::Frame& drawn, std::size_t se
   const gl::Buffer* wanted = exact.pictures;
   if (wanted == nullptr) {
     if (!again_) {
-      again_ = std::make_unique<render::Frame>(context_, model_);
-      again_pictures_ = std::make_unique<gl::Buffer>(context_, "exact pictures drawn again");
+      again_ = std::make_unique<render::Frame>(model_);
+      again_pictures_ = std::make_unique<gl::Buffer>(model_->context(), "exact pictures drawn again");
     }
     again_->draw(exact.views);
     bytes_.keep(*again_, exact.views, *again_pictures_);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "render/frame.h"
 #include "study/byte_pictures.h"
 #include "study/motion_paths.h"
 
@@ -12,8 +13,8 @@ namespace binosplat::study {
 class ExactFrames {
  public:
   /// Pictures stay on the GPU up to `bytes_max`; the rest is drawn again, by a Frame of its own, whenever it
-  /// is asked for. Context and model must outlive it.
-  ExactFrames(gl::Context& context, const Model& model, std::int64_t bytes_max);
+  /// is asked for.
+  ExactFrames(std::shared_ptr<render::GpuModel> model, std::int64_t bytes_max);
 
   /// Draws the frames of a path with `frame`, each pose once; those of the last path are gone.
   void draw(render::Frame& frame, const MotionPath& path);
@@ -34,8 +35,7 @@ class ExactFrames {
   const Pose& pose(std::size_t segment, std::size_t n) const { return poses_[segments_.at(segment).at(n)]; }
   gl::Buffer* room_for(const std::vector<shared::View>& views);
 
-  gl::Context& context_;
-  const Model& model_;
+  std::shared_ptr<render::GpuModel> model_;
   std::int64_t bytes_max_;
   BytePictures bytes_;
   std::vector<std::vector<std::size_t>> segments_;  // the pose of each frame

@@ -1,7 +1,5 @@
 #include "study/judge.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "stereo/disagreement.h"
 
 namespace binosplat::study {
@@ -78,7 +77,7 @@ FrameErrors judge(std::span<const shared::View> views, std::span<const Picture> 
     sizes.resize(first + 3 * a.colour.size());
     // One sum a row, added up in order: the same number whatever the threads do.
     std::vector<Row> rows(static_cast<std::size_t>(a.height));
-    tbb::parallel_for(0, a.height, [&](int y) {
+    parallel_for(a.height, [&](int y) {
       float* const of_row = sizes.data() + first + std::size_t{3} * static_cast<std::size_t>(y) * a.width;
       rows[static_cast<std::size_t>(y)] = judge_row(b, a, y, tile_size, of_row);
     });

@@ -1,6 +1,6 @@
 #include "study/motion.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -46,7 +46,7 @@ class Drive {
       : settings_(settings),
         tell_(tell),
         frame_(context, model),
-        exact_(context, model, settings.exact_bytes) {}
+        exact_(frame_.model(), settings.exact_bytes) {}
 
   /// Light by depth, for the rules that go by it.
   void measure_table(const std::vector<MotionPath>& paths);

@@ -1,6 +1,6 @@
 #include "study/page.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 

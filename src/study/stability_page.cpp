@@ -1,6 +1,6 @@
 #include "study/stability_page.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace binosplat::study {
 

@@ -1,9 +1,8 @@
 #include "study/weights.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "render/frame.h"
 #include "scene/axes.h"
@@ -62,7 +61,7 @@ Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera
     const shared::View view = make_view(camera, near_plane);
     frame.draw(std::span(&view, 1), {.weigh = true});
     const std::vector<render::WeighedGaussian> seen = frame.read_weights(0);
-    tbb::parallel_for(std::size_t{0}, seen.size(), [&](std::size_t k) {
+    parallel_for(seen.size(), [&](std::size_t k) {
       const auto& [i, weight] = seen[k];
       if (weight == 0.0) return;
       weights.weight[i] += weight;

@@ -95,7 +95,7 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
       model = scene.read();
       numbers.read_ms.push_back(ms_since(start));
       start = Clock::now();
-      frame.reload();
+      frame.model()->reload();
       numbers.upload_ms.push_back(ms_since(start));
       wake(frame, path[n]);
     }

@@ -41,20 +41,14 @@ std::vector<shared::View> eyes(double near_plane = near_default) {
 /// Anchors that are not decoded in the second frame of a camera that stands still, over all decodings.
 std::size_t reused(const Model& model, const FrameSettings& settings,
                    const std::vector<shared::View>& views = eyes()) {
-  test::StageRun run(model, views, settings);
-  run.shape.records = render::measures(settings.transmittance);
-  gl::Dispatcher dispatcher(test::gl_context());
-  run.run_until(render::Stage::ranges);
-  render::blend(dispatcher, run.shape, run.frame);
-  render::remember(dispatcher, run.shape, run.frame);
-  std::swap(run.frame.upper, run.frame.upper_next);
-  run.model_buffers.keep_last();
-  run.shape.remembers = true;
-  run.run_until(render::Stage::decode);
+  render::Frame frame(test::gl_context(), model);
+  frame.draw(views, settings);
+  frame.draw_until(render::Stage::decode, views, settings);
   std::size_t count = 0;
-  for (const render::ModelBuffers::Page& page : run.model_buffers.pages) {
-    const auto kept = page.anchors->kept->read<std::uint32_t>(std::size_t{page.anchors->count} *
-                                                              run.shape.decoding_count());
+  const std::vector<render::ModelBuffers::Page>& pages = frame.model_buffers().pages;
+  for (std::size_t p = 0; p < pages.size(); ++p) {
+    const auto kept = frame.buffers().kept[p]->read<std::uint32_t>(std::size_t{pages[p].anchors->count} *
+                                                                   frame.shape().decoding_count());
     count +=
         std::count_if(kept.begin(), kept.end(), [](std::uint32_t bits) { return (bits & KEPT_HIDDEN) != 0; });
   }
@@ -110,10 +104,8 @@ TEST(AnchorReuse, ChangesNoBitWhenBuffersHaveToGrow) {
   const Model model = wall();
   render::Frame tight(test::gl_context(), model), ample(test::gl_context(), model);
   for (int n = 0; n < 4; ++n) {
-    FrameSettings settings = squared;
-    ample.draw(eyes(), settings);
-    settings.order_capacity = 100;
-    EXPECT_GT(tight.draw(eyes(), settings).redrawn, 0);
+    ample.draw(eyes(), squared);
+    EXPECT_GT(tight.draw(eyes(), squared, {.slots = 100}).redrawn, 0);
     EXPECT_TRUE(same_bits(tight.read_pictures()[1], ample.read_pictures()[1])) << n;
   }
 }

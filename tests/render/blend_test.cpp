@@ -5,7 +5,7 @@
 namespace binosplat {
 namespace {
 
-constexpr render::FrameSettings only_blend = {.reference_until = render::Stage::ranges};
+const render::Workings only_blend = test::given(render::Stage::ranges);
 
 // Many opaque layers, so that most pixels end early.
 Model layers() {
@@ -24,7 +24,7 @@ TEST(Blend, EqualsTheReference) {
   const shared::View view = make_view(test::front_camera(96, 80, 90));
   for (const Model& model : {test::random_model(32, 2000, 0), layers()}) {
     const Picture expected = reference::render(model, view);
-    const Picture drawn = test::draw(model, view, only_blend);
+    const Picture drawn = test::draw(model, view, {}, only_blend);
     EXPECT_GE(test::psnr(drawn, expected), 100.0);
     const Image z = depth_map(drawn);
     const Image z_expected = depth_map(expected);
@@ -41,7 +41,7 @@ TEST(Blend, TheComparisonCatchesAnEarlyStopOneGaussianLate) {
   const auto splats = reference::project_all(model, view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
   const Picture late = reference::blend(splats, lists, view, {.stop_late = true});
-  EXPECT_LT(test::psnr(test::draw(model, view, only_blend), late), 95.0);
+  EXPECT_LT(test::psnr(test::draw(model, view, {}, only_blend), late), 95.0);
 }
 
 TEST(Blend, HandComputedPixel) {

@@ -17,15 +17,17 @@ namespace binosplat {
 namespace {
 
 /// What one decoding holds, by id.
-std::map<std::size_t, reference::Decoded> read_decoding(const test::StageRun& run, std::uint32_t decoding) {
+std::map<std::size_t, reference::Decoded> read_decoding(test::StageRun& run, std::uint32_t decoding) {
   std::map<std::size_t, reference::Decoded> found;
   const std::uint32_t offsets = run.shape.offset_count;
-  for (const render::ModelBuffers::Page& page : run.model_buffers.pages) {
+  const std::vector<render::ModelBuffers::Page>& pages = run.drawn.model_buffers().pages;
+  for (std::size_t p = 0; p < pages.size(); ++p) {
+    const render::ModelBuffers::Page& page = pages[p];
     const std::size_t first = std::size_t{decoding} * page.count;
     const auto gaussians = page.gaussians->read<shared::Gaussian>(page.count, first);
     const auto colours = page.harmonics->read<glm::vec4>(page.count, first);
-    const auto kept = page.anchors->kept->read<std::uint32_t>(page.anchors->count,
-                                                              std::size_t{decoding} * page.anchors->count);
+    const auto kept = run.frame.kept[p]->read<std::uint32_t>(page.anchors->count,
+                                                             std::size_t{decoding} * page.anchors->count);
     for (std::size_t i = 0; i < page.count; ++i) {
       if ((kept[i / offsets] >> (i % offsets) & 1u) == 0) continue;
       const shared::Gaussian& g = gaussians[i];
@@ -173,13 +175,9 @@ TEST(DecodeStage, AnchorsOutOfSightAreDecodedWithoutTheCull) {
 TEST(DecodeStage, PagesMakeNoDifference) {
   const Model model = model_of(test::random_scaffold(14, {.anchors = 100}));
   const std::vector<shared::View> views{front_view(-0.1), front_view(0.1)};
-  test::StageRun run(model, views);
+  test::StageRun run(model, views, {}, 1, {}, 75);
   run.run_until(render::Stage::decode);
-  render::ModelBuffers pages(test::gl_context(), model, PRECISION_FULL, 75);
-  ASSERT_EQ(pages.pages.size(), 15u);  // 7 anchors each
-  std::swap(run.model_buffers.pages, pages.pages);
-  run.model_buffers.reserve(run.shape);
-  run.run_until(render::Stage::decode);
+  ASSERT_EQ(run.drawn.model_buffers().pages.size(), 15u);  // 7 anchors each
   for (std::uint32_t d = 0; d < 2; ++d) {
     const Difference difference =
         compare(read_decoding(run, d), reference::decode(*model.scaffold, std::span(views).subspan(d, 1)));

@@ -123,10 +123,8 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
     EXPECT_GE(test::psnr(draw(model, views, way)[1], expected), 80.0) << tiles_choices[way.tiles].name;
     for (const Stage stage :
          {Stage::project, Stage::order, Stage::pairs, Stage::tile_sort, Stage::ranges, Stage::blend}) {
-      FrameSettings settings = way;
-      settings.reference_until = stage;
-      EXPECT_GE(test::psnr(draw(model, views, settings)[1], expected), 80.0)
-          << render::stage_names[static_cast<int>(stage)] << " " << tiles_choices[way.tiles].name;
+      EXPECT_GE(test::psnr(draw(model, views, way, test::given(stage))[1], expected), 80.0)
+          << name_of(stage) << " " << tiles_choices[way.tiles].name;
     }
   }
 }
@@ -182,12 +180,11 @@ TEST(Frame, BuffersTooSmallGiveTheSamePicture) {
   const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
   const std::vector views(rig.views.begin(), rig.views.end());
   const std::vector<Picture> ample = draw(model, views);
-  for (const FrameSettings& settings :
-       {FrameSettings{.order_capacity = 10}, FrameSettings{.pair_capacity = 10},
-        FrameSettings{.order_capacity = 10, .pair_capacity = 10}}) {
+  for (const render::Workings& little : {render::Workings{.slots = 10}, render::Workings{.pairs = 10},
+                                         render::Workings{.slots = 10, .pairs = 10}}) {
     render::Frame frame(test::gl_context(), model);
     testing::internal::CaptureStderr();
-    const render::FrameReport report = frame.draw(views, settings);
+    const render::FrameReport report = frame.draw(views, {}, little);
     EXPECT_NE(testing::internal::GetCapturedStderr().find("drawn again"), std::string::npos);
     EXPECT_GT(report.redrawn, 0);
     const std::vector<Picture> tight = frame.read_pictures();
@@ -201,7 +198,8 @@ TEST(Frame, AModelInPagesGivesTheSamePicture) {
   const auto rig = stereo::make_rig(test::front_camera(150, 90, 140), {.ipd = 0.1, .cant_degrees = 3});
   const std::vector<Picture> whole = draw(model, std::vector(rig.views.begin(), rig.views.end()));
   for (const std::uint32_t page_gaussians : {1000u, 1024u, 2999u}) {
-    render::Frame frame(test::gl_context(), model, PRECISION_FULL, page_gaussians);
+    render::Frame frame(
+        std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, page_gaussians));
     frame.draw(rig.views);
     const std::vector<Picture> paged = frame.read_pictures();
     EXPECT_TRUE(same_bits(whole[0], paged[0])) << page_gaussians;
@@ -215,7 +213,7 @@ TEST(Frame, APageInPiecesGivesTheSamePicture) {
   for (const int degree : {0, 1, 2}) {  // with and without padding between Gaussians
     Model model = test::random_model(76, 70000, degree);
     for (std::size_t i = 0; i < 65600; ++i) model.opacity[i] = 0.0f;  // seen is the last piece
-    render::Frame frame(test::gl_context(), model, PRECISION_FULL, 20000);
+    render::Frame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, 20000));
     frame.draw(std::vector{view});
     const Picture paged = frame.read_pictures().front();
     EXPECT_TRUE(same_bits(draw(model, view), paged)) << degree;
@@ -238,13 +236,14 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
   const Model model = test::random_model(76, 20000, 2);
   const auto rig = stereo::make_rig(test::front_camera(300, 200, 300), {.ipd = 0.1});
   const std::int64_t before = test::gl_context().allocated_bytes();
-  for (const FrameSettings& settings :
-       {FrameSettings{.list_tiles = 1}, FrameSettings{.transmittance = TRANSMITTANCE_LAST, .list_tiles = 1},
-        FrameSettings{.list_tiles = 2}}) {
-    const auto needs = render::memory_needs(render::make_shape(rig.views, settings, model));
+  for (const auto& [transmittance, list_tiles] :
+       {std::pair{TRANSMITTANCE_ONE, 1}, {TRANSMITTANCE_LAST, 1}, {TRANSMITTANCE_ONE, 2}}) {
+    const FrameSettings settings{.transmittance = transmittance};
+    const auto needs = render::memory_needs(render::make_shape(rig.views, settings, model, list_tiles));
     render::Frame frame(test::gl_context(), model);
     EXPECT_EQ(test::gl_context().allocated_bytes() - before, needs.model);
-    const double taken = static_cast<double>(frame.draw(rig.views, settings).gpu_bytes - before);
+    const double taken =
+        static_cast<double>(frame.draw(rig.views, settings, {.list_tiles = list_tiles}).gpu_bytes - before);
     const double said = static_cast<double>(needs.model + needs.frame);
     EXPECT_NEAR(said / taken, 1.0, 0.03);  // what the sorts count in besides is small
   }

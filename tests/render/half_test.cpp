@@ -74,9 +74,7 @@ TEST(Half, TakesTheReferencesStages) {
   const shared::View view = eyes()[0];
   const Picture right = reference::render(model, view);
   for (const render::Stage until : {render::Stage::project, render::Stage::order, render::Stage::ranges}) {
-    render::FrameSettings settings = half;
-    settings.reference_until = until;
-    EXPECT_GE(test::psnr(test::draw(model, view, settings), right), 60.0);
+    EXPECT_GE(test::psnr(test::draw(model, view, half, test::given(until)), right), 60.0);
   }
 }
 

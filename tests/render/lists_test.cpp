@@ -18,7 +18,7 @@ using Offers = std::vector<std::vector<std::uint32_t>>;
 
 Offers offers(const Model& model, const std::vector<shared::View>& views, std::uint32_t v, int tiles,
               int list_tiles) {
-  test::StageRun run(model, views, {.tiles = tiles, .list_tiles = list_tiles});
+  test::StageRun run(model, views, {.tiles = tiles}, list_tiles);
   run.run_until(render::Stage::ranges);
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
@@ -66,12 +66,11 @@ struct Drawn {
   std::uint64_t listed = 0;  // and of lists
 };
 
-Drawn draw_frames(const Model& model, FrameSettings settings, int list_tiles, int count) {
-  settings.list_tiles = list_tiles;
+Drawn draw_frames(const Model& model, const FrameSettings& settings, int list_tiles, int count) {
   render::Frame frame(test::gl_context(), model);
   Drawn drawn;
   for (int n = 0; n < count; ++n) {
-    const render::FrameReport report = frame.draw(two_views(), settings);
+    const render::FrameReport report = frame.draw(two_views(), settings, {.list_tiles = list_tiles});
     drawn.pairs = report.pairs;
     drawn.listed = report.listed_pairs;
     for (Picture& picture : frame.read_pictures()) drawn.pictures.push_back(std::move(picture));
@@ -153,7 +152,7 @@ TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
   const Model model = test::random_model(53, 4000, 1);
   const auto told = [&](int list_tiles) {
     render::Frame frame(test::gl_context(), model);
-    frame.draw(two_views(), {.th = TH_SQUARED, .loss = 0.5f, .list_tiles = list_tiles});
+    frame.draw(two_views(), {.th = TH_SQUARED, .loss = 0.5f}, {.list_tiles = list_tiles});
     std::vector<std::vector<float>> all;
     for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what)
       for (const Image& image : frame.read_shown(what)) all.push_back(image.data);
@@ -164,7 +163,7 @@ TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
   EXPECT_NE(own[0], own[2]) << "the same whatever is shown";
   const auto weights = [&](int list_tiles) {
     render::Frame frame(test::gl_context(), model);
-    frame.draw(two_views(), {.weigh = true, .list_tiles = list_tiles});
+    frame.draw(two_views(), {.weigh = true}, {.list_tiles = list_tiles});
     std::vector<double> all(model.count());
     for (const render::WeighedGaussian& g : frame.read_weights(0)) all[g.index] = g.weight;
     return all;
@@ -175,25 +174,26 @@ TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
 TEST(Lists, GrowWithTheirTiles) {
   const Model model = test::random_model(52, 4000, 1);
   render::Frame frame(test::gl_context(), model), ample(test::gl_context(), model);
-  const render::FrameReport report = frame.draw(two_views(), {.list_tiles = 2, .pair_capacity = 50});
+  const render::FrameReport report = frame.draw(two_views(), {}, {.list_tiles = 2, .pairs = 50});
   EXPECT_GE(report.redrawn, 2);  // for the lists, then for the tiles
-  EXPECT_EQ(frame.draw(two_views(), {.list_tiles = 2}).redrawn, 0);
+  EXPECT_EQ(frame.draw(two_views(), {}, {.list_tiles = 2}).redrawn, 0);
   ample.draw(two_views(), {});
   EXPECT_TRUE(same_bits(frame.read_pictures()[1], ample.read_pictures()[1]));
 }
 
 TEST(Lists, OfTilesThatAreLeftToTheFrameChangeNoBit) {
   const Model model = test::random_model(54, 400, 1);
-  const auto draw_with = [&](const FrameSettings& settings) {
+  const auto draw_with = [&](int tile_size, int list_tiles) {
     render::Frame frame(test::gl_context(), model);
-    const render::FrameReport report = frame.draw(two_views(), settings);
+    const render::FrameReport report =
+        frame.draw(two_views(), {.tile_size = tile_size}, {.list_tiles = list_tiles});
     EXPECT_TRUE(report.list_tiles == 1 || report.list_tiles == 2);
     return frame.read_pictures()[0];
   };
-  const Picture expected = draw_with({.list_tiles = 1});
-  EXPECT_TRUE(same_bits(draw_with({}), expected));
-  EXPECT_TRUE(same_bits(draw_with({.tile_size = 32, .list_tiles = 2}), expected));
-  EXPECT_TRUE(test::fails_saying([&] { draw_with({.list_tiles = 3}); }, {"lists of 3 x 3 tiles"}));
+  const Picture expected = draw_with(16, 1);
+  EXPECT_TRUE(same_bits(draw_with(16, 0), expected));
+  EXPECT_TRUE(same_bits(draw_with(32, 2), expected));
+  EXPECT_TRUE(test::fails_saying([&] { draw_with(16, 3); }, {"lists of 3 x 3 tiles"}));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "render/stages.h"
 #include "render/support.h"
 
 namespace binosplat {
@@ -37,9 +38,11 @@ TEST(OrderKeys, WithABitLessTheOrderIsWrong) {
   const std::vector<shared::View> views = {make_view(test::front_camera(64, 48, 50))};
   const auto depths_in_order = [&](std::uint32_t bits_less) {
     test::StageRun run(model, views);
-    render::OrderGroup& group = run.shape.groups.front();
-    group.key_bits = bits_less == 0 ? group.key_bits : group.key_bits - bits_less;
-    run.run_until(render::Stage::order);
+    run.run_until(render::Stage::project);
+    render::FrameShape shape = run.shape;
+    shape.groups.front().key_bits -= bits_less;
+    gl::Dispatcher dispatcher(test::gl_context());
+    render::order(dispatcher, shape, 0, run.frame);
     const auto splats = run.frame.splats.read<shared::Splat>(run.indices.front().size());
     std::vector<float> depths;
     for (const std::uint32_t slot : run.frame.order.values().read<std::uint32_t>(splats.size()))

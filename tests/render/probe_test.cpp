@@ -1,5 +1,6 @@
 // Probes: tiles of a view that are drawn exactly, too, and what they tell of the others.
 
+#include "render/stages.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -14,15 +15,10 @@ constexpr glm::vec3 background{0.2f, 0.4f, 0.6f};
 
 // A frame with a probe, stage by stage.
 struct ProbeRun {
-  ProbeRun(const Model& model, const std::vector<shared::View>& views, FrameSettings settings,
-           const std::optional<Probe>& probe)
-      : run(model, views, settings, probe) {
-    run.shape.records = render::measures(settings.transmittance);
-    run.run_until(render::Stage::ranges);
-    gl::Dispatcher dispatcher(test::gl_context());
-    render::blend(dispatcher, run.shape, run.frame);
-    render::remember(dispatcher, run.shape, run.frame);
-    render::probe(dispatcher, run.shape, run.frame);
+  ProbeRun(const Model& model, const std::vector<shared::View>& views, const FrameSettings& settings,
+           int list_tiles, const std::optional<Probe>& probe)
+      : run(model, views, settings, list_tiles, probe) {
+    run.run_until(render::Stage::probe);
     const auto counters = run.frame.counters.read<shared::Counters>(1).front();
     EXPECT_EQ(counters.overflow, 0u);
     if (probe) error = render::probed(run.shape, counters).squared_error;
@@ -81,15 +77,15 @@ std::vector<shared::View> eyes(int width, int height, double cant = 0.0) {
 }
 
 // Settings without loss, in which a probe must find no error.
-void expect_no_error(const Model& model, const FrameSettings& settings, double cant) {
+void expect_no_error(const Model& model, const FrameSettings& settings, int list_tiles, double cant) {
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
   const auto views = eyes(width, height, cant);
   const int side = settings.tile_size;
   for (const Probe& probe : probes({1, 3}, tiles_along(width, side), tiles_along(height, side))) {
-    EXPECT_EQ(ProbeRun(model, views, settings, probe).error, 0.0)
-        << tiles_choices[settings.tiles].name << ", tile " << side << ", lists of " << settings.list_tiles
-        << ", cant " << cant << ", view " << probe.view << ", step " << probe.step << " from ("
-        << probe.column << ", " << probe.row << ")";
+    EXPECT_EQ(ProbeRun(model, views, settings, list_tiles, probe).error, 0.0)
+        << tiles_choices[settings.tiles].name << ", tile " << side << ", lists of " << list_tiles << ", cant "
+        << cant << ", view " << probe.view << ", step " << probe.step << " from (" << probe.column << ", "
+        << probe.row << ")";
   }
 }
 
@@ -97,9 +93,8 @@ TEST(Probe, WithoutLossFindsNoErrorWhereverItsTilesLie) {
   const Model model = test::random_model(101, 1500, 1);
   for (const int tile_size : {8, 16, 32}) {
     for (const int list_tiles : {1, 2}) {
-      const FrameSettings settings = {
-          .th = TH_SQUARED, .tile_size = tile_size, .list_tiles = list_tiles, .background = background};
-      expect_no_error(model, settings, list_tiles == 1 ? 0.0 : 4.0);
+      const FrameSettings settings = {.th = TH_SQUARED, .tile_size = tile_size, .background = background};
+      expect_no_error(model, settings, list_tiles, list_tiles == 1 ? 0.0 : 4.0);
     }
   }
 }
@@ -109,9 +104,8 @@ TEST(Probe, WithoutLossFindsNoErrorByAnyTileTest) {
   for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL}) {
     for (const int list_tiles : {1, 2}) {
       if (tiles == TILES_ALL && list_tiles == 2) continue;
-      expect_no_error(
-          model, {.tiles = tiles, .th = TH_PERIPHERAL, .list_tiles = list_tiles, .background = background},
-          list_tiles == 1 ? 4.0 : 0.0);
+      expect_no_error(model, {.tiles = tiles, .th = TH_PERIPHERAL, .background = background}, list_tiles,
+                      list_tiles == 1 ? 4.0 : 0.0);
     }
   }
 }
@@ -122,17 +116,14 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
   for (const int side : {8, 16, 32}) {
     for (const double cant : {0.0, 4.0}) {
       const auto views = eyes(width, height, cant);
-      const FrameSettings settings = {.th = TH_SQUARED,
-                                      .loss = 0.3f,
-                                      .tile_size = side,
-                                      .list_tiles = cant == 0.0 ? 1 : 2,
-                                      .background = background};
+      const FrameSettings settings = {
+          .th = TH_SQUARED, .loss = 0.3f, .tile_size = side, .background = background};
       const auto exact = test::draw(model, views, {.tile_size = side, .background = background});
       int differing = 0;
       const std::uint32_t across = tiles_along(width, side);
       const auto all = probes({1, 2, 3}, across, tiles_along(height, side));
       for (const Probe& probe : all) {
-        const ProbeRun run(model, views, settings, probe);
+        const ProbeRun run(model, views, settings, cant == 0.0 ? 1 : 2, probe);
         const Picture drawn = run.picture(probe.view);
         const double expected = error_in(probe, drawn, exact[probe.view], side);
         EXPECT_GT(expected, 1e-6);
@@ -159,10 +150,9 @@ TEST(Probe, TellsOfLongListsToo) {
   const auto views = eyes(64, 48);
   const auto exact = test::draw(model, views, {.background = background});
   for (const float loss : {0.0f, 0.02f}) {
-    const FrameSettings settings = {
-        .th = TH_SQUARED, .loss = loss, .list_tiles = 2, .background = background};
+    const FrameSettings settings = {.th = TH_SQUARED, .loss = loss, .background = background};
     for (const Probe& probe : probes({1, 2}, 4, 3)) {
-      const ProbeRun run(model, views, settings, probe);
+      const ProbeRun run(model, views, settings, 2, probe);
       if (probe.step == 1) {
         EXPECT_GT(run.run.frame.counters.read<shared::Counters>(1).front().long_lists, 0u);
       }
@@ -181,13 +171,13 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
         FrameSettings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST}}) {
     FrameSettings lossy = settings;
     lossy.loss = 0.05f;
-    const ProbeRun without(model, views, lossy, {});
+    const ProbeRun without(model, views, lossy, 1, {});
     for (const Probe& probe : probes({2}, 6, 5)) {
-      const ProbeRun with(model, views, lossy, probe);
+      const ProbeRun with(model, views, lossy, 1, probe);
       for (std::uint32_t eye = 0; eye < 2; ++eye)
         EXPECT_TRUE(test::same_bits(with.picture(eye), without.picture(eye))) << probe.step;
       const std::size_t all = 2 * model.count();
-      EXPECT_EQ(with.run.frame.upper_next->read<float>(all), without.run.frame.upper_next->read<float>(all));
+      EXPECT_EQ(with.run.frame.upper->read<float>(all), without.run.frame.upper->read<float>(all));
     }
   }
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "render/continuity.h"
+#include "render/history.h"
 #include "render/support.h"
 #include "stereo/rig.h"
 #include "support/errors.h"
@@ -41,7 +41,7 @@ TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
     render::Frame frame(test::gl_context(), model);
     for (int n = 0; n < 3; ++n) frame.draw(std::vector{front()}, settings);
     model = other;
-    frame.reload();
+    frame.model()->reload();
     EXPECT_FALSE(frame.draw(std::vector{front()}, settings).remembered);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, front(), settings)));
     EXPECT_TRUE(frame.draw(std::vector{front()}, settings).remembered);
@@ -182,9 +182,7 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   render::Frame tight(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) {
     ample.draw(views, settings);
-    FrameSettings few = settings;
-    few.order_capacity = 10 + n;
-    tight.draw(views, few);
+    tight.draw(views, settings, {.slots = 10 + n});
     EXPECT_TRUE(same_bits(ample.read_pictures().front(), tight.read_pictures().front())) << n;
   }
 }

@@ -107,7 +107,7 @@ TEST(ScaffoldFrame, PagesMakeNoDifference) {
   const Model model = test::scaffold_model(24, four_hundred);
   const std::vector<shared::View> views = eyes();
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
-    render::Frame frame(test::gl_context(), model, PRECISION_FULL, 70);
+    render::Frame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, 70));
     frame.draw(views, {.decode = decode});
     const std::vector<Picture> whole = draw(model, views, {.decode = decode});
     for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(frame.read_pictures()[v], whole[v]));
@@ -120,13 +120,14 @@ TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
     const Picture expected =
         reference::render(model, views[1], shared_by(decode == DECODE_EYES ? std::vector{views[1]} : views));
-    for (int stage = 0; stage <= static_cast<int>(Stage::blend); ++stage) {
-      const FrameSettings settings{.decode = decode, .reference_until = static_cast<Stage>(stage)};
-      EXPECT_GE(test::psnr(draw(model, views, settings)[1], expected), 80.0) << render::stage_names[stage];
+    for (int n = 0; n < render::stages_with_twins; ++n) {
+      const auto stage = static_cast<Stage>(n);
+      EXPECT_GE(test::psnr(draw(model, views, {.decode = decode}, test::given(stage))[1], expected), 80.0)
+          << name_of(stage);
     }
   }
   const Model plain = test::random_model(1, 10, 0);
-  EXPECT_TRUE(test::fails_saying([&] { draw(plain, views, {.reference_until = Stage::decode}); },
+  EXPECT_TRUE(test::fails_saying([&] { draw(plain, views, {}, test::given(Stage::decode)); },
                                  {"--reference-until decode", "no Scaffold-GS"}));
 }
 

@@ -8,11 +8,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "demo/room.h"
 #include "formats/cameras_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "render/support.h"
-#include "demo/room.h"
 #include "stereo/rig.h"
 
 namespace binosplat {
@@ -187,10 +187,10 @@ void expect_eyes_equal_themselves_alone(const Model& model, const Camera& head, 
   for (const double cant : {0.0, 5.0}) {
     const auto rig = stereo::make_rig(head, {.units_per_metre = units_per_metre, .cant_degrees = cant});
     for (const int list_tiles : {1, 2}) {
-      frame.draw(rig.views, {.list_tiles = list_tiles});
+      frame.draw(rig.views, {}, {.list_tiles = list_tiles});
       const auto both = frame.read_pictures();
       for (const std::size_t eye : {0, 1}) {
-        frame.draw(std::span(&rig.views[eye], 1), {.list_tiles = list_tiles});
+        frame.draw(std::span(&rig.views[eye], 1), {}, {.list_tiles = list_tiles});
         const auto alone = frame.read_pictures().front();
         EXPECT_TRUE(test::same_bits(both[eye], alone))
             << model.name << " cant " << cant << ", " << list_tiles;

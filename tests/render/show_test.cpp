@@ -57,7 +57,7 @@ struct ShowTest : testing::Test {
 };
 
 TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
-  frame.draw(std::vector{view}, {.reference_until = render::Stage::ranges});
+  frame.draw(std::vector{view}, {}, test::given(render::Stage::ranges));
   for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what) {
     const Image told = frame.read_shown(what).at(0);
     // Rounding turns an alpha at tau or an early stop in a few pixels.
@@ -95,7 +95,7 @@ TEST_F(ShowTest, OfPairsAndOtherTiles) {
 }
 
 TEST_F(ShowTest, TheReferencesOwnBlendHasNone) {
-  frame.draw(std::vector{view}, {.reference_until = render::Stage::blend});
+  frame.draw(std::vector{view}, {}, test::given(render::Stage::blend));
   EXPECT_THROW(frame.read_shown(SHOW_ALPHAS), Error);
 }
 

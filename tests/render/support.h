@@ -7,15 +7,16 @@
 #include <cstring>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/image.h"
 #include "measure/metrics.h"
-#include "primitives/amount.h"
+#include "measure/twins.h"
 #include "reference/render.h"
 #include "reference/transmittance.h"
 #include "render/frame.h"
-#include "render/stages.h"
 #include "scene/camera.h"
 #include "support/gl.h"
 #include "support/models.h"
@@ -23,16 +24,20 @@
 namespace binosplat::test {
 
 inline std::vector<Picture> draw(const Model& model, const std::vector<shared::View>& views,
-                                 const render::FrameSettings& settings = {}) {
+                                 const render::FrameSettings& settings = {},
+                                 const render::Workings& workings = {}) {
   render::Frame frame(gl_context(), model);
-  frame.draw(views, settings);
+  frame.draw(views, settings, workings);
   return frame.read_pictures();
 }
 
-inline Picture draw(const Model& model, const shared::View& view,
-                    const render::FrameSettings& settings = {}) {
-  return draw(model, std::vector{view}, settings).front();
+inline Picture draw(const Model& model, const shared::View& view, const render::FrameSettings& settings = {},
+                    const render::Workings& workings = {}) {
+  return draw(model, std::vector{view}, settings, workings).front();
 }
+
+/// The float64 reference in the place of the stages up to one.
+inline render::Workings given(render::Stage until) { return {.stand_in = measure::reference_until(until)}; }
 
 /// Whether two pictures are equal bit for bit; says where they are not.
 inline testing::AssertionResult same_bits(const Picture& a, const Picture& b) {
@@ -54,38 +59,24 @@ inline double psnr(const Picture& a, const Picture& b) {
   return measure::psnr(composite(a, glm::vec3(0.0f)), composite(b, glm::vec3(0.0f)));
 }
 
-/// The stages of a frame run one after another by themselves, with every buffer at hand.
+/// A frame drawn as far as a stage, with every buffer at hand.
 struct StageRun {
-  StageRun(const Model& model, const std::vector<shared::View>& views,
-           const render::FrameSettings& settings = {}, const std::optional<render::Probe>& probe = {})
-      : shape(render::make_shape(views, settings, model, probe)),
-        frame(gl_context()),
-        model_buffers(gl_context(), model) {
-    if (model_buffers.box) render::limit_keys(shape, *model_buffers.box);
-    frame.upload(shape);
-    frame.counters.upload(std::vector{shared::Counters{}});
-    frame.reserve(shape, 1 << 20, 1 << 20);
-    model_buffers.reserve(shape);
-    const std::uint32_t blocks = (shape.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
-    frame.block_amount.upload(std::vector{primitives::make_amount(blocks, gl_context().limits().groups)});
-  }
+  StageRun(const Model& model, std::vector<shared::View> of_views, const render::FrameSettings& with = {},
+           int list_tiles = 1, const std::optional<render::Probe>& and_probe = {},
+           std::uint32_t page_gaussians = 0)
+      : drawn(std::make_shared<render::GpuModel>(gl_context(), model, with.precision, page_gaussians)),
+        views(std::move(of_views)),
+        settings(with),
+        workings{.list_tiles = list_tiles},
+        probe(and_probe) {}
 
   void run_until(render::Stage stage) {
-    gl::Dispatcher dispatcher(gl_context());
-    render::decode(dispatcher, shape, model_buffers, frame);
-    if (stage == render::Stage::decode) return;
-    for (std::uint32_t group = 0; group < shape.groups.size(); ++group) {
-      render::project(dispatcher, shape, group, model_buffers, frame);
-      indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(
-          frame.drawn[group]->amounts.read<shared::Amount>(1).front().count));
-      if (stage == render::Stage::project) continue;
-      render::order(dispatcher, shape, group, frame);
-      if (stage != render::Stage::order) render::pairs(dispatcher, shape, group, frame);
+    drawn.draw_until(stage, views, settings, workings, probe);
+    indices.clear();
+    for (std::size_t group = 0; stage > render::Stage::decode && group < shape.groups.size(); ++group) {
+      const auto amounts = frame.drawn[group]->amounts.read<shared::Amount>(1);
+      indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(amounts.front().count));
     }
-    if (stage <= render::Stage::pairs) return;
-    render::tile_sort(dispatcher, shape, frame);
-    if (stage == render::Stage::tile_sort) return;
-    render::ranges(dispatcher, shape, frame);
   }
 
   /// The splats of a view by Gaussian of the model; tiles 0 where the view does not draw it. With lists of
@@ -100,29 +91,29 @@ struct StageRun {
     const auto tiles = frame.touched.read<std::uint32_t>(all);
     Projected out{std::vector<shared::Splat>(shape.gaussian_count),
                   std::vector<std::uint32_t>(shape.gaussian_count)};
-    const auto& drawn = indices[shape.views[view].order_group];
-    for (std::size_t slot = 0; slot < drawn.size(); ++slot) {
-      out.splats[drawn[slot]] = splats[std::size_t{view} * shape.slots + slot];
-      out.tiles[drawn[slot]] = tiles[slot * shape.view_count() + view];
+    const auto& of_group = indices[shape.views[view].order_group];
+    for (std::size_t slot = 0; slot < of_group.size(); ++slot) {
+      out.splats[of_group[slot]] = splats[std::size_t{view} * shape.slots + slot];
+      out.tiles[of_group[slot]] = tiles[slot * shape.view_count() + view];
     }
     return out;
   }
 
-  render::FrameShape shape;
-  render::FrameBuffers frame;
-  render::ModelBuffers model_buffers;
+  render::Frame drawn;
+  std::vector<shared::View> views;
+  render::FrameSettings settings;
+  render::Workings workings;
+  std::optional<render::Probe> probe;
+  const render::FrameShape& shape = drawn.shape();
+  render::FrameBuffers& frame = drawn.buffers();
   std::vector<std::vector<std::uint32_t>> indices;  // Gaussian by slot, for each order group
 };
 
 /// What a first frame leaves for the next, by Gaussian (Scaffold-GS: by id).
 inline std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
-  StageRun run(model, {view}, {.transmittance = TRANSMITTANCE_LAST});
-  run.shape.records = true;
-  run.run_until(render::Stage::ranges);
-  gl::Dispatcher dispatcher(gl_context());
-  render::blend(dispatcher, run.shape, run.frame);
-  render::remember(dispatcher, run.shape, run.frame);
-  return run.frame.upper_next->read<float>(model.count());
+  render::Frame frame(gl_context(), model);
+  frame.draw(std::span(&view, 1), {.transmittance = TRANSMITTANCE_LAST});
+  return frame.buffers().upper->read<float>(model.count());
 }
 
 /// How many Gaussians have another measurement in the reference than these.

@@ -77,7 +77,7 @@ TEST(Weigh, ThePictureStaysAndEyesHaveTheirOwn) {
   const Model model = test::random_model(92, 3000, 1);
   const stereo::EyePair rig = stereo::make_rig(test::front_camera(96, 80, 90), {.ipd = 0.3});
   render::Frame frame(test::gl_context(), model);
-  frame.draw(rig.views, {.weigh = true, .order_capacity = 10});  // is drawn again
+  frame.draw(rig.views, {.weigh = true}, {.slots = 10});  // is drawn again
   const std::vector<Picture> exact = test::draw(model, {rig.views.begin(), rig.views.end()});
   for (std::uint32_t v = 0; v < 2; ++v) {
     EXPECT_TRUE(same_bits(frame.read_pictures()[v], exact[v])) << v;

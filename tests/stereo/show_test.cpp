@@ -22,7 +22,7 @@ struct ShowTest : testing::Test {
   const EyePair pair = make_rig(test::front_camera(width, height, 55.0), {.ipd = 0.2, .convergence = 2.0});
   const render::FrameSettings coarse = {.th = TH_SQUARED, .loss = 3.0f};
   render::Frame frame{test::gl_context(), model};
-  Show show{test::gl_context(), model};
+  Show show{frame.model()};
   std::vector<Picture> pictures, exact;
 
   ShowTest() {

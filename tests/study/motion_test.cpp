@@ -136,7 +136,7 @@ TEST_F(Motions, WhatHasNoRoomIsDrawnAgain) {
   render::Frame frame(test::gl_context(), model);
   const std::int64_t one_frame = BytePictures::bytes(path.segments[0].frames[0]);
   EXPECT_EQ(one_frame, 4 * 2 * 50 * 37);
-  ExactFrames all(test::gl_context(), model, 100 * one_frame), some(test::gl_context(), model, 3 * one_frame);
+  ExactFrames all(frame.model(), 100 * one_frame), some(frame.model(), 3 * one_frame);
   all.draw(frame, path);
   some.draw(frame, path);
   EXPECT_EQ(all.left_out(), 0u);

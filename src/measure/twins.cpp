@@ -1,4 +1,4 @@
-#include "render/twins.h"
+#include "measure/twins.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,11 +10,19 @@
 #include "primitives/amount.h"
 #include "reference/render.h"
 #include "reference/threshold.h"
+#include "render/buffers.h"
 #include "render/halves.h"
 
-namespace binosplat::render {
+namespace binosplat::measure {
 
 namespace {
+
+using render::FrameBuffers;
+using render::FrameSettings;
+using render::FrameShape;
+using render::ModelBuffers;
+using render::OrderGroup;
+using render::Stage;
 
 shared::Splat to_shared(const reference::Splat& s) {
   shared::Splat out{};
@@ -46,8 +54,8 @@ reference::Settings reference_settings(const FrameShape& shape, std::uint32_t v)
 template <typename T>
 void upload_in(int precision, const std::vector<T>& things, gl::Buffer& buffer) {
   if (precision == PRECISION_FULL) return buffer.upload(things);
-  std::vector<Halves> packed;
-  for (const T& thing : things) packed.push_back(pack(thing));
+  std::vector<render::Halves> packed;
+  for (const T& thing : things) packed.push_back(render::pack(thing));
   buffer.upload(packed);
 }
 
@@ -55,7 +63,7 @@ void upload_harmonics(int precision, const std::vector<glm::vec4>& harmonics, gl
   if (precision == PRECISION_FULL) return buffer.upload(harmonics);
   std::vector<std::uint32_t> packed(4 * harmonics.size());
   for (std::size_t k = 0; k < harmonics.size(); ++k)
-    pack(std::span(&harmonics[k].x, 4), std::span(packed).subspan(4 * k, 4));
+    render::pack(std::span(&harmonics[k].x, 4), std::span(packed).subspan(4 * k, 4));
   buffer.upload(packed);
 }
 
@@ -75,14 +83,16 @@ void add(const reference::Decoded& decoded, std::size_t place, std::size_t offse
   page.kept[place / offset_count] |= 1u << place % offset_count;
 }
 
-void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& model_buffers) {
+void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& model_buffers,
+                    FrameBuffers& buffers) {
   if (!model.scaffold) fail("--reference-until decode: {} is no Scaffold-GS model", model.name);
   std::vector<std::vector<reference::Decoded>> decodings;
   for (std::uint32_t v = 0; v < shape.view_count(); v += shape.views_per_decoding) {
     const reference::Decoding decoding = decoding_for(shape, v);
     decodings.push_back(reference::decode(*model.scaffold, decoding.views, decoding.anchor_cull));
   }
-  for (ModelBuffers::Page& page : model_buffers.pages) {
+  for (std::size_t p = 0; p < model_buffers.pages.size(); ++p) {
+    ModelBuffers::Page& page = model_buffers.pages[p];
     const std::size_t all = decodings.size() * page.count;
     DecodedPage decoded{std::vector<shared::Gaussian>(all), std::vector<glm::vec4>(all),
                         std::vector<std::uint32_t>(all / shape.offset_count)};
@@ -94,7 +104,7 @@ void upload_decoded(const Model& model, const FrameShape& shape, ModelBuffers& m
     }
     upload_in(shape.settings.precision, decoded.gaussians, *page.gaussians);
     upload_harmonics(shape.settings.precision, decoded.harmonics, *page.harmonics);
-    page.anchors->kept->upload(decoded.kept);
+    buffers.kept[p]->upload(decoded.kept);
   }
 }
 
@@ -241,12 +251,9 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
   buffers.ranges.upload(ranges);
 }
 
-}  // namespace
-
-std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& shape,
-                                         std::uint32_t groups_max, ModelBuffers& model_buffers,
-                                         FrameBuffers& buffers) {
-  const Stage until = *shape.settings.reference_until;
+std::vector<Picture> fill(Stage until, const Model& model, const FrameShape& shape,
+                          ModelBuffers& model_buffers, FrameBuffers& buffers) {
+  const std::uint32_t groups_max = buffers.context().limits().groups;
   if (shape.settings.transmittance != TRANSMITTANCE_ONE || shape.settings.quality > 0.0f) {
     fail(
         "--reference-until: the reference goes by no earlier frame: leave --transmittance and --quality "
@@ -254,7 +261,7 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
   }
   std::vector<Picture> pictures;
   if (until == Stage::decode) {
-    upload_decoded(model, shape, model_buffers);
+    upload_decoded(model, shape, model_buffers, buffers);
     return pictures;
   }
   if (until == Stage::blend) {
@@ -263,8 +270,7 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
     return pictures;
   }
   if (until < Stage::pairs && shape.groups.size() > 1) {
-    fail("--reference-until {}: only for views that share one depth order (no --cant)",
-         stage_names[static_cast<int>(until)]);
+    fail("--reference-until {}: only for views that share one depth order (no --cant)", name_of(until));
   }
   std::vector<ViewResult> results;
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) results.push_back(reference_view(model, shape, v));
@@ -286,4 +292,12 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
   return pictures;
 }
 
-}  // namespace binosplat::render
+}  // namespace
+
+render::StandIn reference_until(Stage until) {
+  return {until,
+          [until](const Model& model, const FrameShape& shape, ModelBuffers& model_buffers,
+                  FrameBuffers& buffers) { return fill(until, model, shape, model_buffers, buffers); }};
+}
+
+}  // namespace binosplat::measure

@@ -1,0 +1,24 @@
+#pragma once
+// Loops on all cores.
+
+#include <concepts>
+#include <cstddef>
+#include <functional>
+
+namespace binosplat {
+
+/// Calls body(begin, end) for chunks of about `chunk` that make up [0, count), on any number of threads at
+/// once. What body throws is thrown here.
+void parallel_chunks(std::size_t count, std::size_t chunk,
+                     const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+/// Calls body(i) for each i of [0, count) that way; each call is taken to be worth a thread's while unless
+/// `chunk` says how many are.
+template <std::integral Count, typename Body>
+void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
+  parallel_chunks(static_cast<std::size_t>(count), chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(static_cast<Count>(i));
+  });
+}
+
+}  // namespace binosplat

@@ -1,0 +1,16 @@
+#pragma once
+// --reference-until: the stages' results from the float64 reference, put where the GPU's would be, so that a
+// wrong picture is bisected to its stage.
+
+#include "render/workings.h"
+
+namespace binosplat::measure {
+
+/// Computes the stages up to `until` on the CPU and uploads everything that later stages read; with
+/// Stage::blend the pictures themselves are returned. A shared depth order takes a Gaussian's depth from the
+/// first view that draws it. The frame throws Error for Stage::decode of a model that is not decoded, for a
+/// stage before pairs when the views do not share one depth order (the GPU handles the groups one after the
+/// other), and for settings that go by earlier frames.
+render::StandIn reference_until(render::Stage until);
+
+}  // namespace binosplat::measure

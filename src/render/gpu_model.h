@@ -1,0 +1,80 @@
+#pragma once
+// A model on the GPU, which any number of frames draw.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "render/anchors.h"
+#include "render/shape.h"
+#include "scene/model.h"
+
+namespace binosplat::render {
+
+/// The model in one precision, in pages of Gaussians whose buffers a shader can reach. Of Scaffold-GS a page
+/// holds whole anchors, and its Gaussians and their colours (as harmonics of degree 0) are made anew each
+/// frame, once for each decoding: (decoding, id).
+struct ModelBuffers {
+  struct Page {
+    std::uint32_t first = 0;  // Gaussian of the model
+    std::uint32_t count = 0;
+    std::unique_ptr<gl::Buffer> gaussians;  // Gaussian, or Halves
+    std::unique_ptr<gl::Buffer> harmonics;  // packed vec4s, or as many halves (sh.glsl)
+    std::unique_ptr<AnchorBuffers> anchors;
+  };
+
+  /// Uploads. `page_gaussians` limits a page, 0: what the driver reaches.
+  ModelBuffers(gl::Context& context, const Model& model, int precision, std::uint32_t page_gaussians);
+
+  /// Another model in the place of this one, in the buffers that there are where they are large enough.
+  void upload(gl::Context& context, const Model& model);
+
+  /// Room for what a frame of this shape decodes.
+  void reserve(const FrameShape& shape);
+
+  const int precision;  // PRECISION_ of shared/axes.h
+  std::vector<Page> pages;
+  NetworkBuffers networks;
+  std::optional<Bounds> box;  // around all positions; none of a model that is decoded or empty
+
+ private:
+  void upload_pages(gl::Context& context, const Model& model, std::size_t step);
+  void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
+
+  std::uint32_t page_gaussians_;
+};
+
+class GpuModel {
+ public:
+  /// Uploads the model in a PRECISION_ of shared/axes.h. Model and context must outlive it, and the context
+  /// must be current in every call. `page_gaussians` is for tests (see ModelBuffers). Throws
+  /// Error(out_of_memory) if the GPU has no room.
+  GpuModel(gl::Context& context, const Model& model, int precision = PRECISION_FULL,
+           std::uint32_t page_gaussians = 0);
+
+  gl::Context& context() const { return context_; }
+  const Model& model() const { return model_; }
+
+  /// The model in that precision: uploaded where no frame has it so. A precision stays on the GPU while a
+  /// frame holds it, the last one asked for besides. Throws as the constructor does.
+  std::shared_ptr<ModelBuffers> in(int precision);
+
+  /// Uploads the model again, which has changed since: it is the same scene at other levels of detail.
+  /// Buffers are used again where they are large enough. Frames see by `uploads` that what they measured is
+  /// of another model. Throws as the constructor does.
+  void reload();
+  int uploads() const { return uploads_; }
+
+ private:
+  gl::Context& context_;
+  const Model& model_;
+  std::uint32_t page_gaussians_;
+  int uploads_ = 0;
+  std::shared_ptr<ModelBuffers> latest_;
+  std::array<std::weak_ptr<ModelBuffers>, 2> all_;  // by precision
+};
+
+}  // namespace binosplat::render

@@ -1,0 +1,82 @@
+#include "render/history.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace binosplat::render {
+
+namespace {
+
+constexpr double turn_max_degrees = 15.0;
+constexpr double move_max_of_depth = 0.1;
+// Of the way to a cut: a picture that has changed by more is probed, and measured, again.
+constexpr double probe_share = 1.0 / 15.0;
+constexpr double measure_share = 1.0 / 3.0;
+
+double turned_degrees(const shared::View& a, const shared::View& b) {
+  const auto dot = [](const glm::vec4& x, const glm::vec4& y) {
+    return glm::dot(glm::dvec3(x), glm::dvec3(y));
+  };
+  // The trace of the rotation from one to the other is 1 + 2 cos(angle).
+  const double trace = dot(a.row_x, b.row_x) + dot(a.row_y, b.row_y) + dot(a.row_z, b.row_z);
+  return glm::degrees(std::acos(std::clamp((trace - 1.0) / 2.0, -1.0, 1.0)));
+}
+
+double moved(const shared::View& a, const shared::View& b) {
+  const glm::dvec3 eye_a = glm::dvec3(a.anchor) + glm::dvec3(a.eye);
+  const glm::dvec3 eye_b = glm::dvec3(b.anchor) + glm::dvec3(b.eye);
+  return glm::length(eye_a - eye_b);
+}
+
+}  // namespace
+
+bool continues(const FrameShape& before, const FrameShape& now, double median_depth, double share) {
+  if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
+  for (std::size_t v = 0; v < now.asked; ++v) {
+    const shared::View& a = before.views[v];
+    const shared::View& b = now.views[v];
+    if (a.width != b.width || a.height != b.height || a.lens != b.lens) return false;
+    if (turned_degrees(a, b) > share * turn_max_degrees ||
+        moved(a, b) > share * move_max_of_depth * median_depth)
+      return false;
+  }
+  return true;
+}
+
+void FrameHistory::follow_levels(std::uint32_t gaussians) {
+  forget_measured();
+  last_.gaussian_count = gaussians;
+}
+
+bool FrameHistory::probed_lately(const FrameShape& now) {
+  return ++since_probed_ < now.settings.probe_every && continues(probed_, now, median_depth_, probe_share);
+}
+
+void FrameHistory::decide(FrameShape& now) {
+  const FrameSettings& s = now.settings;
+  if (!measures(s.transmittance)) return;
+  now.remembers = measures(measured_.settings.transmittance) && measured_.settings.decode == s.decode &&
+                  continues(measured_, now, median_depth_);
+  since_cut_ = now.remembers ? since_cut_ + 1 : 0;
+  ++since_measured_;
+  now.records = since_cut_ < s.record_every || since_measured_ >= s.record_every || now.offset_count > 0 ||
+                !continues(measured_, now, median_depth_, measure_share);
+}
+
+void FrameHistory::keep(const FrameShape& drawn, const shared::Counters& counters) {
+  last_ = drawn;
+  if (drawn.records || drawn.probe)
+    median_depth_ = counters.visible == 0 ? 0.0 : std::bit_cast<float>(counters.median_depth);
+  if (drawn.records) {
+    measured_ = drawn;
+    since_measured_ = 0;
+  } else if (!measures(drawn.settings.transmittance)) {
+    measured_ = {};
+  }
+  if (!drawn.probe) return;
+  probed_ = drawn;
+  since_probed_ = 0;
+}
+
+}  // namespace binosplat::render

@@ -1,0 +1,40 @@
+#pragma once
+// The memory that a frame takes: what it starts with, how it grows, and what that comes to beforehand.
+
+#include <cstdint>
+
+#include "render/shape.h"
+#include "render/workings.h"
+
+namespace binosplat::render {
+
+/// Room that a frame starts with for the Gaussians it draws: of a small model all may be in view; of a large
+/// one hardly ever, and what is missing is grown.
+std::uint32_t starting_slots(std::uint32_t gaussians);
+
+/// Pairs that a first frame has room for: most models need some tiles a Gaussian; what is missing is grown.
+std::int64_t starting_pairs(const FrameShape& shape);
+
+/// Bytes that the model takes on the GPU, and those that a frame of it starts with besides; a shape whose
+/// lists are left to the frame is taken to have one a tile.
+struct MemoryNeeds {
+  std::int64_t model = 0;
+  std::int64_t frame = 0;
+};
+MemoryNeeds memory_needs(const FrameShape& shape);
+
+/// What the buffers of frames that follow one another have room for.
+struct Capacity {
+  std::int64_t slots = 0;       // Gaussians that an order group draws
+  std::int64_t pairs = 0;       // Gaussian-list pairs
+  std::int64_t tile_pairs = 0;  // Gaussian-tile pairs, where lists are of several tiles
+
+  /// At least what a frame of this shape starts with, or exactly what `asked` names.
+  void start(const FrameShape& shape, const Workings& asked);
+
+  /// What overflowed gets room for what it wanted, and some more; says so in the log. Throws
+  /// Error(out_of_memory) for more pairs than can be counted.
+  void grow(const FrameShape& shape, const shared::Counters& counters);
+};
+
+}  // namespace binosplat::render

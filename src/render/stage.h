@@ -1,0 +1,19 @@
+#pragma once
+// The stages of a frame, in their order.
+
+#include <array>
+#include <cstddef>
+
+namespace binosplat::render {
+
+/// `decode` of Scaffold-GS only, `probe` of frames that look at their own error. A stage is a file here,
+/// programs and a test of one name.
+enum class Stage { decode, project, order, pairs, tile_sort, ranges, blend, probe };
+constexpr std::array stage_names = {"decode",    "project", "order", "pairs",
+                                    "tile_sort", "ranges",  "blend", "probe"};
+constexpr const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
+
+/// So many of them, from the first on, the float64 reference can stand in for (measure/twins.h).
+constexpr int stages_with_twins = static_cast<int>(Stage::blend) + 1;
+
+}  // namespace binosplat::render

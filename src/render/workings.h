@@ -1,0 +1,38 @@
+#pragma once
+// How a frame goes about it, where a test or the search for a fault wants to say: no right picture depends on
+// it.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "base/image.h"
+#include "render/stage.h"
+#include "scene/model.h"
+
+namespace binosplat::render {
+
+struct FrameBuffers;
+struct FrameShape;
+struct ModelBuffers;
+
+/// Puts what the stages up to `until` would leave into the buffers, in their place; with Stage::blend the
+/// pictures themselves are returned. measure/twins.h has the float64 reference's.
+struct StandIn {
+  Stage until;
+  std::function<std::vector<Picture>(const Model&, const FrameShape&, ModelBuffers&, FrameBuffers&)> fill;
+};
+
+struct Workings {
+  /// So many tiles along each side share a list of pairs, 1 or 2: with 2 there are fewer pairs to sort. 0:
+  /// the frame chooses.
+  int list_tiles = 0;
+  /// Room to start with, in Gaussians in view and in pairs; 0: chosen by the frame. A frame that needs more
+  /// grows its buffers and is drawn again.
+  std::int64_t slots = 0;
+  std::int64_t pairs = 0;
+  std::optional<StandIn> stand_in;
+};
+
+}  // namespace binosplat::render
