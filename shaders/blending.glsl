@@ -1,4 +1,4 @@
-// What both programs of stage 6 share: an invocation's pixels, and how splats are blended into them (METHOD 3).
+// What both programs of stage 6 share: an invocation's pixels, and how splats are blended into them (docs/method.md 3).
 //   COLUMN      pixels of an invocation, one below the other
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
@@ -57,8 +57,8 @@ float z_sum[COLUMN];
 float transmittance[COLUMN];  // 0 once the pixel is done,
 float least[COLUMN];          // and this -T; until then the T that the blend stops at
 
-// The most that a splat's alpha counts for in any pixel: T (METHOD 5). A maximum in shared memory, and one a tile in the
-// buffer, cost little beside the blend. Or what it counts for in all pixels together, as a whole number, so that the order
+// The most that a splat's alpha counts for in any pixel: T (docs/method.md 5). A maximum in shared memory, and one a tile in
+// the buffer, cost little beside the blend. Or what it counts for in all pixels together, as a whole number, so that the order
 // of the additions does not matter.
 void measure(uint at, uint p, float alpha) {
 #if WEIGHS

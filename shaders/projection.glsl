@@ -1,6 +1,6 @@
-// A Gaussian as a view sees it (METHOD 2), all but its colour. `precise` because several programs compute it and must get the
-// same bits.
-// Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of METHOD 2.
+// A Gaussian as a view sees it (docs/method.md 2), all but its colour. `precise` because several programs compute it and
+// must get the same bits.
+// Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of docs/method.md 2.
 mat3 scaled_axes(Gaussian g) {
   precise float w = g.rotation.x;
   precise float x = g.rotation.y;

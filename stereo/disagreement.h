@@ -1,5 +1,5 @@
 #pragma once
-// Binocular disagreement (METHOD.md section 6): the part of an approximation's error that the two eyes do not
+// Binocular disagreement (docs/method.md 6): the part of an approximation's error that the two eyes do not
 // share. A shared error changes the picture; one that is in one eye only is rivalry, seen as shimmer in
 // depth.
 

@@ -1,6 +1,6 @@
 #pragma once
 // The stereo rig: from one head camera (or two given eyes) to the two Views of a frame. Pure maths, in double
-// until the Views are rounded to float. METHOD.md section 6.
+// until the Views are rounded to float. docs/method.md 6.
 //
 // Units: `ipd` and `convergence` are metres; `units_per_metre` brings them to the world's units. Everything
 // else (positions, near plane) is in world units already. Eye 0 is the left one, eye 1 the right one.

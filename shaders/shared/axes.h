@@ -3,14 +3,14 @@
 #ifndef BINOSPLAT_SHARED_AXES_H
 #define BINOSPLAT_SHARED_AXES_H
 
-// --tiles: which Gaussian-tile pairs are made (METHOD 4).
+// --tiles: which Gaussian-tile pairs are made (docs/method.md 4).
 #define TILES_AABB 0
 #define TILES_ELLIPSE 1
 #define TILES_ALL 2
 #define TILES_OBB 3
 #define TILES_SNUG 4
 
-// --th: the alpha below which a Gaussian makes no pair (METHOD 5).
+// --th: the alpha below which a Gaussian makes no pair (docs/method.md 5).
 #define TH_TAU 0
 #define TH_PERIPHERAL 1
 #define TH_SQUARED 2

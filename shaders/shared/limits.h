@@ -2,7 +2,7 @@
 #ifndef BINOSPLAT_SHARED_LIMITS_H
 #define BINOSPLAT_SHARED_LIMITS_H
 
-// Below this alpha a Gaussian leaves no mark on a pixel of 8 bits (METHOD: tau, as in 3D-GS).
+// Below this alpha a Gaussian leaves no mark on a pixel of 8 bits (docs/method.md: tau, as in 3D-GS).
 #define ALPHA_MIN (1.0 / 255.0)
 // alpha is capped so that no single Gaussian makes everything behind it exactly invisible (3D-GS).
 #define ALPHA_MAX 0.99
@@ -16,7 +16,7 @@
 #define KERNEL_PX2 0.3
 #endif
 // J is evaluated at most this share of the picture's size beyond its edges; 0.15 a side is INRIA's 1.3
-// (METHOD 2).
+// (docs/method.md 2).
 #define CLAMP_MARGIN 0.15
 // Side of a tile in px where nothing else is known.
 #define TILE_SIZE_DEFAULT 16
@@ -31,8 +31,9 @@
 // Sorted pairs that a work group splits among their tiles.
 #define TILE_BLOCK 1024
 
-// What a frame remembers of a Gaussian (METHOD 5): never less than the floor, or a hidden one would divide by
-// zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be measured again.
+// What a frame remembers of a Gaussian (docs/method.md 5): never less than the floor, or a hidden one would
+// divide by zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be
+// measured again.
 #define UPPER_FLOOR 0.01
 #define UPPER_AGEING 1.25
 // Blending weights alpha T are summed in steps of this: the least one that a pixel can blend, tau times the

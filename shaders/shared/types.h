@@ -24,7 +24,7 @@ struct View {
   vec4 anchor;  // world point; w: near, the smallest depth drawn (world units)
   vec4 eye;     // the eye minus the anchor, world axes; w: unused
   vec4 lens;    // fx, fy, cx, cy in px
-  vec4 slopes;  // v.x / v.z and v.y / v.z at which J is taken: lowest x, y, highest x, y (METHOD 2)
+  vec4 slopes;  // v.x / v.z and v.y / v.z at which J is taken: lowest x, y, highest x, y (docs/method.md 2)
   uint width;   // px
   uint height;  // px
   uint tiles_x;

@@ -1,5 +1,5 @@
-// Th: the alpha below which a Gaussian makes no pair with a tile; the blend keeps tau and the true alpha (METHOD 5). A rule
-// is a file beside this one with one function:
+// Th: the alpha below which a Gaussian makes no pair with a tile; the blend keeps tau and the true alpha (docs/method.md 5). A
+// rule is a file beside this one with one function:
 //   float threshold(float size, float upper, float loss)   at least tau
 // size: sqrt(det C2), px^2; upper: T_upper, above 0; loss: K or kappa.
 

@@ -1,5 +1,5 @@
 // T_upper of a Gaussian in a view, the most light that reaches it: 1 where nothing is known, at first, after a cut, outside
-// the view, beyond the table of depths (METHOD 5).
+// the view, beyond the table of depths (docs/method.md 5).
 
 #include "shared/axes.h"
 #include "shared/limits.h"

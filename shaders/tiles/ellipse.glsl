@@ -1,6 +1,6 @@
 // Exact (FlashGS, AdR-Gaussian): a tile is touched where the smallest q over the rectangle of its pixel centres is at most
 // rho = 2 ln(sigma / Th), that is where alpha reaches Th. The rounding of fp32 must not drop a pair that the blend would
-// show, so the test has a margin (METHOD 4).
+// show, so the test has a margin (docs/method.md 4).
 
 // The test itself.
 bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {

@@ -1,4 +1,4 @@
-// Which tiles of a view a splat is offered to (METHOD 4). A shape is a file beside this one with three functions:
+// Which tiles of a view a splat is offered to (docs/method.md 4). A shape is a file beside this one with three functions:
 //   uvec4 tile_box(Splat, View)                      columns [x, z) and rows [y, w) that it can touch, inside the grid
 //   uint likely_row(Splat, View, uvec4 box)          the row most likely to have such a tile
 //   uvec2 tile_row(Splat, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
@@ -44,7 +44,7 @@ vec3 covariance(Splat splat) {
 }
 
 // Half the box around {alpha >= Th}, px. rho is taken a little larger than it is, or the rounding of fp32 would drop pairs
-// (METHOD 4).
+// (docs/method.md 4).
 vec2 level_extent(Splat splat) {
   vec3 c = covariance(splat);
   // C2.xx C2.yy / det, at least 1: how far the rounding of a long leaning ellipse is magnified.

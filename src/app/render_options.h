@@ -110,7 +110,7 @@ void add_measured_options(CLI::App& sub, RenderOptions& options);
 void add_view_options(CLI::App& sub, RenderOptions& options);
 
 /// What --th is: squared where only a loss, a quality or a calibration is given, which costs less at equal
-/// error than the paper's rule (METHOD 8).
+/// error than the paper's rule (docs/method.md 8).
 std::string threshold_name(const RenderOptions& options);
 
 /// What --units-per-metre is: as given, as saved, or 1.

@@ -26,7 +26,7 @@ struct Image {
   }
 };
 
-/// What a blend leaves of one view (METHOD.md section 3), before any background. Rows from the top.
+/// What a blend leaves of one view (docs/method.md 3), before any background. Rows from the top.
 struct Picture {
   int width = 0;
   int height = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// OpenEXR as METHOD.md section 3 defines it: scene-linear by convention, with depth.
+// OpenEXR as docs/method.md 3 defines it: scene-linear by convention, with depth.
 //
 // With a background: R, G, B = EOTF(C + T * background), A = 1, and what the model covers, 1 - T, in channel
 // `coverage`. Without: associated alpha, R, G, B = A * EOTF(C/A), A = 1 - T. EOTF is sRGB's, which goes on

@@ -28,7 +28,7 @@ struct Choices {
 };
 
 /// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no loss without
-/// one, and so on (METHOD 5).
+/// one, and so on (docs/method.md 5).
 void make_consistent(Choices& choices);
 
 class Session {

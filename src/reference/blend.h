@@ -1,5 +1,5 @@
 #pragma once
-// The blend (METHOD.md section 3): each pixel walks its tile's list front to back.
+// The blend (docs/method.md 3): each pixel walks its tile's list front to back.
 
 #include <cstdint>
 #include <vector>
@@ -16,7 +16,7 @@ struct Faults {
   bool stop_late = false;  // the Gaussian that crosses TRANSMITTANCE_MIN is added before the pixel stops
 };
 
-/// Alphas of a blend, summed over the pixels (METHOD.md section 8 has them per pixel). Evaluated counts what
+/// Alphas of a blend, summed over the pixels (docs/method.md 8 has them per pixel). Evaluated counts what
 /// a GPU does: the pixels of a tile walk its list together until the last of them has ended.
 struct BlendCounts {
   std::uint64_t evaluated = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// One pixel of the blend, METHOD.md section 3 to the letter. For this room only.
+// One pixel of the blend, docs/method.md 3 to the letter. For this room only.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #pragma once
-// A Gaussian as one view sees it, in float64 (METHOD.md section 2; 3D Gaussian Splatting, Kerbl et al. 2023).
-// The judge of src/render/project.cpp: both are written from METHOD.md and share constants and structs only.
+// A Gaussian as one view sees it, in float64 (docs/method.md 2; 3D Gaussian Splatting, Kerbl et al. 2023).
+// The judge of src/render/project.cpp: both are written from docs/method.md and share constants and structs
+// only.
 
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -33,7 +34,7 @@ struct Splat {
   bool drawn = false;            // deeper than the near plane, det > 0, and Th (threshold.h) not above sigma
 };
 
-/// What widens every splat (METHOD.md section 2).
+/// What widens every splat (docs/method.md 2).
 struct LowPass {
   double kernel_px2 = KERNEL_PX2;  // variance, px^2
   bool antialiased = false;        // the opacity falls as the splat is widened

@@ -1,5 +1,5 @@
 #pragma once
-// The float64 judge: one view from model to picture on the CPU, as METHOD.md defines it. The stages by
+// The float64 judge: one view from model to picture on the CPU, as docs/method.md defines it. The stages by
 // themselves are in project.h, threshold.h, tiles.h and blend.h.
 
 #include "base/image.h"

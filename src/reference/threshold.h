@@ -1,5 +1,5 @@
 #pragma once
-// Th, the alpha below which a Gaussian makes no pair (METHOD.md section 5). It decides pairs only: the blend
+// Th, the alpha below which a Gaussian makes no pair (docs/method.md 5). It decides pairs only: the blend
 // goes by tau and the true alpha.
 
 #include <span>

@@ -1,5 +1,5 @@
 #pragma once
-// Which tiles a splat is blended in, and the lists that follow (METHOD.md section 4).
+// Which tiles a splat is blended in, and the lists that follow (docs/method.md 4).
 
 #include <cstdint>
 #include <span>

@@ -35,7 +35,7 @@ void consider(NearDecision& best, double distance, const glm::dvec3& change, std
 }
 
 /// The change if Gaussian `met` fell on the other side of tau: alpha T (c - C_behind), C_behind being the
-/// colour of all behind it as if the transmittance were 1 there (METHOD.md section 5).
+/// colour of all behind it as if the transmittance were 1 there (docs/method.md 5).
 glm::dvec3 change_by_alpha(const Met& met, const glm::dvec3& colour, const glm::dvec3& final_colour) {
   const double t = met.before.transmittance;
   const glm::dvec3 own = met.alpha * t * colour;

@@ -33,9 +33,9 @@ constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double loss_min = 1e-9, loss_max = 1e9;
 
-// METHOD 8: losses that gave 40 dB or a little more on every shared scene at a focal length of 700 px. In
-// smaller pictures Gaussians are smaller, too, and fox asked for 0.027 (squared, last) at 160 px: less than
-// in proportion.
+// docs/method.md 8: losses that gave 40 dB or a little more on every shared scene at a focal length of 700
+// px. In smaller pictures Gaussians are smaller, too, and fox asked for 0.027 (squared, last) at 160 px: less
+// than in proportion.
 double careful_loss_at_40_db(const FrameSettings& s, double focal) {
   const double smaller = std::pow(std::min(1.0, focal / 700.0), 1.75);
   return (s.th == TH_PERIPHERAL ? 1.0 : 0.1) * smaller;

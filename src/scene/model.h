@@ -1,5 +1,5 @@
 #pragma once
-// A trained 3D Gaussian Splatting model in memory, decoded (METHOD.md section 1).
+// A trained 3D Gaussian Splatting model in memory, decoded (docs/method.md 1).
 
 #include <array>
 #include <cstddef>

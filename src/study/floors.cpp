@@ -46,8 +46,8 @@ double rate(gl::Context& context, int floor, double operations, const gl::Buffer
   }
 }
 
-// Multiply-adds of a Gaussian in a view (METHOD 2): axes 21, view space 9, J R M 30, C2 and conic 15, the
-// tile box 15; and of its colour, the basis 20 and a sum over the harmonics of each channel.
+// Multiply-adds of a Gaussian in a view (docs/method.md 2): axes 21, view space 9, J R M 30, C2 and conic 15,
+// the tile box 15; and of its colour, the basis 20 and a sum over the harmonics of each channel.
 constexpr double projection_fmas = 90.0, basis_fmas = 20.0;
 
 struct Least {

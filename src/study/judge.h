@@ -1,5 +1,5 @@
 #pragma once
-// How far a stereo (or mono) frame is from the exact one: the numbers that METHOD.md section 7 asks for.
+// How far a stereo (or mono) frame is from the exact one: the numbers that docs/method.md 7 asks for.
 
 #include <span>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where thresholds that go by the last frame can fail (METHOD.md section 7), each as a small scene and a
+// Where thresholds that go by the last frame can fail (docs/method.md 7), each as a small scene and a
 // path.
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace binosplat::study {
 
 struct StabilityCase {
   std::string name;
-  std::string fear;  // what may go wrong, and which trap of METHOD 7 it is
+  std::string fear;  // what may go wrong, and which trap of docs/method.md 7 it is
   std::shared_ptr<const Model> model;
   std::vector<stereo::EyePair> frames;
   std::size_t event = 0;  // the frame from which settling is counted: 0, or the one after a jump

@@ -77,7 +77,8 @@ TEST(CalibrateFox, AtAQuarterOfItsSize) {
     if (entry["th"] == "squared" && entry["transmittance"] == "last") ours = entry["pairs_removed"];
   }
   EXPECT_GT(paper, 0.1);
-  EXPECT_GT(ours, paper + 0.1) << "METHOD 8: squared with measured light removes far more at equal error";
+  EXPECT_GT(ours, paper + 0.1)
+      << "docs/method.md 8: squared with measured light removes far more at equal error";
 }
 
 TEST_F(CalibrateTest, DropsAreAgainstPhotos) {

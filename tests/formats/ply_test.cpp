@@ -30,7 +30,7 @@ bool equal(const Model& a, const Model& b) {
          a.opacity == b.opacity && a.sh == b.sh && a.left_out == b.left_out;
 }
 
-/// What METHOD section 1 makes of a file, in float64 and written by itself.
+/// What docs/method.md 1 makes of a file, in float64 and written by itself.
 struct Expected {
   std::vector<std::vector<double>> values;  // per Gaussian: position, scale, rotation, opacity, coefficients
 };

@@ -133,7 +133,7 @@ TEST(Project, AGaussianWithoutSizeIsTheLowPassAlone) {
   expect_near(splat.covariance, {0.3, 0.0, 0.3}, 0.0);
 }
 
-// METHOD 2: what the low-pass takes from the peak stays in the mass, sigma sqrt(det P / det C2).
+// docs/method.md 2: what the low-pass takes from the peak stays in the mass, sigma sqrt(det P / det C2).
 TEST(Project, AntialiasedModelsKeepTheirMass) {
   Model model;
   add(model, {0, 0, 5}, {0.1f, 0.2f, 0.3f}, 0.75f);

@@ -1,4 +1,4 @@
-// The reference against the numbers of METHOD.md section 8 and against INRIA's own pictures of the shared
+// The reference against the numbers of docs/method.md 8 and against INRIA's own pictures of the shared
 // scenes. One view of each model by default; all that have a picture or a figure with BINOSPLAT_LONG=1.
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ struct Case {
   Trained model;
   const char* view;
   bool always;               // without BINOSPLAT_LONG as well
-  Pairs pairs;               // 0: METHOD has no figures
+  Pairs pairs;               // 0: docs/method.md has no figures
   double aabb_to_exact = 0;  // dB
   double obb_to_exact = 0;
   int evaluated = 0;  // alphas a pixel, ellipse
@@ -94,7 +94,7 @@ void expect_pairs(const TileLists& lists, std::size_t wanted) {
 TEST_P(ReferenceOnScenes, CountsAndLossOfTiles) {
   REQUIRE_CASE(folder);
   const Case& c = GetParam();
-  if (c.pairs.aabb == 0) GTEST_SKIP() << "METHOD.md has no figures for this view";
+  if (c.pairs.aabb == 0) GTEST_SKIP() << "docs/method.md has no figures for this view";
   const Scene scene = load_scene(folder, c);
   const TileLists aabb = scene.lists(TILES_AABB), obb = scene.lists(TILES_OBB),
                   snug = scene.lists(TILES_SNUG), ellipse = scene.lists(TILES_ELLIPSE);

@@ -1,4 +1,4 @@
-// Thresholds on the shared scenes against the numbers of METHOD.md section 8: what a loss takes away, and
+// Thresholds on the shared scenes against the numbers of docs/method.md 8: what a loss takes away, and
 // what measured transmittance is worth. A few figures by default; all of them, and the searches for a loss at
 // a quality, with BINOSPLAT_LONG=1.
 
@@ -89,7 +89,7 @@ class Judged {
   }                                                                 \
   static_assert(true)
 
-/// A line of METHOD's table of K.
+/// A line of docs/method.md's table of K.
 struct KEffect {
   double k;
   bool always;
@@ -114,7 +114,7 @@ const KTable k_tables[] = {{"0001",
                              {4, false, {32.58, 0.4235, 37.3}},
                              {8, false, {44.52, 2.0882, 30.1}}}}};
 
-/// Nearer than what METHOD rounds to, and what the fp32 camera moves (scenes_test.cpp).
+/// Nearer than what docs/method.md rounds to, and what the fp32 camera moves (scenes_test.cpp).
 bool agree(const Effect& got, const Effect& wanted) {
   return std::abs(got.removed - wanted.removed) < 0.02 && std::abs(got.drop - wanted.drop) < 0.001 &&
          std::abs(got.to_exact - wanted.to_exact) < 0.1;
@@ -141,8 +141,8 @@ INSTANTIATE_TEST_SUITE_P(Views, ThresholdOnFox, testing::ValuesIn(k_tables),
                          [](const auto& named) { return std::string(named.param.view); });
 
 TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesWhatIsHidden) {
-  // METHOD: at K = 0.1, nearly exact, `last` removes 17.6 % of the pairs at 69 dB, where `one` removes 5.26
-  // %.
+  // docs/method.md 8.3: at K = 0.1, nearly exact, `last` removes 17.6 % of the pairs at 69 dB, where `one`
+  // removes 5.26 %.
   REQUIRE_SCENE("fox", folder);
   const Judged view(load_ply(folder / fox.ply), folder, "0001", Source::last);
   const Effect got = view.effect(TH_PERIPHERAL, 0.1);
@@ -170,7 +170,7 @@ const std::vector<const char*> garden_views = {"DSC07956", "DSC07988", "DSC08020
                                                "DSC08052", "DSC08084", "DSC08116"};
 const std::vector<const char*> garden_one = {"DSC07956"};
 
-// METHOD's figures are a little above these bounds: 29.8, 44.3, 44.4; 36.4, 48.9; 32.7, 44.1; 58.3;
+// docs/method.md's figures are a little above these bounds: 29.8, 44.3, 44.4; 36.4, 48.9; 32.7, 44.1; 58.3;
 // 46.3.
 const AtQuality at_quality[] = {
     {"fox_one", fox, fox_views, TH_PERIPHERAL, Source::one, -0.5, 29.0, 2.5},
@@ -212,7 +212,7 @@ TEST_P(PairsRemovedAtQuality, AreAsMany) {
   const Effect& mean = means.at(found.loss);
   EXPECT_NEAR(found.value, c.quality, 0.05);
   EXPECT_GE(mean.removed, c.at_least);
-  EXPECT_LT(mean.removed, c.at_least + 2.5) << "more than METHOD found possible";
+  EXPECT_LT(mean.removed, c.at_least + 2.5) << "more than docs/method.md found possible";
   std::printf("%s: loss %.4f removes %.2f %% at a drop of %.3f dB, %.2f dB against exact (%d asked)\n",
               c.name, found.loss, mean.removed, mean.drop, mean.to_exact, found.evaluations);
 }

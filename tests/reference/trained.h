@@ -20,7 +20,7 @@ struct Trained {
   const char* ply;
   const char* inria;   // folder of INRIA's 8-bit pictures
   const char* psnr;    // PSNR of those against the photos
-  double inria_bound;  // dB: METHOD's smallest figure for these pictures, less 0.1
+  double inria_bound;  // dB: docs/method.md's smallest figure for these pictures, less 0.1
 };
 inline constexpr Trained fox{"fox", "fox.ply", "inria", "psnr.json", 81.7};
 inline constexpr Trained fox_pruned{"fox", "fox_pruned.ply", "inria_pruned", "psnr_pruned.json", 87.4};

@@ -82,7 +82,7 @@ TEST_P(Pairs, EqualTheReferences) {
   const Lists expected = reference_lists(model, run.shape);
   ASSERT_EQ(lists.size(), expected.size());
   EXPECT_GT(total(expected), 5000u);
-  // fp32 may decide otherwise only at a boundary: 0.02 % (METHOD 8).
+  // fp32 may decide otherwise only at a boundary: 0.02 % (docs/method.md 8).
   EXPECT_LE(differing(lists, expected), total(expected) / 5000 + 1);
 
   Lists shifted = expected;  // every list one tile further: what an index off by one would do

@@ -1,5 +1,5 @@
-// Real models on the GPU at hand: against INRIA's own pictures, the photos, METHOD's pair counts and the
-// reference.
+// Real models on the GPU at hand: against INRIA's own pictures, the photos, docs/method.md's pair counts and
+// the reference.
 
 #include "support/scenes.h"
 
@@ -31,7 +31,7 @@ struct Trained {
 struct Case {
   Trained trained;
   const char* view;
-  std::size_t aabb = 0, ellipse = 0, obb = 0, snug = 0;  // pairs (METHOD 8); 0: no figure there
+  std::size_t aabb = 0, ellipse = 0, obb = 0, snug = 0;  // pairs (docs/method.md 8); 0: no figure there
 };
 
 std::string name_of(const Case& c) {
@@ -103,7 +103,7 @@ class Scenes : public testing::TestWithParam<Case> {};
 
 TEST_P(Scenes, ObbAndSnugMakeTheirPairs) {
   const Case& c = GetParam();
-  if (c.obb == 0) return;  // METHOD has no figures of this view
+  if (c.obb == 0) return;  // docs/method.md has no figures of this view
   REQUIRE_SCENE(c.trained.scene, folder);
   Drawn drawn(folder, c);
   const auto within = [&](int tiles, std::size_t expected, double share) {

@@ -69,9 +69,9 @@ Seen seen(int layout, const Picture& picture, int w, int h) {
 
 constexpr int width = 96, height = 64;
 
-/// A white ball 1 m away before a black world, both eyes 63 mm apart: METHOD 6 puts it 6.3 px further right
-/// in the left eye, at 100 px of focal length. It is small: Dubois takes from
-/// each channel what the other eye's light would leak through the glasses, where both balls overlap.
+/// A white ball 1 m away before a black world, both eyes 63 mm apart: docs/method.md 6 puts it 6.3 px further
+/// right in the left eye, at 100 px of focal length. It is small: Dubois takes from each channel what the
+/// other eye's light would leak through the glasses, where both balls overlap.
 std::vector<Picture> near_object(std::optional<double> convergence) {
   Model model;
   test::add(model, {0, 0, 1}, glm::vec3(0.01f), 0.99f);

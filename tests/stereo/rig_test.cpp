@@ -46,8 +46,8 @@ glm::vec3 seen_at(const Camera& head, const glm::dvec3& v) {
   return glm::vec3(head.position + head.rotation * v);
 }
 
-/// The judge of most tests here: a few points of known depth have the disparity of METHOD 6, no vertical
-/// parallax, and lie in the middle between the eyes where the head sees them.
+/// The judge of most tests here: a few points of known depth have the disparity of docs/method.md 6, no
+/// vertical parallax, and lie in the middle between the eyes where the head sees them.
 bool disparity_is_right(const EyePair& pair, const Camera& head, double ipd, double convergence) {
   for (const glm::dvec3& v :
        {glm::dvec3(0, 0, 1), glm::dvec3(0.3, -0.2, 0.6), glm::dvec3(-2, 1, 5), glm::dvec3(3, 1, 80)}) {

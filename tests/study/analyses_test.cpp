@@ -163,7 +163,7 @@ TEST_F(Spots, LossesCostWhatTheSpotsAreWorth) {
     std::sort(order.begin(), order.end(), [&](const Spot& a, const Spot& b) { return worth(a) < worth(b); });
     return order;
   };
-  // Left out whole where Th > sigma (METHOD 5).
+  // Left out whole where Th > sigma (docs/method.md 5).
   const auto peripheral =
       ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
   const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });
