@@ -19,8 +19,9 @@ ExitCode view(std::vector<std::string> arguments) {
   if (access(program.c_str(), X_OK) != 0) {
     throw Error(
         ExitCode::no_gl,
-        fmt::format("{} is not there: this binosplat was built without its preview. On Debian apt install "
-                    "libglfw3-dev libimgui-dev and build again; `binosplat render` needs no window",
+        fmt::format("{} is not there: this binosplat was built without its preview. `./demo --view` builds it "
+                    "(on another system than Debian, GLFW and Dear ImGui first); `binosplat render` needs no "
+                    "window",
                     program.string()));
   }
   arguments.insert(arguments.begin(), "binosplat-view");
