@@ -39,7 +39,7 @@ struct FrameSettings {
   /// Measured are at least 1 of so many frames, so many after a cut, and whenever the eyes have gone a third
   /// of the way to a cut (continuity.h). Models of Scaffold-GS measure every frame.
   int record_every = settling_frames;
-  float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
+  float loss = 0.0f;  // what Th may cost, in the unit of its rule (rules.h)
   /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
   /// dB, both as 8 bits would keep them, in the view that errs most. A frame that looks draws some tiles of a
   /// view exactly, too, and the next loss follows from what they show; one that misses, and the first one, is

@@ -247,11 +247,6 @@ std::vector<Picture> fill_from_reference(const Model& model, const FrameShape& s
                                          std::uint32_t groups_max, ModelBuffers& model_buffers,
                                          FrameBuffers& buffers) {
   const Stage until = *shape.settings.reference_until;
-  if (shape.settings.transmittance != TRANSMITTANCE_ONE || shape.settings.quality > 0.0f) {
-    fail(
-        "--reference-until: the reference goes by no earlier frame: leave --transmittance and --quality "
-        "out");
-  }
   std::vector<Picture> pictures;
   if (until == Stage::decode) {
     upload_decoded(model, shape, model_buffers);

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "formats/json_file.h"
