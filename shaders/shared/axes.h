@@ -77,8 +77,8 @@ inline constexpr Choice tiles_choices[] = {
 
 inline constexpr Choice th_choices[] = {
     {"tau", "1/255: exact"},
-    {"peripheral", "AdaGScale: the alpha that a Gaussian may lose beyond its tiles"},
-    {"squared", "the squared error that a pair may cost"},
+    {"peripheral", "AdaGScale: the alpha * px^2 that a Gaussian may lose beyond its tiles"},
+    {"squared", "the squared error that a pair may cost, in px * squared colour"},
 };
 
 inline constexpr Choice transmittance_choices[] = {

@@ -5,7 +5,6 @@
 #include "base/choices.h"
 #include "base/error.h"
 #include "demo/city.h"
-#include "render/rules.h"
 
 namespace binosplat::app {
 
@@ -14,18 +13,18 @@ namespace {
 void check_threshold(const RenderOptions& o) {
   const render::FrameSettings settings = settings_of(o);
   const bool exact = render::is_exact(settings.th);
-  const char* const th = th_choices[settings.th].name;
-  const int givers = int(o.loss.has_value()) + int(o.quality.has_value()) + int(!o.calibration.empty());
-  const char* const giver = o.loss ? "--loss" : o.quality ? "--quality" : "--calibration";
-  if (givers > 1) {
-    fail("{} with {}: each chooses the loss: leave one of them out", giver,
-         o.calibration.empty() ? "--quality" : "--calibration");
+  const bool given = o.loss || o.quality, calibrated = !o.calibration.empty();
+  if (given && calibrated) {
+    fail("{} with --calibration: each chooses the loss: leave one of them out",
+         o.loss ? "--loss" : "--quality");
   }
-  if (!exact && givers == 0) fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
-  if (exact && givers > 0) fail("{} has no effect with --th {}, which is exact", giver, th);
+  if (!exact && !given && !calibrated)
+    fail("--th {} needs --loss, --quality or --calibration: what it may cost", threshold_name(o));
+  if (exact && calibrated)
+    fail("--calibration has no effect with --th {}, which is exact", threshold_name(o));
   if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
     fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
-  if (!o.reference_until.empty() && !o.calibration.empty())
+  if (!o.reference_until.empty() && calibrated)
     fail("--reference-until: the reference goes by no calibration: leave --calibration out");
   render::check_choice(settings, "--");
 }

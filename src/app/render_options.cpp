@@ -6,8 +6,8 @@
 #include "app/option_checks.h"
 #include "app/tour.h"
 #include "base/error.h"
-#include "render/rules.h"
 #include "scene/axes.h"
+#include "shared/axes.h"
 
 namespace binosplat::app {
 
@@ -187,15 +187,6 @@ void add_rig(CLI::App& sub, RenderOptions& o) {
   sub.add_option("--cant", o.cant, "Turn each eye outwards (0)")->type_name("DEGREES")->group(group);
 }
 
-std::string loss_help() {
-  std::string help = "How much that may cost";
-  for (int th = 0; th < std::ssize(th_choices); ++th) {
-    if (!render::is_exact(th))
-      help += fmt::format("\n  {}: {}", th_choices[th].name, render::threshold_rules[th].unit);
-  }
-  return help;
-}
-
 void add_frame(CLI::App& sub, RenderOptions& o) {
   const char* const group = "Drawing";
   choose(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices)
@@ -203,7 +194,7 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
   choose(sub, "--th", o.th,
          "The alpha below which a Gaussian is left out of a tile (tau;\nwith --loss: squared)", th_choices)
       ->group(group);
-  sub.add_option("--loss", o.loss, loss_help())
+  sub.add_option("--loss", o.loss, "How much that may cost, in the unit of --th")
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""))
       ->group(group);

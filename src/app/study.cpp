@@ -19,7 +19,6 @@
 #include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "render/rules.h"
 #include "study/carried.h"
 #include "study/motion_page.h"
 #include "study/rules.h"
@@ -57,14 +56,12 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
   for (const Shot& shot : studied.shots) frames.push_back(views_of(shot));
   if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
   const float quality = options.scene.quality.value_or(0.0f);
+  variant.loss = options.scene.loss.value_or(0.0f);
   render::FrameSettings asked = variant.settings();
-  asked.loss = options.scene.loss.value_or(0.0f);
   asked.quality = quality;
   render::check_choice(asked, "--");
-  if (quality == 0.0f)
-    variant.loss = options.scene.loss
-                       ? *options.scene.loss
-                       : study::carried_loss(context, *studied.model, frames, variant, options.target);
+  if (quality == 0.0f && !options.scene.loss)
+    variant.loss = study::carried_loss(context, *studied.model, frames, variant, options.target);
   Progress progress("frames", frames.size());
   std::size_t done = 0;
   const auto results =

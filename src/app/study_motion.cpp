@@ -13,7 +13,6 @@
 #include "app/study_parts.h"
 #include "base/choices.h"
 #include "base/error.h"
-#include "render/rules.h"
 #include "scene/tour.h"
 #include "study/motion.h"
 #include "study/motion_page.h"

@@ -9,7 +9,6 @@
 
 #include "base/progress.h"
 #include "base/statistics.h"
-#include "render/rules.h"
 
 namespace binosplat::preview {
 

@@ -10,7 +10,6 @@
 #include "formats/image_file.h"
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
-#include "render/rules.h"
 #include "scene/axes.h"
 #include "shared/layout.h"
 #include "stereo/layout.h"

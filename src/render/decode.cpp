@@ -1,6 +1,5 @@
 #include <bit>
 
-#include "render/rules.h"
 #include "render/stages.h"
 
 namespace binosplat::render {

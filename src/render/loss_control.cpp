@@ -5,8 +5,6 @@
 #include <limits>
 #include <numeric>
 
-#include "render/rules.h"
-
 namespace binosplat::render {
 
 namespace {

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "render/anchors.h"
-#include "render/rules.h"
 
 namespace binosplat::render {
 

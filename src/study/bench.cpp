@@ -13,7 +13,6 @@
 #include "measure/metrics.h"
 #include "reference/render.h"
 #include "render/frame.h"
-#include "render/rules.h"
 #include "stereo/disagreement.h"
 #include "study/settings.h"
 #include "study/times.h"

@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "measure/search.h"
-#include "render/rules.h"
 #include "scene/axes.h"
 #include "study/squared_error.h"
 #include "study/stability.h"

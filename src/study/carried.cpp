@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "measure/search.h"
 #include "render/frame.h"
-#include "render/rules.h"
 #include "study/squared_error.h"
 
 namespace binosplat::study {

@@ -12,7 +12,6 @@
 #include "base/statistics.h"
 #include "measure/depth_table.h"
 #include "render/frame.h"
-#include "render/rules.h"
 #include "study/bench.h"  // spread_evenly
 #include "study/exact_frames.h"
 #include "study/settings.h"

@@ -12,7 +12,6 @@
 #include "base/clock.h"
 #include "base/statistics.h"
 #include "measure/search.h"
-#include "render/rules.h"
 #include "stereo/disagreement.h"
 #include "study/settings.h"
 #include "study/times.h"

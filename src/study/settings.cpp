@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "render/rules.h"
 
 namespace binosplat::study {
 
@@ -38,12 +37,11 @@ std::string describe(const render::FrameSettings& s) {
 }
 
 void check(const std::string& place, const render::FrameSettings& s) {
-  const auto wrong = [&](const char* why) { fail("{}: {}: {}", place, to_json(s).dump(), why); };
-  if (!render::is_exact(s.th) && !(s.loss > 0.0f)) wrong("th needs a loss above 0");
   try {
+    if (!render::is_exact(s.th) && !(s.loss > 0.0f)) fail("th needs a loss above 0");
     render::check_choice(s);
   } catch (const Error& error) {
-    wrong(error.what());
+    fail("{}: {}: {}", place, to_json(s).dump(), error.what());
   }
 }
 

@@ -8,7 +8,6 @@
 #include "base/statistics.h"
 #include "measure/depth_table.h"
 #include "render/frame.h"
-#include "render/rules.h"
 
 namespace binosplat::study {
 

@@ -2,7 +2,6 @@
 
 #include "measure/depth_table.h"
 #include "measure/search.h"
-#include "render/rules.h"
 
 namespace binosplat::study {
 

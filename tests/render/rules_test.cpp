@@ -1,6 +1,6 @@
 // The table of threshold rules, against their float64 twins, and which settings go together.
 
-#include "render/rules.h"
+#include "render/settings.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,6 @@ std::string wrong_with(const ThresholdRule& rule, int th) {
   if ((threshold(careful) == ALPHA_MIN) != rule.exact) return "exact";
   if ((threshold(careful, 0.5) != threshold(careful)) != rule.goes_by_light) return "light";
   if (rule.exact == (rule.careful_loss > 0.0)) return "careful loss";
-  if (rule.exact != std::string(rule.unit).empty()) return "unit";
   if (rule.exact == (rule.slope >= 1.0)) return "slope";
   return "";
 }
@@ -46,7 +45,6 @@ TEST(ThresholdRules, PlantedFaultsAreCaught) {
   EXPECT_EQ(wrong_with(threshold_rules[TH_SQUARED], TH_TAU), "exact");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.goes_by_light = false; }), "light");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.careful_loss = 0.0; }), "exact");
-  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.unit = ""; }), "unit");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
 }
 

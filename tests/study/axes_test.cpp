@@ -68,7 +68,7 @@ TEST(Axes, ErrorsNameThePlace) {
       {R"({})", "expected a list 'settings'"},
       {R"({"settings": [{}], "frmaes": 3})", "there is no key 'frmaes'"},
       {R"({"settings": [{}, 5]})", "block 2 (counted from 1): expected an object"},
-      {R"({"settings": [{"tile": 12}]})", "'tile' 12: expected 8, 16 or 32"},
+      {R"({"settings": [{"tile": 12}]})", "tile 12: expected 8, 16 or 32"},
       {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
       {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
       {R"({"settings": [{"th": 3}]})", "'th': '3' is not one of tau"},

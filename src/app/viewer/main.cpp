@@ -32,9 +32,7 @@ void check_view(const RenderOptions& o) {
       o.device >= 0) {
     fail(
         "--mono, --only, --frames, --orbit, --path, --reference-until, --quality, --calibration, --backend, "
-        "--device and "
-        "more "
-        "than one --view are for `binosplat render`");
+        "--device and more than one --view are for `binosplat render`");
   }
   if (o.transmittance == "depth") fail("--transmittance depth is for `binosplat render`");
   if (o.layout == "multi-view") fail("--layout multi-view is for OpenEXR files of `binosplat render`");

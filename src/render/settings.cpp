@@ -1,4 +1,4 @@
-#include "render/rules.h"
+#include "render/settings.h"
 
 #include <cmath>
 
