@@ -59,10 +59,6 @@
 #define FLOOR_FMAS 2
 
 #ifdef __cplusplus
-#include <algorithm>
-#include <iterator>
-#include <string_view>
-
 namespace binosplat {
 
 /// A choice as options and charts name it, in the order of the numbers above.
@@ -81,8 +77,8 @@ inline constexpr Choice tiles_choices[] = {
 
 inline constexpr Choice th_choices[] = {
     {"tau", "1/255: exact"},
-    {"peripheral", "AdaGScale: the alpha that a Gaussian may lose beyond its tiles"},
-    {"squared", "the squared error that a pair may cost"},
+    {"peripheral", "AdaGScale: the alpha * px^2 that a Gaussian may lose beyond its tiles"},
+    {"squared", "the squared error that a pair may cost, in px * squared colour"},
 };
 
 inline constexpr Choice transmittance_choices[] = {
@@ -127,13 +123,6 @@ inline constexpr Choice show_choices[] = {
     {"pairs", "Gaussians in the list of the pixel's tile"},
     {"light", "max(T), the most light that reaches a Gaussian: the mean of those seen"},
 };
-
-/// The number of the choice of that name; the number of choices if there is none.
-template <std::size_t n>
-int number_of(std::string_view name, const Choice (&choices)[n]) {
-  const auto* found = std::find_if(choices, choices + n, [&](const Choice& c) { return name == c.name; });
-  return static_cast<int>(found - choices);
-}
 
 }  // namespace binosplat
 #endif

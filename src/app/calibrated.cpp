@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "base/log.h"
 
@@ -24,8 +25,8 @@ CalibratedSettings::CalibratedSettings(const RenderOptions& options, const Model
   if (options.calibration.empty()) return;
   calibration_ = study::load_calibration(options.calibration);
   render::FrameSettings asked;
-  asked.th = number_of(threshold_name(options), th_choices);
-  asked.transmittance = number_of(options.transmittance, transmittance_choices);
+  asked.th = find_choice("--th", threshold_name(options), th_choices);
+  asked.transmittance = find_choice("--transmittance", options.transmittance, transmittance_choices);
   if (!study::calibrated(*calibration_, asked, calibration_->focal))
     fail("--calibration {} has no entry for --th {} --transmittance {}", options.calibration,
          th_choices[asked.th].name, options.transmittance);

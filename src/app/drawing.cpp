@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/choices.h"
 #include "base/log.h"
 #include "measure/twins.h"
 #include "shared/axes.h"
@@ -26,14 +27,15 @@ std::unique_ptr<gl::Context> open_context(const RenderOptions& options) {
 
 render::FrameSettings settings_of(const RenderOptions& options) {
   render::FrameSettings settings;
-  settings.tiles = number_of(options.tiles, tiles_choices);
-  settings.th = number_of(threshold_name(options), th_choices);
+  settings.tiles = find_choice("--tiles", options.tiles, tiles_choices);
+  settings.th = find_choice("--th", threshold_name(options), th_choices);
   settings.loss = options.loss.value_or(0.0f);
-  settings.transmittance = number_of(options.transmittance, transmittance_choices);
+  settings.transmittance = find_choice("--transmittance", options.transmittance, transmittance_choices);
   settings.quality = options.quality.value_or(0.0f);
-  settings.decode = options.decode.empty() ? DECODE_EYES : number_of(options.decode, decode_choices);
+  settings.decode =
+      options.decode.empty() ? DECODE_EYES : find_choice("--decode", options.decode, decode_choices);
   settings.tile_size = options.tile == "auto" ? TILE_SIZE_DEFAULT : std::stoi(options.tile);
-  settings.precision = number_of(options.precision, precision_choices);
+  settings.precision = find_choice("--precision", options.precision, precision_choices);
   settings.background = options.background.value_or(settings.background);
   return settings;
 }

@@ -8,10 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "shared/axes.h"
+#include "base/choices.h"
 
 namespace binosplat::app {
 
@@ -40,19 +41,18 @@ CLI::Validator one_of(std::initializer_list<T> choices) {
   return CLI::IsMember(std::vector<T>(choices)).description("");
 }
 
-/// The names of a list of shared/axes.h, as a check, as the option's type, and as lines of help.
-template <std::size_t n>
-CLI::Option* choose(CLI::App& sub, const char* option, std::string& into, const std::string& help,
-                    const Choice (&choices)[n]) {
-  std::vector<std::string> names;
-  std::string lines;
-  for (const Choice& choice : choices) {
-    names.emplace_back(choice.name);
-    lines += fmt::format("\n  {}: {}", choice.name, choice.help);
-  }
-  return sub.add_option(option, into, help + lines)
-      ->check(CLI::IsMember(names).description(""))
+/// The names of a list of shared/axes.h, as a check and as the option's type.
+inline CLI::Option* one_of(CLI::Option* option, std::span<const Choice> choices) {
+  const std::vector<std::string> names = names_of(choices);
+  return option->check(CLI::IsMember(names).description(""))
       ->type_name(fmt::format("{}", fmt::join(names, "|")));
+}
+
+/// The same of a new option, with lines of help.
+inline CLI::Option* choose(CLI::App& sub, const char* option, std::string& into, std::string help,
+                           std::span<const Choice> choices) {
+  for (const Choice& choice : choices) help += fmt::format("\n  {}: {}", choice.name, choice.help);
+  return one_of(sub.add_option(option, into, help), choices);
 }
 
 inline CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }

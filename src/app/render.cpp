@@ -17,6 +17,7 @@
 #include "app/render_report.h"
 #include "app/shots.h"
 #include "app/tour.h"
+#include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/cameras_file.h"
@@ -110,8 +111,8 @@ void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> sh
     if (options.detail_report)
       drawn.levels->finest_psnr = followed->against_finest(context, views, pictures, of_shot);
     drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
-    const stereo::Shown shown =
-        show.make(number_of(options.show, show_choices), frame, views, pictures, of_shot, options.background);
+    const stereo::Shown shown = show.make(find_choice("--show", options.show, show_choices), frame, views,
+                                          pictures, of_shot, options.background);
     drawn.most_shown = shown.most;
     if (video) video->add(frame_of(options, plan, shown.pictures));
     drawn.files = video ? std::vector{plan.video.string()} : write_outputs(options, plan, drawn.shot, shown);

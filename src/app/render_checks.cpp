@@ -1,32 +1,33 @@
 // Which options of `binosplat render` go together.
 
+#include "app/drawing.h"
 #include "app/render_options.h"
+#include "base/choices.h"
 #include "base/error.h"
 #include "demo/city.h"
-#include "shared/axes.h"
 
 namespace binosplat::app {
 
 namespace {
 
 void check_threshold(const RenderOptions& o) {
-  const std::string th = threshold_name(o);
-  const int givers = int(o.loss.has_value()) + int(o.quality.has_value()) + int(!o.calibration.empty());
-  const char* const giver = o.loss ? "--loss" : o.quality ? "--quality" : "--calibration";
-  if (givers > 1) {
-    fail("{} with {}: each chooses the loss: leave one of them out", giver,
-         o.calibration.empty() ? "--quality" : "--calibration");
+  const render::FrameSettings settings = settings_of(o);
+  const bool exact = render::is_exact(settings.th);
+  const bool given = o.loss || o.quality, calibrated = !o.calibration.empty();
+  if (given && calibrated) {
+    fail("{} with --calibration: each chooses the loss: leave one of them out",
+         o.loss ? "--loss" : "--quality");
   }
-  if (th != "tau" && givers == 0)
-    fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
-  if (th == "tau" && givers > 0) fail("{} has no effect with --th tau, which is exact", giver);
+  if (!exact && !given && !calibrated)
+    fail("--th {} needs --loss, --quality or --calibration: what it may cost", threshold_name(o));
+  if (exact && calibrated)
+    fail("--calibration has no effect with --th {}, which is exact", threshold_name(o));
   if (o.decode == "cyclopean" && (o.mono || !o.only.empty()))
     fail("--decode cyclopean is for both eyes together: leave --mono and --only out");
-  if (!o.reference_until.empty() && (o.transmittance != "one" || o.quality || !o.calibration.empty())) {
-    fail(
-        "--reference-until: the reference goes by no earlier frame: leave --transmittance, --quality and "
-        "--calibration out");
-  }
+  if (!o.reference_until.empty() && calibrated)
+    fail("--reference-until: the reference goes by no calibration: leave --calibration out");
+  render::check_choice(settings, "--");
+  render::check(workings_of(o), settings, "--");
 }
 
 void check_cameras(const RenderOptions& o) {
@@ -96,7 +97,7 @@ void check(const RenderOptions& o) {
   }
   if (o.show == "disagreement" && (o.mono || !o.only.empty()))
     fail("--show disagreement is between both eyes: leave --mono and --only out");
-  if (o.reference_until == "blend" && number_of(o.show, show_choices) >= SHOW_ALPHAS)
+  if (o.reference_until == "blend" && find_choice("--show", o.show, show_choices) >= SHOW_ALPHAS)
     fail("--show {}: the GPU's blend tells it, which --reference-until blend leaves out", o.show);
   if (!o.photos.empty() && !o.mono)
     fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");

@@ -195,8 +195,7 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
   choose(sub, "--th", o.th,
          "The alpha below which a Gaussian is left out of a tile (tau;\nwith --loss: squared)", th_choices)
       ->group(group);
-  sub.add_option("--loss", o.loss,
-                 "How much that may cost: alpha * px^2 (peripheral) or px * squared\ncolour (squared)")
+  sub.add_option("--loss", o.loss, "How much that may cost, in the unit of --th")
       ->type_name("X")
       ->check(CLI::NonNegativeNumber.description(""))
       ->group(group);

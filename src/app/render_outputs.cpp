@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/command.h"
+#include "base/choices.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
 #include "stereo/layout.h"
@@ -46,8 +47,7 @@ int plan_layout(const RenderOptions& options, bool picture_file, bool exr_file) 
   }
   if (options.layout.empty())
     return picture_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
-  int layout = 0;
-  while (options.layout != layout_choices[layout].name) ++layout;
+  const int layout = find_choice("--layout", options.layout, layout_choices);
   if (layout == LAYOUT_QUAD_BUFFER)
     fail("--layout quad-buffer is for `binosplat view`: a file has no buffers");
   if (layout == LAYOUT_SEPARATE && (picture_file || exr_file))

@@ -12,9 +12,11 @@
 #include "app/command.h"
 #include "app/drawing.h"
 #include "app/open_scene.h"
+#include "app/option_checks.h"
 #include "app/report.h"
 #include "app/shots.h"
 #include "app/study_parts.h"
+#include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "study/carried.h"
@@ -44,7 +46,8 @@ Studied open(const StudyOptions& options) {
 }
 
 Variant variant_of(const StudyOptions& o) {
-  return {number_of(o.th, th_choices), number_of(o.transmittance, transmittance_choices)};
+  return {find_choice("--th", o.th, th_choices),
+          find_choice("--transmittance", o.transmittance, transmittance_choices)};
 }
 
 ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
@@ -53,10 +56,12 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
   for (const Shot& shot : studied.shots) frames.push_back(views_of(shot));
   if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
   const float quality = options.scene.quality.value_or(0.0f);
-  if (quality == 0.0f)
-    variant.loss = options.scene.loss
-                       ? *options.scene.loss
-                       : study::carried_loss(context, *studied.model, frames, variant, options.target);
+  variant.loss = options.scene.loss.value_or(0.0f);
+  render::FrameSettings asked = variant.settings();
+  asked.quality = quality;
+  render::check_choice(asked, "--");
+  if (quality == 0.0f && !options.scene.loss)
+    variant.loss = study::carried_loss(context, *studied.model, frames, variant, options.target);
   Progress progress("frames", frames.size());
   std::size_t done = 0;
   const auto results =
@@ -267,13 +272,9 @@ void add_study(CLI::App& program, Command& command) {
       ->excludes(rules)
       ->type_name("DB")
       ->check(CLI::PositiveNumber.description(""));
-  const auto choose = [&](const char* name, std::string& into, const auto& choices) {
-    std::vector<std::string> names;
-    for (const Choice& choice : choices) names.emplace_back(choice.name);
-    sub->add_option(name, into, fmt::format("Of the rule carried ({})", into))
-        ->excludes(rules, motion)
-        ->check(CLI::IsMember(names).description(""))
-        ->type_name(fmt::format("{}", fmt::join(names, "|")));
+  const auto choose = [&](const char* name, std::string& into, std::span<const Choice> choices) {
+    one_of(sub->add_option(name, into, fmt::format("Of the rule carried ({})", into)), choices)
+        ->excludes(rules, motion);
   };
   choose("--th", o.th, th_choices);
   choose("--transmittance", o.transmittance, transmittance_choices);

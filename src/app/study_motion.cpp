@@ -11,6 +11,7 @@
 #include "app/open_scene.h"
 #include "app/parts.h"
 #include "app/study_parts.h"
+#include "base/choices.h"
 #include "base/error.h"
 #include "scene/tour.h"
 #include "study/motion.h"
@@ -52,9 +53,9 @@ Variant rule_of(const std::string& text) {
   const std::vector<std::string> names = words(text);
   if (names.size() != 2) fail("--rule {}: expected TH,SOURCE", text);
   const std::string place = "--rule " + text;
-  Variant rule{.th = study::find_choice(place, names[0], th_choices),
-               .transmittance = study::find_choice(place, names[1], transmittance_choices)};
-  if (rule.th == TH_TAU) fail("{}: {} is exact, and always measured", place, names[0]);
+  Variant rule{.th = find_choice(place, names[0], th_choices),
+               .transmittance = find_choice(place, names[1], transmittance_choices)};
+  if (render::is_exact(rule.th)) fail("{}: {} is exact, and always measured", place, names[0]);
   return rule;
 }
 

@@ -66,15 +66,13 @@ bool draw_rig(stereo::RigSettings& rig) {
 
 bool draw_thresholds(render::FrameSettings& s) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
-  if (combo("th", s.th, th_choices)) {
-    changed = true;
-    if (s.th != TH_TAU && s.loss == 0.0f) s.loss = 0.15f;
-  }
-  if (s.th == TH_TAU) return changed;
+  changed |= combo("th", s.th, th_choices);
+  if (render::is_exact(s.th)) return changed;
   changed |= ImGui::SliderFloat("loss", &s.loss, 0.001f, 10.0f, "%.3f", ImGuiSliderFlags_Logarithmic);
   s.loss = std::max(0.0f, s.loss);
   // The depth table needs cameras to be measured from: `binosplat render` has it.
-  changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
+  if (render::threshold_rules[s.th].goes_by_light)
+    changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
   return changed;
 }
 

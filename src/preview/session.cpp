@@ -46,10 +46,9 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
 
 void make_consistent(Choices& choices) {
   render::FrameSettings& s = choices.settings;
-  if (s.th == TH_TAU) {
-    s.loss = 0.0f;
-    s.transmittance = TRANSMITTANCE_ONE;
-  }
+  const render::ThresholdRule& rule = render::threshold_rules[s.th];
+  if (rule.exact || s.loss == 0.0f) s.loss = static_cast<float>(rule.careful_loss);
+  if (!render::takes(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
   s.background = choices.background;
 }
 

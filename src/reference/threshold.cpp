@@ -21,9 +21,9 @@ double threshold(int th, double loss, const Splat& splat, double upper) {
   switch (th) {
     case TH_TAU:
       return ALPHA_MIN;
-    case TH_PERIPHERAL:
+    case TH_PERIPHERAL:  // AdaGScale, equation 10: `loss` is K, in alpha * px^2
       return loss / (upper * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
-    case TH_SQUARED:
+    case TH_SQUARED:  // a pair that would cost less than kappa, `loss` in px * squared colour, is not made
       return std::max(ALPHA_MIN,
                       std::sqrt(loss / std::min(largest_area, std::numbers::pi * sqrt_det)) / upper);
   }

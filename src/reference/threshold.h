@@ -10,18 +10,13 @@
 
 namespace binosplat::reference {
 
-/// Th of a splat by a rule of shared/axes.h, never below tau:
-/// - TH_TAU: tau.
-/// - TH_PERIPHERAL: K / (T_upper * 2 pi sqrt(det)) + tau, `loss` the K in alpha * px^2 (AdaGScale, equation
-///   10).
-/// - TH_SQUARED: max(tau, sqrt(kappa / S) / W), S = min(256 px, pi sqrt(det)), `loss` the kappa in px times
-///   squared colour: a pair that would cost less than kappa is not made.
-/// `upper` is T_upper or W, the most light that is thought to reach the splat: 1, or a measured value
-/// (transmittance.h) with a floor. Throws Error where it is not above 0, which would leave a hole in the
-/// picture.
+/// Th of a splat by a rule of shared/axes.h, never below tau; its case in threshold.cpp says by which
+/// equation, and what `loss` is. `upper` is T_upper, the most light that is thought to reach the splat: 1, or
+/// a measured value (transmittance.h) with a floor. Throws Error where it is not above 0, which would leave a
+/// hole in the picture.
 double threshold(int th, double loss, const Splat& splat, double upper);
 
-/// Sets Th of every splat. By TH_PERIPHERAL and TH_SQUARED, what has Th > sigma is out of this view: it is
+/// Sets Th of every splat. By all rules but TH_TAU, what has Th > sigma is out of this view: it is
 /// not drawn any more, whatever the tile test. `upper` is by Gaussian; empty: 1 for all.
 void set_thresholds(std::vector<Splat>& splats, int th, double loss, std::span<const double> upper = {});
 

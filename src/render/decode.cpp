@@ -8,7 +8,7 @@ namespace {
 
 bool reuses(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  return s.anchor_reuse && measures(s.transmittance) && s.th != TH_TAU && !shape.probe &&
+  return s.anchor_reuse && measures(s.transmittance) && !is_exact(s.th) && !shape.probe &&
          shape.kernel_px2 == KERNEL_PX2;
 }
 

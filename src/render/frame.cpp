@@ -60,6 +60,7 @@ FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, c
 
 void Frame::begin(std::span<const shared::View> views, const FrameSettings& settings,
                   const Workings& workings, const std::optional<Probe>& probe) {
+  check(workings, settings);
   const Model& model = model_->model();
   const std::int64_t slots =
       std::max({static_cast<std::int64_t>(model.count()), capacity_.slots, workings.slots});

@@ -33,12 +33,10 @@ constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double loss_min = 1e-9, loss_max = 1e9;
 
-// docs/method.md 8: losses that gave 40 dB or a little more on every shared scene at a focal length of 700
-// px. In smaller pictures Gaussians are smaller, too, and fox asked for 0.027 (squared, last) at 160 px: less
-// than in proportion.
+// In smaller pictures than the careful loss is for Gaussians are smaller, too, and fox asked for 0.027
+// (squared, last) at 160 px: less than in proportion.
 double careful_loss_at_40_db(const FrameSettings& s, double focal) {
-  const double smaller = std::pow(std::min(1.0, focal / 700.0), 1.75);
-  return (s.th == TH_PERIPHERAL ? 1.0 : 0.1) * smaller;
+  return threshold_rules[s.th].careful_loss * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
@@ -61,7 +59,7 @@ bool LossControl::knows(const FrameSettings& settings) const {
 void LossControl::begin(const FrameSettings& settings, double focal) {
   forget();
   settings_ = settings;
-  slope_ = settings.th == TH_PERIPHERAL ? 2.0 : 1.5;
+  slope_ = threshold_rules[settings.th].slope;
   unevenness_ = 0.0;
   loss_ = careful_loss_at_40_db(settings, focal) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }

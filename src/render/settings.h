@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <string_view>
 #include <vector>
 
+#include "render/rules.h"
 #include "shared/axes.h"
 #include "shared/limits.h"
 
@@ -33,7 +35,7 @@ struct FrameSettings {
   /// Measured are at least 1 of so many frames, so many after a cut, and whenever the eyes have gone a third
   /// of the way to a cut (continuity.h). Models of Scaffold-GS measure every frame.
   int record_every = settling_frames;
-  float loss = 0.0f;  // K (alpha * px^2) of TH_PERIPHERAL, kappa (px * squared colour) of TH_SQUARED
+  float loss = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
   /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
   /// dB, both as 8 bits would keep them, in the view that errs most. A frame that looks draws some tiles of a
   /// view exactly, too, and the next loss follows from what they show; one that misses, and the first one, is
@@ -57,5 +59,14 @@ struct FrameSettings {
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
   glm::vec3 background{0.0f};      // behind the scene, for the probe only: the pictures are without
 };
+
+/// Throws Error for values that no frame has and for settings that contradict each other: an exact rule with
+/// a loss or a quality, a loss with a quality, weights with what earlier frames tell.
+/// `prefix` goes before the names of settings in the text: "--" where they were given as options.
+void check(const FrameSettings& settings, std::string_view prefix = "");
+
+/// The same for what somebody chose to draw by, where all must have an effect: no transmittance with a rule
+/// that goes by no light. (A frame may measure light by any rule, as measure_depth_table does.)
+void check_choice(const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

@@ -19,27 +19,16 @@ bool same_depths(const shared::View& a, const shared::View& b) {
          std::memcmp(&a.anchor, &b.anchor, sizeof(a.anchor)) == 0;
 }
 
-// Written so that values that are not finite fail, too.
-void check_threshold(const FrameSettings& s, std::size_t views) {
-  if (!(s.loss >= 0.0f) || !std::isfinite(s.loss)) fail("--loss {}: expected zero or more", s.loss);
-  if (!(s.quality >= 0.0f) || !std::isfinite(s.quality))
-    fail("--quality {}: expected dB, above zero", s.quality);
-  if (s.quality > 0.0f && s.th == TH_TAU) fail("--quality {} with --th tau, which is exact", s.quality);
-  if (s.probe_every < 1) fail("looking at one of {} frames: expected at least one", s.probe_every);
-  if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
-  if (s.record_every < 1) fail("measuring one of {} frames: expected at least one", s.record_every);
-  if (s.weigh && measures(s.transmittance)) {
-    fail("--transmittance {}: not in a frame that weighs", transmittance_choices[s.transmittance].name);
-  }
-  if (s.decode != DECODE_EYES && views % 2 != 0) {
-    fail("--decode {}: only for both eyes together", decode_choices[s.decode].name);
-  }
+// What settings need beside each other.
+void check_needs(const FrameSettings& s, std::size_t views) {
+  if (s.decode != DECODE_EYES && views % 2 != 0)
+    fail("decode {}: only for both eyes together", decode_choices[s.decode].name);
   const DepthTable& table = s.depth_table;
   const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
   if (s.transmittance == TRANSMITTANCE_DEPTH &&
       (!(table.far > 0.0f) || !std::isfinite(table.far) || table.upper.empty() ||
        !std::all_of(table.upper.begin(), table.upper.end(), is_share))) {
-    fail("--transmittance depth: its table needs a far end above 0 and values from 0 to 1");
+    fail("transmittance depth: its table needs a far end above 0 and values from 0 to 1");
   }
 }
 
@@ -105,10 +94,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
                       int list_tiles, const std::optional<Probe>& probe) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
-  const int tile = settings.tile_size;
-  if (tile != 8 && tile != 16 && tile != 32) fail("--tile {}: expected 8, 16 or 32", tile);
-  if (list_tiles != 1 && list_tiles != 2) fail("lists of {0} x {0} tiles: expected 1 or 2", list_tiles);
-  check_threshold(settings, views.size());
+  check(settings);
+  check_needs(settings, views.size());
   FrameShape shape;
   shape.settings = settings;
   shape.list_tiles = list_tiles;

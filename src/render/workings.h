@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/image.h"
+#include "render/settings.h"
 #include "render/stage.h"
 #include "scene/model.h"
 
@@ -34,5 +36,9 @@ struct Workings {
   std::int64_t pairs = 0;
   std::optional<StandIn> stand_in;
 };
+
+/// Throws Error for values that no frame has, and for what stands in for stages in a frame that goes by
+/// earlier ones. `prefix` as in settings.h.
+void check(const Workings& workings, const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

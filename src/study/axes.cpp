@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "formats/json_file.h"
@@ -70,12 +71,6 @@ class Block {
   const json& object_;
 };
 
-int tile_of(const Block& block, const json& value) {
-  const int size = block.whole("tile", value, 8, 32);
-  if (size != 8 && size != 16 && size != 32) fail("{}: 'tile' {}: expected 8, 16 or 32", block.place(), size);
-  return size;
-}
-
 /// One key of a block: how a value of it is set.
 struct Key {
   const char* name;
@@ -98,7 +93,8 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
       choice("transmittance", &S::transmittance, transmittance_choices),
       choice("tiles", &S::tiles, tiles_choices),
       choice("precision", &S::precision, precision_choices),
-      {"tile", TILE_SIZE_DEFAULT, [&block](S& s, const json& v) { s.tile_size = tile_of(block, v); }},
+      {"tile", TILE_SIZE_DEFAULT,
+       [&block](S& s, const json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
       {"loss", 0.0, [&block](S& s, const json& v) { s.loss = block.loss(v); }},
   };
   std::vector<S> all(1);

@@ -179,7 +179,7 @@ std::string Bench::verify(const render::FrameSettings& settings) {
     const Image judged = judge({settings.tiles, settings.tile_size, settings.th, settings.loss, {}});
     const double db = measure::psnr(drawn, judged);
     double needed = reference_db;
-    if (!(db >= needed) && settings.th != TH_TAU)
+    if (!(db >= needed) && !render::is_exact(settings.th))
       needed = std::min(needed, measure::psnr(judged, judge({})) + share_db);
     if (!(db >= needed))
       return fmt::format("{} x {} px differ from the float64 reference: {:.1f} dB, expected {:.1f} or more",

@@ -9,6 +9,7 @@
 #include "measure/search.h"
 #include "scene/axes.h"
 #include "study/squared_error.h"
+#include "study/stability.h"
 
 namespace binosplat::study {
 
@@ -139,14 +140,10 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
 
 std::vector<render::FrameSettings> calibrated_settings() {
   std::vector<render::FrameSettings> all;
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-    for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
-      render::FrameSettings settings;
-      settings.th = th;
-      settings.transmittance = transmittance;
-      settings.loss = th == TH_PERIPHERAL ? 1.0f : 0.1f;
-      all.push_back(settings);
-    }
+  for (Variant variant : all_variants()) {
+    if (render::is_exact(variant.th)) continue;
+    variant.loss = static_cast<float>(render::threshold_rules[variant.th].careful_loss);
+    all.push_back(variant.settings());
   }
   return all;
 }

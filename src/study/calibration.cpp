@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/choices.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
 #include "formats/json_file.h"

@@ -89,6 +89,7 @@ std::vector<CarriedFrame> run_carried(gl::Context& context, const Model& model,
 
 float carried_loss(gl::Context& context, const Model& model,
                    const std::vector<std::vector<shared::View>>& frames, Variant variant, double target) {
+  if (render::is_exact(variant.th)) return 0.0f;
   render::Frame frame(context, model);
   frame.draw(frames.at(1));
   SquaredError error(context, frame.read_pictures());
@@ -100,7 +101,7 @@ float carried_loss(gl::Context& context, const Model& model,
     frame.draw(frames[1], variant.settings());
     return error.psnr(frame.colours());
   };
-  const double start = variant.th == TH_PERIPHERAL ? 1.5 : 0.15;
+  const double start = render::threshold_rules[variant.th].careful_loss;
   return static_cast<float>(measure::find_loss(at, target, {.start = start, .tolerance = 0.1}).loss);
 }
 

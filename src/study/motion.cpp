@@ -56,7 +56,7 @@ class Drive {
   render::FrameSettings settings_of(const Variant& variant, float request) const {
     render::FrameSettings settings = variant.settings();
     settings.depth_table = table_;
-    if (variant.th != TH_TAU) settings.quality = request;
+    if (!render::is_exact(variant.th)) settings.quality = request;
     return settings;
   }
   MovedPass judged(const MotionPath& path, const Variant& variant, float request);
@@ -233,7 +233,7 @@ ordered_json pass_json(const MovedPass& pass, const MovedPass& exact, const Move
 std::vector<MotionResult> measure_motion(gl::Context& context, const Model& model,
                                          const std::vector<MotionPath>& paths, std::vector<Variant> rules,
                                          const MotionSettings& settings, const Tell& progress) {
-  std::erase_if(rules, [](const Variant& rule) { return rule.th == TH_TAU; });
+  std::erase_if(rules, [](const Variant& rule) { return render::is_exact(rule.th); });
   Drive drive(context, model, settings, progress);
   const auto by_depth = [](const Variant& rule) { return rule.transmittance == TRANSMITTANCE_DEPTH; };
   if (std::any_of(rules.begin(), rules.end(), by_depth)) drive.measure_table(paths);

@@ -30,7 +30,7 @@ constexpr int warm_up_frames = 5;
 constexpr int round_frames = 12;
 
 std::string problem_of(const RuleResult& result, double target) {
-  if (result.variant.th == TH_TAU) return std::isinf(result.db) ? "" : "differs from the exact frame";
+  if (render::is_exact(result.variant.th)) return std::isinf(result.db) ? "" : "differs from the exact frame";
   if (std::abs(result.db - target) <= near_target_db) return "";
   return fmt::format("not within {} dB of {:g} dB", near_target_db, target);
 }
@@ -90,8 +90,9 @@ void find_losses(Still& still, std::vector<Variant>& rules, double target,
       rule.loss = static_cast<float>(loss);
       return settled(still, rule).db;
     };
-    if (rule.th != TH_TAU) {
-      double& start = starts.try_emplace(rule.th, rule.th == TH_PERIPHERAL ? 1.0 : 0.1).first->second;
+    if (!render::is_exact(rule.th)) {
+      double& start =
+          starts.try_emplace(rule.th, render::threshold_rules[rule.th].careful_loss).first->second;
       const double loss =
           measure::find_loss(db_at, target,
                              {.start = start, .tolerance = tolerance_db, .evaluations = evaluations_max})
@@ -124,7 +125,7 @@ std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& 
     }
   }
   for (std::size_t k = 0; k < rules.size(); ++k) take_means(times[k], results[k]);
-  const double exact_ms = frame_ms_of(results, [](const Variant& v) { return v.th == TH_TAU; });
+  const double exact_ms = frame_ms_of(results, [](const Variant& v) { return render::is_exact(v.th); });
   for (RuleResult& result : results) {
     result.of_exact = result.frame_ms / exact_ms;
     result.of_one = result.frame_ms / frame_ms_of(results, [&](const Variant& v) {

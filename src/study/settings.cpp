@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -11,22 +10,11 @@
 
 namespace binosplat::study {
 
-int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices) {
-  const auto found =
-      std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return c.name == name; });
-  if (found == choices.end()) {
-    std::vector<std::string> names;
-    for (const Choice& choice : choices) names.emplace_back(choice.name);
-    fail("{}: '{}' is not one of {}", place, name, fmt::join(names, ", "));
-  }
-  return static_cast<int>(found - choices.begin());
-}
-
 nlohmann::ordered_json to_json(const render::FrameSettings& s) {
   nlohmann::ordered_json json = {
       {"tiles", tiles_choices[s.tiles].name}, {"tile", s.tile_size}, {"th", th_choices[s.th].name}};
   if (s.precision != PRECISION_FULL) json["precision"] = precision_choices[s.precision].name;
-  if (s.th == TH_TAU) return json;
+  if (render::is_exact(s.th)) return json;
   json["transmittance"] = transmittance_choices[s.transmittance].name;
   json["loss"] = std::stod(fmt::format("{}", s.loss));  // the decimal number that was meant
   return json;
@@ -34,8 +22,8 @@ nlohmann::ordered_json to_json(const render::FrameSettings& s) {
 
 std::string describe_family(const render::FrameSettings& s) {
   std::vector<std::string> words;
-  if (s.tiles != TILES_ELLIPSE || s.th == TH_TAU) words.emplace_back(tiles_choices[s.tiles].name);
-  if (s.th != TH_TAU) {
+  if (s.tiles != TILES_ELLIPSE || render::is_exact(s.th)) words.emplace_back(tiles_choices[s.tiles].name);
+  if (!render::is_exact(s.th)) {
     words.emplace_back(th_choices[s.th].name);
     if (s.transmittance != TRANSMITTANCE_ONE) words.emplace_back(transmittance_choices[s.transmittance].name);
   }
@@ -45,19 +33,20 @@ std::string describe_family(const render::FrameSettings& s) {
 }
 
 std::string describe(const render::FrameSettings& s) {
-  return s.th == TH_TAU ? describe_family(s) : fmt::format("{}, {:g}", describe_family(s), s.loss);
+  return render::is_exact(s.th) ? describe_family(s) : fmt::format("{}, {:g}", describe_family(s), s.loss);
 }
 
 void check(const std::string& place, const render::FrameSettings& s) {
-  const auto wrong = [&](const char* why) { fail("{}: {}: {}", place, to_json(s).dump(), why); };
-  if (s.th != TH_TAU && !(s.loss > 0.0f)) wrong("th needs a loss above 0");
-  if (s.th == TH_TAU && s.loss != 0.0f) wrong("a loss has no effect with tau, which is exact");
-  if (s.th == TH_TAU && s.transmittance != TRANSMITTANCE_ONE)
-    wrong("transmittance has no effect with tau, which is exact");
+  try {
+    if (!render::is_exact(s.th) && !(s.loss > 0.0f)) fail("th needs a loss above 0");
+    render::check_choice(s);
+  } catch (const Error& error) {
+    fail("{}: {}: {}", place, to_json(s).dump(), error.what());
+  }
 }
 
 bool is_exact(const render::FrameSettings& s) {
-  return s.precision == PRECISION_FULL && s.th == TH_TAU &&
+  return s.precision == PRECISION_FULL && render::is_exact(s.th) &&
          (s.tiles == TILES_ELLIPSE || s.tiles == TILES_SNUG || s.tiles == TILES_ALL);
 }
 

@@ -2,7 +2,6 @@
 // A way to draw, by the names that options and charts use (shared/axes.h).
 
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 
 #include "render/settings.h"
@@ -11,10 +10,6 @@ namespace binosplat::study {
 
 /// The PSNR in dB that means and charts take for equal pictures, which have none.
 constexpr double equal_db = 100.0;
-
-/// The number of a name of one of the lists of shared/axes.h. Throws Error, beginning with `place`, for a
-/// name that is not in it; the text lists those that are.
-int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices);
 
 /// What decides the picture and its time: tiles, tile, th and, where they matter, precision, transmittance
 /// and loss.
@@ -27,8 +22,7 @@ std::string describe(const render::FrameSettings& settings);
 /// The same without the loss: what a line of the chart joins.
 std::string describe_family(const render::FrameSettings& settings);
 
-/// Throws Error, beginning with `place`, for settings that contradict each other, as the options do: a
-/// threshold without a loss, or tau with one or with a transmittance.
+/// render::check_choice() of what a file says: Error begins with `place`. There a threshold needs a loss.
 void check(const std::string& place, const render::FrameSettings& settings);
 
 /// Whether the picture is exact by definition: no pair that could be seen is left out, nothing is in fp16.

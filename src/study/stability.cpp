@@ -116,15 +116,16 @@ render::FrameSettings Variant::settings() const {
 }
 
 std::string Variant::name() const {
-  if (th == TH_TAU) return th_choices[th].name;
+  if (render::is_exact(th)) return th_choices[th].name;
   return fmt::format("{}, {}", th_choices[th].name, transmittance_choices[transmittance].name);
 }
 
 std::vector<Variant> all_variants() {
-  std::vector<Variant> variants = {{.th = TH_TAU}};
-  for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-    for (const int source : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST})
-      variants.push_back({th, source});
+  std::vector<Variant> variants;
+  for (int th = 0; th < std::ssize(th_choices); ++th) {
+    for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
+      if (render::takes(th, source)) variants.push_back({th, source});
+    }
   }
   return variants;
 }

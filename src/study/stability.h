@@ -23,8 +23,7 @@ struct Variant {
   std::string name() const;  // "squared, last"
 };
 
-/// Every threshold with every source; --th tau once and first, since nothing else matters to it. Losses are
-/// 0.
+/// Every threshold with every source that it takes; the exact one first. Losses are 0.
 std::vector<Variant> all_variants();
 
 /// What a verdict follows from. A case holds if none of these is broken.

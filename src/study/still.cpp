@@ -5,8 +5,6 @@
 
 namespace binosplat::study {
 
-namespace {}  // namespace
-
 Still::Still(gl::Context& context, const Model& model, std::vector<shared::View> views)
     : frame_(context, model),
       views_(std::move(views)),
@@ -31,13 +29,14 @@ render::FrameReport Still::settle(const Variant& variant) {
 }
 
 float Still::loss_at(Variant variant, double target) {
-  if (variant.th == TH_TAU) return 0.0f;
+  if (render::is_exact(variant.th)) return 0.0f;
   const auto settled = [&](double loss) {
     variant.loss = static_cast<float>(loss);
     settle(variant);
     return psnr();
   };
-  const measure::LossSearch search{.start = variant.th == TH_PERIPHERAL ? 1.0 : 0.1, .tolerance = 0.1};
+  const measure::LossSearch search{.start = render::threshold_rules[variant.th].careful_loss,
+                                   .tolerance = 0.1};
   return static_cast<float>(measure::find_loss(settled, target, search).loss);
 }
 

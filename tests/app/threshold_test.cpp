@@ -47,6 +47,7 @@ TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
       {{"--th", "tau", "--loss", "1"}, "--loss has no effect"},
       {{"--loss", "-1"}, "--loss"},
+      {{"--transmittance", "last"}, "--transmittance has no effect with --th tau"},
       {{"--loss", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
       {{"--path", "x.json", "--frames", "3"}, "--path names its own cameras"},
   };

@@ -9,13 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/choices.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
+#include "demo/city.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "render/frame.h"
-#include "demo/city.h"
 #include "scene/repeat.h"
 #include "stereo/rig.h"
 
@@ -234,7 +235,7 @@ int main(int argc, char** argv) {
   app.add_option("--tile", how.settings.tile_size, "Side of a tile in px; without: what the frame chooses");
   app.add_option("--precision", precision, "full or half")->check(CLI::IsMember({"full", "half"}));
   CLI11_PARSE(app, argc, argv);
-  how.settings.precision = number_of(precision, precision_choices);
+  how.settings.precision = find_choice("--precision", precision, precision_choices);
   try {
     for (const Case& c : cases) {
       if (list) fmt::print("{}\n", c.name);

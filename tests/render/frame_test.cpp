@@ -253,7 +253,7 @@ TEST(Frame, BadShapesAreNamed) {
   const Model model = test::random_model(74, 10, 0);
   EXPECT_TRUE(test::fails_saying([&] { draw(model, std::vector<shared::View>{}); }, {"1 to 8 views"}));
   const shared::View view = make_view(test::front_camera(16, 16, 16));
-  EXPECT_TRUE(test::fails_saying([&] { draw(model, view, {.tile_size = 12}); }, {"--tile 12"}));
+  EXPECT_TRUE(test::fails_saying([&] { draw(model, view, {.tile_size = 12}); }, {"tile 12"}));
   shared::View empty = view;
   empty.width = 0;
   EXPECT_TRUE(test::fails_saying([&] { draw(model, empty); }, {"0 x 16"}));

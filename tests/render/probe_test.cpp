@@ -220,9 +220,10 @@ TEST(Quality, IsToldFromTheFirstFrameOn) {
 TEST(Quality, NeedsARule) {
   const Model model = test::random_model(100, 10, 0);
   const shared::View view = make_view(test::front_camera(32, 32, 32));
-  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, {.quality = 40}); }, {"--quality 40", "tau"}));
+  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, {.quality = 40}); },
+                                 {"quality has no effect", "tau"}));
   EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, {.th = TH_SQUARED, .quality = -1}); },
-                                 {"--quality -1"}));
+                                 {"quality -1"}));
   EXPECT_TRUE(test::fails_saying(
       [&] { test::draw(model, view, {.th = TH_SQUARED, .quality = 40, .probe_tiles = 0}); },
       {"0 tiles of a view to probe"}));

@@ -190,7 +190,7 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
 TEST(Remember, WhatMakesNoSenseIsNamed) {
   const Model model = test::random_model(84, 10, 0);
   EXPECT_TRUE(
-      test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .loss = -1}); }, {"--loss -1"}));
+      test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .loss = -1}); }, {"loss -1"}));
 }
 
 TEST(Continuity, TellsAMomentFromACut) {

@@ -99,7 +99,7 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
     const FrameSettings shared{.decode = DECODE_CYCLOPEAN};
     EXPECT_FALSE(same_bits(draw(model, views, shared)[0], draw(model, views[0])));
     EXPECT_TRUE(
-        test::fails_saying([&] { draw(model, views[0], shared); }, {"--decode cyclopean", "both eyes"}));
+        test::fails_saying([&] { draw(model, views[0], shared); }, {"decode cyclopean", "both eyes"}));
   }
 }
 

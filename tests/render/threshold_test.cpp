@@ -123,7 +123,7 @@ TEST(DepthTable, OneThatMakesNoSenseIsNamed) {
         render::DepthTable{5.0f, {std::nanf("")}}}) {
     const FrameSettings settings = {
         .th = TH_SQUARED, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .loss = 1};
-    EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, settings); }, {"--transmittance depth"}));
+    EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, settings); }, {"transmittance depth"}));
   }
 }
 

@@ -88,7 +88,7 @@ TEST(Weigh, ThePictureStaysAndEyesHaveTheirOwn) {
   EXPECT_TRUE(frame.read_weights(0).empty());
   EXPECT_TRUE(test::fails_saying(
       [&] { test::draw(model, front(), {.transmittance = TRANSMITTANCE_LAST, .weigh = true}); },
-      {"--transmittance last", "weighs"}));
+      {"transmittance last", "weighs"}));
 }
 
 }  // namespace

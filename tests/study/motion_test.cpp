@@ -78,8 +78,9 @@ TEST_F(Motions, EachViewHasItsOwnErrorAndNoGroupIsOfTwo) {
   bytes.keep(frame, views, kept);
   EXPECT_EQ(bytes.errors(frame, views, kept), std::vector<double>(3, 0.0));
   // A probe's pixels come after the views' and count for none.
-  for (const float quality : {0.0f, 35.0f}) {
-    frame.draw(views, {.th = TH_SQUARED, .loss = 2.0f, .quality = quality});
+  for (const render::FrameSettings& way : {render::FrameSettings{.th = TH_SQUARED, .loss = 2.0f},
+                                           render::FrameSettings{.th = TH_SQUARED, .quality = 35.0f}}) {
+    frame.draw(views, way);
     const auto errors = bytes.errors(frame, views, kept);
     const auto db = looked_at(exact, frame.read_pictures());
     for (std::size_t v = 0; v < 3; ++v) {

@@ -14,6 +14,7 @@
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/shots.h"
+#include "base/choices.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "preview/window.h"
@@ -27,11 +28,11 @@ namespace fs = std::filesystem;
 void check_view(const RenderOptions& o) {
   check(o);
   if (o.mono || !o.only.empty() || o.frames > 1 || o.orbit || !o.path.empty() || o.views.size() > 1 ||
-      !o.reference_until.empty() || o.quality || o.backend != "auto" || o.device >= 0) {
+      !o.reference_until.empty() || o.quality || !o.calibration.empty() || o.backend != "auto" ||
+      o.device >= 0) {
     fail(
-        "--mono, --only, --frames, --orbit, --path, --reference-until, --quality, --backend, --device and "
-        "more "
-        "than one --view are for `binosplat render`");
+        "--mono, --only, --frames, --orbit, --path, --reference-until, --quality, --calibration, --backend, "
+        "--device and more than one --view are for `binosplat render`");
   }
   if (o.transmittance == "depth") fail("--transmittance depth is for `binosplat render`");
   if (o.layout == "multi-view") fail("--layout multi-view is for OpenEXR files of `binosplat render`");
@@ -39,11 +40,11 @@ void check_view(const RenderOptions& o) {
 
 preview::Choices choices_of(const RenderOptions& o) {
   preview::Choices choices;
-  choices.layout = o.layout.empty() ? LAYOUT_PARALLEL : number_of(o.layout, layout_choices);
+  choices.layout = o.layout.empty() ? LAYOUT_PARALLEL : find_choice("--layout", o.layout, layout_choices);
   choices.settings = settings_of(o);
   choices.rig = rig_settings(o, near_default);  // until the model tells
   choices.background = o.background.value_or(glm::vec3(0.0f));
-  choices.show = number_of(o.show, show_choices);
+  choices.show = find_choice("--show", o.show, show_choices);
   return choices;
 }
 

@@ -1,0 +1,32 @@
+#pragma once
+// Choices of shared/axes.h by their names.
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "shared/axes.h"
+
+namespace binosplat {
+
+/// The names of a list of shared/axes.h, in its order.
+inline std::vector<std::string> names_of(std::span<const Choice> choices) {
+  std::vector<std::string> names;
+  for (const Choice& choice : choices) names.emplace_back(choice.name);
+  return names;
+}
+
+/// The number of a name of one of these lists. Throws Error, beginning with `place`, for a name that is not
+/// in it; the text lists those that are.
+inline int find_choice(std::string_view place, std::string_view name, std::span<const Choice> choices) {
+  const auto found = std::ranges::find(choices, name, &Choice::name);
+  if (found == choices.end())
+    fail("{}: '{}' is not one of {}", place, name, fmt::join(names_of(choices), ", "));
+  return static_cast<int>(found - choices.begin());
+}
+
+}  // namespace binosplat

@@ -1,0 +1,39 @@
+#include "render/settings.h"
+
+#include <cmath>
+
+#include "base/error.h"
+
+namespace binosplat::render {
+
+// Written so that values that are not finite fail, too.
+void check(const FrameSettings& s, std::string_view prefix) {
+  if (!(s.loss >= 0.0f) || !std::isfinite(s.loss)) fail("{}loss {}: expected zero or more", prefix, s.loss);
+  if (!(s.quality >= 0.0f) || !std::isfinite(s.quality))
+    fail("{}quality {}: expected dB, above zero", prefix, s.quality);
+  if (is_exact(s.th) && (s.loss > 0.0f || s.quality > 0.0f)) {
+    fail("{0}{1} has no effect with {0}th {2}, which is exact", prefix, s.loss > 0.0f ? "loss" : "quality",
+         th_choices[s.th].name);
+  }
+  if (s.loss > 0.0f && s.quality > 0.0f)
+    fail("{0}loss with {0}quality: each chooses the loss: leave one of them out", prefix);
+  if (s.tile_size != 8 && s.tile_size != 16 && s.tile_size != 32)
+    fail("{}tile {}: expected 8, 16 or 32", prefix, s.tile_size);
+  if (s.probe_every < 1) fail("looking at one of {} frames: expected at least one", s.probe_every);
+  if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
+  if (s.record_every < 1) fail("measuring one of {} frames: expected at least one", s.record_every);
+  if (s.weigh && measures(s.transmittance)) {
+    fail("{}transmittance {}: not in a frame that weighs", prefix,
+         transmittance_choices[s.transmittance].name);
+  }
+}
+
+void check_choice(const FrameSettings& s, std::string_view prefix) {
+  check(s, prefix);
+  if (!takes(s.th, s.transmittance)) {
+    fail("{0}transmittance has no effect with {0}th {1}, which goes by no light", prefix,
+         th_choices[s.th].name);
+  }
+}
+
+}  // namespace binosplat::render

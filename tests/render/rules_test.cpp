@@ -1,0 +1,106 @@
+// The table of threshold rules, against their float64 twins, and which settings go together.
+
+#include "render/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "reference/splats.h"
+#include "reference/threshold.h"
+#include "render/workings.h"
+#include "support/errors.h"
+
+namespace binosplat::render {
+namespace {
+
+// What is wrong with a row, by Th of a splat whose Th is above tau at the careful loss.
+std::string wrong_with(const ThresholdRule& rule, int th) {
+  const reference::Splat splat = reference::make_splat({8, 8}, {5, 2, 4}, 1.0);
+  const auto threshold = [&](double loss, double upper = 1.0) {
+    return reference::threshold(th, loss, splat, upper);
+  };
+  if (threshold(0.0) != ALPHA_MIN) return "a loss of 0 costs something";
+  const double careful = rule.exact ? 1.0 : rule.careful_loss;
+  if ((threshold(careful) == ALPHA_MIN) != rule.exact) return "exact";
+  if ((threshold(careful, 0.5) != threshold(careful)) != rule.goes_by_light) return "light";
+  if (rule.exact == (rule.careful_loss > 0.0)) return "careful loss";
+  if (rule.exact == (rule.slope >= 1.0)) return "slope";
+  return "";
+}
+
+TEST(ThresholdRules, AreWhatTheirTwinsDo) {
+  for (int th = 0; th < std::ssize(threshold_rules); ++th)
+    EXPECT_EQ(wrong_with(threshold_rules[th], th), "") << th_choices[th].name;
+  EXPECT_TRUE(is_exact(TH_TAU)) << "Stages that know no rule, and the shaders, take TH_TAU for exact.";
+}
+
+TEST(ThresholdRules, PlantedFaultsAreCaught) {
+  const auto planted = [](auto change) {
+    ThresholdRule rule = threshold_rules[TH_SQUARED];
+    change(rule);
+    return wrong_with(rule, TH_SQUARED);
+  };
+  EXPECT_EQ(wrong_with(threshold_rules[TH_TAU], TH_SQUARED), "exact");
+  EXPECT_EQ(wrong_with(threshold_rules[TH_SQUARED], TH_TAU), "exact");
+  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.goes_by_light = false; }), "light");
+  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.careful_loss = 0.0; }), "exact");
+  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
+}
+
+TEST(Settings, ThatContradictAreNamed) {
+  const float nan = std::nanf(""), infinite = std::numeric_limits<float>::infinity();
+  const std::vector<std::pair<FrameSettings, std::string>> wrong = {
+      {{.loss = 1.0f}, "--loss has no effect with --th tau, which is exact"},
+      {{.quality = 40.0f}, "--quality has no effect with --th tau, which is exact"},
+      {{.th = TH_SQUARED, .loss = 1.0f, .quality = 40.0f}, "--loss with --quality"},
+      {{.th = TH_SQUARED, .loss = -1.0f}, "--loss -1"},
+      {{.th = TH_SQUARED, .loss = nan}, "--loss nan"},
+      {{.th = TH_SQUARED, .loss = infinite}, "--loss inf"},
+      {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
+      {{.transmittance = TRANSMITTANCE_LAST, .weigh = true},
+       "--transmittance last: not in a frame that weighs"},
+      {{.tile_size = 12}, "--tile 12"},
+      {{.record_every = 0}, "measuring one of 0 frames"},
+  };
+  for (const auto& [settings, said] : wrong) {
+    EXPECT_TRUE(test::fails_saying([&, s = settings] { check(s, "--"); }, {said}));
+    EXPECT_TRUE(test::fails_saying([&, s = settings] { check_choice(s, "--"); }, {said}));
+  }
+  EXPECT_TRUE(test::fails_saying([] { check({.quality = 40.0f}); }, {"quality has no effect with th tau"}));
+}
+
+TEST(Workings, ThatContradictAreNamed) {
+  const render::Workings blended{.stand_in = render::StandIn{render::Stage::blend, {}}};
+  check(blended, {.th = TH_SQUARED, .loss = 1.0f}, "--");
+  for (const FrameSettings& settings :
+       {FrameSettings{.th = TH_SQUARED, .quality = 40.0f},
+        FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST}}) {
+    EXPECT_TRUE(test::fails_saying([&] { check(blended, settings, "--"); }, {"--reference-until"}));
+  }
+  EXPECT_TRUE(test::fails_saying([] { check(render::Workings{.list_tiles = 3}, {}); }, {"lists of 3 x 3"}));
+}
+
+TEST(Settings, ThatGoTogetherDo) {
+  for (int th = 0; th < std::ssize(th_choices); ++th) {
+    for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
+      FrameSettings settings{.th = th, .transmittance = source};
+      settings.loss = static_cast<float>(threshold_rules[th].careful_loss);
+      check(settings);  // light may be measured by any rule
+      if (takes(th, source)) {
+        check_choice(settings);
+      } else {
+        EXPECT_TRUE(
+            test::fails_saying([&] { check_choice(settings); }, {"transmittance has no effect with th"}));
+      }
+    }
+  }
+  EXPECT_FALSE(takes(TH_TAU, TRANSMITTANCE_LAST));
+  EXPECT_TRUE(takes(TH_SQUARED, TRANSMITTANCE_DEPTH));
+  check({.th = TH_SQUARED});  // exact, at a loss of 0
+  check({.th = TH_SQUARED, .quality = 40.0f});
+}
+
+}  // namespace
+}  // namespace binosplat::render
