@@ -12,6 +12,7 @@
 #include "base/mapped_file.h"
 #include "formats/json_file.h"
 #include "study/embedded.h"
+#include "study/fields.h"
 #include "study/settings.h"
 
 namespace binosplat::study {
@@ -116,8 +117,8 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
 }
 
 void remove_repeated(std::vector<render::FrameSettings>& settings) {
-  std::set<std::string> seen;
-  std::erase_if(settings, [&](const auto& s) { return !seen.insert(to_json(s).dump()).second; });
+  std::set<NamedSettings> seen;
+  std::erase_if(settings, [&](const auto& s) { return !seen.insert(named(s)).second; });
 }
 
 std::vector<std::string> sizes_of(const Block& top) {
@@ -173,14 +174,10 @@ Axes load_axes(const std::string& preset_or_file) {
 }
 
 nlohmann::ordered_json to_json(const Axes& axes) {
-  nlohmann::ordered_json json = {{"views", axes.views},
-                                 {"frames", axes.frames},
-                                 {"repeats", axes.repeats},
-                                 {"eyes", axes.eyes},
-                                 {"sizes", axes.sizes}};
-  json["settings"] = nlohmann::ordered_json::array();
-  for (const render::FrameSettings& s : axes.settings) json["settings"].push_back(to_json(s));
-  return json;
+  std::vector<NamedSettings> settings;
+  for (const render::FrameSettings& s : axes.settings) settings.push_back(named(s));
+  return object("views", axes.views, "frames", axes.frames, "repeats", axes.repeats, "eyes", axes.eyes,
+                "sizes", axes.sizes, "settings", settings);
 }
 
 }  // namespace binosplat::study

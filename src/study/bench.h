@@ -2,7 +2,6 @@
 // One point of the chart: a way to draw, first verified, then timed, then compared with the exact picture and
 // with the photos.
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,7 +12,7 @@
 #include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
-#include "study/floors.h"
+#include "study/bench_results.h"
 
 namespace binosplat::study {
 
@@ -39,10 +38,9 @@ class Bench {
   Bench(gl::Context& context, const Model& model, std::vector<BenchView> views, const shared::View& small,
         const BenchEffort& effort);
 
-  /// The point as JSON (bench_results.h says what is in it). A point that fails verification is not timed:
-  /// it has a "problem" instead. TRANSMITTANCE_DEPTH goes by a table of the bench's own views. Throws Error
-  /// where the GPU cannot draw the views at all.
-  nlohmann::ordered_json measure(render::FrameSettings settings);
+  /// A point that fails verification is not timed: it has a problem instead. TRANSMITTANCE_DEPTH goes by a
+  /// table of the bench's own views. Throws Error where the GPU cannot draw the views at all.
+  BenchNumbers measure(render::FrameSettings settings);
 
  private:
   /// A view's exact pictures by eye, over black; and what they are worth against the photo.
@@ -55,10 +53,9 @@ class Bench {
   const std::vector<Exact>& exact();
   const render::DepthTable& depth_table();
   std::string verify(const render::FrameSettings& settings);
-  void time(const render::FrameSettings& settings, nlohmann::ordered_json& point);
-  void judge(const render::FrameSettings& settings, nlohmann::ordered_json& point);
-  nlohmann::ordered_json compare(const BenchView& view, const Exact& exact,
-                                 const std::vector<Picture>& drawn) const;
+  void time(const render::FrameSettings& settings, BenchNumbers& point);
+  void judge(const render::FrameSettings& settings, BenchNumbers& point);
+  ViewNumbers compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
 
   gl::Context& context_;
   const Model& model_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "base/output_file.h"
@@ -9,9 +11,15 @@
 
 namespace binosplat::study {
 
-namespace {
-
 using nlohmann::ordered_json;
+
+ordered_json to_json(const Cell& cell) {
+  return std::visit([](const auto& value) { return ordered_json(value); }, cell.value);
+}
+
+std::string json_text(double number) { return ordered_json(number).dump(); }
+
+namespace {
 
 ordered_json to_json(const Axis& axis) {
   return {{"label", axis.label}, {"unit", axis.unit}, {"log", axis.log}, {"categories", axis.categories}};
@@ -38,23 +46,23 @@ ordered_json to_json(const Plot& plot) {
 }
 
 ordered_json to_json(const Table& table) {
-  for (const ordered_json& row : table.rows) {
+  ordered_json json = {{"columns", table.columns}, {"rows", ordered_json::array()}};
+  for (const std::vector<Cell>& row : table.rows) {
+    ordered_json& cells = json["rows"].emplace_back(ordered_json::array());
+    for (const Cell& cell : row) cells.push_back(to_json(cell));
     if (row.size() != table.columns.size()) {
       throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", table.columns.size(),
-                                         row.size(), row.dump()));
+                                         row.size(), cells.dump()));
     }
   }
-  ordered_json json = {{"columns", table.columns}};
-  json["rows"] = ordered_json::array();
-  for (const ordered_json& row : table.rows) json["rows"].push_back(row);
   return json;
 }
 
-ordered_json to_json(const Page& page) {
+ordered_json to_json(const Page& page, const ordered_json& data) {
   ordered_json json = {{"title", page.title}, {"sentence", page.sentence}};
   json["facts"] = ordered_json::array();
   for (const auto& [name, value] : page.facts)
-    json["facts"].push_back(ordered_json::array({ordered_json(name), value}));
+    json["facts"].push_back(ordered_json::array({ordered_json(name), to_json(value)}));
   json["sections"] = ordered_json::array();
   for (const Section& section : page.sections) {
     ordered_json one = {{"id", section.id},
@@ -65,7 +73,7 @@ ordered_json to_json(const Page& page) {
     if (section.table) one["table"] = to_json(*section.table);
     json["sections"].push_back(std::move(one));
   }
-  json["data"] = page.data;
+  json["data"] = data;
   return json;
 }
 
@@ -98,7 +106,18 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-std::string html(const Page& page) {
+void Series::add(std::variant<double, std::string> x, double y, std::string point, bool marked) {
+  points.push_back({std::move(x), y, std::move(point), marked});
+}
+
+void add_part(Plot& bars, const std::string& bar, const std::string& part, double value) {
+  auto found = std::find_if(bars.series.begin(), bars.series.end(),
+                            [&](const Series& series) { return series.name == part; });
+  if (found == bars.series.end()) found = bars.series.insert(found, {part, {}});
+  found->add(bar, value);
+}
+
+std::string html(const Page& page, const ordered_json& data) {
   const auto& ours = page_files();
   const auto& others = third_party_files();
   std::string out = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
@@ -110,7 +129,7 @@ std::string html(const Page& page) {
   out +=
       "<noscript><p>The plots on this page are drawn by JavaScript, which is switched off "
       "here.</p></noscript>\n";
-  out += "<script type=\"application/json\" id=\"page\">" + for_script(to_json(page)) + "</script>\n";
+  out += "<script type=\"application/json\" id=\"page\">" + for_script(to_json(page, data)) + "</script>\n";
   for (const auto& [folder, bundle] :
        {std::pair{"d3/", "d3.min.js"}, std::pair{"plot/", "plot.umd.min.js"}}) {
     const std::string at = folder;
@@ -119,9 +138,9 @@ std::string html(const Page& page) {
   return out + "<script>\n" + ours.at("page.js") + "</script>\n</html>\n";
 }
 
-void save_page(const std::filesystem::path& path, const Page& page) {
+void save_page(const std::filesystem::path& path, const Page& page, const ordered_json& data) {
   OutputFile file(path);
-  file.write(html(page));
+  file.write(html(page, data));
   file.commit();
 }
 

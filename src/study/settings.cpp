@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "base/error.h"
+#include "study/fields.h"
 
 namespace binosplat::study {
+
+using nlohmann::ordered_json;
 
 int find_choice(const std::string& place, const std::string& name, std::span<const Choice> choices) {
   const auto found =
@@ -22,15 +25,31 @@ int find_choice(const std::string& place, const std::string& name, std::span<con
   return static_cast<int>(found - choices.begin());
 }
 
-nlohmann::ordered_json to_json(const render::FrameSettings& s) {
-  nlohmann::ordered_json json = {
-      {"tiles", tiles_choices[s.tiles].name}, {"tile", s.tile_size}, {"th", th_choices[s.th].name}};
-  if (s.precision != PRECISION_FULL) json["precision"] = precision_choices[s.precision].name;
-  if (s.th == TH_TAU) return json;
-  json["transmittance"] = transmittance_choices[s.transmittance].name;
-  json["loss"] = std::stod(fmt::format("{}", s.loss));  // the decimal number that was meant
-  return json;
+NamedSettings named(const render::FrameSettings& s) {
+  NamedSettings names{tiles_choices[s.tiles].name, s.tile_size, th_choices[s.th].name, {}, {}, {}};
+  if (s.precision != PRECISION_FULL) names.precision = precision_choices[s.precision].name;
+  if (s.th == TH_TAU) return names;
+  names.transmittance = transmittance_choices[s.transmittance].name;
+  names.loss = std::stod(fmt::format("{}", s.loss));
+  return names;
 }
+
+namespace {
+
+void fields(const auto& io, auto& settings) {
+  io("tiles", settings.tiles);
+  io("tile", settings.tile);
+  io("th", settings.th);
+  io("precision", settings.precision);
+  io("transmittance", settings.transmittance);
+  io("loss", settings.loss);
+}
+
+}  // namespace
+
+void to_json(ordered_json& json, const NamedSettings& settings) { fields(FieldWriter{json}, settings); }
+void from_json(const ordered_json& json, NamedSettings& settings) { fields(FieldReader{json}, settings); }
+ordered_json to_json(const render::FrameSettings& settings) { return named(settings); }
 
 std::string describe_family(const render::FrameSettings& s) {
   std::vector<std::string> words;
