@@ -21,11 +21,7 @@ constexpr struct {
 /// add(series, entry) for every entry of the targets: a line a rule, in their order.
 template <typename Add>
 void by_rule(const Analysis& analysis, Plot& plot, const Add& add) {
-  for (const AnalysedSystem& entry : analysis.targets) {
-    const auto found = std::find_if(plot.series.begin(), plot.series.end(),
-                                    [&](const Series& series) { return series.name == entry.name; });
-    if (found == plot.series.end()) plot.series.push_back({entry.name, {}, true});
-  }
+  for (const AnalysedSystem& entry : analysis.targets) series_of(plot, entry.name).line = true;
   for (Series& series : plot.series) {
     for (const AnalysedSystem& entry : analysis.targets) {
       if (entry.name == series.name) add(series, entry);
@@ -61,7 +57,7 @@ Section systems(const Analysis& a) {
     const Typical& times = system.times;
     table.rows.push_back(row(system.name, times.frame_ms, slowest / times.frame_ms, times.pairs,
                              system.mean_db, system.worst_db, system.worst_view));
-    for (const gl::StageTime& stage : times.stages) add_part(plot, system.name, stage.name, stage.ms);
+    for (const gl::StageTime& stage : times.stages) series_of(plot, stage.name).add(system.name, stage.ms);
   }
   const AnalysedSystem& last = a.systems.back();
   return {"systems",

@@ -76,7 +76,7 @@ namespace {
 
 std::string csv_field(const Cell& cell) {
   const auto* const text = std::get_if<std::string>(&cell.value);
-  const std::string bare = text == nullptr ? to_json(cell).dump() : *text;
+  const std::string bare = text == nullptr ? ordered_json(cell).dump() : *text;
   if (text == nullptr) return bare == "null" ? "" : bare;
   if (bare.empty()) return "";
   std::string quoted = "\"";

@@ -82,12 +82,9 @@ Section accuracy(const Chart& chart) {
   Plot plot;
   plot.x = {"frame time", "ms"};
   plot.y = {"PSNR against exact, equal pictures at 100", "dB"};
-  for (const std::string& family : chart.families) plot.series.push_back({family, {}, false, false, true});
-  for (const BenchPoint* point : chart.measured) {
-    const auto family = std::find(chart.families.begin(), chart.families.end(), point->family);
-    plot.series[static_cast<std::size_t>(family - chart.families.begin())].add(
-        point->frame_ms, point->psnr_db(), point->name, chart.front.count(point) != 0);
-  }
+  for (const std::string& family : chart.families) series_of(plot, family);
+  for (const BenchPoint* p : chart.measured)
+    series_of(plot, p->family).add(p->frame_ms, p->psnr_db(), p->name, chart.front.count(p) != 0);
   Series front{"Pareto front", {}, true, true, false};
   for (const BenchPoint* point : chart.measured) {
     if (chart.front.count(point) != 0) front.add(point->frame_ms, point->psnr_db(), point->name, true);
@@ -103,7 +100,7 @@ Section stages(const Chart& chart) {
   for (const BenchPoint* point : chart.measured) {
     if (chart.front.count(point) == 0 && point != exact_of(chart)) continue;
     for (const gl::StageTime& stage : point->stages) {
-      add_part(plot, point->name, stage.name, stage.ms);
+      series_of(plot, stage.name).add(point->name, stage.ms);
       if (point != exact_of(chart)) continue;
       sum += stage.ms;
       if (stage.ms <= most) continue;

@@ -126,7 +126,7 @@ Section gains(const MotionStudy& study) {
 using Number = double (*)(const MovedFrame&);
 
 /// A number of every frame of a path, its segments one after the other.
-Series series_of(const std::string& name, const MovedFrames& frames, Number number, const MotionPath& path) {
+Series line_of(const std::string& name, const MovedFrames& frames, Number number, const MotionPath& path) {
   Series series{name, {}, true, false, false};
   for (std::size_t s = 0; s < frames.size(); ++s) {
     const MotionSegment& segment = path.segments[s];
@@ -143,7 +143,7 @@ Section asked(const MotionStudy& study, const MotionResult& path) {
   Plot plot{{"frame", ""}, {"PSNR", "dB"}, {}};
   for (const MovedRule& rule : path.rules) {
     const auto add = [&](const std::string& name, Number number) {
-      plot.series.push_back(series_of(name, rule.asked.frames, number, path.path));
+      plot.series.push_back(line_of(name, rule.asked.frames, number, path.path));
     };
     add(rule.variant.name(), [](const MovedFrame& frame) { return frame.true_db(); });
     add(rule.variant.name() + ": told", [](const MovedFrame& frame) { return frame.told(); });
@@ -163,9 +163,9 @@ Section asked(const MotionStudy& study, const MotionResult& path) {
 
 /// A number of the frames where all were asked for the same; the exact frame's beside them.
 Plot costs(const MotionResult& path, const Axis& axis, Number number) {
-  Plot plot{{"frame", ""}, axis, {series_of("exact", path.exact.frames, number, path.path)}};
+  Plot plot{{"frame", ""}, axis, {line_of("exact", path.exact.frames, number, path.path)}};
   for (const MovedRule& rule : path.rules)
-    plot.series.push_back(series_of(rule.variant.name(), rule.asked.frames, number, path.path));
+    plot.series.push_back(line_of(rule.variant.name(), rule.asked.frames, number, path.path));
   return plot;
 }
 

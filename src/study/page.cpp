@@ -3,79 +3,55 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "base/output_file.h"
 #include "study/embedded.h"
+#include "study/fields.h"
 
 namespace binosplat::study {
 
 using nlohmann::ordered_json;
 
-ordered_json to_json(const Cell& cell) {
-  return std::visit([](const auto& value) { return ordered_json(value); }, cell.value);
+void to_json(ordered_json& json, const Cell& cell) {
+  std::visit([&](const auto& value) { json = value; }, cell.value);
 }
 
 std::string json_text(double number) { return ordered_json(number).dump(); }
 
-namespace {
-
-ordered_json to_json(const Axis& axis) {
-  return {{"label", axis.label}, {"unit", axis.unit}, {"log", axis.log}, {"categories", axis.categories}};
+static void fields(const auto& io, const Axis& a) {
+  io("label", a.label, "unit", a.unit, "log", a.log, "categories", a.categories);
 }
 
-ordered_json to_json(const Series& series) {
-  ordered_json json = {
-      {"name", series.name}, {"line", series.line}, {"step", series.step}, {"dots", series.dots}};
-  json["points"] = ordered_json::array();
-  for (const Point& p : series.points) {
-    ordered_json point = {{"y", p.y}, {"label", p.label}, {"marked", p.marked}};
-    std::visit([&](const auto& x) { point["x"] = x; }, p.x);
-    json["points"].push_back(std::move(point));
-  }
-  return json;
+static void fields(const auto& io, const Point& p) {
+  io("y", p.y, "label", p.label, "marked", p.marked);
+  std::visit([&](const auto& x) { io("x", x); }, p.x);
 }
 
-ordered_json to_json(const Plot& plot) {
-  ordered_json json = {
-      {"kind", plot.bars ? "bars" : "curves"}, {"x", to_json(plot.x)}, {"y", to_json(plot.y)}};
-  json["series"] = ordered_json::array();
-  for (const Series& series : plot.series) json["series"].push_back(to_json(series));
-  return json;
+static void fields(const auto& io, const Series& s) {
+  io("name", s.name, "line", s.line, "step", s.step, "dots", s.dots, "points", s.points);
 }
 
-ordered_json to_json(const Table& table) {
-  ordered_json json = {{"columns", table.columns}, {"rows", ordered_json::array()}};
-  for (const std::vector<Cell>& row : table.rows) {
-    ordered_json& cells = json["rows"].emplace_back(ordered_json::array());
-    for (const Cell& cell : row) cells.push_back(to_json(cell));
-    if (row.size() != table.columns.size()) {
-      throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", table.columns.size(),
-                                         row.size(), cells.dump()));
+static void fields(const auto& io, const Plot& p) {
+  io("kind", p.bars ? "bars" : "curves", "x", p.x, "y", p.y, "series", p.series);
+}
+
+static void fields(const auto& io, const Table& t) {
+  for (const std::vector<Cell>& row : t.rows) {
+    if (row.size() != t.columns.size()) {
+      throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", t.columns.size(),
+                                         row.size(), ordered_json(row).dump()));
     }
   }
-  return json;
+  io("columns", t.columns, "rows", t.rows);
 }
 
-ordered_json to_json(const Page& page, const ordered_json& data) {
-  ordered_json json = {{"title", page.title}, {"sentence", page.sentence}};
-  json["facts"] = ordered_json::array();
-  for (const auto& [name, value] : page.facts)
-    json["facts"].push_back(ordered_json::array({ordered_json(name), to_json(value)}));
-  json["sections"] = ordered_json::array();
-  for (const Section& section : page.sections) {
-    ordered_json one = {{"id", section.id},
-                        {"title", section.title},
-                        {"sentence", section.sentence},
-                        {"problem", section.problem}};
-    if (section.plot) one["plot"] = to_json(*section.plot);
-    if (section.table) one["table"] = to_json(*section.table);
-    json["sections"].push_back(std::move(one));
-  }
-  json["data"] = data;
-  return json;
+static void fields(const auto& io, const Section& s) {
+  io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "plot", s.plot, "table",
+     s.table);
 }
+
+namespace {
 
 // As text of a script element, which ends at the first "</script" whatever it is quoted in.
 std::string for_script(const ordered_json& json) {
@@ -110,11 +86,10 @@ void Series::add(std::variant<double, std::string> x, double y, std::string poin
   points.push_back({std::move(x), y, std::move(point), marked});
 }
 
-void add_part(Plot& bars, const std::string& bar, const std::string& part, double value) {
-  auto found = std::find_if(bars.series.begin(), bars.series.end(),
-                            [&](const Series& series) { return series.name == part; });
-  if (found == bars.series.end()) found = bars.series.insert(found, {part, {}});
-  found->add(bar, value);
+Series& series_of(Plot& plot, const std::string& name) {
+  const auto found = std::find_if(plot.series.begin(), plot.series.end(),
+                                  [&](const Series& series) { return series.name == name; });
+  return found == plot.series.end() ? plot.series.emplace_back(Series{name, {}}) : *found;
 }
 
 std::string html(const Page& page, const ordered_json& data) {
@@ -129,7 +104,10 @@ std::string html(const Page& page, const ordered_json& data) {
   out +=
       "<noscript><p>The plots on this page are drawn by JavaScript, which is switched off "
       "here.</p></noscript>\n";
-  out += "<script type=\"application/json\" id=\"page\">" + for_script(to_json(page, data)) + "</script>\n";
+  out += "<script type=\"application/json\" id=\"page\">" +
+         for_script(object("title", page.title, "sentence", page.sentence, "facts", page.facts, "sections",
+                           page.sections, "data", data)) +
+         "</script>\n";
   for (const auto& [folder, bundle] :
        {std::pair{"d3/", "d3.min.js"}, std::pair{"plot/", "plot.umd.min.js"}}) {
     const std::string at = folder;

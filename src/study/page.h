@@ -64,7 +64,7 @@ struct Cell {
   std::variant<std::nullptr_t, bool, std::int64_t, double, std::string> value;
 };
 
-nlohmann::ordered_json to_json(const Cell& cell);
+void to_json(nlohmann::ordered_json& json, const Cell& cell);
 
 /// A number as JSON has it: "40.0".
 std::string json_text(double number);
@@ -87,8 +87,8 @@ struct Section {
   std::string problem;  // why there is neither
 };
 
-/// Adds a part to one of the bars of a plot of them; parts stand in the order in which they first came.
-void add_part(Plot& bars, const std::string& bar, const std::string& part, double value);
+/// The series of a plot with this name, made where there is none yet.
+Series& series_of(Plot& plot, const std::string& name);
 
 struct Page {
   std::string title;

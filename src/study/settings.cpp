@@ -34,18 +34,10 @@ NamedSettings named(const render::FrameSettings& s) {
   return names;
 }
 
-namespace {
-
-void fields(const auto& io, auto& settings) {
-  io("tiles", settings.tiles);
-  io("tile", settings.tile);
-  io("th", settings.th);
-  io("precision", settings.precision);
-  io("transmittance", settings.transmittance);
-  io("loss", settings.loss);
+static void fields(const auto& io, Some<NamedSettings> auto& s) {
+  io("tiles", s.tiles, "tile", s.tile, "th", s.th, "precision", s.precision, "transmittance", s.transmittance,
+     "loss", s.loss);
 }
-
-}  // namespace
 
 void to_json(ordered_json& json, const NamedSettings& settings) { fields(FieldWriter{json}, settings); }
 void from_json(const ordered_json& json, NamedSettings& settings) { fields(FieldReader{json}, settings); }

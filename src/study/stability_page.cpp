@@ -87,7 +87,7 @@ ordered_json to_json(const StabilityStudy& study) {
   ordered_json json = object("scene", study.scene, "device", study.device, "target_db", study.target,
                              "bounds", none, "losses", none, "cases", none);
   for (const auto& bound : bounds_of(study.bounds))
-    json["bounds"][std::get<std::string>(bound[0].value)] = to_json(bound[1]);
+    json["bounds"][std::get<std::string>(bound[0].value)] = bound[1];
   for (const Variant& rule : study.rules) json["losses"][rule.name()] = rule.loss;
   for (const StabilityStudy::Case& one : study.cases) {
     json["cases"][one.name]["fear"] = one.fear;
