@@ -12,6 +12,7 @@
 #include "base/mapped_file.h"
 #include "base/output_file.h"
 #include "demo/city.h"
+#include "formats/content.h"
 #include "study/calibration.h"
 #include "study/fields.h"
 #include "study/settings.h"
@@ -82,11 +83,7 @@ void add_calibrated(const std::string& file, study::Axes& axes) {
 }
 
 ordered_json load_json(const fs::path& path) {
-  const MappedFile file(path);
-  const auto bytes = file.bytes();
-  ordered_json json =
-      ordered_json::parse(reinterpret_cast<const char*>(bytes.data()),
-                          reinterpret_cast<const char*>(bytes.data()) + bytes.size(), nullptr, false);
+  ordered_json json = ordered_json::parse(as_text(MappedFile(path).bytes()), nullptr, false);
   if (json.is_discarded()) fail("{}: not JSON, or cut short", path.string());
   return json;
 }

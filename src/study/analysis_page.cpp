@@ -44,7 +44,7 @@ Section scene(const Analysis& a) {
   std::string sentence =
       fmt::format("{} Gaussians in pictures of {} x {} px.", a.gaussians, a.width, a.height);
   if (!a.drop()) sentence += " There are no photos: what is lost is told against exact pictures.";
-  return {"scene", "The scene (tables I and II)", sentence, {}, table, ""};
+  return {"scene", "The scene (tables I and II)", sentence, {}, table};
 }
 
 Section systems(const Analysis& a) {
@@ -60,14 +60,11 @@ Section systems(const Analysis& a) {
     for (const gl::StageTime& stage : times.stages) series_of(plot, stage.name).add(system.name, stage.ms);
   }
   const AnalysedSystem& last = a.systems.back();
-  return {"systems",
-          "Where the time goes (figures 2 and 8)",
+  return {"systems", "Where the time goes (figures 2 and 8)",
           fmt::format("The systems by what decides their Gaussian-tile pairs, all in this renderer: “{}” "
                       "draws {:.2f} times as fast as “{}”.",
                       last.name, slowest / last.times.frame_ms, a.systems.front().name),
-          plot,
-          table,
-          ""};
+          plot, table};
 }
 
 Section skipping(const Analysis& a) {
@@ -86,15 +83,12 @@ Section skipping(const Analysis& a) {
   }
   const auto half = [&](std::size_t curve) { return curves[curve].points[4].psnr_db; };
   return {
-      "skipping",
-      "What the lowest contributions are worth (figures 4a, 5a and 5b)",
+      "skipping", "What the lowest contributions are worth (figures 4a, 5a and 5b)",
       fmt::format("Without the half of all that pixels blend that has the lowest alpha T the pictures keep "
                   "{:.1f} dB; {:.1f} dB where max(T) of each Gaussian is known, {:.1f} dB with the light by "
                   "depth, {:.1f} dB by alpha alone.",
                   half(0), half(1), half(2), half(3)),
-      plot,
-      table,
-      ""};
+      plot, table};
 }
 
 /// A plot of one of the values by depth.
@@ -154,15 +148,12 @@ Section real_drops(const Analysis& a) {
     table.rows.push_back(row(entry.name, target, entry.reached_db, real, entry.worst_db, entry.worst_view,
                              named(entry.settings).loss));
   });
-  return {"real-drops",
-          "What is lost where nothing was calibrated (table III)",
+  return {"real-drops", "What is lost where nothing was calibrated (table III)",
           fmt::format("Losses found on {} calibration views cost {} other views {}.",
                       a.calibration_views.size(), a.test_views.size(),
                       excess > 0 ? fmt::format("at most {:.3f} dB more than the target, in the mean", excess)
                                  : std::string("no more than the target, in the mean")),
-          plot,
-          table,
-          ""};
+          plot, table};
 }
 
 Section removed(const Analysis& a) {
@@ -182,14 +173,11 @@ Section removed(const Analysis& a) {
       table.rows.push_back(row(series.name, target, nullptr, 100.0 * share, nullptr, nullptr));
     }
   }
-  return {"removed",
-          "Pairs removed (table IV)",
+  return {"removed", "Pairs removed (table IV)",
           fmt::format("“{}” removes the most pairs of the exact ellipse test: {:.1f} % at {} dB.{}",
                       most->name, 100.0 * most->pairs_removed, json_text(*most->target_db),
                       a.drop() ? " The paper's K was tuned on the test views themselves." : ""),
-          plot,
-          table,
-          ""};
+          plot, table};
 }
 
 Section speed(const Analysis& a) {
@@ -203,13 +191,10 @@ Section speed(const Analysis& a) {
     fastest = times;
     best = entry.name;
   });
-  return {"speed",
-          "Speed at equal loss (figure 8)",
+  return {"speed", "Speed at equal loss (figure 8)",
           fmt::format("The fastest is “{}”: {:.2f} times as fast as the exact frame ({:.4g} ms).", best,
                       fastest, exact_ms(a)),
-          plot,
-          {},
-          ""};
+          plot};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "formats/content.h"
 #include "formats/json_file.h"
 #include "study/embedded.h"
 #include "study/fields.h"
@@ -168,9 +169,7 @@ std::vector<std::string> axes_presets() {
 Axes load_axes(const std::string& preset_or_file) {
   const auto preset = preset_files().find(preset_or_file + ".json");
   if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
-  const MappedFile file(preset_or_file);
-  const auto bytes = file.bytes();
-  return parse_axes(preset_or_file, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return parse_axes(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
 }
 
 nlohmann::ordered_json to_json(const Axes& axes) {

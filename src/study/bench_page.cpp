@@ -90,7 +90,7 @@ Section accuracy(const Chart& chart) {
     if (chart.front.count(point) != 0) front.add(point->frame_ms, point->psnr_db(), point->name, true);
   }
   if (!front.points.empty()) plot.series.push_back(front);
-  return {chart.id, chart.title, sentence_of(chart), plot, {}, ""};
+  return {chart.id, chart.title, sentence_of(chart), plot};
 }
 
 Section stages(const Chart& chart) {
@@ -111,7 +111,7 @@ Section stages(const Chart& chart) {
   std::string sentence = "Where the time goes, for the points on the front and for the exact picture";
   if (!slowest.empty())
     sentence += fmt::format(": of the exact picture's, {:.0f} % goes to {}", 100 * most / sum, slowest);
-  return {chart.id + "-stages", chart.title + ": stages", sentence + ".", plot, {}, ""};
+  return {chart.id + "-stages", chart.title + ": stages", sentence + ".", plot};
 }
 
 Section numbers(const Chart& chart) {
@@ -139,7 +139,7 @@ Section numbers(const Chart& chart) {
   if (unsettled > 0)
     sentence += fmt::format(" At {} of {} settings the GPU's clock had not settled when timing began.",
                             unsettled, chart.measured.size());
-  return {chart.id + "-numbers", chart.title + ": the numbers", sentence, {}, table, ""};
+  return {chart.id + "-numbers", chart.title + ": the numbers", sentence, {}, table};
 }
 
 /// The stages of the points on the front and of the exact picture beside what the GPU could do at best.
@@ -162,7 +162,7 @@ std::optional<Section> floors(const Chart& chart) {
       "What each stage must move and compute at least, over the rates that small programs reach on this GPU";
   if (!widest.empty())
     sentence += fmt::format(": the exact picture's {} has most to gain, {:.3g} ms", widest, gap);
-  return Section{chart.id + "-floors", chart.title + ": floors", sentence + ".", {}, table, ""};
+  return Section{chart.id + "-floors", chart.title + ": floors", sentence + ".", {}, table};
 }
 
 Section missing(const Chart& chart) {

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "formats/content.h"
 #include "formats/json_file.h"
 #include "study/fields.h"
 #include "study/settings.h"
@@ -204,10 +205,7 @@ Calibration parse_calibration(const std::string& name, const std::string& text) 
 }
 
 Calibration load_calibration(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  const auto bytes = file.bytes();
-  return parse_calibration(path.string(),
-                           std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return parse_calibration(path.string(), std::string(as_text(MappedFile(path).bytes())));
 }
 
 bool is_of(const Calibration& calibration, const Model& model) {

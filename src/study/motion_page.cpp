@@ -77,12 +77,12 @@ Section words_kept(const MotionStudy& study) {
   if (farthest->value > nearest->value)
     sentence +=
         fmt::format("; “{}” falls most: {:.1f} dB ({})", farthest->rule, -farthest->value, farthest->path);
-  return {"words", "Whether rules keep their word", sentence + ".", {}, table, ""};
+  return {"words", "Whether rules keep their word", sentence + ".", {}, table};
 }
 
 /// What rules take at one true quality.
 Section gains(const MotionStudy& study) {
-  Section section{"gains", "What rules take at one true quality", "", {}, {}, ""};
+  Section section{"gains", "What rules take at one true quality", ""};
   bool compared = true, problems = false;
   for (const MotionResult& path : study.paths) {
     for (const MovedRule& rule : path.rules) {
@@ -150,15 +150,12 @@ Section asked(const MotionStudy& study, const MotionResult& path) {
   }
   const std::string& name = path.path.name;
   return {
-      "asked-" + name,
-      fmt::format("{}: true and told", name),
+      "asked-" + name, fmt::format("{}: true and told", name),
       fmt::format(
           "{}; {}. Asked for {:g} dB; the worse eye's PSNR against the exact frame, of 8-bit pictures, and "
           "what the program told of itself. Means are over moving frames; {:g} dB are equal pictures.",
           path.path.motion, lengths_of(path.path), study.settings.quality, equal_db),
-      plot,
-      asked_table(path),
-      ""};
+      plot, asked_table(path)};
 }
 
 /// A number of the frames where all were asked for the same; the exact frame's beside them.
@@ -170,13 +167,10 @@ Plot costs(const MotionResult& path, const Axis& axis, Number number) {
 }
 
 Section pairs(const MotionStudy& study, const MotionResult& path) {
-  Section section{"pairs-" + path.path.name,
-                  fmt::format("{}: pairs", path.path.name),
+  Section section{"pairs-" + path.path.name, fmt::format("{}: pairs", path.path.name),
                   fmt::format("Gaussian-tile pairs of a frame, a probe's included, asked for {:g} dB.",
                               study.settings.quality),
-                  costs(path, {"pairs", "M"}, [](const MovedFrame& frame) { return 1e-6 * frame.pairs; }),
-                  {},
-                  ""};
+                  costs(path, {"pairs", "M"}, [](const MovedFrame& frame) { return 1e-6 * frame.pairs; })};
   const Table table = target_table(path);
   if (table.rows.empty()) return section;
   section.table = table;
@@ -187,13 +181,10 @@ Section pairs(const MotionStudy& study, const MotionResult& path) {
 }
 
 Section times(const MotionStudy& study, const MotionResult& path) {
-  return {"times-" + path.path.name,
-          fmt::format("{}: time", path.path.name),
+  return {"times-" + path.path.name, fmt::format("{}: time", path.path.name),
           fmt::format("GPU time of a frame, the median of {} rounds in which rules took turns.",
                       study.settings.rounds),
-          costs(path, {"GPU time", "ms"}, [](const MovedFrame& frame) { return frame.ms; }),
-          {},
-          ""};
+          costs(path, {"GPU time", "ms"}, [](const MovedFrame& frame) { return frame.ms; })};
 }
 
 }  // namespace

@@ -82,9 +82,9 @@ struct Section {
   std::string id;  // of the link to it and of the plot's SVG
   std::string title;
   std::string sentence;
-  std::optional<Plot> plot;
-  std::optional<Table> table;
-  std::string problem;  // why there is neither
+  std::optional<Plot> plot = {};
+  std::optional<Table> table = {};
+  std::string problem = {};  // why there is neither
 };
 
 /// The series of a plot with this name, made where there is none yet.

@@ -27,7 +27,7 @@ struct NamedSettings {
   std::optional<std::string> transmittance;  // where th is not tau
   std::optional<double> loss;                // likewise: the decimal number that was meant
 
-  auto operator<=>(const NamedSettings&) const = default;
+  auto operator<=>(const NamedSettings&) const = default;  // NOLINT(modernize-use-nullptr): none is meant
 };
 
 NamedSettings named(const render::FrameSettings& settings);

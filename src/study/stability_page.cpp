@@ -34,7 +34,7 @@ Section verdicts(const StabilityStudy& study) {
                   json_text(study.target), study.cases.size());
   if (!steadiest.empty())
     sentence += fmt::format(": “{}” holds in {} of them, no rule but tau in more", steadiest, best);
-  return {"verdicts", "Where thresholds hold", sentence + ".", {}, table, ""};
+  return {"verdicts", "Where thresholds hold", sentence + ".", {}, table};
 }
 
 std::vector<std::vector<Cell>> bounds_of(const StabilityBounds& b) {
@@ -48,7 +48,7 @@ std::vector<std::vector<Cell>> bounds_of(const StabilityBounds& b) {
 
 Section bounds(const StabilityStudy& study) {
   const Table table{{"verdict: where it breaks", "bound"}, bounds_of(study.bounds)};
-  return {"bounds", "What a verdict follows from", "A case holds if none of these is broken.", {}, table, ""};
+  return {"bounds", "What a verdict follows from", "A case holds if none of these is broken.", {}, table};
 }
 
 Section one_case(const StabilityStudy& study, const StabilityStudy::Case& one) {
@@ -60,7 +60,7 @@ Section one_case(const StabilityStudy& study, const StabilityStudy::Case& one) {
     table.rows.push_back(row(study.rules[k].name(), r.worst_db, r.worst_frame, r.settled_db, r.settling,
                              r.largest, r.signed_mean, r.disagreement_db, 100.0 * r.removed, r.verdict));
   }
-  return {"case-" + one.name, one.name, one.fear + ".", {}, table, ""};
+  return {"case-" + one.name, one.name, one.fear + ".", {}, table};
 }
 
 ordered_json result_json(const StabilityResult& r) {
