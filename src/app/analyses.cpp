@@ -1,6 +1,7 @@
 #include "app/analyses.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "app/command.h"
 #include "app/drawing.h"
@@ -14,7 +15,6 @@
 namespace binosplat::app {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 namespace {
 
@@ -54,7 +54,7 @@ ExitCode analyse_scene(const AnalysisOptions& options) {
   const auto context = open_context(options.scene);
   Parts parts;
   const bool photos = !options.scene.photos.empty();
-  const ordered_json results = study::analyse(
+  const study::Analysis analysis = study::analyse(
       *context, model, calibrated, tested,
       {.scene = model.name,
        .near_plane = near_plane,
@@ -62,8 +62,8 @@ ExitCode analyse_scene(const AnalysisOptions& options) {
        .targets = photos ? std::vector{0.1, 0.2, 0.3, 0.4, 0.5} : std::vector{50.0, 45.0, 40.0, 37.0, 34.0},
        .frames = options.frames},
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
-  const study::Page page = study::analysis_page(results);
-  save_report(folder, "study.json", results, page);
+  const study::Page page = study::analysis_page(analysis);
+  save_report(folder, "study.json", to_json(analysis), page);
   print(page);
   fmt::print("\n{}: report.html, study.json\n", folder.string());
   return ExitCode::done;

@@ -1,5 +1,7 @@
 // binosplat bench: the chart of speed against accuracy.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <regex>
@@ -8,17 +10,13 @@
 #include "app/command.h"
 #include "app/drawing.h"
 #include "app/photos.h"
-#include "app/report.h"
 #include "base/log.h"
-#include "base/output_file.h"
 #include "base/progress.h"
 #include "study/bench.h"
-#include "study/bench_results.h"
 
 namespace binosplat::app {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 namespace {
 
@@ -83,10 +81,10 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
 void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
   const Shard shard = parse_shard(options.shard);
   std::vector<std::size_t> missing;
-  for (std::size_t i = shard.index; i < plan.json["points"].size(); i += shard.count) {
+  for (std::size_t i = shard.index; i < plan.points.size(); i += shard.count) {
     if (!folder.has(i)) missing.push_back(i);
   }
-  const std::size_t of_shard = (plan.json["points"].size() + shard.count - 1 - shard.index) / shard.count;
+  const std::size_t of_shard = (plan.points.size() + shard.count - 1 - shard.index) / shard.count;
   log_info("{} points to measure{}", missing.size(),
            missing.size() == of_shard
                ? ""
@@ -122,73 +120,57 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   }
 }
 
-void print_profile(const ordered_json& stages) {
-  for (const ordered_json& stage : stages) {
-    if (!stage["share"].is_number()) continue;
-    fmt::print("      {:<30}{:>11.3f}  {:.1f} MB{}; floor {:.3f} ms, {:.0f} %\n",
-               stage["stage"].get<std::string>(), stage["ms"].get<double>(),
-               1e-6 * stage["bytes"].get<double>(),
-               stage["operations"].is_number()
-                   ? fmt::format(", {:.1f} million operations", 1e-6 * stage["operations"].get<double>())
-                   : "",
-               stage["floor_ms"].get<double>(), 100.0 * stage["share"].get<double>());
+void print_profile(const std::vector<study::StageFloor>& stages) {
+  for (const study::StageFloor& stage : stages) {
+    if (std::isnan(stage.share)) continue;
+    fmt::print("      {:<30}{:>11.3f}  {:.1f} MB{}; floor {:.3f} ms, {:.0f} %\n", stage.stage, stage.ms,
+               1e-6 * stage.bytes,
+               std::isnan(stage.operations)
+                   ? ""
+                   : fmt::format(", {:.1f} million operations", 1e-6 * stage.operations),
+               stage.floor_ms, 100.0 * stage.share);
   }
 }
 
-void print(const ordered_json& results) {
-  const std::vector<bool> front = study::pareto_front(results["points"]);
+void print(const std::vector<study::BenchPoint>& points) {
+  const std::vector<bool> front = study::pareto_front(points);
   std::string chart;
   for (std::size_t i = 0; i < front.size(); ++i) {
-    const ordered_json& p = results["points"][i];
-    const std::string name =
-        fmt::format("{}, {}, size {}", p["scene"].get<std::string>(),
-                    p["eyes"] == 2 ? "both eyes" : "one eye", p["size"].get<std::string>());
-    if (name != chart)
-      fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}\n", name, "  (* on the Pareto front)", "frame ms",
-                 "PSNR dB", "SSIM", "FLIP", "pairs");
-    chart = name;
-    const std::string setting = fmt::format("{} {}", front[i] ? "*" : " ", p["name"].get<std::string>());
-    if (!study::is_measured(p)) {
-      fmt::print("{:<36}  {}\n", setting,
-                 p.contains("problem") ? p["problem"].get<std::string>() : "not measured yet");
+    const study::BenchPoint& p = points[i];
+    if (p.chart() != chart)
+      fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}\n", p.chart(), "  (* on the Pareto front)",
+                 "frame ms", "PSNR dB", "SSIM", "FLIP", "pairs");
+    chart = p.chart();
+    const std::string setting = fmt::format("{} {}", front[i] ? "*" : " ", p.name);
+    if (!p.measured()) {
+      fmt::print("{:<36}  {}\n", setting, p.problem.empty() ? "not measured yet" : p.problem);
       continue;
     }
-    const ordered_json& exact = p["exact"];
-    const auto number = [](const ordered_json& value, int digits, const char* none) {
-      return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), digits) : std::string(none);
+    const auto number = [](double value, int digits, const char* none) {
+      return std::isnan(value) ? none : fmt::format("{:.{}f}", value, digits);
     };
-    fmt::print("{:<36}{:>11.3f}{:>9}{:>9}{:>9}{:>12.0f}\n", setting, p["frame_ms"].get<double>(),
-               number(exact["psnr_db"], 2, "equal"), number(exact["ssim"], 4, "-"),
-               number(exact["flip"], 4, "-"), p["pairs"].get<double>());
-    if (p.contains("profile")) print_profile(p["profile"]);
+    fmt::print("{:<36}{:>11.3f}{:>9}{:>9}{:>9}{:>12.0f}\n", setting, p.frame_ms,
+               number(p.exact.psnr_db, 2, "equal"), number(p.exact.ssim, 4, "-"),
+               number(p.exact.flip, 4, "-"), p.pairs);
+    if (p.profile) print_profile(*p.profile);
   }
 }
 
 ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
-  const ordered_json results = folder.results();
-  save_report(folder.path(), "results.json", results, study::bench_page(results));
-  {
-    const Uninterrupted hold;
-    OutputFile csv(folder.path() / "results.csv");
-    csv.write(study::csv(results));
-    csv.commit();
-  }
-  print(results);
+  const study::BenchResults results = folder.results();
+  folder.save_results(results);
+  print(results.points);
   fmt::print("\n{}: report.html, results.csv, results.json\n", folder.path().string());
   if (!options.compare.empty()) {
     fmt::print("\nSince {}:\n", options.compare);
-    try {
-      for (const std::string& line : study::compare_results(load_json(options.compare), results))
-        fmt::print("{}\n", line);
-    } catch (const ordered_json::exception& error) {
-      fail("--compare {}: not the results.json of a bench run: {}", options.compare, error.what());
-    }
+    for (const std::string& line : study::compare_results(load_points(options.compare), results.points))
+      fmt::print("{}\n", line);
   }
-  std::size_t problems = 0;
-  for (const ordered_json& point : results["points"]) problems += point.contains("problem");
+  const auto problems = std::count_if(results.points.begin(), results.points.end(),
+                                      [](const study::BenchPoint& p) { return !p.problem.empty(); });
   if (problems > 0)
     throw Error(ExitCode::fell_short, fmt::format("{} of {} points failed verification and were not timed",
-                                                  problems, results["points"].size()));
+                                                  problems, results.points.size()));
   return ExitCode::done;
 }
 
@@ -197,10 +179,10 @@ BenchFolder merge(const BenchOptions& options) {
   BenchFolder into(options.output, first.plan());
   for (const std::string& name : options.merge) {
     const BenchFolder from(name);
-    if (from.plan() != first.plan())
+    if (!from.same_plan(first))
       fail("--merge: {} and {} are shards of different runs (see their plan.json)", options.merge.front(),
            name);
-    for (std::size_t i = 0; i < from.plan()["points"].size(); ++i) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
       if (from.has(i) && !into.has(i)) into.save(i, from.load(i));
     }
   }
@@ -222,7 +204,7 @@ void check(const BenchOptions& options) {
 ExitCode bench(const BenchOptions& options) {
   check(options);
   check_output(fs::path(options.output) / "results.json");
-  if (!options.compare.empty()) load_json(options.compare);
+  if (!options.compare.empty()) load_points(options.compare);  // while nothing is lost
   if (!options.merge.empty()) return finish(options, merge(options));
   parse_shard(options.shard);
   const BenchPlan plan = make_plan(options);

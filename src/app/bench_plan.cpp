@@ -3,15 +3,18 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <regex>
 #include <set>
 
 #include "app/command.h"
 #include "app/content_key.h"
+#include "app/report.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/output_file.h"
 #include "demo/city.h"
+#include "formats/content.h"
 #include "study/calibration.h"
+#include "study/fields.h"
 #include "study/settings.h"
 
 namespace binosplat::app {
@@ -51,14 +54,15 @@ ordered_json scene_json(const BenchScene& scene) {
 void add_cases(BenchPlan& plan, std::size_t scene) {
   for (const int eyes : plan.axes.eyes) {
     for (const std::string& size : plan.axes.sizes) {
-      plan.cases.push_back({scene, eyes, size, plan.json["points"].size()});
+      plan.cases.push_back({scene, eyes, size, plan.points.size()});
       for (const render::FrameSettings& settings : plan.axes.settings) {
-        plan.json["points"].push_back({{"scene", plan.scenes[scene].name},
-                                       {"eyes", eyes},
-                                       {"size", size},
-                                       {"name", study::describe(settings)},
-                                       {"family", study::describe_family(settings)},
-                                       {"settings", study::to_json(settings)}});
+        study::BenchPoint& point = plan.points.emplace_back();
+        point.scene = plan.scenes[scene].name;
+        point.eyes = eyes;
+        point.size = size;
+        point.name = study::describe(settings);
+        point.family = study::describe_family(settings);
+        point.settings = study::named(settings);
       }
     }
   }
@@ -66,29 +70,25 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
 
 /// A calibration's ways to draw, with the losses as they are, after the axes' own.
 void add_calibrated(const std::string& file, study::Axes& axes) {
-  std::set<std::string> known;
-  for (const render::FrameSettings& settings : axes.settings) known.insert(study::to_json(settings).dump());
+  std::set<study::NamedSettings> known;
+  for (const render::FrameSettings& settings : axes.settings) known.insert(study::named(settings));
   for (const study::CalibrationEntry& entry : study::load_calibration(file).entries) {
     render::FrameSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;
     settings.loss = static_cast<float>(entry.loss);
     study::check(file, settings);
-    if (known.insert(study::to_json(settings).dump()).second) axes.settings.push_back(settings);
+    if (known.insert(study::named(settings)).second) axes.settings.push_back(settings);
   }
 }
 
-}  // namespace
-
 ordered_json load_json(const fs::path& path) {
-  const MappedFile file(path);
-  const auto bytes = file.bytes();
-  ordered_json json =
-      ordered_json::parse(reinterpret_cast<const char*>(bytes.data()),
-                          reinterpret_cast<const char*>(bytes.data()) + bytes.size(), nullptr, false);
+  ordered_json json = ordered_json::parse(as_text(MappedFile(path).bytes()), nullptr, false);
   if (json.is_discarded()) fail("{}: not JSON, or cut short", path.string());
   return json;
 }
+
+}  // namespace
 
 RenderOptions case_options(const BenchScene& scene, const BenchCase& which) {
   RenderOptions options = scene.options;
@@ -107,11 +107,7 @@ BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan;
   plan.axes = study::load_axes(options.axes);
   if (!options.calibration.empty()) add_calibrated(options.calibration, plan.axes);
-  plan.json = {{"format", "binosplat bench plan"},  {"version", 1},
-               {"program", BINOSPLAT_VERSION},      {"axes_name", plan.axes.name},
-               {"axes", study::to_json(plan.axes)}, {"ppd", options.ppd},
-               {"profile", options.profile},        {"scenes", ordered_json::array()},
-               {"points", ordered_json::array()}};
+  ordered_json scenes = ordered_json::array();
   std::set<std::string> names;
   plan.scenes.reserve(options.scenes.size());  // a scene keeps a reference to its options
   for (const std::string& file : options.scenes) {
@@ -119,20 +115,32 @@ BenchPlan make_plan(const BenchOptions& options) {
     scene.scene = open_scene(scene.options);
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
     scene.list = listed_cameras(scene.options, scene.scene.cameras);
-    plan.json["scenes"].push_back(scene_json(scene));
+    scenes.push_back(scene_json(scene));
     add_cases(plan, plan.scenes.size() - 1);
   }
+  plan.json = std::make_shared<ordered_json>(
+      study::object("format", "binosplat bench plan", "version", 1, "program", BINOSPLAT_VERSION, "axes_name",
+                    plan.axes.name, "axes", study::to_json(plan.axes), "ppd", options.ppd, "profile",
+                    options.profile, "scenes", scenes, "points", plan.points));
   return plan;
 }
 
-BenchFolder::BenchFolder(fs::path folder, const ordered_json& plan)
-    : folder_(std::move(folder)), plan_(plan) {
+std::vector<study::BenchPoint> load_points(const fs::path& path) {
+  try {
+    return load_json(path).at("points").get<std::vector<study::BenchPoint>>();
+  } catch (const ordered_json::exception& error) {
+    fail("--compare {}: not the results.json of a bench run: {}", path.string(), error.what());
+  }
+}
+
+BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> plan)
+    : folder_(std::move(folder)), plan_(std::move(plan)) {
   const fs::path file = folder_ / "plan.json";
   if (!fs::exists(file)) {
-    save_json(file, plan);
+    save_json(file, *plan_);
     return;
   }
-  if (load_json(file) != plan) {
+  if (load_json(file) != *plan_) {
     fail(
         "{} holds the points of another run: other scenes, cameras or photos (by content), axes or another "
         "version (see plan.json). Name another folder with -o, or remove it",
@@ -140,36 +148,49 @@ BenchFolder::BenchFolder(fs::path folder, const ordered_json& plan)
   }
 }
 
-BenchFolder::BenchFolder(fs::path folder)
-    : folder_(std::move(folder)), plan_(load_json(folder_ / "plan.json")) {
-  if (!plan_.is_object() || plan_.value("format", "") != "binosplat bench plan" ||
-      plan_.value("version", 0) != 1 || !plan_.contains("points") || !plan_["points"].is_array())
+BenchFolder::BenchFolder(fs::path folder) : folder_(std::move(folder)) {
+  const ordered_json& plan = *(plan_ = std::make_shared<ordered_json>(load_json(folder_ / "plan.json")));
+  if (!plan.is_object() || plan.value("format", "") != "binosplat bench plan" ||
+      plan.value("version", 0) != 1 || !plan.contains("points") || !plan["points"].is_array())
     fail("{}: not the plan of a bench run of this version", (folder_ / "plan.json").string());
 }
+
+bool BenchFolder::same_plan(const BenchFolder& other) const { return *plan_ == *other.plan_; }
+std::size_t BenchFolder::size() const { return plan_->at("points").size(); }
 
 fs::path BenchFolder::file(std::size_t point) const {
   return folder_ / "points" / fmt::format("{:05}.json", point);
 }
 
-ordered_json BenchFolder::load(std::size_t point) const {
-  ordered_json measured = load_json(file(point));
+study::BenchNumbers BenchFolder::load(std::size_t point) const {
+  const ordered_json measured = load_json(file(point));
   const bool good = measured.is_object() && (measured.contains("frame_ms") || measured.contains("problem"));
   if (!good) fail("{}: not a point of bench: remove it, and it is measured again", file(point).string());
   return measured;
 }
 
-void BenchFolder::save(std::size_t point, const ordered_json& measured) const {
+void BenchFolder::save(std::size_t point, const study::BenchNumbers& measured) const {
   save_json(file(point), measured);
 }
 
-ordered_json BenchFolder::results() const {
-  ordered_json results = {{"format", "binosplat bench"}, {"version", 1}, {"plan", plan_}};
-  results["plan"].erase("points");
-  results["points"] = plan_["points"];
-  for (std::size_t i = 0; i < plan_["points"].size(); ++i) {
-    if (has(i)) results["points"][i].update(load(i));
+study::BenchResults BenchFolder::results() const {
+  study::BenchResults results{plan_->value("axes_name", ""), plan_->value("program", ""),
+                              plan_->at("points").get<std::vector<study::BenchPoint>>()};
+  for (std::size_t i = 0; i < results.points.size(); ++i) {
+    if (has(i)) static_cast<study::BenchNumbers&>(results.points[i]) = load(i);
   }
   return results;
+}
+
+void BenchFolder::save_results(const study::BenchResults& results) const {
+  ordered_json json = {{"format", "binosplat bench"}, {"version", 1}, {"plan", *plan_}};
+  json["plan"].erase("points");
+  json["points"] = results.points;
+  save_report(folder_, "results.json", json, study::bench_page(results));
+  const Uninterrupted hold;
+  OutputFile csv(folder_ / "results.csv");
+  csv.write(study::csv(results.points));
+  csv.commit();
 }
 
 }  // namespace binosplat::app

@@ -2,7 +2,8 @@
 // What `binosplat bench` is to measure, point by point, and which of it lies in a folder already.
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "app/render_options.h"
 #include "app/shots.h"
 #include "study/axes.h"
+#include "study/bench_results.h"
 
 namespace binosplat::app {
 
@@ -47,7 +49,8 @@ struct BenchPlan {
   study::Axes axes;
   std::vector<BenchScene> scenes;
   std::vector<BenchCase> cases;
-  nlohmann::ordered_json json;  // what two runs must have in common to be one
+  std::vector<study::BenchPoint> points;
+  std::shared_ptr<const nlohmann::ordered_json> json;  // what two runs must have in common to be one
 };
 
 /// Throws Error for scenes, cameras or axes that cannot be used. Reads no model.
@@ -60,26 +63,30 @@ RenderOptions case_options(const BenchScene& scene, const BenchCase& which);
 class BenchFolder {
  public:
   /// Starts the folder, or goes on with it. Throws Error if it holds another plan.
-  BenchFolder(std::filesystem::path folder, const nlohmann::ordered_json& plan);
+  BenchFolder(std::filesystem::path folder, std::shared_ptr<const nlohmann::ordered_json> plan);
   /// A folder that is there, with whatever plan it has. Throws Error if it has none.
   explicit BenchFolder(std::filesystem::path folder);
 
-  const nlohmann::ordered_json& plan() const { return plan_; }
+  const std::shared_ptr<const nlohmann::ordered_json>& plan() const { return plan_; }
+  bool same_plan(const BenchFolder& other) const;
+  std::size_t size() const;  // points of the plan
   bool has(std::size_t point) const { return std::filesystem::exists(file(point)); }
-  nlohmann::ordered_json load(std::size_t point) const;
-  void save(std::size_t point, const nlohmann::ordered_json& measured) const;
-  /// All points, measured or not, with the plan.
-  nlohmann::ordered_json results() const;
+  study::BenchNumbers load(std::size_t point) const;
+  void save(std::size_t point, const study::BenchNumbers& measured) const;
+  /// All points, measured or not.
+  study::BenchResults results() const;
+  /// Writes report.html, results.json and results.csv.
+  void save_results(const study::BenchResults& results) const;
   const std::filesystem::path& path() const { return folder_; }
 
  private:
   std::filesystem::path file(std::size_t point) const;
 
   std::filesystem::path folder_;
-  nlohmann::ordered_json plan_;
+  std::shared_ptr<const nlohmann::ordered_json> plan_;
 };
 
-/// Reads a JSON file. Throws Error naming it and what is wrong.
-nlohmann::ordered_json load_json(const std::filesystem::path& path);
+/// The points of the results.json that --compare names. Throws Error if it is none.
+std::vector<study::BenchPoint> load_points(const std::filesystem::path& path);
 
 }  // namespace binosplat::app

@@ -13,6 +13,7 @@
 #include "formats/image_file.h"
 #include "measure/flip.h"
 #include "measure/metrics.h"
+#include "study/fields.h"
 
 namespace binosplat::app {
 
@@ -98,23 +99,14 @@ void print(const CompareOptions& options, const Comparison& found, const Image& 
 }
 
 nlohmann::ordered_json to_json(const CompareOptions& options, const Comparison& found, const Image& image) {
-  nlohmann::ordered_json json = {{"version", BINOSPLAT_VERSION},
-                                 {"a", options.a},
-                                 {"b", options.b},
-                                 {"width", image.width},
-                                 {"height", image.height},
-                                 {"equal", found.largest.max == 0.0},
-                                 {"psnr_db", found.psnr},  // null where equal: infinite
-                                 {"ssim", found.ssim},
-                                 {"flip", found.flip},
-                                 {"pixels_per_degree", options.pixels_per_degree},
-                                 {"largest_error",
-                                  {{"value", found.largest.max},
-                                   {"x", found.largest.x},
-                                   {"y", found.largest.y},
-                                   {"channel", channel_name(image, found.largest.channel)}}}};
-  if (options.min_psnr) json["min_psnr_db"] = *options.min_psnr;
-  return json;
+  const auto& largest = found.largest;
+  return study::object(
+      "version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width, "height",
+      image.height, "equal", largest.max == 0.0, "psnr_db", found.psnr,  // null where equal: infinite
+      "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.pixels_per_degree, "largest_error",
+      study::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
+                    channel_name(image, largest.channel)),
+      "min_psnr_db", options.min_psnr);
 }
 
 ExitCode compare(const CompareOptions& options) {

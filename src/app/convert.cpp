@@ -19,6 +19,7 @@
 #include "render/frame.h"
 #include "scene/axes.h"
 #include "study/bench.h"
+#include "study/fields.h"
 
 namespace binosplat::app {
 
@@ -157,22 +158,14 @@ void print(const ConvertOptions& o, const Converted& c) {
 }
 
 nlohmann::ordered_json to_json(const ConvertOptions& o, const Converted& c) {
-  nlohmann::ordered_json json = {{"version", BINOSPLAT_VERSION},
-                                 {"model", o.render.scene},
-                                 {"output", o.output},
-                                 {"format", model_format_names[static_cast<int>(c.format)]},
-                                 {"gaussians", c.count},
-                                 {"bytes", c.bytes},
-                                 {"bytes_per_gaussian", c.bytes_each()},
-                                 {"losses", c.losses}};
-  if (c.bytes_before) json["model_bytes"] = *c.bytes_before;
+  nlohmann::ordered_json json =
+      study::object("version", BINOSPLAT_VERSION, "model", o.render.scene, "output", o.output, "format",
+                    model_format_names[static_cast<int>(c.format)], "gaussians", c.count, "bytes", c.bytes,
+                    "bytes_per_gaussian", c.bytes_each(), "losses", c.losses, "model_bytes", c.bytes_before);
   if (c.views.empty()) return json;
   const auto psnr = [](const ViewCost& view) {
-    return nlohmann::ordered_json{{"name", view.name},
-                                  {"width", view.width},
-                                  {"height", view.height},
-                                  {"equal", std::isinf(view.psnr) && view.psnr > 0.0},
-                                  {"psnr_db", view.psnr}};  // null where equal: infinite
+    return study::object("name", view.name, "width", view.width, "height", view.height, "equal",
+                         std::isinf(view.psnr) && view.psnr > 0.0, "psnr_db", view.psnr);  // null where equal
   };
   for (const ViewCost& view : c.views) json["views"].push_back(psnr(view));
   json["worst"] = psnr(worst_of(c.views));

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "app/command.h"
+#include "study/fields.h"
 
 namespace binosplat::app {
 
@@ -29,23 +30,17 @@ void print(const gl::Device& device) {
 }
 
 ordered_json to_json(const gl::Device& device) {
-  if (!device.usable) return {{"options", device.options}, {"usable", false}, {"trouble", device.trouble}};
+  if (!device.usable)
+    return study::object("options", device.options, "usable", false, "trouble", device.trouble);
   const gl::Limits& l = device.limits;
-  return {{"options", device.options},
-          {"usable", true},
-          {"renderer", device.renderer},
-          {"version", device.version},
-          {"software", device.software},
-          {"limits",
-           {{"storage_block_bytes", l.storage_block_bytes},
-            {"groups", l.groups},
-            {"invocations", l.invocations},
-            {"shared_bytes", l.shared_bytes},
-            {"storage_blocks", l.storage_blocks},
-            {"program_binaries", l.program_binaries},
-            {"timestamp_bits", l.timestamp_bits},
-            {"subgroups", l.subgroups_of_32}}},
-          {"lacks", device.lacks}};
+  return study::object(
+      "options", device.options, "usable", true, "renderer", device.renderer, "version", device.version,
+      "software", device.software, "limits",
+      study::object("storage_block_bytes", l.storage_block_bytes, "groups", l.groups, "invocations",
+                    l.invocations, "shared_bytes", l.shared_bytes, "storage_blocks", l.storage_blocks,
+                    "program_binaries", l.program_binaries, "timestamp_bits", l.timestamp_bits, "subgroups",
+                    l.subgroups_of_32),
+      "lacks", device.lacks);
 }
 
 ExitCode devices(const std::string& json) {

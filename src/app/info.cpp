@@ -20,6 +20,7 @@
 #include "scene/framing.h"
 #include "scene/summary.h"
 #include "stereo/rig.h"
+#include "study/fields.h"
 #include "study/weights.h"
 
 namespace binosplat::app {
@@ -27,6 +28,7 @@ namespace binosplat::app {
 namespace {
 
 using nlohmann::ordered_json;
+using study::object;
 
 struct InfoOptions {
   RenderOptions render;  // scene, lod, cameras, device
@@ -171,31 +173,20 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
   ordered_json scale;
   for (const auto& [decade, count] : s.scale)
     scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
-  ordered_json json = {{"name", model.name},
-                       {"format", model.format},
-                       {"gaussians", model.count()},
-                       {"left_out", model.left_out},
-                       {"degree", model.degree},
-                       {"axes", model.axes},
-                       {"kernel_px2", model.kernel_px2},
-                       {"antialiased", model.antialiased},
-                       {"bounds", to_json(s.all)},
-                       {"core_bounds", to_json(s.core)},
-                       {"gpu_bytes", {{"model", needs.model}, {"headset_frame", needs.frame}}}};
+  ordered_json json =
+      object("name", model.name, "format", model.format, "gaussians", model.count(), "left_out",
+             model.left_out, "degree", model.degree, "axes", model.axes, "kernel_px2", model.kernel_px2,
+             "antialiased", model.antialiased, "bounds", to_json(s.all), "core_bounds", to_json(s.core),
+             "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest is made for each eye
   for (std::size_t k = 0; k < std::size(model_format_names); ++k)
     json["file_bytes"][model_format_names[k]] =
         bytes_in(static_cast<ModelFormat>(k), model.count(), model.degree);
-  json.update({{"opacity", {{"median", s.opacity_median}, {"tenths", s.opacity}}},
-               {"largest_scale", {{"median", s.scale_median}, {"decades", scale}}},
-               {"degrees_in_use", s.degree},
-               {"odd",
-                {{"invisible", s.invisible},
-                 {"without_size", s.without_size},
-                 {"flat", s.flat},
-                 {"needles", s.needles},
-                 {"far", s.far},
-                 {"huge", s.huge}}}});
+  study::FieldWriter{json}("opacity", object("median", s.opacity_median, "tenths", s.opacity),
+                           "largest_scale", object("median", s.scale_median, "decades", scale),
+                           "degrees_in_use", s.degree, "odd",
+                           object("invisible", s.invisible, "without_size", s.without_size, "flat", s.flat,
+                                  "needles", s.needles, "far", s.far, "huge", s.huge));
   return json;
 }
 
@@ -209,10 +200,9 @@ ExitCode info(const InfoOptions& options) {
   if (seen) print(*seen, model.count());
   if (options.json.empty()) return ExitCode::done;
   ordered_json json = to_json(model, summary, needs);
-  if (seen) {
-    json["views"] = {
-        {"count", seen->views}, {"unseen", seen->unseen}, {"gaussians_of_99_percent", seen->most_of}};
-  }
+  if (seen)
+    json["views"] =
+        object("count", seen->views, "unseen", seen->unseen, "gaussians_of_99_percent", seen->most_of);
   save_json(options.json, json);
   return ExitCode::done;
 }

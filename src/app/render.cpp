@@ -173,7 +173,7 @@ ExitCode render(RenderOptions options) {
   print_needs(report.needs);
   draw_all(*context, plan, std::move(shots), list, model, followed, report);
   print(report);
-  if (!options.json.empty()) save_json(options.json, to_json(report));
+  if (!options.json.empty()) save(options.json, report);
   return ExitCode::done;
 }
 

@@ -7,17 +7,27 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/command.h"
 #include "app/open_scene.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "scene/scaffold.h"
 #include "shared/axes.h"
+#include "study/fields.h"
 
 namespace binosplat::app {
 
 namespace {
 
 using nlohmann::ordered_json;
+using study::FieldWriter;
+using study::object;
+
+/// What is left out of the JSON otherwise.
+template <typename T>
+std::optional<T> given(bool is, const T& value) {
+  return is ? std::optional(value) : std::nullopt;
+}
 
 std::optional<double> mean_photo_psnr(const RenderReport& report) {
   double sum = 0.0;
@@ -35,14 +45,10 @@ ordered_json list(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 ordered_json eye_json(const Eye& eye) {
   const Camera& c = eye.camera;
-  ordered_json json;
-  if (!eye.side.empty()) json["eye"] = eye.side;
-  json.update(
-      {{"width", c.width}, {"height", c.height}, {"fx", c.fx}, {"fy", c.fy}, {"cx", c.cx}, {"cy", c.cy}});
-  json["position"] = list(c.position);
-  json["axes"] = {
-      {"x_right", list(c.rotation[0])}, {"y_down", list(c.rotation[1])}, {"z_forward", list(c.rotation[2])}};
-  return json;
+  const auto& axes = c.rotation;
+  return object("eye", given(!eye.side.empty(), eye.side), "width", c.width, "height", c.height, "fx", c.fx,
+                "fy", c.fy, "cx", c.cx, "cy", c.cy, "position", list(c.position), "axes",
+                object("x_right", list(axes[0]), "y_down", list(axes[1]), "z_forward", list(axes[2])));
 }
 
 // At which the optics of headsets put their screens.
@@ -50,10 +56,8 @@ constexpr double headset_focus_metres = 2.0;
 
 ordered_json comfort_json(const Comfort& comfort) {
   const stereo::DisparityRange& r = comfort.range;
-  ordered_json json = {{"near_px", r.near_px},           {"far_px", r.far_px},
-                       {"near_degrees", r.near_degrees}, {"far_degrees", r.far_degrees},
-                       {"vertical_px", r.vertical_px},   {"comfortable", stereo::comfortable(r)}};
-  return json;
+  return object("near_px", r.near_px, "far_px", r.far_px, "near_degrees", r.near_degrees, "far_degrees",
+                r.far_degrees, "vertical_px", r.vertical_px, "comfortable", stereo::comfortable(r));
 }
 
 // How the disparities of a pair lie.
@@ -100,13 +104,9 @@ std::string levels_text(const ShotLevels& levels) {
   return text;
 }
 
-ordered_json levels_json(const ShotLevels& levels) {
-  ordered_json json = {{"gaussians", levels.gaussians}, {"switched", levels.switched}};
-  json["read_ms"] = levels.read_ms;
-  json["upload_ms"] = levels.upload_ms;
-  if (levels.switch_psnr) json["switch_psnr_db"] = *levels.switch_psnr;
-  if (levels.finest_psnr) json["finest_psnr_db"] = *levels.finest_psnr;
-  return json;
+ordered_json levels_json(const ShotLevels& l) {
+  return object("gaussians", l.gaussians, "switched", l.switched, "read_ms", l.read_ms, "upload_ms",
+                l.upload_ms, "switch_psnr_db", l.switch_psnr, "finest_psnr_db", l.finest_psnr);
 }
 
 // Along a path: how much is drawn, how often it changes, and the worst of what that costs.
@@ -139,64 +139,49 @@ void print_levels(const RenderReport& report) {
 }
 
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
-  ordered_json json = {{"name", drawn.shot.name}, {"units_per_metre", units_per_metre(options)}};
-  if (drawn.shot.ipd) json["ipd_metres"] = *drawn.shot.ipd;
-  if (options.convergence) json["convergence_metres"] = *options.convergence;
-  if (options.cant) json["cant_degrees"] = *options.cant;
-  json["eyes"] = ordered_json::array();
+  const render::FrameReport& r = drawn.report;
+  const bool calibrated = !options.calibration.empty();
+  ordered_json json = object("name", drawn.shot.name, "units_per_metre", units_per_metre(options),
+                             "ipd_metres", drawn.shot.ipd, "convergence_metres", options.convergence,
+                             "cant_degrees", options.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
-  json["visible"] = drawn.report.visible;
-  json["pairs"] = drawn.report.pairs;
-  json["gpu_ms"] = drawn.report.total_ms;
-  json["tile"] = drawn.report.tile_size;
-  json["depth_orders"] = drawn.report.order_groups;
-  json["drawn_again"] = drawn.report.redrawn;
-  if (options.quality || !options.calibration.empty()) json["loss"] = drawn.report.loss;
-  if (options.quality) json["probed_psnr_db"] = drawn.report.quality;
-  if (drawn.photo_psnr) json["photo_psnr_db"] = *drawn.photo_psnr;
+  FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.total_ms, "tile", r.tile_size,
+                    "depth_orders", r.order_groups, "drawn_again", r.redrawn, "loss",
+                    given(options.quality || calibrated, r.loss), "probed_psnr_db",
+                    given(options.quality.has_value(), r.quality), "photo_psnr_db", drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
-  if (drawn.most_shown) json["show"] = {{"what", options.show}, {"most", *drawn.most_shown}};
+  if (drawn.most_shown) json["show"] = object("what", options.show, "most", *drawn.most_shown);
   json["outputs"] = drawn.files;
   return json;
 }
 
 ordered_json settings_json(const RenderReport& report) {
   const RenderOptions& o = report.options;
-  ordered_json json = {{"tiles", o.tiles},
-                       {"tile", o.tile == "auto" ? ordered_json(o.tile) : ordered_json(std::stoi(o.tile))},
-                       {"precision", o.precision},
-                       {"near", report.near_plane},
-                       {"antialiased", report.model.antialiased},
-                       {"kernel_px2", report.model.kernel_px2},
-                       {"th", threshold_name(o)}};
-  if (o.loss) json["loss"] = *o.loss;
-  json["transmittance"] = o.transmittance;
-  if (report.model.scaffold) json["decode"] = o.decode.empty() ? decode_choices[DECODE_EYES].name : o.decode;
-  if (o.detail) json["detail_px"] = *o.detail;
-  if (o.quality) json["quality_db"] = *o.quality;
-  if (!o.calibration.empty()) json["calibration"] = o.calibration;
-  json["background"] = o.background ? list(glm::dvec3(*o.background)) : ordered_json();
-  if (!o.reference_until.empty()) json["reference_until"] = o.reference_until;
-  return json;
+  const Model& model = report.model;
+  return object(
+      "tiles", o.tiles, "tile", o.tile == "auto" ? ordered_json(o.tile) : ordered_json(std::stoi(o.tile)),
+      "precision", o.precision, "near", report.near_plane, "antialiased", model.antialiased, "kernel_px2",
+      model.kernel_px2, "th", threshold_name(o), "loss", o.loss, "transmittance", o.transmittance, "decode",
+      given(model.scaffold != nullptr, o.decode.empty() ? decode_choices[DECODE_EYES].name : o.decode),
+      "detail_px", o.detail, "quality_db", o.quality, "calibration",
+      given(!o.calibration.empty(), o.calibration), "background",
+      o.background ? list(glm::dvec3(*o.background)) : ordered_json(), "reference_until",
+      given(!o.reference_until.empty(), o.reference_until));
 }
 
 ordered_json scene_json(const RenderReport& report) {
   const RenderOptions& o = report.options;
-  ordered_json json = {{"name", o.scene}};
-  if (o.scene == demo_city_name) json["seed"] = city_settings(o).seed;
-  if (o.scene == demo_city_name) json["count"] = city_settings(o).count;
-  if (o.repeat) json["repeat"] = {{"x", o.repeat->x}, {"z", o.repeat->y}, {"spacing", *o.spacing}};
-  json["gaussians"] = report.model.count();
-  json["left_out"] = report.model.left_out;
-  json["degree"] = report.model.degree;
-  if (const Scaffold* s = report.model.scaffold.get()) {
-    json["scaffold"] = {{"anchors", s->anchor_count()},
-                        {"gaussians_per_anchor", s->offset_count},
-                        {"features", s->feature_count},
-                        {"appearances", s->appearance_count()}};
-    if (s->appearance_count() > 0) json["scaffold"]["appearance"] = s->appearance;
-  }
+  const Model& model = report.model;
+  const bool city = o.scene == demo_city_name;
+  ordered_json json = object("name", o.scene, "seed", given(city, city_settings(o).seed), "count",
+                             given(city, city_settings(o).count));
+  if (o.repeat) json["repeat"] = object("x", o.repeat->x, "z", o.repeat->y, "spacing", *o.spacing);
+  FieldWriter{json}("gaussians", model.count(), "left_out", model.left_out, "degree", model.degree);
+  if (const Scaffold* s = model.scaffold.get())
+    json["scaffold"] = object("anchors", s->anchor_count(), "gaussians_per_anchor", s->offset_count,
+                              "features", s->feature_count, "appearances", s->appearance_count(),
+                              "appearance", given(s->appearance_count() > 0, s->appearance));
   return json;
 }
 
@@ -282,27 +267,21 @@ void print(const RenderReport& report) {
              static_cast<double>(report.context.peak_bytes()) / 1e6);
 }
 
-ordered_json to_json(const RenderReport& report) {
-  ordered_json json = {{"version", BINOSPLAT_VERSION},
-                       {"scene", scene_json(report)},
-                       {"device",
-                        {{"backend", report.context.backend()},
-                         {"renderer", report.context.renderer()},
-                         {"opengl", report.context.version()}}},
-                       {"settings", settings_json(report)}};
+void save(const std::filesystem::path& path, const RenderReport& report) {
+  const gl::Context& context = report.context;
+  ordered_json json = object(
+      "version", BINOSPLAT_VERSION, "scene", scene_json(report), "device",
+      object("backend", context.backend(), "renderer", context.renderer(), "opengl", context.version()),
+      "settings", settings_json(report));
   json["views"] = ordered_json::array();
   for (const Drawn& drawn : report.drawn) json["views"].push_back(view_json(drawn, report.options));
-  if (const auto mean = mean_photo_psnr(report)) json["mean_photo_psnr_db"] = *mean;
-  json["frames"] = report.times.frames();
-  json["stages"] = ordered_json::array();
-  for (const StageTimes::Row& row : report.times.rows()) {
-    json["stages"].push_back({{"stage", row.stage}, {"median_ms", row.median_ms}, {"p99_ms", row.p99_ms}});
-  }
-  json["memory"] = {{"model_bytes", report.needs.model},
-                    {"frame_bytes_at_least", report.needs.frame},
-                    {"gpu_bytes", report.context.allocated_bytes()},
-                    {"gpu_peak_bytes", report.context.peak_bytes()}};
-  return json;
+  FieldWriter{json}("mean_photo_psnr_db", mean_photo_psnr(report), "frames", report.times.frames(), "stages",
+                    ordered_json::array());
+  for (const StageTimes::Row& row : report.times.rows())
+    json["stages"].push_back(object("stage", row.stage, "median_ms", row.median_ms, "p99_ms", row.p99_ms));
+  json["memory"] = object("model_bytes", report.needs.model, "frame_bytes_at_least", report.needs.frame,
+                          "gpu_bytes", context.allocated_bytes(), "gpu_peak_bytes", context.peak_bytes());
+  save_json(path, json);
 }
 
 }  // namespace binosplat::app

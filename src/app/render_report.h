@@ -1,7 +1,7 @@
 #pragma once
 // What `binosplat render` says about what it drew, for people and as JSON.
 
-#include <nlohmann/json.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -72,6 +72,7 @@ std::string megabytes(std::int64_t bytes);
 /// The line about memory, before anything is uploaded.
 void print_needs(const render::MemoryNeeds& needs);
 void print(const RenderReport& report);
-nlohmann::ordered_json to_json(const RenderReport& report);
+/// As JSON.
+void save(const std::filesystem::path& path, const RenderReport& report);
 
 }  // namespace binosplat::app

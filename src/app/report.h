@@ -2,7 +2,7 @@
 // What the studies leave in a folder.
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "study/page.h"

@@ -20,9 +20,8 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "study/carried.h"
-#include "study/motion_page.h"
+#include "study/fields.h"
 #include "study/rules.h"
-#include "study/stability_page.h"
 
 namespace binosplat::app {
 
@@ -81,14 +80,9 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
     fmt::print("| {}{} | {:.2f} | {:.1f} % | {:+.4f} | {} | {} |\n", n, note, r.db, 100.0 * r.removed,
                r.signed_mean, quality > 0 ? "" : fmt::format("{:.2f}", r.one_db),
                quality > 0 ? "" : fmt::format("{:+.2f}", r.db - r.one_db));
-    json["frames"].push_back({{"db", r.db},
-                              {"pairs", r.pairs},
-                              {"removed", r.removed},
-                              {"mean_signed_error", r.signed_mean},
-                              {"fell_back", r.fell_back},
-                              {"equals_one", r.equals_one},
-                              {"one_db", r.one_db},
-                              {"one_pairs", r.one_pairs}});
+    json["frames"].push_back(study::object(
+        "db", r.db, "pairs", r.pairs, "removed", r.removed, "mean_signed_error", r.signed_mean, "fell_back",
+        r.fell_back, "equals_one", r.equals_one, "one_db", r.one_db, "one_pairs", r.one_pairs));
   }
   return json;
 }
@@ -134,16 +128,10 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
   fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.scene, shot.name,
              still.views().size(), view.width, view.height, options.target);
   print_rules(results);
-  ordered_json json = {{"renderer", context.renderer()},
-                       {"scene", options.scene.scene},
-                       {"gaussians", studied.model->count()},
-                       {"view", shot.name},
-                       {"eyes", still.views().size()},
-                       {"width", view.width},
-                       {"height", view.height},
-                       {"target_db", options.target},
-                       {"frames", frames},
-                       {"rounds", study::rule_rounds}};
+  ordered_json json = study::object("renderer", context.renderer(), "scene", options.scene.scene, "gaussians",
+                                    studied.model->count(), "view", shot.name, "eyes", still.views().size(),
+                                    "width", view.width, "height", view.height, "target_db", options.target,
+                                    "frames", frames, "rounds", study::rule_rounds);
   for (const study::RuleResult& result : results) json["rules"].push_back(to_json(result));
   return json;
 }
@@ -175,15 +163,6 @@ void check(const StudyOptions& options, Kind kind) {
     fail("study: -o is for the analyses, --stability and --motion: --json keeps the numbers of the others");
 }
 
-ordered_json studied(const StudyOptions& options, Kind kind) {
-  if (kind == Kind::motion) return study_motion(options);
-  const Studied studied = open(options);
-  const auto context = open_context(options.scene);
-  return kind == Kind::stability ? study_stability(*context, options, studied)
-         : kind == Kind::rules   ? rules(*context, options, studied)
-                                 : carried(*context, options, studied);
-}
-
 ExitCode study_scene(const StudyOptions& options) {
   const Kind kind = kind_of(options);
   if (kind == Kind::analyses) {
@@ -194,14 +173,17 @@ ExitCode study_scene(const StudyOptions& options) {
                           options.output.empty() ? "out/study" : options.output});
   }
   check(options, kind);
-  const std::filesystem::path folder = options.output;
-  if (!options.output.empty()) check_output(folder / "study.json");
+  if (!options.output.empty()) check_output(std::filesystem::path(options.output) / "study.json");
   if (!options.json.empty()) check_output(options.json);
-  const ordered_json json = studied(options, kind);
-  if (!options.json.empty()) save_json(options.json, json);
-  if (!options.output.empty())
-    save_report(folder, "study.json", json,
-                kind == Kind::motion ? study::motion_page(json) : study::stability_page(json));
+  if (kind == Kind::motion) {
+    study_motion(options);
+    return ExitCode::done;
+  }
+  const Studied studied = open(options);
+  const auto context = open_context(options.scene);
+  if (kind == Kind::stability) study_stability(*context, options, studied);
+  if (kind == Kind::rules) save(options, rules(*context, options, studied), {});
+  if (kind == Kind::carried) save(options, carried(*context, options, studied), {});
   return ExitCode::done;
 }
 
@@ -238,6 +220,11 @@ void add_scene_options(CLI::App& sub, StudyOptions& o) {
 }
 
 }  // namespace
+
+void save(const StudyOptions& options, const ordered_json& numbers, const study::Page& page) {
+  if (!options.json.empty()) save_json(options.json, numbers);
+  if (!options.output.empty()) save_report(options.output, "study.json", numbers, page);
+}
 
 void add_study(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("study", "What thresholds gain on a scene, and where they fail");

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
+#include <nlohmann/json.hpp>
 
 #include "app/command.h"
 #include "app/drawing.h"
@@ -21,7 +21,6 @@
 
 namespace binosplat::app {
 
-using nlohmann::ordered_json;
 using study::Variant;
 
 namespace {
@@ -182,39 +181,38 @@ std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions
 /// A table for a terminal and for documents: dB and % to what can be told apart, the rest to three digits.
 void print(const study::Table& table) {
   fmt::print("| {} |\n|{}\n", fmt::join(table.columns, " | "), repeated("---|", table.columns.size()));
-  for (const ordered_json& row : table.rows) {
+  for (const std::vector<study::Cell>& row : table.rows) {
     for (std::size_t k = 0; k < row.size(); ++k) {
       const std::string& column = table.columns[k];
       const int digits = column.ends_with("dB") ? 2 : column.ends_with("%") ? 1 : 3;
-      const std::string text = row[k].is_number()   ? fmt::format("{:.{}f}", row[k].get<double>(), digits)
-                               : row[k].is_string() ? row[k].get<std::string>()
-                                                    : "";
-      fmt::print("{} {}", k == 0 ? "|" : " |", text);
+      const auto* const number = std::get_if<double>(&row[k].value);
+      const auto* const text = std::get_if<std::string>(&row[k].value);
+      fmt::print("{} {}", k == 0 ? "|" : " |",
+                 number != nullptr ? fmt::format("{:.{}f}", *number, digits)
+                 : text != nullptr ? *text
+                                   : "");
     }
     fmt::print(" |\n");
   }
 }
 
-void print(const ordered_json& json) {
-  fmt::print("{}: {}, {} x {} x {} px; a metre is {:.4g} units ({})\n", json["device"].get<std::string>(),
-             json["scene"].get<std::string>(), json["eyes"].dump(), json["width"].dump(),
-             json["height"].dump(), json["units_per_metre"].get<double>(),
-             json["metre_source"].get<std::string>());
-  for (const ordered_json& path : json["paths"]) {
-    fmt::print("\n## {}\n{}; {}. Asked for {:g} dB:\n\n", path["name"].get<std::string>(),
-               path["motion"].get<std::string>(), study::lengths_of(path), json["quality_db"].get<double>());
-    print(study::asked_table(path));
-    const study::Table at_target = study::target_table(path);
+void print(const study::MotionStudy& study, const study::Page& page) {
+  fmt::print("{}: {}, {} x {} x {} px; a metre is {:.4g} units ({})\n", study.device, study.scene, study.eyes,
+             study.width, study.height, study.units_per_metre, study.metre_source);
+  for (const study::MotionResult& result : study.paths) {
+    fmt::print("\n## {}\n{}; {}. Asked for {:g} dB:\n\n", result.path.name, result.path.motion,
+               study::lengths_of(result.path), study.settings.quality);
+    print(study::asked_table(result));
+    const study::Table at_target = study::target_table(result);
     if (at_target.rows.empty()) continue;
-    fmt::print("\nAt {:g} dB of the moving frames' true mean:\n\n", json["target_db"].get<double>());
+    fmt::print("\nAt {:g} dB of the moving frames' true mean:\n\n", study.settings.target);
     print(at_target);
   }
   fmt::print(
       "\nTrue: the worse eye's PSNR, of 8-bit pictures against exact ones, {:g} dB for equal ones; its mean,"
       " tenth\npercentile and worst over moving frames. Pairs, with a probe's, times drawn, and ms of all of"
       " these:\nmeans over moving frames; a frame's ms is the median of {} rounds.\n",
-      study::equal_db, json["rounds"].dump());
-  const study::Page page = study::motion_page(json);
+      study::equal_db, study.settings.rounds);
   for (std::size_t k = 0; k < 2; ++k)
     fmt::print("\n{}\n",
                page.sections[k].problem.empty() ? page.sections[k].sentence : page.sections[k].problem);
@@ -260,41 +258,34 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
   return motion;
 }
 
-ordered_json study_motion(const StudyOptions& options) {
+void study_motion(const StudyOptions& options) {
   const Driven driven = open(options);
   const std::vector<study::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
   const std::vector<Variant> rules = rules_for(options);
   const auto context = open_context(options.scene);
-  const study::MotionSettings settings{.quality = options.scene.quality.value_or(40.0f),
-                                       .target = options.target,
-                                       .equal = !options.motion.no_equal,
-                                       .rounds = options.motion.rounds};
-  std::vector<study::MotionResult> results;
+  study::MotionStudy study{.device = context->renderer(),
+                           .scene = options.scene.scene,
+                           .gaussians = driven.model->count(),
+                           .eyes = views.size(),
+                           .width = views.front().width,
+                           .height = views.front().height,
+                           .frames_per_second = frames_per_second,
+                           .units_per_metre = driven.metre.units,
+                           .metre_source = driven.metre.source,
+                           .settings = {.quality = options.scene.quality.value_or(40.0f),
+                                        .target = options.target,
+                                        .equal = !options.motion.no_equal,
+                                        .rounds = options.motion.rounds}};
   {
     Parts parts;
-    results = study::measure_motion(
-        *context, *driven.model, paths, rules, settings,
+    study.paths = study::measure_motion(
+        *context, *driven.model, paths, rules, study.settings,
         [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
   }
-  ordered_json json = {{"format", "binosplat motion"},
-                       {"version", 1},
-                       {"device", context->renderer()},
-                       {"scene", options.scene.scene},
-                       {"gaussians", driven.model->count()},
-                       {"eyes", views.size()},
-                       {"width", views.front().width},
-                       {"height", views.front().height},
-                       {"frames_per_second", frames_per_second},
-                       {"units_per_metre", driven.metre.units},
-                       {"metre_source", driven.metre.source},
-                       {"quality_db", settings.quality},
-                       {"target_db", settings.target},
-                       {"equal_pictures_db", study::equal_db},
-                       {"rounds", settings.rounds}};
-  for (const study::MotionResult& result : results) json["paths"].push_back(to_json(result));
-  print(json);
-  return json;
+  const study::Page page = study::motion_page(study);
+  print(study, page);
+  save(options, to_json(study), page);
 }
 
 }  // namespace binosplat::app

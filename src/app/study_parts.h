@@ -2,7 +2,7 @@
 // What the parts of `binosplat study` share.
 
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +12,7 @@
 #include "gl/context.h"
 #include "scene/model.h"
 #include "study/motion_paths.h"
+#include "study/page.h"
 
 namespace binosplat::app {
 
@@ -48,14 +49,16 @@ struct Studied {
   std::vector<Shot> shots;
 };
 
-/// --stability: prints the tables; the JSON is stability_page.h's.
-nlohmann::ordered_json study_stability(gl::Context& context, const StudyOptions& options,
-                                       const Studied& studied);
+/// Writes what --json and -o ask for.
+void save(const StudyOptions& options, const nlohmann::ordered_json& numbers, const study::Page& page);
+
+/// --stability: prints the tables, and saves.
+void study_stability(gl::Context& context, const StudyOptions& options, const Studied& studied);
 
 /// Adds --motion, which it returns, and the options that no other study takes.
 CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options);
 
-/// --motion: prints the tables; the JSON is motion_page.h's.
-nlohmann::ordered_json study_motion(const StudyOptions& options);
+/// --motion: prints the tables, and saves.
+void study_motion(const StudyOptions& options);
 
 }  // namespace binosplat::app

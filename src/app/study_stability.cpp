@@ -4,44 +4,20 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "app/study_parts.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "scene/axes.h"
+#include "study/stability_page.h"
 #include "study/still.h"
 
 namespace binosplat::app {
 
-using nlohmann::ordered_json;
 using study::Variant;
 
 namespace {
-
-// JSON has no infinity: null.
-ordered_json to_json(const study::StabilityResult& r) {
-  return {{"verdict", r.verdict},
-          {"worst_db", r.worst_db},
-          {"worst_frame", r.worst_frame},
-          {"settled_db", r.settled_db},
-          {"drift_db", r.drift_db},
-          {"settling_frames", r.settling},
-          {"largest_error", r.largest},
-          {"p99_error", r.p99},
-          {"mean_signed_error", r.signed_mean},
-          {"edge_over_inside", r.edges},
-          {"disagreement_db", r.disagreement_db},
-          {"pairs_removed", r.removed}};
-}
-
-ordered_json to_json(const study::StabilityBounds& b) {
-  return {{"dips: a frame below dB", b.worst_db},
-          {"wrong: settled below dB", b.settled_db},
-          {"drifts: the last third below the second by dB", b.drift_db},
-          {"slow: more frames until within 1 dB", b.settling},
-          {"darkens or brightens: mean signed error beyond", b.darkening},
-          {"rivalry: disagreement below dB", b.disagreement_db}};
-}
 
 void find_losses(study::Still& still, double target, std::vector<Variant>& variants) {
   Progress progress("losses", variants.size());
@@ -82,29 +58,24 @@ void check_cases(const std::vector<std::string>& wanted, const std::vector<study
 
 }  // namespace
 
-ordered_json study_stability(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+void study_stability(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   const Camera head = into_axes(studied.shots.front().eyes.front().camera, studied.model->axes);
   const stereo::RigSettings settings = rig_settings(options.scene, studied.near_plane);
   auto cases = study::built_in_cases();
   for (auto& one : study::cases_in(studied.model, head, settings)) cases.push_back(std::move(one));
   check_cases(options.cases, cases);
-  std::vector<Variant> variants = study::all_variants();
+  study::StabilityStudy study{
+      options.scene.scene, context.renderer(), options.target, {}, study::all_variants(), {}};
+  std::vector<Variant>& variants = study.rules;
   {
     const stereo::EyePair eyes = stereo::make_rig(head, settings);
     study::Still still(context, *studied.model, {eyes.views.begin(), eyes.views.end()});
     find_losses(still, options.target, variants);
   }
 
-  const study::StabilityBounds bounds;
-  ordered_json json = {{"scene", options.scene.scene},     {"device", context.renderer()},
-                       {"target_db", options.target},      {"bounds", to_json(bounds)},
-                       {"losses", ordered_json::object()}, {"cases", ordered_json::object()}};
   fmt::print("Losses for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.scene,
              head.name, head.width, head.height);
-  for (const Variant& variant : variants) {
-    fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
-    json["losses"][variant.name()] = variant.loss;
-  }
+  for (const Variant& variant : variants) fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
   for (const study::StabilityCase& one : cases) {
     if (!options.cases.empty() &&
         std::find(options.cases.begin(), options.cases.end(), one.name) == options.cases.end()) {
@@ -112,13 +83,12 @@ ordered_json study_stability(gl::Context& context, const StudyOptions& options, 
     }
     Progress progress(one.name, variants.size());
     std::size_t done = 0;
-    const auto results = study::run_case(context, one, variants, bounds, [&] { progress.update(++done); });
-    print_case(one, variants, results);
-    json["cases"][one.name]["fear"] = one.fear;
-    for (std::size_t k = 0; k < variants.size(); ++k)
-      json["cases"][one.name]["rules"][variants[k].name()] = to_json(results[k]);
+    study.cases.push_back({one.name, one.fear, study::run_case(context, one, variants, study.bounds, [&] {
+                             progress.update(++done);
+                           })});
+    print_case(one, variants, study.cases.back().results);
   }
-  return json;
+  save(options, to_json(study), stability_page(study));
 }
 
 }  // namespace binosplat::app

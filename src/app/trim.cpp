@@ -17,6 +17,7 @@
 #include "formats/model_output.h"
 #include "scene/axes.h"
 #include "study/bench.h"
+#include "study/fields.h"
 #include "study/trim.h"
 
 namespace binosplat::app {
@@ -143,11 +144,8 @@ void print(const TrimOptions& o, const study::Trimmed& found, const Names& names
 }
 
 ordered_json to_json(const Calibrator::Cost& cost, const std::vector<std::string>& names) {
-  ordered_json json = {{"mean_db", cost.mean_db},
-                       {"worst_db", cost.worst_db},
-                       {"worst_view", names[cost.worst_view]},
-                       {"pairs", cost.pairs},
-                       {"gpu_ms", cost.ms}};
+  ordered_json json = study::object("mean_db", cost.mean_db, "worst_db", cost.worst_db, "worst_view",
+                                    names[cost.worst_view], "pairs", cost.pairs, "gpu_ms", cost.ms);
   for (std::size_t v = 0; v < names.size(); ++v)
     json["views"].push_back({{"name", names[v]}, {"db", cost.view_db[v]}});
   return json;
@@ -155,21 +153,16 @@ ordered_json to_json(const Calibrator::Cost& cost, const std::vector<std::string
 
 ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const Names& names,
                      ModelFormat format, const std::vector<std::string>& losses) {
-  ordered_json json = {{"version", BINOSPLAT_VERSION},
-                       {"model", o.render.scene},
-                       {"output", o.output},
-                       {"format", model_format_names[static_cast<int>(format)]},
-                       {"as_it_was", !found.less},
-                       {"unseen", found.unseen},
-                       {"views_weighed", names.weighed},
-                       {"losses", losses}};
+  ordered_json json =
+      study::object("version", BINOSPLAT_VERSION, "model", o.render.scene, "output", o.output, "format",
+                    model_format_names[static_cast<int>(format)], "as_it_was", !found.less, "unseen",
+                    found.unseen, "views_weighed", names.weighed, "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
   for (const study::TrimStep& s : found.steps) {
-    ordered_json step = {
-        {"step", s.name}, {"gaussians", s.gaussians}, {"degree", s.degree}, {"bytes", nullptr}};
-    if (s.bytes > 0) step["bytes"] = s.bytes;
-    step["held_back"] = to_json(s.held_back, names.held_back);
+    ordered_json step = study::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
+                                      s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
+                                      to_json(s.held_back, names.held_back));
     if (!names.test.empty()) step["test"] = to_json(s.test, names.test);
     json["steps"].push_back(step);
   }

@@ -3,15 +3,33 @@
 #include <fmt/core.h>
 
 #include "study/bench.h"
-#include "study/contributions.h"
+#include "study/fields.h"
 #include "study/settings.h"
-#include "study/turns.h"
 
 namespace binosplat::study {
 
-namespace {
+static void fields(const auto& io, const AnalysedSystem& s) {
+  io("mean_db", s.mean_db, "worst_db", s.worst_db, "worst_view", s.worst_view, "pairs_removed",
+     s.pairs_removed, "target_db", s.target_db, "reached_db", s.reached_db, "name", s.name, "settings",
+     named(s.settings), "frame_ms", s.times.frame_ms, "pairs", s.times.pairs, "stages_ms", s.times.stages);
+}
 
-using nlohmann::ordered_json;
+static void fields(const auto& io, const SkippingCurve::Point& p) {
+  io("share", p.share, "psnr_db", p.psnr_db, "drop_db", p.drop_db);
+}
+
+static void fields(const auto& io, const SkippingCurve& c) { io("by", c.by, "points", c.points); }
+
+static void fields(const auto& io, const Spread& s) {
+  io("median", s.median, "p90", s.p90, "largest", s.largest);
+}
+
+static void fields(const auto& io, const DepthBin& b) {
+  io("from", b.from, "to", b.to, "gaussians", b.gaussians, "contribution", b.contribution, "light", b.light,
+     "upper", b.upper);
+}
+
+namespace {
 
 // The float64 analysis takes seconds a view.
 constexpr std::size_t contribution_views = 3;
@@ -30,22 +48,16 @@ const struct {
 } threshold_systems[] = {{"AdaGScale", TH_PERIPHERAL, TRANSMITTANCE_DEPTH},
                          {"binosplat", TH_SQUARED, TRANSMITTANCE_LAST}};
 
-ordered_json cost_json(const Calibrator::Cost& cost, const std::vector<CalibrationView>& views) {
-  return {{"mean_db", cost.mean_db},
-          {"worst_db", cost.worst_db},
-          {"worst_view", views[cost.worst_view].camera.name},
-          {"pairs_removed", cost.pairs_removed}};
+/// A system without its times.
+AnalysedSystem system_of(const std::string& name, const render::FrameSettings& settings, Calibrator& tester,
+                         const std::vector<CalibrationView>& views) {
+  const Calibrator::Cost cost = tester.cost(settings);
+  const std::string& worst = views[cost.worst_view].camera.name;
+  return {cost.mean_db, cost.worst_db, worst, cost.pairs_removed, {}, {}, name, settings, {}};
 }
 
-void add_times(const Typical& times, ordered_json& into) {
-  into["frame_ms"] = times.frame_ms;
-  into["pairs"] = times.pairs;
-  into["stages_ms"] = ordered_json::object();
-  for (const gl::StageTime& stage : times.stages) into["stages_ms"][stage.name] = stage.ms;
-}
-
-ordered_json names_of(const std::vector<CalibrationView>& views) {
-  ordered_json names = ordered_json::array();
+std::vector<std::string> names_of(const std::vector<CalibrationView>& views) {
+  std::vector<std::string> names;
   for (const CalibrationView& view : views) names.push_back(view.camera.name);
   return names;
 }
@@ -59,16 +71,14 @@ std::vector<ContributionView> some_of(const std::vector<CalibrationView>& views,
 }
 
 /// The threshold systems at the middle target, as the entries of the targets have them.
-ordered_json from_targets(const ordered_json& targets, const std::vector<double>& all) {
-  ordered_json systems = ordered_json::array();
+std::vector<AnalysedSystem> from_targets(const std::vector<AnalysedSystem>& targets, double middle) {
+  std::vector<AnalysedSystem> systems;
   for (const auto& system : threshold_systems) {
-    for (const ordered_json& entry : targets) {
-      const ordered_json& s = entry["settings"];
-      if (entry["target_db"] != all[all.size() / 2] || s["th"] != th_choices[system.th].name ||
-          s["transmittance"] != transmittance_choices[system.transmittance].name)
+    for (const AnalysedSystem& entry : targets) {
+      if (entry.target_db != middle || entry.settings.th != system.th ||
+          entry.settings.transmittance != system.transmittance)
         continue;
-      ordered_json& added = systems.emplace_back(entry);
-      added["name"] = fmt::format("{}, {:g} dB", system.name, all[all.size() / 2]);
+      systems.emplace_back(entry).name = fmt::format("{}, {:g} dB", system.name, middle);
     }
   }
   return systems;
@@ -76,70 +86,75 @@ ordered_json from_targets(const ordered_json& targets, const std::vector<double>
 
 }  // namespace
 
-ordered_json analyse(gl::Context& context, const Model& model,
-                     const std::vector<CalibrationView>& calibration,
-                     const std::vector<CalibrationView>& test, const AnalysisSettings& settings,
-                     const std::function<void(const std::string&, std::size_t, std::size_t)>& progress) {
-  const bool drop = settings.kind == CalibrationTarget::Kind::drop;
+Analysis analyse(gl::Context& context, const Model& model, const std::vector<CalibrationView>& calibration,
+                 const std::vector<CalibrationView>& test, const AnalysisSettings& settings,
+                 const std::function<void(const std::string&, std::size_t, std::size_t)>& progress) {
   Calibrator calibrator(context, model, calibration, settings.near_plane, settings.kind);
   Calibrator tester(context, model, test, settings.near_plane, settings.kind);
-  const render::DepthTable table = calibrator.depth_table();
-
-  ordered_json json = {{"format", "binosplat study"},
-                       {"version", 1},
-                       {"device", context.renderer()},
-                       {"scene", settings.scene},
-                       {"gaussians", model.count()},
-                       {"target", drop ? "drop" : "quality"},
-                       {"views", {{"calibration", names_of(calibration)}, {"test", names_of(test)}}},
-                       {"width", test.front().camera.width},
-                       {"height", test.front().camera.height}};
-  if (drop)
-    json["photo_db"] = {{"calibration", calibrator.exact_photo_db()}, {"test", tester.exact_photo_db()}};
-  json["depth_table"] = {{"far", table.far}, {"upper", table.upper}};
+  Analysis analysis{.device = context.renderer(),
+                    .scene = settings.scene,
+                    .gaussians = model.count(),
+                    .kind = settings.kind,
+                    .calibration_views = names_of(calibration),
+                    .test_views = names_of(test),
+                    .width = test.front().camera.width,
+                    .height = test.front().camera.height,
+                    .calibration_photo_db = calibrator.exact_photo_db(),
+                    .test_photo_db = tester.exact_photo_db(),
+                    .depth_table = calibrator.depth_table()};
 
   const auto some = some_of(test, tester);
   std::size_t done = 0;
-  json["contributions"] =
-      contributions(model, some, table, [&] { progress("contributions", ++done, some.size()); });
+  analysis.contributions = contributions(model, some, analysis.depth_table,
+                                         [&] { progress("contributions", ++done, some.size()); });
 
-  std::vector<render::FrameSettings> all;
-  json["systems"] = ordered_json::array();
-  for (const auto& system : exact_systems) {
-    all.push_back({.tiles = system.tiles});
-    ordered_json& entry = json["systems"].emplace_back(cost_json(tester.cost(all.back()), test));
-    entry["name"] = system.name;
-    entry["settings"] = to_json(all.back());
-  }
+  for (const auto& system : exact_systems)
+    analysis.systems.push_back(system_of(system.name, {.tiles = system.tiles}, tester, test));
 
   std::vector<render::FrameSettings> rules = calibrated_settings();
-  json["targets"] = ordered_json::array();
   done = 0;
   for (const double target : settings.targets) {
     for (render::FrameSettings& rule : rules) {
-      rule.depth_table = table;
+      rule.depth_table = analysis.depth_table;
       const CalibrationEntry found = calibrator.find(rule, target);
       rule.loss = static_cast<float>(found.loss);
-      ordered_json& entry = json["targets"].emplace_back(cost_json(tester.cost(rule), test));
-      entry["target_db"] = target;
-      entry["reached_db"] = found.reached_db;
-      entry["name"] = describe_family(rule);
-      entry["settings"] = to_json(rule);
-      all.push_back(rule);
+      AnalysedSystem& entry =
+          analysis.targets.emplace_back(system_of(describe_family(rule), rule, tester, test));
+      entry.target_db = target;
+      entry.reached_db = found.reached_db;
       if (!(found.loss > 0.0)) rule.loss = 1e-3f;  // where the next search begins
       progress("losses", ++done, settings.targets.size() * rules.size());
     }
   }
 
+  std::vector<AnalysedSystem*> timed;
+  std::vector<render::FrameSettings> all;
+  for (auto* systems : {&analysis.systems, &analysis.targets}) {
+    for (AnalysedSystem& system : *systems) {
+      timed.push_back(&system);
+      all.push_back(system.settings);
+    }
+  }
   done = 0;
   const std::vector<Typical> times = time_in_turns(context, model, tester.views(), all, settings.frames, [&] {
     progress("timing", ++done, turn_rounds * all.size());
   });
-  const std::size_t exact = json["systems"].size();
-  for (std::size_t k = 0; k < times.size(); ++k)
-    add_times(times[k], k < exact ? json["systems"][k] : json["targets"][k - exact]);
-  for (ordered_json& system : from_targets(json["targets"], settings.targets))
-    json["systems"].push_back(std::move(system));
+  for (std::size_t k = 0; k < times.size(); ++k) timed[k]->times = times[k];
+  for (AnalysedSystem& system : from_targets(analysis.targets, settings.targets[settings.targets.size() / 2]))
+    analysis.systems.push_back(std::move(system));
+  return analysis;
+}
+
+nlohmann::ordered_json to_json(const Analysis& a) {
+  auto json = object("format", "binosplat study", "version", 1, "device", a.device, "scene", a.scene,
+                     "gaussians", a.gaussians, "target", a.drop() ? "drop" : "quality", "views",
+                     object("calibration", a.calibration_views, "test", a.test_views), "width", a.width,
+                     "height", a.height);
+  if (a.drop()) json["photo_db"] = object("calibration", a.calibration_photo_db, "test", a.test_photo_db);
+  FieldWriter{json}("depth_table", object("far", a.depth_table.far, "upper", a.depth_table.upper),
+                    "contributions",
+                    object("skipping", a.contributions.skipping, "by_depth", a.contributions.by_depth),
+                    "systems", a.systems, "targets", a.targets);
   return json;
 }
 

@@ -1,27 +1,16 @@
 #pragma once
 // AdaGScale's analyses (Jo et al.: figures 2, 4 to 6 and 8, tables I to IV) on any scene: what contributions
 // are worth, what losses found on some views cost on others, and what that gains in pairs and in time.
-//
-// One JSON object:
-//
-//   {"format": "binosplat study", "version": 1, "device", "scene", "gaussians", "target": "drop" | "quality",
-//    "views": {"calibration": [...], "test": [...]}, "width", "height",
-//    "photo_db": {"calibration", "test"}, "depth_table": {"far", "upper"},
-//    "contributions": {...}, "systems": [...], "targets": [...]}
-//
-// contributions: contributions.h. A system has its name, settings and what it costs and takes on the test
-// views: mean_db, worst_db, worst_view (the drop against the photos, or PSNR against exact), pairs_removed (a
-// share; below 0: more pairs), frame_ms, stages_ms and pairs. An entry of targets has target_db, settings
-// (with the loss that was found), name, reached_db (on the calibration views) and the same. Times are medians
-// of a view's frames, in the mean over views.
 
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "study/calibrate.h"
+#include "study/contributions.h"
 #include "study/page.h"
+#include "study/turns.h"
 
 namespace binosplat::study {
 
@@ -33,13 +22,40 @@ struct AnalysisSettings {
   int frames = 24;              // timed of each setting, a view and round
 };
 
-/// `progress(what, done, of)` tells what is under way.
-nlohmann::ordered_json analyse(
-    gl::Context& context, const Model& model, const std::vector<CalibrationView>& calibration,
-    const std::vector<CalibrationView>& test, const AnalysisSettings& settings,
-    const std::function<void(const std::string&, std::size_t, std::size_t)>& progress);
+/// A way to draw, and what it costs and takes on the test views.
+struct AnalysedSystem {
+  double mean_db = 0.0, worst_db = 0.0;  // the drop against the photos, or PSNR against exact
+  std::string worst_view;
+  double pairs_removed = 0.0;                   // a share; below 0: more pairs
+  std::optional<double> target_db, reached_db;  // where its loss was found for a target: on calibration views
+  std::string name;
+  render::FrameSettings settings;
+  Typical times;  // medians of a view's frames, in the mean over views
+};
 
-/// The page of what analyse() found.
-Page analysis_page(const nlohmann::ordered_json& results);
+struct Analysis {
+  std::string device, scene;
+  std::size_t gaussians = 0;
+  CalibrationTarget::Kind kind = CalibrationTarget::Kind::drop;
+  std::vector<std::string> calibration_views, test_views;
+  int width = 0, height = 0;                           // px
+  double calibration_photo_db = 0, test_photo_db = 0;  // of the exact pictures; of a drop
+  render::DepthTable depth_table;
+  Contributions contributions;
+  std::vector<AnalysedSystem> systems;
+  std::vector<AnalysedSystem> targets;  // every rule at every target
+
+  bool drop() const { return kind == CalibrationTarget::Kind::drop; }
+};
+
+/// `progress(what, done, of)` tells what is under way.
+Analysis analyse(gl::Context& context, const Model& model, const std::vector<CalibrationView>& calibration,
+                 const std::vector<CalibrationView>& test, const AnalysisSettings& settings,
+                 const std::function<void(const std::string&, std::size_t, std::size_t)>& progress);
+
+/// The members, with units; format "binosplat study", version 1.
+nlohmann::ordered_json to_json(const Analysis& analysis);
+
+Page analysis_page(const Analysis& analysis);
 
 }  // namespace binosplat::study

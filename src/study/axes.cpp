@@ -11,8 +11,10 @@
 #include "base/choices.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "formats/content.h"
 #include "formats/json_file.h"
 #include "study/embedded.h"
+#include "study/fields.h"
 #include "study/settings.h"
 
 namespace binosplat::study {
@@ -112,8 +114,8 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
 }
 
 void remove_repeated(std::vector<render::FrameSettings>& settings) {
-  std::set<std::string> seen;
-  std::erase_if(settings, [&](const auto& s) { return !seen.insert(to_json(s).dump()).second; });
+  std::set<NamedSettings> seen;
+  std::erase_if(settings, [&](const auto& s) { return !seen.insert(named(s)).second; });
 }
 
 std::vector<std::string> sizes_of(const Block& top) {
@@ -163,20 +165,14 @@ std::vector<std::string> axes_presets() {
 Axes load_axes(const std::string& preset_or_file) {
   const auto preset = preset_files().find(preset_or_file + ".json");
   if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
-  const MappedFile file(preset_or_file);
-  const auto bytes = file.bytes();
-  return parse_axes(preset_or_file, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return parse_axes(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
 }
 
 nlohmann::ordered_json to_json(const Axes& axes) {
-  nlohmann::ordered_json json = {{"views", axes.views},
-                                 {"frames", axes.frames},
-                                 {"repeats", axes.repeats},
-                                 {"eyes", axes.eyes},
-                                 {"sizes", axes.sizes}};
-  json["settings"] = nlohmann::ordered_json::array();
-  for (const render::FrameSettings& s : axes.settings) json["settings"].push_back(to_json(s));
-  return json;
+  std::vector<NamedSettings> settings;
+  for (const render::FrameSettings& s : axes.settings) settings.push_back(named(s));
+  return object("views", axes.views, "frames", axes.frames, "repeats", axes.repeats, "eyes", axes.eyes,
+                "sizes", axes.sizes, "settings", settings);
 }
 
 }  // namespace binosplat::study

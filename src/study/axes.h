@@ -10,7 +10,7 @@
 // one. Blocks have tiles (ellipse), tile (16), th (tau), transmittance (one) and loss. What is left out is as
 // in brackets, views 4, frames 30, repeats 3, eyes 1, sizes own.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -21,7 +21,6 @@ namespace binosplat::study {
 
 namespace {
 
-using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr double reference_db = 60.0;  // against float64: the bar below which a driver draws wrongly
@@ -72,13 +71,15 @@ bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSet
   return false;
 }
 
-/// Mean of a number over the views; null where one has none.
-ordered_json mean_of(const ordered_json& views, const char* key) {
+double value(double number) { return number; }
+double value(std::uint64_t number) { return static_cast<double>(number); }
+double value(const std::optional<double>& number) { return number.value_or(NAN); }
+
+/// Mean of a number over the views; not finite where one has none.
+template <typename T>
+double mean_of(const std::vector<ViewNumbers>& views, T ViewNumbers::*number) {
   double sum = 0.0;
-  for (const ordered_json& view : views) {
-    if (!view.contains(key) || !view[key].is_number()) return nullptr;
-    sum += view[key].get<double>();
-  }
+  for (const ViewNumbers& view : views) sum += value(view.*number);
   return sum / static_cast<double>(views.size());
 }
 
@@ -109,28 +110,19 @@ void add_work(const render::Frame& frame, const render::FrameReport& report, std
   }
 }
 
-/// The view with the smallest number; those without one (infinite) only where none has one.
-const ordered_json& worst(const ordered_json& views, const char* key) {
-  const auto value = [key](const ordered_json& view) {
-    return view[key].is_number() ? view[key].get<double>() : INFINITY;
-  };
-  return *std::min_element(views.begin(), views.end(),
-                           [&](const ordered_json& a, const ordered_json& b) { return value(a) < value(b); });
-}
-
-ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
-ordered_json summary_of_quality(const ordered_json& views) {
-  const ordered_json& poorest = worst(views, "psnr_db");
-  return {{"psnr_db", mean_of(views, "psnr_db")},
-          {"worst_psnr_db", poorest["psnr_db"]},
-          {"worst_view", poorest["name"]},
-          {"ssim", mean_of(views, "ssim")},
-          {"flip", mean_of(views, "flip")},
-          {"signed", mean_of(views, "signed")},
-          {"disagreement_db", mean_of(views, "disagreement_db")}};
+ExactNumbers summary_of_quality(const std::vector<ViewNumbers>& views) {
+  const ViewNumbers& poorest =
+      *std::min_element(views.begin(), views.end(), [](const ViewNumbers& a, const ViewNumbers& b) {
+        return (std::isfinite(a.psnr_db) ? a.psnr_db : INFINITY) <
+               (std::isfinite(b.psnr_db) ? b.psnr_db : INFINITY);
+      });
+  return {mean_of(views, &ViewNumbers::psnr_db),
+          poorest.psnr_db,
+          poorest.name,
+          mean_of(views, &ViewNumbers::ssim),
+          mean_of(views, &ViewNumbers::flip),
+          mean_of(views, &ViewNumbers::signed_mean),
+          mean_of(views, &ViewNumbers::disagreement_db)};
 }
 
 }  // namespace
@@ -197,38 +189,32 @@ std::string Bench::verify(const render::FrameSettings& settings) {
   return same_bits(frame.read_pictures(), pictures) ? "" : view.name + ": two frames differ";
 }
 
-ordered_json Bench::compare(const BenchView& view, const Exact& exact,
-                            const std::vector<Picture>& drawn) const {
-  double psnr = 0, ssim = 0, flip = 0, darkening = 0;
+ViewNumbers Bench::compare(const BenchView& view, const Exact& exact,
+                           const std::vector<Picture>& drawn) const {
+  ViewNumbers v{view.name, 0.0, 0.0, 0.0, 0.0};
   const auto eyes = static_cast<double>(drawn.size());
-  ordered_json json = {{"name", view.name}};
   for (std::size_t eye = 0; eye < drawn.size(); ++eye) {
     const Image image = composite(drawn[eye], black);
-    psnr += measure::psnr(image, exact.eyes[eye]) / eyes;
-    ssim += measure::ssim(image, exact.eyes[eye]) / eyes;
-    flip += measure::flip(image, exact.eyes[eye], effort_.ppd) / eyes;
-    darkening += mean_signed(image, exact.eyes[eye]) / eyes;
+    v.psnr_db += measure::psnr(image, exact.eyes[eye]) / eyes;
+    v.ssim += measure::ssim(image, exact.eyes[eye]) / eyes;
+    v.flip += measure::flip(image, exact.eyes[eye], effort_.ppd) / eyes;
+    v.signed_mean += mean_signed(image, exact.eyes[eye]) / eyes;
   }
-  json["psnr_db"] = number_or_null(psnr);
-  json["ssim"] = number_or_null(ssim);
-  json["flip"] = number_or_null(flip);
-  json["signed"] = number_or_null(darkening);
   if (!exact.pictures.empty()) {
     const std::array<shared::View, 2> eyes_of_view = {view.eyes[0], view.eyes[1]};
-    json["disagreement_db"] = number_or_null(stereo::disagreement(eyes_of_view, exact.pictures, drawn).db);
+    v.disagreement_db = stereo::disagreement(eyes_of_view, exact.pictures, drawn).db;
   }
   if (view.photo) {
     const Image image = composite(drawn.front(), black);
-    const double db = measure::psnr(quantised(image), quantised(*view.photo));
-    json["photo_psnr_db"] = number_or_null(db);
-    json["drop_db"] = number_or_null(*exact.photo_psnr - db);
-    json["photo_ssim"] = number_or_null(measure::ssim(quantised(image), quantised(*view.photo)));
-    json["photo_flip"] = number_or_null(measure::flip(image, *view.photo, effort_.ppd));
+    v.photo_psnr_db = measure::psnr(quantised(image), quantised(*view.photo));
+    v.drop_db = *exact.photo_psnr - *v.photo_psnr_db;
+    v.photo_ssim = measure::ssim(quantised(image), quantised(*view.photo));
+    v.photo_flip = measure::flip(image, *view.photo, effort_.ppd);
   }
-  return json;
+  return v;
 }
 
-void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
+void Bench::time(const render::FrameSettings& settings, BenchNumbers& point) {
   render::Frame frame(gpu_model_);
   Times all;
   render::FrameReport report;
@@ -254,65 +240,55 @@ void Bench::time(const render::FrameSettings& settings, ordered_json& point) {
     repeats.push_back(of_repeat);
   }
   const auto [least, most] = std::minmax_element(repeats.begin(), repeats.end());
-  point["frame_ms"] = mean(repeats);
-  point["p99_ms"] = quantile(all.frame, 0.99);
-  point["noise_ms"] = effort_.repeats > 1 ? ordered_json((*most - *least) / 2) : ordered_json();
-  point["settled"] = settled;
-  point["frames"] = all.frame.size();
-  point["gpu_bytes"] = report.gpu_bytes;
-  point["submit_ms"] = quantile(all.submit, 0.5);
-  point["stages_ms"] = ordered_json::object();
-  for (const std::string& stage : all.stage_names) point["stages_ms"][stage] = stages[stage];
+  point.frame_ms = mean(repeats);
+  point.p99_ms = quantile(all.frame, 0.99);
+  if (effort_.repeats > 1) point.noise_ms = (*most - *least) / 2;
+  point.settled = settled;
+  point.frames = all.frame.size();
+  point.gpu_bytes = report.gpu_bytes;
+  point.submit_ms = quantile(all.submit, 0.5);
+  for (const std::string& stage : all.stage_names) point.stages.push_back({stage, stages[stage]});
 }
 
-void Bench::judge(const render::FrameSettings& settings, ordered_json& point) {
+void Bench::judge(const render::FrameSettings& settings, BenchNumbers& point) {
   render::Frame frame(gpu_model_);
-  ordered_json views = ordered_json::array();
-  ordered_json photographed = ordered_json::array();
+  std::vector<ViewNumbers> photographed;
   FrameWork work{.precision = settings.precision};
   for (std::size_t v = 0; v < views_.size(); ++v) {
     render::FrameReport report;
     for (int n = 0; n < render::settling_frames; ++n) report = frame.draw(views_[v].eyes, settings);
-    ordered_json view = compare(views_[v], exact()[v], frame.read_pictures());
-    view["pairs"] = report.pairs;
-    view["visible"] = report.visible;
+    ViewNumbers& view = point.views.emplace_back(compare(views_[v], exact()[v], frame.read_pictures()));
+    view.pairs = report.pairs;
+    view.visible = report.visible;
     add_work(frame, report, views_.size(), work);
-    view["alphas"] = mean_of(frame.read_shown(SHOW_ALPHAS));
-    view["alphas_visible"] = mean_of(frame.read_shown(SHOW_VISIBLE));
+    view.alphas = mean_of(frame.read_shown(SHOW_ALPHAS));
+    view.alphas_visible = mean_of(frame.read_shown(SHOW_VISIBLE));
     if (views_[v].photo) photographed.push_back(view);
-    views.push_back(std::move(view));
   }
-  point["pairs"] = mean_of(views, "pairs");
-  point["visible"] = mean_of(views, "visible");
-  point["alphas"] = mean_of(views, "alphas");
-  point["alphas_visible"] = mean_of(views, "alphas_visible");
+  point.pairs = mean_of(point.views, &ViewNumbers::pairs);
+  point.visible = mean_of(point.views, &ViewNumbers::visible);
+  point.alphas = mean_of(point.views, &ViewNumbers::alphas);
+  point.alphas_visible = mean_of(point.views, &ViewNumbers::alphas_visible);
   if (effort_.peaks) {
     work.gaussians = static_cast<double>(model_.count());
     work.degree = model_.degree;
-    work.alphas = point["alphas"].get<double>() * work.pixels;
-    for (const auto& [stage, ms] : point["stages_ms"].items())
-      work.stages.push_back({stage, ms.get<double>()});
-    point["profile"] = profile(work, *effort_.peaks);
+    work.alphas = point.alphas * work.pixels;
+    work.stages = point.stages;
+    point.profile = profile(work, *effort_.peaks);
   }
-  point["exact"] = summary_of_quality(views);
+  point.exact = summary_of_quality(point.views);
   if (!photographed.empty()) {
-    point["photos"] = {{"views", photographed.size()},
-                       {"psnr_db", mean_of(photographed, "photo_psnr_db")},
-                       {"drop_db", mean_of(photographed, "drop_db")},
-                       {"ssim", mean_of(photographed, "photo_ssim")},
-                       {"flip", mean_of(photographed, "photo_flip")}};
+    point.photos = {photographed.size(), mean_of(photographed, &ViewNumbers::photo_psnr_db),
+                    mean_of(photographed, &ViewNumbers::drop_db),
+                    mean_of(photographed, &ViewNumbers::photo_ssim),
+                    mean_of(photographed, &ViewNumbers::photo_flip)};
   }
-  point["views"] = std::move(views);
 }
 
-ordered_json Bench::measure(render::FrameSettings settings) {
+BenchNumbers Bench::measure(render::FrameSettings settings) {
   if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table();
-  ordered_json point = {{"device", gpu_model_->context().renderer()}};
-  const std::string problem = verify(settings);
-  if (!problem.empty()) {
-    point["problem"] = problem;
-    return point;
-  }
+  BenchNumbers point{.device = gpu_model_->context().renderer(), .problem = verify(settings)};
+  if (!point.problem.empty()) return point;
   time(settings, point);
   judge(settings, point);
   return point;

@@ -3,7 +3,6 @@
 // with the photos.
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +14,7 @@
 #include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
-#include "study/floors.h"
+#include "study/bench_results.h"
 
 namespace binosplat::study {
 
@@ -41,10 +40,9 @@ class Bench {
   Bench(gl::Context& context, const Model& model, std::vector<BenchView> views, const shared::View& small,
         const BenchEffort& effort);
 
-  /// The point as JSON (bench_results.h says what is in it). A point that fails verification is not timed:
-  /// it has a "problem" instead. TRANSMITTANCE_DEPTH goes by a table of the bench's own views. Throws Error
-  /// where the GPU cannot draw the views at all.
-  nlohmann::ordered_json measure(render::FrameSettings settings);
+  /// A point that fails verification is not timed: it has a problem instead. TRANSMITTANCE_DEPTH goes by a
+  /// table of the bench's own views. Throws Error where the GPU cannot draw the views at all.
+  BenchNumbers measure(render::FrameSettings settings);
 
  private:
   /// A view's exact pictures by eye, over black; and what they are worth against the photo.
@@ -57,10 +55,9 @@ class Bench {
   const std::vector<Exact>& exact();
   const render::DepthTable& depth_table();
   std::string verify(const render::FrameSettings& settings);
-  void time(const render::FrameSettings& settings, nlohmann::ordered_json& point);
-  void judge(const render::FrameSettings& settings, nlohmann::ordered_json& point);
-  nlohmann::ordered_json compare(const BenchView& view, const Exact& exact,
-                                 const std::vector<Picture>& drawn) const;
+  void time(const render::FrameSettings& settings, BenchNumbers& point);
+  void judge(const render::FrameSettings& settings, BenchNumbers& point);
+  ViewNumbers compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
 
   const Model& model_;
   std::shared_ptr<render::GpuModel> gpu_model_;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -10,7 +11,9 @@
 #include "base/choices.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "formats/content.h"
 #include "formats/json_file.h"
+#include "study/fields.h"
 #include "study/settings.h"
 
 namespace binosplat::study {
@@ -154,34 +157,21 @@ std::uint64_t model_hash(const Model& model) {
 
 ordered_json to_json(const Calibration& c) {
   const char* const target = c.target.kind == CalibrationTarget::Kind::drop ? "drop_db" : "psnr_db";
-  ordered_json json = {
-      {"format", "binosplat calibration"},
-      {"version", 1},
-      {"model",
-       {{"name", c.model_name}, {"gaussians", c.gaussians}, {"hash", fmt::format("{:016x}", c.hash)}}},
-      {"width", c.width},
-      {"height", c.height},
-      {"focal_px", c.focal},
-      {"near", c.near_plane},
-      {"target", {{target, c.target.db}}},
-      {"depth_table",
-       {{"far", c.depth_table.far}, {"upper", c.depth_table.upper}, {"seconds", c.depth_table_seconds}}}};
-  json["views"] = ordered_json::array();
+  ordered_json json =
+      object("format", "binosplat calibration", "version", 1, "model",
+             object("name", c.model_name, "gaussians", c.gaussians, "hash", fmt::format("{:016x}", c.hash)),
+             "width", c.width, "height", c.height, "focal_px", c.focal, "near", c.near_plane, "target",
+             object(target, c.target.db), "depth_table",
+             object("far", c.depth_table.far, "upper", c.depth_table.upper, "seconds", c.depth_table_seconds),
+             "views", ordered_json::array(), "entries", ordered_json::array());
   for (const CalibratedView& view : c.views)
     json["views"].push_back(
-        {{"name", view.name}, {"position", {view.position.x, view.position.y, view.position.z}}});
-  json["entries"] = ordered_json::array();
-  for (const CalibrationEntry& e : c.entries) {
-    json["entries"].push_back({{"th", th_choices[e.th].name},
-                               {"transmittance", transmittance_choices[e.transmittance].name},
-                               {"loss", e.loss},
-                               {"reached_db", e.reached_db},
-                               {"worst_db", e.worst_db},
-                               {"worst_view", e.worst_view},
-                               {"pairs_removed", e.pairs_removed},
-                               {"evaluations", e.evaluations},
-                               {"seconds", e.seconds}});
-  }
+        object("name", view.name, "position", std::array{view.position.x, view.position.y, view.position.z}));
+  for (const CalibrationEntry& e : c.entries)
+    json["entries"].push_back(
+        object("th", th_choices[e.th].name, "transmittance", transmittance_choices[e.transmittance].name,
+               "loss", e.loss, "reached_db", e.reached_db, "worst_db", e.worst_db, "worst_view", e.worst_view,
+               "pairs_removed", e.pairs_removed, "evaluations", e.evaluations, "seconds", e.seconds));
   return json;
 }
 
@@ -216,10 +206,7 @@ Calibration parse_calibration(const std::string& name, const std::string& text) 
 }
 
 Calibration load_calibration(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  const auto bytes = file.bytes();
-  return parse_calibration(path.string(),
-                           std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  return parse_calibration(path.string(), std::string(as_text(MappedFile(path).bytes())));
 }
 
 bool is_of(const Calibration& calibration, const Model& model) {

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -8,13 +8,11 @@
 #include "measure/metrics.h"
 #include "reference/render.h"
 #include "reference/skipping.h"
-#include "study/bench_results.h"
+#include "study/settings.h"
 
 namespace binosplat::study {
 
 namespace {
-
-using nlohmann::ordered_json;
 
 constexpr std::array shares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
 constexpr std::array known = {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha"};
@@ -46,14 +44,13 @@ std::array<std::vector<double>, known.size()> lights(const std::vector<reference
   return upper;
 }
 
-ordered_json spread(const std::vector<double>& values) {
-  if (values.empty()) return {{"median", nullptr}, {"p90", nullptr}, {"largest", nullptr}};
-  return {
-      {"median", quantile(values, 0.5)}, {"p90", quantile(values, 0.9)}, {"largest", quantile(values, 1.0)}};
+Spread spread(const std::vector<double>& values) {
+  if (values.empty()) return {};
+  return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 1.0)};
 }
 
-ordered_json by_depth(const std::vector<Shown>& shown, const render::DepthTable& table) {
-  ordered_json bins = ordered_json::array();
+std::vector<DepthBin> by_depth(const std::vector<Shown>& shown, const render::DepthTable& table) {
+  std::vector<DepthBin> bins;
   if (shown.empty()) return bins;
   std::vector<double> depths;
   for (const Shown& one : shown) depths.push_back(one.depth);
@@ -67,12 +64,8 @@ ordered_json by_depth(const std::vector<Shown>& shown, const render::DepthTable&
   }
   for (std::size_t b = 0; b < depth_bins; ++b) {
     const double from = width * static_cast<double>(b);
-    bins.push_back({{"from", from},
-                    {"to", from + width},
-                    {"gaussians", contribution[b].size()},
-                    {"contribution", spread(contribution[b])},
-                    {"light", spread(light[b])},
-                    {"upper", upper_at(table, from + 0.5 * width)}});
+    bins.push_back({from, from + width, contribution[b].size(), spread(contribution[b]), spread(light[b]),
+                    upper_at(table, from + 0.5 * width)});
   }
   return bins;
 }
@@ -83,12 +76,11 @@ Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0
 
 }  // namespace
 
-ordered_json contributions(const Model& model, std::span<const ContributionView> views,
-                           const render::DepthTable& table, const std::function<void()>& progress) {
-  struct Sum {
-    double share = 0, psnr = 0, drop = 0;
-  };
-  std::array<std::array<Sum, shares.size()>, known.size()> sums;
+Contributions contributions(const Model& model, std::span<const ContributionView> views,
+                            const render::DepthTable& table, const std::function<void()>& progress) {
+  Contributions found;
+  for (const char* by : known)
+    found.skipping.push_back({by, std::vector<SkippingCurve::Point>(shares.size())});
   std::vector<Shown> shown;
   const auto count = static_cast<double>(views.size());
   const bool photos =
@@ -107,29 +99,20 @@ ordered_json contributions(const Model& model, std::span<const ContributionView>
       const auto skipped = reference::skip_lowest(splats, lists, one.view, upper[by], shares);
       for (std::size_t k = 0; k < shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
-        Sum& sum = sums[by][k];
-        sum.share += skipped[k].share / count;
-        sum.psnr += capped(measure::psnr(image, exact)) / count;
+        SkippingCurve::Point& mean = found.skipping[by].points[k];
+        mean.share += skipped[k].share / count;
+        mean.psnr_db += capped(measure::psnr(image, exact)) / count;
         if (photos)
-          sum.drop += (measure::psnr(quantised(exact), quantised(*one.photo)) -
-                       measure::psnr(quantised(image), quantised(*one.photo))) /
-                      count;
+          mean.drop_db =
+              mean.drop_db.value_or(0.0) + (measure::psnr(quantised(exact), quantised(*one.photo)) -
+                                            measure::psnr(quantised(image), quantised(*one.photo))) /
+                                               count;
       }
     }
     progress();
   }
-  ordered_json json = {{"skipping", ordered_json::array()}};
-  for (std::size_t by = 0; by < known.size(); ++by) {
-    ordered_json curve = {{"by", known[by]}, {"points", ordered_json::array()}};
-    for (const Sum& sum : sums[by]) {
-      ordered_json point = {{"share", sum.share}, {"psnr_db", sum.psnr}};
-      if (photos) point["drop_db"] = sum.drop;
-      curve["points"].push_back(std::move(point));
-    }
-    json["skipping"].push_back(std::move(curve));
-  }
-  json["by_depth"] = by_depth(shown, table);
-  return json;
+  found.by_depth = by_depth(shown, table);
+  return found;
 }
 
 }  // namespace binosplat::study

@@ -14,8 +14,6 @@ namespace binosplat::study {
 
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr double shortest_ms = 2.0;  // a run that takes less is repeated with more to do
 constexpr int runs = 5;
 
@@ -85,7 +83,7 @@ Peaks measure_peaks(gl::Context& context) {
   return peaks;
 }
 
-ordered_json profile(const FrameWork& work, const Peaks& peaks) {
+std::vector<StageFloor> profile(const FrameWork& work, const Peaks& peaks) {
   const double harmonics = 3.0 * sh_count(work.degree);
   const bool half = work.precision == PRECISION_HALF;
   const double gaussian_bytes = half ? sizeof(render::Halves) : sizeof(shared::Gaussian);
@@ -104,20 +102,16 @@ ordered_json profile(const FrameWork& work, const Peaks& peaks) {
   least["ranges"] = {work.listed_pairs * 4 + work.tiles * 8};
   least["blend"] = {work.pairs * (splat_bytes + 4) + work.pixels * 20, work.alphas};
   least["blend"].seconds = least["blend"].operations / peaks.alphas;
-  ordered_json stages = ordered_json::array();
+  std::vector<StageFloor> stages;
   for (const gl::StageTime& stage : work.stages) {
-    ordered_json& json = stages.emplace_back(ordered_json{{"stage", stage.name}, {"ms", stage.ms}});
+    StageFloor& one = stages.emplace_back(StageFloor{stage.name, stage.ms});
     const auto found = least.find(stage.name);
-    if (found == least.end()) {
-      json.update({{"bytes", nullptr}, {"operations", nullptr}, {"floor_ms", nullptr}, {"share", nullptr}});
-      continue;
-    }
+    if (found == least.end()) continue;
     const Least& floor = found->second;
-    const double ms = 1000.0 * std::max(floor.bytes / peaks.bytes, floor.seconds);
-    json["bytes"] = floor.bytes;
-    json["operations"] = floor.operations > 0.0 ? ordered_json(floor.operations) : ordered_json();
-    json["floor_ms"] = ms;
-    json["share"] = stage.ms > 0.0 ? ordered_json(ms / stage.ms) : ordered_json();
+    one.bytes = floor.bytes;
+    if (floor.operations > 0.0) one.operations = floor.operations;
+    one.floor_ms = 1000.0 * std::max(floor.bytes / peaks.bytes, floor.seconds);
+    if (stage.ms > 0.0) one.share = one.floor_ms / stage.ms;
   }
   return stages;
 }

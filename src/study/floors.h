@@ -2,7 +2,8 @@
 // How near a frame's stages are to what the GPU could do at best: what each must read, write and compute at
 // least, over rates that small programs reach on the same GPU.
 
-#include <nlohmann/json.hpp>
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "gl/dispatch.h"
@@ -36,9 +37,17 @@ struct FrameWork {
   std::vector<gl::StageTime> stages;
 };
 
-/// By stage in order: stage, ms, bytes (that it must read and write at least), operations (alphas of `blend`,
-/// multiply-adds of `project`, else none), floor_ms (the longer of the two at the GPU's rates) and share, of
-/// the time, that the floor is. Stages without a floor (decode, probe) have null for all but stage and ms.
-nlohmann::ordered_json profile(const FrameWork& work, const Peaks& peaks);
+/// A stage beside what the GPU could do at best; not a number for stages without a floor (decode, probe).
+struct StageFloor {
+  std::string stage;
+  double ms = 0.0;
+  double bytes = NAN;       // that it must read and write at least
+  double operations = NAN;  // alphas of `blend`, multiply-adds of `project`; others have none
+  double floor_ms = NAN;    // the longer of the two at the GPU's rates
+  double share = NAN;       // of the time, that the floor is
+};
+
+/// In the order of the stages.
+std::vector<StageFloor> profile(const FrameWork& work, const Peaks& peaks);
 
 }  // namespace binosplat::study

@@ -14,6 +14,7 @@
 #include "render/frame.h"
 #include "study/bench.h"  // spread_evenly
 #include "study/exact_frames.h"
+#include "study/fields.h"
 #include "study/settings.h"
 
 namespace binosplat::study {
@@ -215,17 +216,33 @@ const MovedRule* one_of(const MotionResult& result, const MovedRule& rule) {
   return found == result.rules.end() ? nullptr : &*found;
 }
 
-ordered_json share(double value, double of) { return of > 0.0 ? ordered_json(value / of) : ordered_json(); }
+std::optional<double> share(double value, double of) {
+  return of > 0.0 ? std::optional(value / of) : std::nullopt;
+}
 
-ordered_json pass_json(const MovedPass& pass, const MovedPass& exact, const MovedPass* one) {
-  return {{"request_db", pass.request},
-          {"moving", to_json(pass.moving)},
-          {"lead", to_json(pass.lead)},
-          {"stop", to_json(pass.stop)},
-          {"ms_of_exact", share(pass.moving.ms, exact.moving.ms)},
-          {"ms_of_one", share(pass.moving.ms, one == nullptr ? 0.0 : one->moving.ms)},
-          {"pairs_of_one", share(pass.moving.pairs, one == nullptr ? 0.0 : one->moving.pairs)},
-          {"segments", to_json(pass.frames)}};
+ordered_json pass_json(const MovedPass& pass, const MovedShares& shares) {
+  return object("request_db", pass.request, "moving", to_json(pass.moving), "lead", to_json(pass.lead),
+                "stop", to_json(pass.stop), "ms_of_exact", shares.ms_of_exact.value_or(NAN), "ms_of_one",
+                shares.ms_of_one.value_or(NAN), "pairs_of_one", shares.pairs_of_one.value_or(NAN), "segments",
+                to_json(pass.frames));
+}
+
+ordered_json path_json(const MotionResult& result) {
+  ordered_json json = {{"name", result.path.name}, {"motion", result.path.motion}};
+  for (const MotionSegment& segment : result.path.segments)
+    json["lengths"].push_back(object("lead", segment.lead, "moving", segment.moving(), "stop", segment.stop));
+  json["exact"] = object("moving", to_json(result.exact.moving), "segments", to_json(result.exact.frames));
+  for (const MovedRule& rule : result.rules) {
+    ordered_json settings = to_json(rule.variant.settings());
+    settings.erase("loss");  // each frame chooses its own
+    json["rules"].push_back(object("name", rule.variant.name(), "settings", settings, "asked",
+                                   pass_json(rule.asked, shares(result, rule, false))));
+    if (!rule.compared) continue;
+    ordered_json& at_target = json["rules"].back()["at_target"] =
+        pass_json(rule.at_target(), shares(result, rule, true));
+    FieldWriter{at_target}("evaluations", rule.evaluations, "problem", rule.problem);
+  }
+  return json;
 }
 
 }  // namespace
@@ -242,26 +259,22 @@ std::vector<MotionResult> measure_motion(gl::Context& context, const Model& mode
   return results;
 }
 
-ordered_json to_json(const MotionResult& result) {
-  ordered_json json = {{"name", result.path.name}, {"motion", result.path.motion}};
-  for (const MotionSegment& segment : result.path.segments)
-    json["lengths"].push_back({{"lead", segment.lead}, {"moving", segment.moving()}, {"stop", segment.stop}});
-  json["exact"] = {{"moving", to_json(result.exact.moving)}, {"segments", to_json(result.exact.frames)}};
-  for (const MovedRule& rule : result.rules) {
-    const MovedRule* one = one_of(result, rule);
-    ordered_json settings = to_json(rule.variant.settings());
-    settings.erase("loss");  // each frame chooses its own
-    ordered_json entry = {{"name", rule.variant.name()}, {"settings", settings}};
-    entry["asked"] = pass_json(rule.asked, result.exact, one == nullptr ? nullptr : &one->asked);
-    if (rule.compared) {
-      const MovedPass* one_at_target = one == nullptr ? nullptr : &one->at_target();
-      ordered_json& at_target = entry["at_target"];
-      at_target = pass_json(rule.at_target(), result.exact, one_at_target);
-      at_target["evaluations"] = rule.evaluations;
-      at_target["problem"] = rule.problem;
-    }
-    json["rules"].push_back(std::move(entry));
-  }
+MovedShares shares(const MotionResult& result, const MovedRule& rule, bool at_target) {
+  const auto moving = [&](const MovedRule& of) { return (at_target ? of.at_target() : of.asked).moving; };
+  const MotionSummary of_rule = moving(rule);
+  const MovedRule* one = one_of(result, rule);
+  const MotionSummary of_one = one == nullptr ? MotionSummary{} : moving(*one);
+  return {share(of_rule.ms, result.exact.moving.ms), share(of_rule.ms, of_one.ms),
+          share(of_rule.pairs, of_one.pairs)};
+}
+
+ordered_json to_json(const MotionStudy& s) {
+  ordered_json json = object("format", "binosplat motion", "version", 1, "device", s.device, "scene", s.scene,
+                             "gaussians", s.gaussians, "eyes", s.eyes, "width", s.width, "height", s.height,
+                             "frames_per_second", s.frames_per_second, "units_per_metre", s.units_per_metre,
+                             "metre_source", s.metre_source, "quality_db", s.settings.quality, "target_db",
+                             s.settings.target, "equal_pictures_db", equal_db, "rounds", s.settings.rounds);
+  for (const MotionResult& result : s.paths) json["paths"].push_back(path_json(result));
   return json;
 }
 

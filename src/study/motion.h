@@ -3,7 +3,7 @@
 // itself, and what it costs; at one request, and at one true quality.
 
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,10 +60,30 @@ std::vector<MotionResult> measure_motion(
     std::vector<Variant> rules, const MotionSettings& settings,
     const std::function<void(const std::string&, std::size_t, std::size_t)>& progress);
 
-/// name, motion, lengths of the segments (in frames), exact and rules. A rule has its name and settings, and
-/// under `asked` and, where it was compared, `at_target`: request_db; moving, lead and stop (summaries);
-/// segments (series); frame time in the exact frame's, and it and the pairs in those of the rule that takes
-/// all the light for granted with the same threshold, null where that is not among the rules.
-nlohmann::ordered_json to_json(const MotionResult& result);
+/// Of a rule's moving frames: their time in the exact frames', and it and the pairs in those of the rule that
+/// takes all the light for granted with the same threshold; none where that is not among the rules.
+struct MovedShares {
+  std::optional<double> ms_of_exact, ms_of_one, pairs_of_one;
+};
+
+MovedShares shares(const MotionResult& result, const MovedRule& rule, bool at_target);
+
+/// All of a study, and where it was made.
+struct MotionStudy {
+  std::string device, scene;
+  std::size_t gaussians = 0;
+  std::size_t eyes = 0;
+  std::uint32_t width = 0, height = 0;  // px, of an eye's picture
+  double frames_per_second = 0.0;
+  double units_per_metre = 0.0;
+  std::string metre_source;
+  MotionSettings settings;
+  std::vector<MotionResult> paths;
+};
+
+/// The members, with units. A path has name, motion, lengths of the segments (in frames), exact and rules; a
+/// rule its name and settings, and under `asked` and, where it was compared, `at_target` a pass: request_db,
+/// moving, lead and stop (summaries), segments (series) and the shares, null where there are none.
+nlohmann::ordered_json to_json(const MotionStudy& study);
 
 }  // namespace binosplat::study

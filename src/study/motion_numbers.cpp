@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/statistics.h"
+#include "study/fields.h"
 #include "study/settings.h"
 
 namespace binosplat::study {
@@ -76,17 +77,10 @@ MotionSummary summary_of(std::span<const MovedFrame> frames) {
 }
 
 ordered_json to_json(const MotionSummary& s) {
-  return {{"frames", s.frames},
-          {"true_db", s.true_db},
-          {"tenth_percentile_db", s.tenth_db},
-          {"worst_db", s.worst_db},
-          {"told_minus_true_db", s.told_beyond},
-          {"told_minus_true_farthest_db", s.told_worst},
-          {"pairs", s.pairs},
-          {"pairs_removed", s.removed},
-          {"drawn", s.drawn},
-          {"frame_ms", s.ms},
-          {"equal_frames", s.equal}};
+  return object("frames", s.frames, "true_db", s.true_db, "tenth_percentile_db", s.tenth_db, "worst_db",
+                s.worst_db, "told_minus_true_db", s.told_beyond, "told_minus_true_farthest_db", s.told_worst,
+                "pairs", s.pairs, "pairs_removed", s.removed, "drawn", s.drawn, "frame_ms", s.ms,
+                "equal_frames", s.equal);
 }
 
 ordered_json to_json(const MovedFrames& frames) {

@@ -2,7 +2,7 @@
 // What is told of frames that follow one another, and what many of them come to.
 
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <vector>
 

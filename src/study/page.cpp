@@ -2,72 +2,56 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "base/output_file.h"
 #include "study/embedded.h"
+#include "study/fields.h"
 
 namespace binosplat::study {
 
-namespace {
-
 using nlohmann::ordered_json;
 
-ordered_json to_json(const Axis& axis) {
-  return {{"label", axis.label}, {"unit", axis.unit}, {"log", axis.log}, {"categories", axis.categories}};
+void to_json(ordered_json& json, const Cell& cell) {
+  std::visit([&](const auto& value) { json = value; }, cell.value);
 }
 
-ordered_json to_json(const Series& series) {
-  ordered_json json = {
-      {"name", series.name}, {"line", series.line}, {"step", series.step}, {"dots", series.dots}};
-  json["points"] = ordered_json::array();
-  for (const Point& p : series.points) {
-    ordered_json point = {{"y", p.y}, {"label", p.label}, {"marked", p.marked}};
-    std::visit([&](const auto& x) { point["x"] = x; }, p.x);
-    json["points"].push_back(std::move(point));
-  }
-  return json;
+std::string json_text(double number) { return ordered_json(number).dump(); }
+
+static void fields(const auto& io, const Axis& a) {
+  io("label", a.label, "unit", a.unit, "log", a.log, "categories", a.categories);
 }
 
-ordered_json to_json(const Plot& plot) {
-  ordered_json json = {
-      {"kind", plot.bars ? "bars" : "curves"}, {"x", to_json(plot.x)}, {"y", to_json(plot.y)}};
-  json["series"] = ordered_json::array();
-  for (const Series& series : plot.series) json["series"].push_back(to_json(series));
-  return json;
+static void fields(const auto& io, const Point& p) {
+  io("y", p.y, "label", p.label, "marked", p.marked);
+  std::visit([&](const auto& x) { io("x", x); }, p.x);
 }
 
-ordered_json to_json(const Table& table) {
-  for (const ordered_json& row : table.rows) {
-    if (row.size() != table.columns.size()) {
-      throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", table.columns.size(),
-                                         row.size(), row.dump()));
+static void fields(const auto& io, const Series& s) {
+  io("name", s.name, "line", s.line, "step", s.step, "dots", s.dots, "points", s.points);
+}
+
+static void fields(const auto& io, const Plot& p) {
+  io("kind", p.bars ? "bars" : "curves", "x", p.x, "y", p.y, "series", p.series);
+}
+
+static void fields(const auto& io, const Table& t) {
+  for (const std::vector<Cell>& row : t.rows) {
+    if (row.size() != t.columns.size()) {
+      throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", t.columns.size(),
+                                         row.size(), ordered_json(row).dump()));
     }
   }
-  ordered_json json = {{"columns", table.columns}};
-  json["rows"] = ordered_json::array();
-  for (const ordered_json& row : table.rows) json["rows"].push_back(row);
-  return json;
+  io("columns", t.columns, "rows", t.rows);
 }
 
-ordered_json to_json(const Page& page) {
-  ordered_json json = {{"title", page.title}, {"sentence", page.sentence}};
-  json["facts"] = ordered_json::array();
-  for (const auto& [name, value] : page.facts)
-    json["facts"].push_back(ordered_json::array({ordered_json(name), value}));
-  json["sections"] = ordered_json::array();
-  for (const Section& section : page.sections) {
-    ordered_json one = {{"id", section.id},
-                        {"title", section.title},
-                        {"sentence", section.sentence},
-                        {"problem", section.problem}};
-    if (section.plot) one["plot"] = to_json(*section.plot);
-    if (section.table) one["table"] = to_json(*section.table);
-    json["sections"].push_back(std::move(one));
-  }
-  json["data"] = page.data;
-  return json;
+static void fields(const auto& io, const Section& s) {
+  io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "plot", s.plot, "table",
+     s.table);
 }
+
+namespace {
 
 // As text of a script element, which ends at the first "</script" whatever it is quoted in.
 std::string for_script(const ordered_json& json) {
@@ -98,7 +82,17 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-std::string html(const Page& page) {
+void Series::add(std::variant<double, std::string> x, double y, std::string point, bool marked) {
+  points.push_back({std::move(x), y, std::move(point), marked});
+}
+
+Series& series_of(Plot& plot, const std::string& name) {
+  const auto found = std::find_if(plot.series.begin(), plot.series.end(),
+                                  [&](const Series& series) { return series.name == name; });
+  return found == plot.series.end() ? plot.series.emplace_back(Series{name, {}}) : *found;
+}
+
+std::string html(const Page& page, const ordered_json& data) {
   const auto& ours = page_files();
   const auto& others = third_party_files();
   std::string out = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
@@ -110,7 +104,10 @@ std::string html(const Page& page) {
   out +=
       "<noscript><p>The plots on this page are drawn by JavaScript, which is switched off "
       "here.</p></noscript>\n";
-  out += "<script type=\"application/json\" id=\"page\">" + for_script(to_json(page)) + "</script>\n";
+  out += "<script type=\"application/json\" id=\"page\">" +
+         for_script(object("title", page.title, "sentence", page.sentence, "facts", page.facts, "sections",
+                           page.sections, "data", data)) +
+         "</script>\n";
   for (const auto& [folder, bundle] :
        {std::pair{"d3/", "d3.min.js"}, std::pair{"plot/", "plot.umd.min.js"}}) {
     const std::string at = folder;
@@ -119,9 +116,9 @@ std::string html(const Page& page) {
   return out + "<script>\n" + ours.at("page.js") + "</script>\n</html>\n";
 }
 
-void save_page(const std::filesystem::path& path, const Page& page) {
+void save_page(const std::filesystem::path& path, const Page& page, const ordered_json& data) {
   OutputFile file(path);
-  file.write(html(page));
+  file.write(html(page, data));
   file.commit();
 }
 

@@ -3,8 +3,10 @@
 // as JSON and draws its plots from them (src/study/page, with the libraries of third_party), so that a number
 // on the page is the number in the JSON.
 
+#include <concepts>
+#include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +31,8 @@ struct Point {
 };
 
 struct Series {
+  void add(std::variant<double, std::string> x, double y, std::string point = "", bool marked = false);
+
   std::string name;
   std::vector<Point> points;
   bool line = false;  // joined in their order
@@ -44,10 +48,33 @@ struct Plot {
   bool bars = false;
 };
 
-/// Rows of numbers, texts and null, as many each as there are columns.
+/// A number, a text or nothing; a number that is not finite is shown as nothing.
+struct Cell {
+  Cell(std::nullptr_t = nullptr) {}
+  Cell(bool yes) : value(yes) {}
+  template <std::integral T>
+  Cell(T whole) : value(static_cast<std::int64_t>(whole)) {}
+  Cell(double number) : value(number) {}
+  Cell(const char* text) : value(text) {}
+  Cell(std::string text) : value(std::move(text)) {}
+  template <typename T>
+  Cell(const std::optional<T>& some) : Cell(some ? Cell(*some) : Cell()) {}
+  bool operator==(const Cell&) const = default;
+
+  std::variant<std::nullptr_t, bool, std::int64_t, double, std::string> value;
+};
+
+void to_json(nlohmann::ordered_json& json, const Cell& cell);
+
+/// A number as JSON has it: "40.0".
+std::string json_text(double number);
+
+std::vector<Cell> row(const auto&... cells) { return {Cell(cells)...}; }
+
+/// Rows of as many cells as there are columns.
 struct Table {
   std::vector<std::string> columns;
-  std::vector<nlohmann::ordered_json> rows;
+  std::vector<std::vector<Cell>> rows;
 };
 
 /// One heading of the page: what it shows on this scene, in a sentence, then the plot and the table.
@@ -55,24 +82,27 @@ struct Section {
   std::string id;  // of the link to it and of the plot's SVG
   std::string title;
   std::string sentence;
-  std::optional<Plot> plot;
-  std::optional<Table> table;
-  std::string problem;  // why there is neither
+  std::optional<Plot> plot = {};
+  std::optional<Table> table = {};
+  std::string problem = {};  // why there is neither
 };
+
+/// The series of a plot with this name, made where there is none yet.
+Series& series_of(Plot& plot, const std::string& name);
 
 struct Page {
   std::string title;
   std::string sentence;
-  std::vector<std::pair<std::string, nlohmann::ordered_json>> facts;  // scene, device, date
+  std::vector<std::pair<std::string, Cell>> facts;  // scene, device, date
   std::vector<Section> sections;
-  nlohmann::ordered_json data;  // everything measured: what the page offers to save
 };
 
-/// The whole file. Light and dark, readable at 400 px and printed; colours are told apart by everyone, and
-/// never alone. Throws std::logic_error for a table whose rows do not fit its columns.
-std::string html(const Page& page);
+/// The whole file, with everything that was measured, which it offers to save. Light and dark, readable at
+/// 400 px and printed; colours are told apart by everyone, and never alone. Throws std::logic_error for a
+/// table whose rows do not fit its columns.
+std::string html(const Page& page, const nlohmann::ordered_json& data);
 
 /// Writes it whole or not at all. Throws Error where that fails.
-void save_page(const std::filesystem::path& path, const Page& page);
+void save_page(const std::filesystem::path& path, const Page& page, const nlohmann::ordered_json& data);
 
 }  // namespace binosplat::study

@@ -13,6 +13,7 @@
 #include "base/statistics.h"
 #include "measure/search.h"
 #include "stereo/disagreement.h"
+#include "study/fields.h"
 #include "study/settings.h"
 #include "study/times.h"
 
@@ -136,19 +137,11 @@ std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& 
 }
 
 nlohmann::ordered_json to_json(const RuleResult& r) {
-  nlohmann::ordered_json json = {{"name", r.variant.name()},
-                                 {"settings", to_json(r.variant.settings())},
-                                 {"psnr_db", r.db},
-                                 {"worst_psnr_db", r.worst_db},
-                                 {"disagreement_db", r.disagreement_db},
-                                 {"pairs", r.pairs},
-                                 {"pairs_removed", r.removed},
-                                 {"frame_ms", r.frame_ms},
-                                 {"frame_ms_quartiles", {r.lower_ms, r.upper_ms}},
-                                 {"timed_pairs", r.timed_pairs},
-                                 {"of_exact", r.of_exact},
-                                 {"of_one", r.of_one}};
-  for (const gl::StageTime& stage : r.stages) json["stages_ms"][stage.name] = stage.ms;
+  nlohmann::ordered_json json = object(
+      "name", r.variant.name(), "settings", to_json(r.variant.settings()), "psnr_db", r.db, "worst_psnr_db",
+      r.worst_db, "disagreement_db", r.disagreement_db, "pairs", r.pairs, "pairs_removed", r.removed,
+      "frame_ms", r.frame_ms, "frame_ms_quartiles", std::array{r.lower_ms, r.upper_ms}, "timed_pairs",
+      r.timed_pairs, "of_exact", r.of_exact, "of_one", r.of_one, "stages_ms", r.stages);
   if (!r.problem.empty()) json["problem"] = r.problem;
   return json;
 }

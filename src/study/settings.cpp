@@ -7,18 +7,29 @@
 #include <vector>
 
 #include "base/error.h"
+#include "study/fields.h"
 
 namespace binosplat::study {
 
-nlohmann::ordered_json to_json(const render::FrameSettings& s) {
-  nlohmann::ordered_json json = {
-      {"tiles", tiles_choices[s.tiles].name}, {"tile", s.tile_size}, {"th", th_choices[s.th].name}};
-  if (s.precision != PRECISION_FULL) json["precision"] = precision_choices[s.precision].name;
-  if (render::is_exact(s.th)) return json;
-  json["transmittance"] = transmittance_choices[s.transmittance].name;
-  json["loss"] = std::stod(fmt::format("{}", s.loss));  // the decimal number that was meant
-  return json;
+using nlohmann::ordered_json;
+
+NamedSettings named(const render::FrameSettings& s) {
+  NamedSettings names{tiles_choices[s.tiles].name, s.tile_size, th_choices[s.th].name, {}, {}, {}};
+  if (s.precision != PRECISION_FULL) names.precision = precision_choices[s.precision].name;
+  if (render::is_exact(s.th)) return names;
+  names.transmittance = transmittance_choices[s.transmittance].name;
+  names.loss = std::stod(fmt::format("{}", s.loss));
+  return names;
 }
+
+static void fields(const auto& io, Some<NamedSettings> auto& s) {
+  io("tiles", s.tiles, "tile", s.tile, "th", s.th, "precision", s.precision, "transmittance", s.transmittance,
+     "loss", s.loss);
+}
+
+void to_json(ordered_json& json, const NamedSettings& settings) { fields(FieldWriter{json}, settings); }
+void from_json(const ordered_json& json, NamedSettings& settings) { fields(FieldReader{json}, settings); }
+ordered_json to_json(const render::FrameSettings& settings) { return named(settings); }
 
 std::string describe_family(const render::FrameSettings& s) {
   std::vector<std::string> words;

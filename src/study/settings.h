@@ -1,7 +1,9 @@
 #pragma once
 // A way to draw, by the names that options and charts use (shared/axes.h).
 
-#include <nlohmann/json.hpp>
+#include <compare>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "render/settings.h"
@@ -11,8 +13,23 @@ namespace binosplat::study {
 /// The PSNR in dB that means and charts take for equal pictures, which have none.
 constexpr double equal_db = 100.0;
 
-/// What decides the picture and its time: tiles, tile, th and, where they matter, precision, transmittance
-/// and loss.
+/// What decides the picture and its time, as files have it.
+struct NamedSettings {
+  std::string tiles;
+  int tile = 0;  // px
+  std::string th;
+  std::optional<std::string> precision;      // where it is not full
+  std::optional<std::string> transmittance;  // where th is not tau
+  std::optional<double> loss;                // likewise: the decimal number that was meant
+
+  auto operator<=>(const NamedSettings&) const = default;  // NOLINT(modernize-use-nullptr): none is meant
+};
+
+NamedSettings named(const render::FrameSettings& settings);
+
+void to_json(nlohmann::ordered_json& json, const NamedSettings& settings);
+void from_json(const nlohmann::ordered_json& json, NamedSettings& settings);
+/// Of named().
 nlohmann::ordered_json to_json(const render::FrameSettings& settings);
 
 /// One line for legends: "ellipse", "peripheral, last, 0.5"; tiles are named where they are not `ellipse`,

@@ -55,4 +55,17 @@ std::vector<StabilityResult> run_case(gl::Context& context, const StabilityCase&
                                       const std::vector<Variant>& variants, const StabilityBounds& bounds,
                                       const std::function<void()>& progress);
 
+/// All of a study: results are by case and by rule.
+struct StabilityStudy {
+  struct Case {
+    std::string name, fear;
+    std::vector<StabilityResult> results;
+  };
+  std::string scene, device;
+  double target = 0.0;  // dB that the rules' losses are chosen for
+  StabilityBounds bounds;
+  std::vector<Variant> rules;
+  std::vector<Case> cases;
+};
+
 }  // namespace binosplat::study

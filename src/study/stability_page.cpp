@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "study/fields.h"
+
 namespace binosplat::study {
 
 namespace {
@@ -9,62 +11,90 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Which rules hold in which cases.
-Section verdicts(const ordered_json& results) {
+Section verdicts(const StabilityStudy& study) {
   Table table{{"rule", "loss", "cases that hold"}, {}};
-  for (const auto& [name, one] : results["cases"].items()) table.columns.push_back(name);
+  for (const StabilityStudy::Case& one : study.cases) table.columns.push_back(one.name);
   std::size_t best = 0;
   std::string steadiest;
-  for (const auto& [rule, loss] : results["losses"].items()) {
-    ordered_json row = {rule, loss, 0};
+  for (std::size_t k = 0; k < study.rules.size(); ++k) {
+    const Variant& rule = study.rules[k];
+    auto& cells = table.rows.emplace_back(row(rule.name(), rule.loss, 0));
     std::size_t holds = 0;
-    for (const auto& [name, one] : results["cases"].items()) {
-      const ordered_json& verdict = one["rules"][rule]["verdict"];
-      holds += verdict == "holds";
-      row.push_back(verdict);
+    for (const StabilityStudy::Case& one : study.cases) {
+      holds += one.results[k].verdict == "holds";
+      cells.emplace_back(one.results[k].verdict);
     }
-    row[2] = holds;
-    table.rows.push_back(std::move(row));
-    if (holds <= best || rule == "tau") continue;
+    cells[2] = holds;
+    if (holds <= best || rule.th == TH_TAU) continue;
     best = holds;
-    steadiest = rule;
+    steadiest = rule.name();
   }
   std::string sentence =
       fmt::format("Each rule at the loss for {} dB on this scene, in {} cases made to break it",
-                  results["target_db"].dump(), results["cases"].size());
+                  json_text(study.target), study.cases.size());
   if (!steadiest.empty())
     sentence += fmt::format(": “{}” holds in {} of them, no rule but tau in more", steadiest, best);
-  return {"verdicts", "Where thresholds hold", sentence + ".", {}, table, ""};
+  return {"verdicts", "Where thresholds hold", sentence + ".", {}, table};
 }
 
-Section bounds(const ordered_json& results) {
-  Table table{{"verdict: where it breaks", "bound"}, {}};
-  for (const auto& [text, value] : results["bounds"].items()) table.rows.push_back({text, value});
-  return {"bounds", "What a verdict follows from", "A case holds if none of these is broken.", {}, table, ""};
+std::vector<std::vector<Cell>> bounds_of(const StabilityBounds& b) {
+  return {row("dips: a frame below dB", b.worst_db),
+          row("wrong: settled below dB", b.settled_db),
+          row("drifts: the last third below the second by dB", b.drift_db),
+          row("slow: more frames until within 1 dB", b.settling),
+          row("darkens or brightens: mean signed error beyond", b.darkening),
+          row("rivalry: disagreement below dB", b.disagreement_db)};
 }
 
-Section one_case(const std::string& name, const ordered_json& one) {
+Section bounds(const StabilityStudy& study) {
+  const Table table{{"verdict: where it breaks", "bound"}, bounds_of(study.bounds)};
+  return {"bounds", "What a verdict follows from", "A case holds if none of these is broken.", {}, table};
+}
+
+Section one_case(const StabilityStudy& study, const StabilityStudy::Case& one) {
   Table table{{"rule", "worst dB", "in frame", "settled dB", "frames to settle", "largest error", "signed",
                "disagreement dB", "removed %", "verdict"},
               {}};
-  for (const auto& [rule, r] : one["rules"].items()) {
-    table.rows.push_back({rule, r["worst_db"], r["worst_frame"], r["settled_db"], r["settling_frames"],
-                          r["largest_error"], r["mean_signed_error"], r["disagreement_db"],
-                          100.0 * r["pairs_removed"].get<double>(), r["verdict"]});
+  for (std::size_t k = 0; k < study.rules.size(); ++k) {
+    const StabilityResult& r = one.results[k];
+    table.rows.push_back(row(study.rules[k].name(), r.worst_db, r.worst_frame, r.settled_db, r.settling,
+                             r.largest, r.signed_mean, r.disagreement_db, 100.0 * r.removed, r.verdict));
   }
-  return {"case-" + name, name, one["fear"].get<std::string>() + ".", {}, table, ""};
+  return {"case-" + one.name, one.name, one.fear + ".", {}, table};
+}
+
+ordered_json result_json(const StabilityResult& r) {
+  return object("verdict", r.verdict, "worst_db", r.worst_db, "worst_frame", r.worst_frame, "settled_db",
+                r.settled_db, "drift_db", r.drift_db, "settling_frames", r.settling, "largest_error",
+                r.largest, "p99_error", r.p99, "mean_signed_error", r.signed_mean, "edge_over_inside",
+                r.edges, "disagreement_db", r.disagreement_db, "pairs_removed", r.removed);
 }
 
 }  // namespace
 
-Page stability_page(const ordered_json& results) {
+Page stability_page(const StabilityStudy& study) {
   Page page;
-  page.title = "Stability of thresholds on " + results["scene"].get<std::string>();
-  page.data = results;
-  page.facts = {{"device", results["device"]}, {"scene", results["scene"]}};
-  page.sections = {verdicts(results), bounds(results)};
+  page.title = "Stability of thresholds on " + study.scene;
+  page.facts = {{"device", study.device}, {"scene", study.scene}};
+  page.sections = {verdicts(study), bounds(study)};
   page.sentence = page.sections.front().sentence;
-  for (const auto& [name, one] : results["cases"].items()) page.sections.push_back(one_case(name, one));
+  for (const StabilityStudy::Case& one : study.cases) page.sections.push_back(one_case(study, one));
   return page;
+}
+
+ordered_json to_json(const StabilityStudy& study) {
+  const ordered_json none = ordered_json::object();
+  ordered_json json = object("scene", study.scene, "device", study.device, "target_db", study.target,
+                             "bounds", none, "losses", none, "cases", none);
+  for (const auto& bound : bounds_of(study.bounds))
+    json["bounds"][std::get<std::string>(bound[0].value)] = bound[1];
+  for (const Variant& rule : study.rules) json["losses"][rule.name()] = rule.loss;
+  for (const StabilityStudy::Case& one : study.cases) {
+    json["cases"][one.name]["fear"] = one.fear;
+    for (std::size_t k = 0; k < study.rules.size(); ++k)
+      json["cases"][one.name]["rules"][study.rules[k].name()] = result_json(one.results[k]);
+  }
+  return json;
 }
 
 }  // namespace binosplat::study

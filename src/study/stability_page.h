@@ -1,15 +1,17 @@
 #pragma once
-// The page of the stability study.
+// The stability study as a page and as JSON.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "study/page.h"
+#include "study/stability.h"
 
 namespace binosplat::study {
 
-/// From the study's JSON: scene, device, target_db, bounds (text to number), losses (by rule) and cases: for
-/// each its fear, and rules, by whose names there are verdict, worst_db, worst_frame, settled_db,
-/// settling_frames, largest_error, mean_signed_error, disagreement_db and pairs_removed.
-Page stability_page(const nlohmann::ordered_json& results);
+Page stability_page(const StabilityStudy& study);
+
+/// scene, device, target_db, bounds (text to number), losses (by rule) and cases: for each its fear, and
+/// rules, by whose names there are the members of StabilityResult. What is not finite becomes null.
+nlohmann::ordered_json to_json(const StabilityStudy& study);
 
 }  // namespace binosplat::study

@@ -1,6 +1,7 @@
 // What is JSON and no model: cameras, the pose beside a model, a calibration, the axes of a measurement.
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "formats/cameras_file.h"
 #include "formats/content.h"

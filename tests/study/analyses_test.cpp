@@ -2,9 +2,11 @@
 
 #include "study/analyses.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "scene/axes.h"
 #include "study/chromium.h"
@@ -16,18 +18,15 @@
 namespace binosplat::study {
 namespace {
 
-using nlohmann::ordered_json;
-
-void expect_near(const ordered_json& got, double wanted, const std::string& what) {
-  ASSERT_TRUE(got.is_number()) << what << ": " << got;
-  EXPECT_NEAR(got.get<double>(), wanted, 0.01 * std::abs(wanted)) << what;
+void expect_near(double got, double wanted, const std::string& what) {
+  EXPECT_NEAR(got, wanted, 0.01 * std::abs(wanted)) << what;
 }
 
 /// Walls of one alpha everywhere, at depths 1 to 4.
 constexpr double wall_alpha[] = {0.3, 0.9, 0.2, 0.8};
 constexpr double wall_light[] = {1.0, 0.7, 0.07, 0.056};
 
-ordered_json of_walls() {
+Contributions of_walls() {
   Model model;
   model.name = "walls";
   for (int i = 0; i < 4; ++i)
@@ -35,24 +34,23 @@ ordered_json of_walls() {
   const ContributionView view{"front", make_view(test::front_camera(32, 24, 32.0)), {}};
   const render::DepthTable table{5.0f, {1.0f, 1.0f, 1.0f, 0.1f, 1.0f}};
   int views = 0;
-  ordered_json json = contributions(model, std::span(&view, 1), table, [&] { ++views; });
+  Contributions found = contributions(model, std::span(&view, 1), table, [&] { ++views; });
   EXPECT_EQ(views, 1);
-  return json;
+  return found;
 }
 
 TEST(Contributions, ByDepthAreThoseOfTheWalls) {
-  const ordered_json json = of_walls();
   std::size_t walls = 0;
-  for (const ordered_json& bin : json["by_depth"]) {
-    if (bin["gaussians"] == 0) {
-      EXPECT_TRUE(bin["light"]["largest"].is_null());
+  for (const DepthBin& bin : of_walls().by_depth) {
+    if (bin.gaussians == 0) {
+      EXPECT_TRUE(std::isnan(bin.light.largest));
       continue;
     }
-    ASSERT_EQ(bin["gaussians"], 1);
+    ASSERT_EQ(bin.gaussians, 1u);
     const std::size_t i = walls;
-    for (const char* which : {"median", "p90", "largest"}) {
-      expect_near(bin["light"][which], wall_light[i], which);
-      expect_near(bin["contribution"][which], wall_alpha[i] * wall_light[i], which);
+    for (double Spread::*which : {&Spread::median, &Spread::p90, &Spread::largest}) {
+      expect_near(bin.light.*which, wall_light[i], "light");
+      expect_near(bin.contribution.*which, wall_alpha[i] * wall_light[i], "contribution");
     }
     ++walls;
   }
@@ -62,7 +60,7 @@ TEST(Contributions, ByDepthAreThoseOfTheWalls) {
 TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
   // White walls over black: the picture is 1 - T. Skipped are by alpha T the third, the last, the first; by
   // alpha the third, the first, the last.
-  const ordered_json json = of_walls();
+  const Contributions found = of_walls();
   const auto rest = [](std::initializer_list<int> kept) {
     double t = 1.0;
     for (const int i : kept) t *= 1.0 - wall_alpha[i];
@@ -77,13 +75,12 @@ TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
                 {2, db(rest({0, 1, 3})), db(rest({1, 3})), db(rest({1}))},
                 {3, db(rest({0, 1, 3})), db(rest({1, 3})), db(rest({1}))}};
   for (const auto& w : wanted) {
-    const ordered_json& curve = json["skipping"][w.curve];
-    const std::string by = curve["by"];
-    expect_near(curve["points"][2]["share"], 0.25, by);  // of up to 30 %
-    expect_near(curve["points"][2]["psnr_db"], w.quarter, by + ", one");
-    expect_near(curve["points"][4]["psnr_db"], w.half, by + ", two");
-    expect_near(curve["points"][7]["psnr_db"], w.most, by + ", three");
-    EXPECT_EQ(curve["points"][0]["psnr_db"], 100.0) << by << ": nothing is skipped yet";
+    const auto& [by, points] = found.skipping[w.curve];
+    expect_near(points[2].share, 0.25, by);  // of up to 30 %
+    expect_near(points[2].psnr_db, w.quarter, by + ", one");
+    expect_near(points[4].psnr_db, w.half, by + ", two");
+    expect_near(points[7].psnr_db, w.most, by + ", three");
+    EXPECT_EQ(points[0].psnr_db, 100.0) << by << ": nothing is skipped yet";
   }
   EXPECT_GT(std::abs(db(rest({0, 1})) - db(rest({1, 3}))), 1.0) << "the rules could be mistaken";
 }
@@ -150,12 +147,12 @@ TEST_F(Spots, LossesCostWhatTheSpotsAreWorth) {
   AnalysisSettings settings{.scene = "spots", .kind = CalibrationTarget::Kind::quality, .targets = targets};
   settings.frames = 1;
   std::map<std::string, std::size_t> told;
-  const ordered_json json = analyse(test::gl_context(), model, whole, left, settings,
+  const Analysis analysis = analyse(test::gl_context(), model, whole, left, settings,
                                     [&](const std::string& what, std::size_t done, std::size_t of) {
                                       EXPECT_LE(done, of);
                                       told[what] = done;
                                     });
-  EXPECT_EQ(json["views"]["test"], ordered_json({"left"}));
+  EXPECT_EQ(analysis.test_views, std::vector<std::string>{"left"});
   EXPECT_EQ(told["losses"], 2 * calibrated_settings().size());
 
   const auto ordered = [&](auto worth) {
@@ -168,31 +165,29 @@ TEST_F(Spots, LossesCostWhatTheSpotsAreWorth) {
       ordered([](const Spot& s) { return (s.opacity - 1.0 / 255) * 2 * M_PI * s.variance; });
   const auto squared = ordered([](const Spot& s) { return s.opacity * s.opacity * M_PI * s.variance; });
   std::size_t checked = 0;
-  for (const ordered_json& entry : json["targets"]) {
-    const ordered_json& rule = entry["settings"];
-    const Known k = known(rule["th"] == "peripheral" ? peripheral : squared, entry["target_db"]);
-    const std::string what = entry["name"].get<std::string>() + " at " + entry["target_db"].dump();
-    expect_near(entry["reached_db"], k.whole_db, what + ", calibration view");
-    expect_near(entry["mean_db"], k.left_db, what + ", test view");
-    EXPECT_NEAR(entry["pairs_removed"].get<double>(), k.removed_left, 1e-9) << what;
-    EXPECT_EQ(entry["worst_view"], "left");
+  for (const AnalysedSystem& entry : analysis.targets) {
+    const Known k = known(entry.settings.th == TH_PERIPHERAL ? peripheral : squared, *entry.target_db);
+    const std::string what = fmt::format("{} at {}", entry.name, *entry.target_db);
+    expect_near(*entry.reached_db, k.whole_db, what + ", calibration view");
+    expect_near(entry.mean_db, k.left_db, what + ", test view");
+    EXPECT_NEAR(entry.pairs_removed, k.removed_left, 1e-9) << what;
+    EXPECT_EQ(entry.worst_view, "left");
     EXPECT_GT(k.removed_left, 0.0) << "of nothing this could not fail";
     ++checked;
   }
   EXPECT_EQ(checked, 2 * 6u);
 
-  for (const ordered_json& system : json["systems"]) {
+  for (const AnalysedSystem& system : analysis.systems) {
     double sum = 0.0;
-    for (const auto& [stage, ms] : system["stages_ms"].items()) sum += ms.get<double>();
-    expect_near(system["frame_ms"], sum, system["name"]);
-    if (system["settings"]["th"] != "tau") continue;
-    EXPECT_EQ(system["pairs"], columns * rows / 2) << system["name"];
+    for (const gl::StageTime& stage : system.times.stages) sum += stage.ms;
+    expect_near(system.times.frame_ms, sum, system.name);
+    if (system.settings.th != TH_TAU) continue;
+    EXPECT_EQ(system.times.pairs, columns * rows / 2) << system.name;
   }
-  EXPECT_EQ(json["systems"].size(), 6u);
-  EXPECT_EQ(json["systems"].back()["name"], "binosplat, 23 dB");
+  EXPECT_EQ(analysis.systems.size(), 6u);
+  EXPECT_EQ(analysis.systems.back().name, "binosplat, 23 dB");
 
-  const Page page = analysis_page(json);
-  EXPECT_EQ(page.data, json);
+  const Page page = analysis_page(analysis);
   for (const Section& section : page.sections) {
     EXPECT_EQ(section.problem, "") << section.id;
     EXPECT_EQ(section.sentence.find("nan"), std::string::npos) << section.sentence;
@@ -203,73 +198,59 @@ TEST_F(Spots, ModelsOfOtherAxesAreSeenFromTheSameSide) {
   bring_into_axes(model, "RUB");
   const AnalysisSettings settings{
       .scene = "spots", .kind = CalibrationTarget::Kind::quality, .targets = {23.0}, .frames = 1};
-  const ordered_json json = analyse(test::gl_context(), model, whole, left, settings,
+  const Analysis analysis = analyse(test::gl_context(), model, whole, left, settings,
                                     [](const std::string&, std::size_t, std::size_t) {});
   int shown = 0;
-  for (const ordered_json& bin : json["contributions"]["by_depth"]) shown += bin["gaussians"].get<int>();
+  for (const DepthBin& bin : analysis.contributions.by_depth) shown += static_cast<int>(bin.gaussians);
   EXPECT_EQ(shown, columns * rows / 2);
-  EXPECT_EQ(json["systems"][0]["pairs"], columns * rows / 2);
+  EXPECT_EQ(analysis.systems[0].times.pairs, columns * rows / 2);
 }
 
 /// Results of a run as analyse() leaves them, small.
-ordered_json sample() {
-  const auto cost = [](double db, double removed) {
-    return ordered_json{{"mean_db", db},
-                        {"worst_db", 1.25 * db},
-                        {"worst_view", "b"},
-                        {"pairs_removed", removed},
-                        {"frame_ms", 4.0 * (1 - removed)},
-                        {"pairs", 100},
-                        {"stages_ms", {{"project", 1.0}, {"blend", 3.0 - 4.0 * removed}}}};
+Analysis sample() {
+  const auto system = [](const std::string& name, const render::FrameSettings& settings, double db,
+                         double removed) {
+    return AnalysedSystem{
+        db,      1.25 * db, "b",
+        removed, {},        {},
+        name,    settings,  {4.0 * (1 - removed), 100.0, {{"project", 1.0}, {"blend", 3.0 - 4.0 * removed}}}};
   };
-  ordered_json json = {{"format", "binosplat study"},
-                       {"version", 1},
-                       {"device", "llvmpipe"},
-                       {"scene", "fox"},
-                       {"gaussians", 5},
-                       {"target", "drop"},
-                       {"views", {{"calibration", {"a"}}, {"test", {"b", "c"}}}},
-                       {"width", 30},
-                       {"height", 20},
-                       {"photo_db", {{"calibration", 31.5}, {"test", 30.25}}},
-                       {"depth_table", {{"far", 2.0}, {"upper", {1.0, 0.5}}}}};
+  Analysis a{.device = "llvmpipe",
+             .scene = "fox",
+             .gaussians = 5,
+             .calibration_views = {"a"},
+             .test_views = {"b", "c"},
+             .width = 30,
+             .height = 20,
+             .calibration_photo_db = 31.5,
+             .test_photo_db = 30.25,
+             .depth_table = {2.0f, {1.0f, 0.5f}}};
   for (const char* by : {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha"}) {
-    ordered_json curve = {{"by", by}, {"points", ordered_json::array()}};
-    for (int n = 1; n < 10; ++n)
-      curve["points"].push_back({{"share", 0.1 * n}, {"psnr_db", 80.0 - 5 * n}, {"drop_db", 0.01 * n}});
-    json["contributions"]["skipping"].push_back(curve);
+    SkippingCurve& curve = a.contributions.skipping.emplace_back(SkippingCurve{by, {}});
+    for (int n = 1; n < 10; ++n) curve.points.push_back({0.1 * n, 80.0 - 5 * n, 0.01 * n});
   }
-  const auto spread = [](ordered_json value) {
-    return ordered_json{{"median", value}, {"p90", value}, {"largest", value}};
-  };
-  json["contributions"]["by_depth"] = {{{"from", 0.0},
-                                        {"to", 1.0},
-                                        {"gaussians", 0},
-                                        {"contribution", spread(nullptr)},
-                                        {"light", spread(nullptr)},
-                                        {"upper", 1.0}},
-                                       {{"from", 1.0},
-                                        {"to", 2.0},
-                                        {"gaussians", 7},
-                                        {"contribution", spread(0.25)},
-                                        {"light", spread(0.75)},
-                                        {"upper", 0.5}}};
-  json["systems"] = ordered_json::array();
-  for (const auto& [name, tiles] :
-       {std::pair{"3D-GS", "aabb"}, std::pair{"FlashGS, AdR-Gaussian", "ellipse"}}) {
-    json["systems"].push_back(cost(0.0, 0.0));
-    json["systems"].back()["name"] = name;
-    json["systems"].back()["settings"] = {{"tiles", tiles}, {"th", "tau"}};
-  }
-  json["targets"] = ordered_json::array();
+  a.contributions.by_depth = {{0.0, 1.0, 0, {}, {}, 1.0},
+                              {1.0, 2.0, 7, {0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}, 0.5}};
+  a.systems = {system("3D-GS", {.tiles = TILES_AABB}, 0.0, 0.0),
+               system("FlashGS, AdR-Gaussian", {}, 0.0, 0.0)};
   for (const double target : {0.1, 0.2}) {
-    json["targets"].push_back(cost(target + 0.03125, 2 * target));
-    json["targets"].back().update({{"target_db", target},
-                                   {"reached_db", target},
-                                   {"name", "squared, last"},
-                                   {"settings", {{"tiles", "ellipse"}, {"th", "squared"}, {"loss", 0.5}}}});
+    const render::FrameSettings settings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
+    a.targets.push_back(system("squared, last", settings, target + 0.03125, 2 * target));
+    a.targets.back().target_db = a.targets.back().reached_db = target;
   }
-  return json;
+  return a;
+}
+
+TEST(AnalysisPage, JsonHasWhatIsKnown) {
+  const auto json = nlohmann::ordered_json::parse(to_json(sample()).dump());
+  EXPECT_EQ(json["views"], nlohmann::ordered_json({{"calibration", {"a"}}, {"test", {"b", "c"}}}));
+  EXPECT_EQ(json["photo_db"]["test"], 30.25);
+  EXPECT_TRUE(json["contributions"]["by_depth"][0]["light"]["p90"].is_null());
+  EXPECT_EQ(json["contributions"]["skipping"][3]["points"][0]["drop_db"], 0.01);
+  EXPECT_FALSE(json["systems"][0].contains("target_db"));
+  EXPECT_EQ(json["targets"][1]["target_db"], 0.2);
+  EXPECT_EQ(json["targets"][1]["settings"]["loss"], 0.5);
+  EXPECT_EQ(json["targets"][1]["stages_ms"]["project"], 1.0);
 }
 
 TEST(AnalysisPage, SaysWhatItShows) {
@@ -288,18 +269,18 @@ TEST(AnalysisPage, SaysWhatItShows) {
   EXPECT_NE(page.sections[7].sentence.find("1.67 times as fast"), std::string::npos)
       << page.sections[7].sentence;
   EXPECT_EQ(page.sections[5].table->rows[1],
-            ordered_json({"squared, last", 0.2, 0.2, 0.23125, 1.25 * 0.23125, "b", 0.5}));
+            row("squared, last", 0.2, 0.2, 0.23125, 1.25 * 0.23125, "b", 0.5));
   // The paper's own figures are told beside, for a drop alone.
   EXPECT_EQ(page.sections[6].plot->series.back().points.size(), 5u);
-  ordered_json quality = sample();
-  quality["target"] = "quality";
+  Analysis quality = sample();
+  quality.kind = CalibrationTarget::Kind::quality;
   EXPECT_EQ(analysis_page(quality).sections[6].plot->series.size(), 1u);
 }
 
 TEST(AnalysisPage, EmptyResultsAreShownAsSuch) {
-  ordered_json json = sample();
-  json["contributions"]["by_depth"] = ordered_json::array();
-  const Page page = analysis_page(json);
+  Analysis empty = sample();
+  empty.contributions.by_depth.clear();
+  const Page page = analysis_page(empty);
   EXPECT_EQ(page.sections[3].problem, "No pixel blends anything.");
   EXPECT_EQ(page.sections[4].problem, "No pixel blends anything.");
 }
@@ -309,7 +290,7 @@ TEST(AnalysisPage, InChromiumHasTheJsonsNumbers) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
   ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
   const test::TempFolder folder;
-  save_page(folder / "report.html", analysis_page(sample()));
+  save_page(folder / "report.html", analysis_page(sample()), {});
   const test::Chromium chromium;
   for (const int width : {400, 1280}) {
     EXPECT_EQ(chromium.ask(folder / "report.html", width, width == 400,

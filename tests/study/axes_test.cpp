@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "study/settings.h"
 #include "support/errors.h"
 #include "support/program.h"

@@ -2,70 +2,78 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "study/chromium.h"
 #include "support/scenes.h"
 
 namespace binosplat::study {
 namespace {
 
-using nlohmann::ordered_json;
-
-ordered_json point(const std::string& name, double ms, ordered_json db, int eyes = 1) {
-  return {{"scene", "fox"},
-          {"eyes", eyes},
-          {"size", "own"},
-          {"name", name},
-          {"family", name.substr(0, name.find(','))},
-          {"settings",
-           {{"tiles", name == "ellipse" ? "ellipse" : "aabb"}, {"th", name == "ellipse" ? "tau" : name}}},
-          {"device", "llvmpipe"},
-          {"frame_ms", ms},
-          {"p99_ms", 1.5 * ms},
-          {"noise_ms", 0.01 * ms},
-          {"settled", true},
-          {"frames", 60},
-          {"submit_ms", 0.25},
-          {"stages_ms", {{"project", 0.25 * ms}, {"blend", 0.75 * ms}}},
-          {"gpu_bytes", 123456789},
-          {"alphas", 50.5},
-          {"alphas_visible", 30.25},
-          {"pairs", 1000 * ms},
-          {"visible", 500.5},
-          {"exact",
-           {{"psnr_db", db},
-            {"worst_psnr_db", db},
-            {"worst_view", "0001"},
-            {"ssim", 0.987654321},
-            {"flip", 0.0123},
-            {"signed", -0.001},
-            {"disagreement_db", eyes == 2 ? ordered_json(55.5) : ordered_json()}}}};
+BenchPoint point(const std::string& name, double ms, double db, int eyes = 1) {
+  BenchPoint p;
+  p.scene = "fox";
+  p.eyes = eyes;
+  p.size = "own";
+  p.name = name;
+  p.family = name.substr(0, name.find(','));
+  p.settings.tiles = name == "ellipse" ? "ellipse" : "aabb";
+  p.settings.th = name == "ellipse" ? "tau" : name;
+  p.device = "llvmpipe";
+  p.frame_ms = ms;
+  p.p99_ms = 1.5 * ms;
+  p.noise_ms = 0.01 * ms;
+  p.settled = true;
+  p.frames = 60;
+  p.submit_ms = 0.25;
+  p.stages = {{"project", 0.25 * ms}, {"blend", 0.75 * ms}};
+  p.gpu_bytes = 123456789;
+  p.alphas = 50.5;
+  p.alphas_visible = 30.25;
+  p.pairs = 1000 * ms;
+  p.visible = 500.5;
+  p.exact = {db, db, "0001", 0.987654321, 0.0123, -0.001, eyes == 2 ? 55.5 : NAN};
+  return p;
 }
 
 /// Equal and slow; quicker and worse; both slower and worse than that; with another number of eyes; failed;
 /// and not measured yet.
-ordered_json results() {
-  ordered_json json = {
-      {"format", "binosplat bench"}, {"version", 1}, {"plan", {{"axes_name", "quick"}, {"program", "0"}}}};
-  json["points"] = {point("ellipse", 8.0, nullptr),
-                    point("squared, 0.1", 4.0, 45.5),
-                    point("squared, 0.5", 3.0, 38.25),
-                    point("peripheral, 1", 5.0, 41.0),
-                    point("aabb", 30.0, 77.0, 2),
-                    point("obb", 0.0, 0.0),
-                    point("snug", 0.0, 0.0)};
-  for (const std::size_t i : {5, 6}) {
-    json["points"][i].erase("frame_ms");
-    json["points"][i].erase("exact");
-  }
-  json["points"][5]["problem"] = "0001: two frames differ";
-  return json;
+BenchResults results() {
+  BenchResults made{"quick", "0", {}};
+  made.points = {point("ellipse", 8.0, NAN),
+                 point("squared, 0.1", 4.0, 45.5),
+                 point("squared, 0.5", 3.0, 38.25),
+                 point("peripheral, 1", 5.0, 41.0),
+                 point("aabb", 30.0, 77.0, 2),
+                 point("obb", NAN, NAN),
+                 point("snug", NAN, NAN)};
+  for (const std::size_t i : {5, 6}) static_cast<BenchNumbers&>(made.points[i]) = {};
+  made.points[5].device = "llvmpipe";
+  made.points[5].problem = "0001: two frames differ";
+  return made;
+}
+
+TEST(BenchResults, FilesKeepEveryNumber) {
+  nlohmann::ordered_json json = results().points;
+  EXPECT_EQ(json[5].size(), 8u) << "names, device and problem: " << json[5];
+  EXPECT_EQ(json[6].size(), 6u) << json[6];
+  json = nlohmann::ordered_json::parse(json.dump());
+  EXPECT_TRUE(json[0]["exact"]["psnr_db"].is_null());
+  EXPECT_FALSE(json[0].contains("profile"));
+  json[0]["exact"]["gone"] = 1;  // keys that nobody knows are no fault
+  const auto read = json.get<std::vector<BenchPoint>>();
+  EXPECT_EQ(csv(read), csv(results().points));
+  json[0]["exact"].erase("gone");
+  EXPECT_EQ(nlohmann::ordered_json(read).dump(), json.dump());
+  json[1]["frame_ms"] = "four";
+  EXPECT_THROW(json.get<std::vector<BenchPoint>>(), nlohmann::ordered_json::exception);
 }
 
 TEST(BenchResults, FrontHoldsWhatNothingBeats) {
-  const ordered_json points = results()["points"];
+  const std::vector<BenchPoint> points = results().points;
   EXPECT_EQ(pareto_front(points), (std::vector<bool>{true, true, true, false, true, false, false}));
-  ordered_json other = points;
-  other[3]["frame_ms"] = 3.5;  // quicker than what is nearer to exact, nearer than what is quicker
+  std::vector<BenchPoint> other = points;
+  other[3].frame_ms = 3.5;  // quicker than what is nearer to exact, nearer than what is quicker
   EXPECT_TRUE(pareto_front(other)[3]);
   other = points;
   other[3] = other[1];  // twice the same: neither beats the other
@@ -73,7 +81,7 @@ TEST(BenchResults, FrontHoldsWhatNothingBeats) {
 }
 
 TEST(BenchResults, CsvHasALineAPoint) {
-  const std::string text = csv(results());
+  const std::string text = csv(results().points);
   std::istringstream lines(text);
   std::string line;
   std::vector<std::string> all;
@@ -99,19 +107,19 @@ TEST(BenchResults, CsvHasALineAPoint) {
 }
 
 TEST(BenchResults, ComparisonsGoByNoise) {
-  const ordered_json before = results();
-  ordered_json now = before;
+  const std::vector<BenchPoint> before = results().points;
+  std::vector<BenchPoint> now = before;
   EXPECT_EQ(
       compare_results(before, now),
       std::vector<std::string>{"0 of 5 points in both runs changed beyond noise; 0 are new, 0 are gone"});
-  now["points"][1]["frame_ms"] = 4.07;  // both runs' noise is 0.04 each, as are 2 %
+  now[1].frame_ms = 4.07;  // both runs' noise is 0.04 each, as are 2 %
   EXPECT_EQ(compare_results(before, now).size(), 1);
-  now["points"][1]["frame_ms"] = 4.09;
+  now[1].frame_ms = 4.09;
   EXPECT_EQ(compare_results(before, now)[0],
             "fox, one eye, own, squared, 0.1: 4.000 ms -> 4.090 ms (+2.2 %)");
-  now["points"][0]["exact"]["psnr_db"] = 90.0;  // equal before
-  now["points"][3]["pairs"] = 4994.0;
-  now["points"][4]["settings"]["tile"] = 8;
+  now[0].exact.psnr_db = 90.0;  // equal before
+  now[3].pairs = 4994.0;
+  now[4].settings.tile = 8;
   const auto lines = compare_results(before, now);
   ASSERT_EQ(lines.size(), 4);
   EXPECT_EQ(lines[0], "fox, one eye, own, ellipse: 100.00 dB -> 90.00 dB");
@@ -140,40 +148,20 @@ TEST(BenchResults, PageSaysWhatItShows) {
   const Table& pair = *page.sections[6].table;
   EXPECT_EQ(pair.columns.back(), "disagreement dB");
   EXPECT_EQ(pair.rows[0].back(), 55.5);
-  EXPECT_EQ(page.data, results());
-  EXPECT_EQ(
-      html(bench_page({{"plan", {{"axes_name", ""}, {"program", ""}}}, {"points", ordered_json::array()}}))
-          .find("There are no results yet"),
-      std::string::npos);
+  EXPECT_EQ(html(bench_page({}), {}).find("There are no results yet"), std::string::npos);
 }
 
 TEST(BenchResults, PageSetsStagesBesideTheirFloors) {
-  ordered_json json = results();
-  json["points"][0]["profile"] = {{{"stage", "project"},
-                                   {"ms", 2.0},
-                                   {"bytes", 3e6},
-                                   {"operations", nullptr},
-                                   {"floor_ms", 0.5},
-                                   {"share", 0.25}},
-                                  {{"stage", "blend"},
-                                   {"ms", 6.0},
-                                   {"bytes", 4e6},
-                                   {"operations", 5e6},
-                                   {"floor_ms", 1.5},
-                                   {"share", 0.25}},
-                                  {{"stage", "probe"},
-                                   {"ms", 9.0},
-                                   {"bytes", nullptr},
-                                   {"operations", nullptr},
-                                   {"floor_ms", nullptr},
-                                   {"share", nullptr}}};
-  const Page page = bench_page(json);
+  BenchResults made = results();
+  made.points[0].profile = {
+      {"project", 2.0, 3e6, NAN, 0.5, 0.25}, {"blend", 6.0, 4e6, 5e6, 1.5, 0.25}, {"probe", 9.0}};
+  const Page page = bench_page(made);
   ASSERT_EQ(page.sections[3].id, "chart-1-floors");
   EXPECT_NE(page.sections[3].sentence.find("the exact picture's blend has most to gain, 4.5 ms"),
             std::string::npos)
       << page.sections[3].sentence;
   ASSERT_EQ(page.sections[3].table->rows.size(), 3u);
-  EXPECT_EQ(page.sections[3].table->rows[1], ordered_json({"ellipse", "blend", 6.0, 4.0, 5.0, 1.5, 25.0}));
+  EXPECT_EQ(page.sections[3].table->rows[1], row("ellipse", "blend", 6.0, 4.0, 5.0, 1.5, 25.0));
 }
 
 // Long: the whole page in a browser, its table against the JSON.
@@ -181,7 +169,7 @@ TEST(BenchResults, PageInChromiumHasTheJsonsNumbers) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
   ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
   const test::TempFolder folder;
-  save_page(folder / "report.html", bench_page(results()));
+  save_page(folder / "report.html", bench_page(results()), {});
   const test::Chromium chromium;
   const std::string cells =
       chromium.ask(folder / "report.html", 400, false,

@@ -29,27 +29,27 @@ TEST(Floors, AreWhatMustBeMovedAndComputed) {
   work.tile_sort_passes = 1;
   for (const char* stage : {"decode", "project", "order", "pairs", "tile_sort", "ranges", "blend"})
     work.stages.push_back({stage, 0.01});
-  const auto json = profile(work, peaks);
-  ASSERT_EQ(json.size(), 7u);
-  EXPECT_TRUE(json[0]["floor_ms"].is_null()) << "decode has none";
+  const std::vector<StageFloor> stages = profile(work, peaks);
+  ASSERT_EQ(stages.size(), 7u);
+  EXPECT_TRUE(std::isnan(stages[0].floor_ms)) << "decode has none";
   const std::map<std::string, double> bytes = {{"project", 1000 * 52.0 + 500 * 48.0 + 1000 * 52.0},
                                                {"order", 500 * 60.0},
                                                {"pairs", 500 * 4.0 + 1000 * 4.0 + 80000.0},
                                                {"tile_sort", 200000.0},
                                                {"ranges", 40800.0},
                                                {"blend", 12000 * 52.0 + 25600 * 20.0}};
-  for (const auto& stage : json) {
-    const auto found = bytes.find(stage["stage"]);
+  for (const StageFloor& stage : stages) {
+    const auto found = bytes.find(stage.stage);
     if (found == bytes.end()) continue;
-    EXPECT_DOUBLE_EQ(stage["bytes"], found->second) << stage;
+    EXPECT_DOUBLE_EQ(stage.bytes, found->second) << stage.stage;
     const double ms = std::max(found->second / 1e12, found->first == "blend" ? 1e6 / 1e12 : 0.0) * 1000;
-    EXPECT_DOUBLE_EQ(stage["floor_ms"], ms) << stage;
-    EXPECT_DOUBLE_EQ(stage["share"], ms / 0.01) << stage;
+    EXPECT_DOUBLE_EQ(stage.floor_ms, ms) << stage.stage;
+    EXPECT_DOUBLE_EQ(stage.share, ms / 0.01) << stage.stage;
   }
-  EXPECT_DOUBLE_EQ(json[1]["operations"], 2000 * 90.0 + 1000 * 32.0);
+  EXPECT_DOUBLE_EQ(stages[1].operations, 2000 * 90.0 + 1000 * 32.0);
   // More alphas than bytes: the floor is theirs.
   work.alphas = 1e9;
-  EXPECT_DOUBLE_EQ(profile(work, peaks)[6]["floor_ms"], 1.0);
+  EXPECT_DOUBLE_EQ(profile(work, peaks)[6].floor_ms, 1.0);
 }
 
 TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
@@ -79,9 +79,7 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
   for (const float alphas : shown.front().data) work.alphas += static_cast<double>(alphas);
   EXPECT_GT(work.alphas, work.pixels);
   work.stages = times.front().stages;
-  for (const auto& stage : profile(work, peaks)) {
-    EXPECT_GT(stage["share"].get<double>(), 0.0) << stage;
-  }
+  for (const StageFloor& stage : profile(work, peaks)) EXPECT_GT(stage.share, 0.0) << stage.stage;
 }
 
 TEST(RunTimes, OutliersDoNotMoveWhatAFrameTakes) {

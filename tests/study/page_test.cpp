@@ -1,10 +1,11 @@
 #include "study/page.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "formats/image_file.h"
@@ -53,9 +54,10 @@ Page sample() {
   page.sections.push_back({"nothing", "Empty plot", "No view was measured.", Plot{}, {}, ""});
   page.sections.push_back({"bare", "Empty table", "No view was measured.", {}, Table{{"view"}, {}}, ""});
   page.sections.push_back({"broken", "Failed", "There are no photos.", {}, {}, "No photos: --photos DIR."});
-  page.data = {{"version", 1}, {"results", {1, 2, 3}}};
   return page;
 }
+
+const ordered_json data = {{"version", 1}, {"results", {1, 2, 3}}};
 
 ordered_json embedded(const std::string& text) {
   const std::string start = "<script type=\"application/json\" id=\"page\">";
@@ -64,9 +66,9 @@ ordered_json embedded(const std::string& text) {
 }
 
 TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
-  const std::string text = html(sample());
+  const std::string text = html(sample(), data);
   const ordered_json json = embedded(text);
-  EXPECT_EQ(json["data"], sample().data);
+  EXPECT_EQ(json["data"], data);
   EXPECT_EQ(json["title"], sample().title) << "what looks like a tag must come through";
   const ordered_json& points = json["sections"][0]["plot"]["series"][0]["points"];
   EXPECT_EQ(points[1]["y"].get<double>(), 35.123456789);
@@ -82,14 +84,14 @@ TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
 TEST(Page, RefusesTablesThatDoNotFit) {
   Page page = sample();
   page.sections[2].table->rows.push_back({"0100", 5});
-  EXPECT_THROW(html(page), std::logic_error);
+  EXPECT_THROW(html(page, data), std::logic_error);
 }
 
 TEST(Page, IsWrittenWholeOrNotAtAll) {
   const TempFolder folder;
-  save_page(folder / "a" / "page.html", sample());
+  save_page(folder / "a" / "page.html", sample(), data);
   EXPECT_EQ(folder.files(), (std::set<std::string>{"a/page.html"}));
-  EXPECT_EQ(test::read_text(folder / "a" / "page.html"), html(sample()));
+  EXPECT_EQ(test::read_text(folder / "a" / "page.html"), html(sample(), data));
 }
 
 /// The page as Chromium shows it; long.
@@ -102,7 +104,7 @@ struct Shown : testing::Test {
   void SetUp() override {
     if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
     ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
-    save_page(file, page);
+    save_page(file, page, data);
   }
   std::string ask(const std::string& script, int width = 1280, bool dark = false) const {
     return chromium.ask(file, width, dark, script);
@@ -202,7 +204,7 @@ TEST_F(Shown, WhatIsEmptyOrBrokenSaysSo) {
             std::string::npos);
   Page empty;
   empty.title = "Nothing";
-  save_page(file, empty);
+  save_page(file, empty, {});
   EXPECT_EQ(ask("return document.querySelector('.problem').textContent;"), "There are no results.");
 }
 
