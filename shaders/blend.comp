@@ -1,5 +1,5 @@
 // Stage 6: the picture. One work group a tile, whose splats pass front to back through shared memory. Tiles with long lists
-// are drawn by a launch of their own, which starts first and has more invocations (long_lists.comp).
+// are drawn by a launch of their own, which starts first and has more invocations (blend_long_lists.comp).
 //
 // With SHOW, one of SHOW_ALPHAS to SHOW_LIGHT, it leaves the pictures as they are and tells what it comes by instead.
 #define INVOCATIONS (TILE_SIZE * TILE_SIZE / COLUMN)

@@ -2,7 +2,7 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
-// Stage 1, project, last part: the splats of the Gaussians that cull.comp found, side by side in index order. One invocation
+// Stage 1, project, last part: the splats of the Gaussians that project_cull.comp found, side by side in index order. One invocation
 // a Gaussian, for all views of the order group.
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -26,7 +26,7 @@ layout(std430, binding = 6) writeonly buffer Touched { uint touched_by[]; };  //
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // by splat, of one word or two
 #endif
 layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
-layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for count_tall.comp, in any order
+layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for project_count_tall.comp, in any order
 uniform uint view_begin;
 uniform uint view_end;
 uniform uint view_count;  // of the frame

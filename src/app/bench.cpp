@@ -1,16 +1,17 @@
 // binosplat bench: the chart of speed against accuracy.
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <regex>
 
 #include "app/bench_plan.h"
 #include "app/command.h"
 #include "app/drawing.h"
 #include "app/photos.h"
 #include "base/log.h"
+#include "base/numbers.h"
 #include "base/progress.h"
 #include "study/bench.h"
 
@@ -28,12 +29,8 @@ struct Shard {
 
 Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
-  static const std::regex form("([0-9]{1,6})/([0-9]{1,6})");
-  std::smatch match;
-  if (std::regex_match(text, match, form)) {
-    const auto i = std::stoul(match[1]), n = std::stoul(match[2]);
-    if (i >= 1 && i <= n) return {i - 1, n};
-  }
+  const auto shard = two_numbers(text, '/');
+  if (shard && shard->first >= 1 && shard->first <= shard->second) return {shard->first - 1, shard->second};
   fail("--shard {}: expected I/N with I from 1 to N, as in 2/8", text);
 }
 

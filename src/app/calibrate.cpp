@@ -1,5 +1,6 @@
 // binosplat calibrate: the light by depth and the losses of a model, in a file that render and bench take.
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,6 @@
 #pragma once
 // What the sub-commands share: how main learns of them, and how they end and write.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -9,6 +8,10 @@
 #include <string>
 
 #include "base/error.h"
+
+namespace CLI {
+class App;
+}
 
 namespace binosplat::app {
 

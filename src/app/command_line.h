@@ -1,7 +1,9 @@
 #pragma once
 // What holds for the arguments of every sub-command.
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace binosplat::app {
 

@@ -2,6 +2,7 @@
 
 #include "formats/model_output.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

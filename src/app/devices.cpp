@@ -3,6 +3,7 @@
 #include "gl/devices.h"
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>

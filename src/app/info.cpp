@@ -1,6 +1,7 @@
 // binosplat info: what a model is made of, and what drawing it takes.
 
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // The command line: finds the sub-command, runs it, and turns what went wrong into a line and an exit code.
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>

@@ -1,5 +1,6 @@
 // binosplat render: from options to pictures, in the order in which mistakes are cheapest to find.
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <limits>

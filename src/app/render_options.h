@@ -1,7 +1,6 @@
 #pragma once
 // The options of `binosplat render`, as far as they can be checked by themselves.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -13,6 +12,11 @@
 #include "formats/pose_file.h"
 #include "scene/tour.h"
 #include "shared/limits.h"
+
+namespace CLI {
+class App;
+class Option;
+}
 
 namespace binosplat::app {
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <span>
 
 #include "app/analyses.h"
 #include "app/command.h"
@@ -19,6 +20,7 @@
 #include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "render/stage.h"
 #include "study/carried.h"
 #include "study/fields.h"
 #include "study/rules.h"
@@ -88,7 +90,7 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
 }
 
 void print_rules(const std::vector<study::RuleResult>& results) {
-  constexpr const char* shown[] = {"project", "order", "pairs", "tile_sort", "ranges", "blend"};
+  const auto shown = std::span(render::stage_names).subspan(1, render::stages_with_twins - 1);  // no decode
   fmt::print(
       "| rule | loss | dB | disagreement dB | pairs, M | removed | frame ms | {} | rest | of exact | of "
       "`one` "

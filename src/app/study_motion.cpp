@@ -1,6 +1,7 @@
 // binosplat study --motion.
 
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -1,10 +1,12 @@
 #pragma once
 // render --tour: along the way of a head that goes through a model's cameras.
 
-#include <CLI/CLI.hpp>
-
 #include "app/render_options.h"
 #include "app/shots.h"
+
+namespace CLI {
+class App;
+}
 
 namespace binosplat::app {
 

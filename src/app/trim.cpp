@@ -1,5 +1,6 @@
 // binosplat trim: the smallest model that keeps the pictures.
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

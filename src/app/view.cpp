@@ -1,6 +1,7 @@
 // binosplat view: starts the preview, a program beside this one. This one needs no window system.
 
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <cerrno>
 #include <csignal>
@@ -19,10 +20,11 @@ ExitCode view(std::vector<std::string> arguments) {
   if (access(program.c_str(), X_OK) != 0) {
     throw Error(
         ExitCode::no_gl,
-        fmt::format("{} is not there: this binosplat was built without its preview. `./demo --view` builds it "
-                    "(on another system than Debian, GLFW and Dear ImGui first); `binosplat render` needs no "
-                    "window",
-                    program.string()));
+        fmt::format(
+            "{} is not there: this binosplat was built without its preview. `./demo --view` builds it "
+            "(on another system than Debian, GLFW and Dear ImGui first); `binosplat render` needs no "
+            "window",
+            program.string()));
   }
   arguments.insert(arguments.begin(), "binosplat-view");
   std::vector<char*> pointers;

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <fstream>
-#include <regex>
 #include <sstream>
 
 #include "base/error.h"
+#include "base/numbers.h"
 
 namespace binosplat::gl {
 
@@ -59,16 +59,23 @@ void ShaderSource::append(const std::string& name, const std::string& from) {
 }
 
 std::string ShaderSource::with_file_names(const std::string& log) const {
-  static const std::regex place(R"((^|\n|ERROR: )(\d+)[:(](\d+)\)?)");
   std::string out;
-  auto at = log.cbegin();
-  for (std::sregex_iterator m(log.begin(), log.end(), place), end; m != end; ++m) {
-    out.append(at, (*m)[0].first);
-    const std::size_t file = std::stoul((*m)[2].str());
-    out += (*m)[1].str() + (file < files_.size() ? files_[file] : (*m)[2].str()) + ":" + (*m)[3].str();
-    at = (*m)[0].second;
+  for (std::string_view rest = log; !rest.empty();) {
+    // FILE:LINE or FILE(LINE)
+    std::string_view after = rest;
+    const bool may_be_place = out.empty() || out.ends_with('\n') || out.ends_with("ERROR: ");
+    const auto file = may_be_place ? take_number(after) : std::nullopt;
+    if (file && *file < files_.size() && (after.starts_with(':') || after.starts_with('('))) {
+      after.remove_prefix(1);
+      if (const auto line = take_number(after)) {
+        out += fmt::format("{}:{}", files_[*file], *line);
+        rest = after.starts_with(')') ? after.substr(1) : after;
+        continue;
+      }
+    }
+    out += rest.front();
+    rest.remove_prefix(1);
   }
-  out.append(at, log.cend());
   return out;
 }
 

@@ -69,7 +69,7 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
 
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   if (shape.settings.tiles != TILES_ALL) {
-    dispatcher.run(dispatcher.context().program("long_lists.comp"),
+    dispatcher.run(dispatcher.context().program("blend_long_lists.comp"),
                    gl::Work::threads(shape.tile_count(), THREADS),
                    {{"Ranges", buffers.ranges_of_tiles(shape)},
                     {"LongLists", buffers.long_lists},

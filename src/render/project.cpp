@@ -33,7 +33,7 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
   const bool asks_both = !shape.records && shape.gaussian_count >= fills_a_gpu;
   gl::Defines defines = projecting(shape);
   defines.emplace_back("EYES", end - views.begin > 1 && !asks_both ? "2" : "1");
-  const gl::Program& program = dispatcher.context().program("cull.comp", defines);
+  const gl::Program& program = dispatcher.context().program("project_cull.comp", defines);
   for (std::size_t p = 0; p < model.pages.size(); ++p) {
     const ModelBuffers::Page& page = model.pages[p];
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
@@ -65,7 +65,7 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
              FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   const auto blocks = gl::Work::threads(shape.gaussian_count, COMPACT_BLOCK);
-  dispatcher.run(context.program("compact_count.comp"), blocks,
+  dispatcher.run(context.program("project_compact_count.comp"), blocks,
                  {{"DepthKeys", buffers.depth_keys}, {"BlockCounts", buffers.block_counts}},
                  {{"gaussian_count", shape.gaussian_count}});
   buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
@@ -76,7 +76,7 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
        {"capacity", shape.slots},
        {"groups_max", context.limits().groups},
        {"digit_bits", primitives::RadixSort::digit_bits(group.key_bits)}});
-  dispatcher.run(context.program("compact.comp"), blocks,
+  dispatcher.run(context.program("project_compact.comp"), blocks,
                  {{"Amounts", drawn.amounts},
                   {"DepthKeys", buffers.depth_keys},
                   {"BlockCounts", buffers.block_counts},
@@ -155,7 +155,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   }
   gl::Defines tall_defines = pair_defines(shape);
   tall_defines.push_back(subgroups_define(dispatcher.context()));
-  dispatcher.run(dispatcher.context().program("count_tall.comp", tall_defines),
+  dispatcher.run(dispatcher.context().program("project_count_tall.comp", tall_defines),
                  gl::Work::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
                  {{"Views", buffers.views},
                   {"FrameCounters", buffers.counters},

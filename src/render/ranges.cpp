@@ -21,7 +21,7 @@ void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffe
   const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
   const auto program = [&](const char* writes) -> const gl::Program& {
     return context.program(
-        "tile_lists.comp",
+        "ranges_of_tiles.comp",
         {{"LIST_TILES", std::to_string(shape.list_tiles)}, subgroups_define(context), {"WRITES", writes}});
   };
   buffers.tile_amount.upload(

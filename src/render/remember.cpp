@@ -10,7 +10,7 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
   const gl::Defines defines = {{"RECORDS", shape.records ? "1" : "0"}};
   for (std::size_t group = 0; group < shape.groups.size(); ++group) {
     const DrawnBuffers& drawn = *buffers.drawn[group];
-    dispatcher.run(dispatcher.context().program("remember.comp", defines),
+    dispatcher.run(dispatcher.context().program("blend_remember.comp", defines),
                    gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
                    {{"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},

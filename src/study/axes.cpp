@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <regex>
 #include <set>
 
 #include "base/choices.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/numbers.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
 #include "study/embedded.h"
@@ -119,10 +119,15 @@ void remove_repeated(std::vector<render::FrameSettings>& settings) {
 }
 
 std::vector<std::string> sizes_of(const Block& top) {
-  static const std::regex size("own|preview|headset|[1-9][0-9]{0,4}x[1-9][0-9]{0,4}");
+  const auto is_size = [](const std::string& text) {
+    const auto two = two_numbers(text, 'x');
+    const auto side = [](unsigned px) { return px >= 1 && px <= 99999; };
+    return text == "own" || text == "preview" || text == "headset" ||
+           (two && side(two->first) && side(two->second));
+  };
   std::vector<std::string> sizes;
   for (const json& value : top.values("sizes", "own")) {
-    if (!value.is_string() || !std::regex_match(value.get<std::string>(), size))
+    if (!value.is_string() || !is_size(value.get<std::string>()))
       fail("{}: 'sizes' {}: expected own, WxH in px, preview or headset", top.place(), value.dump());
     sizes.push_back(value.get<std::string>());
   }

@@ -52,7 +52,7 @@ TEST_F(SubgroupShaders, Compile) {
       }
     }
   }
-  for (const char* name : {"pairs.comp", "count_tall.comp"}) {
+  for (const char* name : {"pairs.comp", "project_count_tall.comp"}) {
     const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "0"},      {"TH", "0"},
                              {"TILE_SIZE", "16"},       {"LIST_TILES", "2"}, {"HALF", "0"},
                              {"WITH_SUBGROUPS", "1"}};
@@ -67,9 +67,9 @@ TEST_F(SubgroupShaders, Compile) {
     expect_compiles("project.comp", defines, half);
   }
   for (const char* writes : {"0", "1"})
-    EXPECT_EQ(
-        said_of("tile_lists.comp", {{"LIST_TILES", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
-        "");
+    EXPECT_EQ(said_of("ranges_of_tiles.comp",
+                      {{"LIST_TILES", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
+              "");
   for (const char* block : {"1024", "2048"}) {
     for (const char* bits : {"8", "9"}) {
       EXPECT_EQ(said_of("primitives/sort_scatter_subgroups.comp",

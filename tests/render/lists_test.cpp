@@ -138,7 +138,7 @@ TEST(Lists, FaultsInWhatIsLeftForPairsAreNoticed) {
 }
 
 TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
-  const test::FaultyShaders faulty("tile_lists.comp", "(value >> LIST_SPLAT_BITS >> nth & 1u) != 0u",
+  const test::FaultyShaders faulty("ranges_of_tiles.comp", "(value >> LIST_SPLAT_BITS >> nth & 1u) != 0u",
                                    "value != 0u");
   // What the square of 3D-GS cuts, and what Th leaves out of a tile, is seen in the tiles beside.
   const Model model = test::random_model(52, 4000, 1);

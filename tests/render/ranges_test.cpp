@@ -45,10 +45,11 @@ TEST_F(RangesStage, AreThoseOfTheSortedPairs) {
 }
 
 TEST_F(RangesStage, AnEndThatIsOneShortIsCaught) {
-  const test::FaultyShaders faulty("ranges.comp", "ranges[2u * tile + 1u] = at + 1u",
-                                   "ranges[2u * tile + 1u] = at");
+  const test::FaultyShaders faulty("ranges.comp", "!= tile) ranges[2u * tile + 1u] = at + 1u",
+                                   "!= tile) ranges[2u * tile + 1u] = at");
   test::StageRun run(model, views);
-  EXPECT_NE(on_gpu(run), expected(run));
+  const Ranges ranges = on_gpu(run);
+  EXPECT_NE(ranges, expected(run));
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ Pairs sorted(Pairs pairs) {
 struct TileSort
     : testing::TestWithParam<std::pair<double, int>> {  // cant in degrees, tiles along a list's side
   TileSort()
-      : rig(stereo::make_rig(test::front_camera(150, 90, 140),
+      : rig(stereo::make_rig(test::front_camera(640, 400, 600),
                              {.ipd = 0.1, .cant_degrees = GetParam().first})),
         run(model, {rig.views.begin(), rig.views.end()}, {}, GetParam().second) {
     run.run_until(Stage::pairs);
@@ -55,7 +55,8 @@ TEST_P(TileSort, IsAStableSortByList) {
 
 TEST_P(TileSort, ShortOfTheHighestDigitItIsNone) {
   render::FrameShape shape = run.shape;
-  shape.list_count = 2;  // planted fault: bits for so many lists
+  ASSERT_GT(shape.list_bits(), 8u);  // a digit
+  shape.list_count = 2;              // planted fault: bits for so many lists
   gl::Dispatcher dispatcher(test::gl_context());
   render::tile_sort(dispatcher, shape, run.frame);
   EXPECT_NE(read_pairs(run), sorted(before));

@@ -1,6 +1,7 @@
 // binosplat-view: the preview as a program of its own, so that the other one needs no window system's
 // libraries. `binosplat view` starts it.
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <memory>

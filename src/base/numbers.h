@@ -1,0 +1,31 @@
+#pragma once
+// Numbers in text.
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace binosplat {
+
+/// The digits that `text` begins with as a number, which are taken off it; nothing where there are none, or
+/// too many for 32 bits.
+inline std::optional<unsigned> take_number(std::string_view& text) {
+  unsigned value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+/// "1280x720" or "2/8" as two numbers with `between` between them; nothing for other text.
+inline std::optional<std::pair<unsigned, unsigned>> two_numbers(std::string_view text, char between) {
+  const auto first = take_number(text);
+  if (!first || text.empty() || text.front() != between) return std::nullopt;
+  text.remove_prefix(1);
+  const auto second = take_number(text);
+  if (!second || !text.empty()) return std::nullopt;
+  return std::pair(*first, *second);
+}
+
+}  // namespace binosplat
