@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 get_property(rooms GLOBAL PROPERTY binosplat_rooms)
 install(TARGETS binosplat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET binosplat_view)
-  install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)  # ./demo builds without it
 endif()
 install(TARGETS ${rooms} EXPORT binosplat_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/binosplat)

@@ -127,7 +127,12 @@ BenchPlan make_plan(const BenchOptions& options) {
 
 std::vector<study::BenchPoint> load_points(const fs::path& path) {
   try {
-    return load_json(path).at("points").get<std::vector<study::BenchPoint>>();
+    const ordered_json points = load_json(path).at("points");
+    for (const ordered_json& point : points) {
+      point.at("scene");
+      point.at("settings");
+    }
+    return points.get<std::vector<study::BenchPoint>>();
   } catch (const ordered_json::exception& error) {
     fail("--compare {}: not the results.json of a bench run: {}", path.string(), error.what());
   }
@@ -165,8 +170,13 @@ fs::path BenchFolder::file(std::size_t point) const {
 study::BenchNumbers BenchFolder::load(std::size_t point) const {
   const ordered_json measured = load_json(file(point));
   const bool good = measured.is_object() && (measured.contains("frame_ms") || measured.contains("problem"));
-  if (!good) fail("{}: not a point of bench: remove it, and it is measured again", file(point).string());
-  return measured;
+  constexpr auto wrong = "{}: not a point of bench: remove it, and it is measured again";
+  if (!good) fail(wrong, file(point).string());
+  try {
+    return measured;
+  } catch (const ordered_json::exception&) {
+    fail(wrong, file(point).string());
+  }
 }
 
 void BenchFolder::save(std::size_t point, const study::BenchNumbers& measured) const {

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "formats/model_file.h"
 #include "demo/room.h"
+#include "formats/model_file.h"
 #include "scene/repeat.h"
 
 namespace binosplat::app {

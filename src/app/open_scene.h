@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/render_options.h"
-#include "scene/camera.h"
 #include "demo/city.h"
+#include "scene/camera.h"
 #include "scene/model.h"
 
 namespace binosplat::app {

@@ -152,6 +152,7 @@ ExitCode render(RenderOptions options) {
   CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
   if (options.tour) go_on_tour(options, !plan.video.empty(), list);
   options.photos = photos_folder(options, list);
+  std::unique_ptr<gl::Context> context;  // outlives what draws with it
   std::optional<FollowedLevels> followed;
   if (options.detail) {
     followed.emplace(options);
@@ -168,7 +169,7 @@ ExitCode render(RenderOptions options) {
   if (!options.photos.empty()) check_photos(options.photos, shots);
   if (followed) followed->bring(model, views_of(shots[0]));
 
-  const auto context = open_context(options);
+  context = open_context(options);
   if (!options.shader_dir.empty()) context->set_shader_folder(options.shader_dir);
   RenderReport report{options, model, *context, near_plane, memory_needs(options, model, shots), {}, {}};
   print_needs(report.needs);

@@ -208,10 +208,10 @@ constexpr std::array<Head, 3> heads = {Head{"street", {-1.2, 1.6, -12.0}, {0.6, 
                                        Head{"air", {2.5, 25.0, -40.0}, {0.0, 6.0, 60.0}, 60.0},
                                        Head{"corner", {-5.8, 1.72, 73.4}, {8.0, 2.2, 96.0}, 65.0}};
 
-void add_houses(Builder& builder);    // demo_city_houses.cpp
-void add_streets(Builder& builder);   // demo_city_streets.cpp: ground
-void add_things(Builder& builder);    // demo_city_things.cpp: trees, lamps, cars
-void add_far_away(Builder& builder);  // demo_city_far.cpp: towers, hills, sky
+void add_houses(Builder& builder);    // city_houses.cpp
+void add_streets(Builder& builder);   // city_streets.cpp: ground
+void add_things(Builder& builder);    // city_things.cpp: trees, lamps, cars
+void add_far_away(Builder& builder);  // city_far.cpp: towers, hills, sky
 
 /// Daylight on the city: a sun whose shadows are cast, a sky, and haze before what is far away.
 class Light {

@@ -12,7 +12,7 @@ constexpr dvec2 window_low{-1.75, -2.4};
 constexpr dvec2 window_high{0.35, -0.7};
 constexpr dvec3 lamp_bulb{0.95, -1.72, 0.5};
 
-// demo_room_shell.cpp
+// room_shell.cpp
 void add_floor(Stage& stage);
 void add_rug(Stage& stage);
 void add_walls(Stage& stage);
@@ -20,10 +20,10 @@ void add_ceiling(Stage& stage);
 void add_window(Stage& stage);
 void add_curtains(Stage& stage);
 
-// demo_room_outside.cpp
+// room_outside.cpp
 void add_outside(Stage& stage, const dvec3& to_sun);
 
-// demo_room_furniture.cpp
+// room_furniture.cpp
 void add_table(Stage& stage);
 void add_chair(Stage& stage, const Frame& frame);
 void add_armchair(Stage& stage);
@@ -31,7 +31,7 @@ void add_bookshelf(Stage& stage);
 void add_lamp(Stage& stage);
 void add_pictures(Stage& stage);
 
-// demo_room_things.cpp
+// room_things.cpp
 void add_table_setting(Stage& stage);
 void add_bird_cage(Stage& stage);
 void add_fairy_lights(Stage& stage);

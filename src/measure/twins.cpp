@@ -254,11 +254,6 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
 std::vector<Picture> fill(Stage until, const Model& model, const FrameShape& shape,
                           ModelBuffers& model_buffers, FrameBuffers& buffers) {
   const std::uint32_t groups_max = buffers.context().limits().groups;
-  if (shape.settings.transmittance != TRANSMITTANCE_ONE || shape.settings.quality > 0.0f) {
-    fail(
-        "--reference-until: the reference goes by no earlier frame: leave --transmittance and --quality "
-        "out");
-  }
   std::vector<Picture> pictures;
   if (until == Stage::decode) {
     upload_decoded(model, shape, model_buffers, buffers);

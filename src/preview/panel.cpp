@@ -66,7 +66,10 @@ bool draw_rig(stereo::RigSettings& rig) {
 
 bool draw_thresholds(render::FrameSettings& s) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
-  changed |= combo("th", s.th, th_choices);
+  if (combo("th", s.th, th_choices)) {
+    choose_threshold(s, s.th);
+    changed = true;
+  }
   if (render::is_exact(s.th)) return changed;
   changed |= ImGui::SliderFloat("loss", &s.loss, 0.001f, 10.0f, "%.3f", ImGuiSliderFlags_Logarithmic);
   s.loss = std::max(0.0f, s.loss);

@@ -325,7 +325,10 @@ class Window {
       session_->change_show();
     }
     if (key == GLFW_KEY_T) next(c.settings.tiles, static_cast<int>(std::size(tiles_choices)), TILES_ALL, by);
-    if (key == GLFW_KEY_H) next(c.settings.th, static_cast<int>(std::size(th_choices)), -1, by);
+    if (key == GLFW_KEY_H) {
+      next(c.settings.th, static_cast<int>(std::size(th_choices)), -1, by);
+      choose_threshold(c.settings, c.settings.th);
+    }
     if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
     save(key);
   }

@@ -157,7 +157,8 @@ void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report
     blend(dispatcher_, shape_, buffers_);
     remember(dispatcher_, shape_, buffers_);
   });
-  if (shape_.probe) run(Stage::probe, [&] { probe(dispatcher_, shape_, buffers_); });
+  if (shape_.probe && pictures_stood_in_.empty())
+    run(Stage::probe, [&] { probe(dispatcher_, shape_, buffers_); });
   dispatcher_.end_frame();
   report.submit_ms = ms_since(start);
   report.stages = dispatcher_.wait_and_time();

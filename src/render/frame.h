@@ -100,7 +100,8 @@ class Frame {
   std::vector<Image> read_shown(int what);
 
   /// What the last frame's view `v` shows of each Gaussian drawn, in index order; none without
-  /// settings.weigh. Whole multiples of 1 / WEIGHT_SCALE, each pixel's to the nearest: the same bits always.
+  /// settings.weigh, or after a reload. Whole multiples of 1 / WEIGHT_SCALE, each pixel's to the nearest: the
+  /// same bits always.
   std::vector<WeighedGaussian> read_weights(std::uint32_t v) const;
 
   const std::shared_ptr<GpuModel>& model() const { return model_; }
@@ -111,6 +112,7 @@ class Frame {
   const std::vector<shared::View>& views() const { return shape_.views; }
   const FrameShape& shape() const { return shape_; }
   FrameBuffers& buffers() { return buffers_; }
+  /// Once a frame is drawn.
   ModelBuffers& model_buffers() { return *model_buffers_; }
 
  private:

@@ -51,7 +51,7 @@ void Frame::read_drawn(std::uint32_t v, const Take& take) const {
 }
 
 std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
-  if (!shape_.records) return {};
+  if (!shape_.records || uploads_ != model_->uploads()) return {};
   const shared::View& view = shape_.views.at(v);
   std::vector<MeasuredGaussian> measured;
   read_drawn<float>(v, [&](std::uint32_t i, float most) {
@@ -62,7 +62,7 @@ std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
 }
 
 std::vector<WeighedGaussian> Frame::read_weights(std::uint32_t v) const {
-  if (!shape_.settings.weigh) return {};
+  if (!shape_.settings.weigh || uploads_ != model_->uploads()) return {};
   std::vector<WeighedGaussian> weights;
   read_drawn<std::uint64_t>(v, [&](std::uint32_t i, std::uint64_t steps) {
     weights.push_back({i, static_cast<double>(steps) / WEIGHT_SCALE});

@@ -59,7 +59,8 @@ class GpuModel {
   const Model& model() const { return model_; }
 
   /// The model in that precision: uploaded where no frame has it so. A precision stays on the GPU while a
-  /// frame holds it, the last one asked for besides. Throws as the constructor does.
+  /// frame holds it, the last one asked for besides, until a reload of another one. Throws as the constructor
+  /// does.
   std::shared_ptr<ModelBuffers> in(int precision);
 
   /// Uploads the model again, which has changed since: it is the same scene at other levels of detail.

@@ -33,7 +33,7 @@ struct FrameSettings {
   DepthTable depth_table;                 // with TRANSMITTANCE_DEPTH
   /// With a measured transmittance: measuring makes a frame slower, and what was measured holds for a while.
   /// Measured are at least 1 of so many frames, so many after a cut, and whenever the eyes have gone a third
-  /// of the way to a cut (continuity.h). Models of Scaffold-GS measure every frame.
+  /// of the way to a cut (history.h). Models of Scaffold-GS measure every frame.
   int record_every = settling_frames;
   float loss = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
   /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
@@ -43,7 +43,7 @@ struct FrameSettings {
   float quality = 0.0f;
   int probe_tiles = 256;
   /// At least 1 of so many frames looks, and each whose eyes have gone a fifteenth of the way to a cut since
-  /// the last that did (continuity.h): a degree, say.
+  /// the last that did (history.h): a degree, say.
   int probe_every = 4;
   /// The frame sums the weight alpha * T of each Gaussian over the pixels, for Frame::read_weights; the
   /// pictures are the same. Not with a measured transmittance.

@@ -31,7 +31,8 @@ void by_rule(const Analysis& analysis, Plot& plot, const Add& add) {
 
 double exact_ms(const Analysis& analysis) {
   for (const AnalysedSystem& system : analysis.systems) {
-    if (system.settings.tiles == TILES_ELLIPSE && system.settings.th == TH_TAU) return system.times.frame_ms;
+    if (system.settings.tiles == TILES_ELLIPSE && render::is_exact(system.settings.th))
+      return system.times.frame_ms;
   }
   return NAN;
 }

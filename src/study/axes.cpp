@@ -122,6 +122,7 @@ std::vector<std::string> sizes_of(const Block& top) {
   const auto is_size = [](const std::string& text) {
     const auto two = two_numbers(text, 'x');
     const auto side = [](unsigned px) { return px >= 1 && px <= 99999; };
+    if (text.starts_with('0') || text.find("x0") != std::string::npos) return false;
     return text == "own" || text == "preview" || text == "headset" ||
            (two && side(two->first) && side(two->second));
   };

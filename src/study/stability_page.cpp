@@ -25,7 +25,7 @@ Section verdicts(const StabilityStudy& study) {
       cells.emplace_back(one.results[k].verdict);
     }
     cells[2] = holds;
-    if (holds <= best || rule.th == TH_TAU) continue;
+    if (holds <= best || render::is_exact(rule.th)) continue;
     best = holds;
     steadiest = rule.name();
   }

@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
-#include "preview/panel.h"
 #include "demo/room.h"
+#include "preview/panel.h"
 #include "stereo/layout.h"
 
 namespace binosplat {
