@@ -201,8 +201,8 @@ void add_frame(CLI::App& sub, RenderOptions& o) {
       ->group(group);
   sub.add_option(
          "--quality", o.quality,
-         "Choose the loss so that pictures come to about DB against the exact\nones, probing a strip of "
-         "each frame")
+         "Choose the loss so that pictures come to about DB against the exact\nones, from the first frame "
+         "on: one in four draws some tiles exactly, too")
       ->type_name("DB")
       ->check(positive)
       ->group(group);
