@@ -33,6 +33,7 @@ chosen() {
 # tidy FILE: quiet when it is clean; past the deadline it only names the file.
 tidy() {
   if ((EPOCHSECONDS > deadline)); then echo "clang-tidy: out of time, not checked: $1"; return; fi
+  if ! grep -qF "/$1\"" build/tidy/compile_commands.json; then echo "clang-tidy: not built here, not checked: $1"; return; fi
   local findings
   findings=$(clang-tidy --quiet -p build/tidy "$1" 2>&1) && return
   sed '/ warnings\{0,1\} generated\.$/d' <<<"$findings"

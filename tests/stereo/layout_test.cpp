@@ -119,7 +119,9 @@ Picture random_picture(int w, int h, std::uint32_t seed) {
 
 /// Whether `a` has the value of `b` at these pixels, depth included.
 bool same(const Picture& a, int ax, int ay, const Picture& b, int bx, int by) {
-  const auto at = [](const Picture& p, int x, int y) { return static_cast<std::size_t>(y * p.width + x); };
+  const auto at = [](const Picture& p, int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(p.width) + static_cast<std::size_t>(x);
+  };
   return a.colour[at(a, ax, ay)] == b.colour[at(b, bx, by)] &&
          a.z_sum[at(a, ax, ay)] == b.z_sum[at(b, bx, by)];
 }
@@ -161,11 +163,10 @@ TEST(Layout, HalfWidthIsTheMeanOfTwoColumns) {
   const Picture left = random_picture(8, 3, 1), right = random_picture(8, 3, 2);
   const Picture out = lay_out(LAYOUT_HALF_WIDTH, left, right, std::nullopt);
   ASSERT_EQ(out.width, 8);
-  for (int y = 0; y < 3; ++y) {
-    for (int x = 0; x < 8; ++x) {
+  for (std::size_t y = 0; y < 3; ++y) {
+    for (std::size_t x = 0; x < 8; ++x) {
       const Picture& eye = x < 4 ? left : right;
-      const auto at = static_cast<std::size_t>(y * 8 + 2 * (x % 4));
-      const auto to = static_cast<std::size_t>(y * 8 + x);
+      const std::size_t at = y * 8 + 2 * (x % 4), to = y * 8 + x;
       EXPECT_LT(glm::length(out.colour[to] - 0.5f * (eye.colour[at] + eye.colour[at + 1])), 1e-6f);
       EXPECT_GT(glm::length(out.colour[to] - eye.colour[at]), 1e-6f) << "every other column goes unnoticed";
       EXPECT_NEAR(out.z_sum[to], 0.5f * (eye.z_sum[at] + eye.z_sum[at + 1]), 1e-6);
