@@ -141,8 +141,10 @@ std::shared_ptr<ModelBuffers> GpuModel::in(int precision) {
 
 void GpuModel::reload() {
   ++uploads_;
-  const auto& other = all_.at(static_cast<std::size_t>(1 - latest_->precision));
-  if (latest_.use_count() == 1 && !other.expired()) latest_.reset();  // nobody draws it any more
+  const auto other_is_held = [&] {
+    return !all_.at(static_cast<std::size_t>(1 - latest_->precision)).expired();
+  };
+  if (latest_.use_count() == 1 && other_is_held()) latest_.reset();  // nobody draws it any more
   for (const auto& each : all_) {
     if (const auto held = each.lock()) held->upload(context_, model_);
   }
