@@ -9,11 +9,11 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Ranges { uint ranges[]; };
 layout(std430, binding = 1) writeonly buffer LongLists { uint long_lists[]; };  // tiles
 layout(std430, binding = 2) buffer FrameCounters { Counters counters; };
-uniform uint tile_count;
+#include "frame.glsl"
 
 void main() {
   uint tile = thread_index();
-  if (tile >= tile_count || ranges[2u * tile + 1u] - ranges[2u * tile] <= LONG_LIST) return;
+  if (tile >= frame.tile_count || ranges[2u * tile + 1u] - ranges[2u * tile] <= LONG_LIST) return;
   uint place = atomicAdd(counters.long_lists, 1u);
   long_lists[place] = tile;
   counters.long_x = LONG_ROW;

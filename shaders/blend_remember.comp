@@ -17,10 +17,8 @@ layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };        
 layout(std430, binding = 2) readonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
 layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // by splat
 layout(std430, binding = 4) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
-uniform uint gaussian_count;
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
-uniform uint view_count;  // of the frame
 #endif
 
 void main() {
@@ -29,9 +27,9 @@ void main() {
   if (slot == 0u) counters.median_depth = order_keys[amounts[0].count / 2u] + nearest_key;
 #if RECORDS
   for (uint v = view_begin; v < view_end; ++v) {
-    if (touched_by[slot * view_count + v] == 0u) continue;
+    if (touched_by[slot * frame.view_count + v] == 0u) continue;
     float most = uintBitsToFloat(measured[splat_of(slot, v)]);
-    upper_next[v * gaussian_count + indices[slot]] = clamp(most, float(UPPER_FLOOR), 1.0);
+    upper_next[v * frame.gaussian_count + indices[slot]] = clamp(most, float(UPPER_FLOOR), 1.0);
   }
 #endif
 }

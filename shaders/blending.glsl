@@ -39,9 +39,7 @@ float told[COLUMN];
 layout(std430, binding = 7) readonly buffer Measured { uint measured[]; };  // by a blend with RECORDS before this one
 shared float batch_light[BATCH];
 #endif
-uniform uint view_count;
-uniform uint tile_count;
-uniform uint list_per_view;  // 1 with --tiles all: a view's tiles share one list
+#include "frame.glsl"
 
 // -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage().
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
@@ -201,13 +199,13 @@ bool find_tile() {
   tile = long_lists[group_index()];
 #else
   tile = group_index();
-  if (tile >= tile_count) return false;
+  if (tile >= frame.tile_count) return false;
 #endif
-  while (view_index + 1u < view_count && tile >= views[view_index + 1u].list_offset * LISTED) ++view_index;
-  uint list = list_per_view != 0u ? view_index : tile;
+  while (view_index + 1u < frame.view_count && tile >= views[view_index + 1u].list_offset * LISTED) ++view_index;
+  uint list = frame.list_per_view != 0u ? view_index : tile;
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];
-  return LISTS != LISTS_SHORT || end - begin <= LONG_LIST || list_per_view != 0u;
+  return LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;
 }
 
 // Where pixel p of this invocation is kept. A probe's tiles are kept side by side.

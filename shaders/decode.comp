@@ -4,6 +4,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "frame.glsl"
 #include "projection.glsl"
 #include "tiles/tiles.glsl"  // aabb, 16 px, for the anchor cull
 
@@ -27,10 +28,6 @@ layout(std430, binding = 9) writeonly buffer Kept { uint kept[]; };  // (decodin
 layout(std430, binding = 10) readonly buffer KeptLast { uint kept_last[]; };  // of the last frame
 uniform uint page_first;
 #endif
-uniform uint view_count;  // without the probe
-uniform uint views_per_decoding;
-uniform uint anchor_cull;
-uniform uint offset_count;  // OFFSETS
 
 // As trained: as if it were a Gaussian of its offsets' scales that must touch a tile of 3D-GS.
 bool sees(View view, Anchor anchor) {
@@ -53,7 +50,7 @@ vec3 mean_of(Anchor anchor, uint n, uint k) {
 // Gaussian is wider than the anchor's scale, and none has an alpha of more than 1.
 bool is_hidden(uint v, Anchor anchor, uint n, uint bits) {
   float widest = max(max(anchor.scale.x, anchor.scale.y), anchor.scale.z);
-  for (uint k = 0u; k < offset_count; ++k) {
+  for (uint k = 0u; k < frame.offset_count; ++k) {
     if ((bits >> k & 1u) == 0u) continue;
     Gaussian g = Gaussian(vec4(mean_of(anchor, n, k), 1.0), vec4(1.0, 0.0, 0.0, 0.0), vec4(vec3(widest), 0.0));
     Splat splat;
@@ -102,12 +99,12 @@ uint decode_anchor(Anchor anchor, uint n, vec3 towards, uint to) {
   vec3 mixed = bank_mix(sight);
   float logits[OFFSETS];
   Hidden opacity = hidden_of(OPACITY, n, sight, mixed);
-  // Up to a uniform, not OFFSETS: unrolled, it takes compilers minutes.
-  for (uint k = 0u; k < offset_count; ++k) logits[k] = output_of(OPACITY_ROW + k, opacity);
+  // Up to a number that no compiler knows: unrolled, it takes compilers minutes.
+  for (uint k = 0u; k < frame.offset_count; ++k) logits[k] = output_of(OPACITY_ROW + k, opacity);
   Hidden covariance = hidden_of(COVARIANCE, n, sight, mixed);
   Hidden colour = hidden_of(COLOUR, n, sight, mixed);
   uint bits = 0u;
-  for (uint k = 0u; k < offset_count; ++k) {
+  for (uint k = 0u; k < frame.offset_count; ++k) {
     if (logits[k] > 0.0 && decode(anchor, n, k, logits[k], covariance, colour, to + k)) bits |= 1u << k;
   }
   return bits;
@@ -117,20 +114,20 @@ void main() {
   take_weights();
   uint at = thread_index();
   uint decoding = at / anchor_count;
-  uint first = decoding * views_per_decoding;
-  if (first >= view_count) return;
+  uint first = decoding * frame.views_per_decoding;
+  if (first >= frame.asked) return;
   uint n = at % anchor_count;
   Anchor anchor = anchors[n];
-  uint end = min(first + views_per_decoding, view_count);
+  uint end = min(first + frame.views_per_decoding, frame.asked);
   vec3 eye = vec3(0.0);  // from the first view's anchor point
-  bool seen = anchor_cull == 0u;
+  bool seen = frame.anchor_cull == 0u;
   for (uint v = first; v < end; ++v) {
     eye += (views[v].anchor.xyz - views[first].anchor.xyz) + views[v].eye.xyz;
     seen = seen || sees(views[v], anchor);
   }
 #if REUSE == 1
   uint last = kept_last[at] & ~KEPT_HIDDEN;
-  bool hidden = seen && remembers != 0u;
+  bool hidden = seen && frame.remembers != 0u;
   for (uint v = first; v < end; ++v) hidden = hidden && is_hidden(v, anchor, n, last);
   if (hidden) {
     kept[at] = last | KEPT_HIDDEN;

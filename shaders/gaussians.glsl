@@ -11,19 +11,17 @@ layout(std430, binding = 1) readonly buffer Gaussians { uvec4 gaussians[]; };  /
 layout(std430, binding = 1) readonly buffer Gaussians { Gaussian gaussians[]; };  // (decoding, Gaussian)
 #define GAUSSIAN(at) gaussians[at]
 #endif
+#include "frame.glsl"
 uniform uint page_first;
 uniform uint page_count;
 
 #if OFFSETS > 0
 
 layout(std430, binding = 9) readonly buffer Kept { uint kept[]; };  // (decoding, anchor), a bit each
-uniform uint views_per_decoding;
-uniform uint asked;              // views before the probe
-uniform uint decoding_of_probe;  // that of the view it belongs to
 
 // Where view v finds Gaussian i of the page, and whether it has it.
 uint place_of(uint i, uint v) {
-  return (v < asked ? v / views_per_decoding : decoding_of_probe) * page_count + i;
+  return (v < frame.asked ? v / frame.views_per_decoding : frame.decoding_of_probe) * page_count + i;
 }
 
 bool is_kept(uint i, uint v) {

@@ -2,6 +2,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "frame.glsl"
 #include "lists.glsl"
 
 layout(local_size_x = THREADS) in;
@@ -18,7 +19,6 @@ layout(std430, binding = 2) readonly buffer Touched { TOUCHED touched_by[]; };  
 layout(std430, binding = 3) writeonly buffer PairOffsets { uint pair_offsets[]; };
 layout(std430, binding = 4) writeonly buffer TouchedInOrder { TOUCHED touched_in_order[]; };  // (rank, view of the group)
 #if !BOTH_EYES
-uniform uint view_count;  // of the frame
 uniform uint view_begin;
 uniform uint view_end;
 #endif
@@ -33,7 +33,7 @@ void main() {
 #else
   uint sum = 0u;
   for (uint v = view_begin; v < view_end; ++v) {
-    uint touched = touched_by[order[rank] * view_count + v];
+    uint touched = touched_by[order[rank] * frame.view_count + v];
     touched_in_order[rank * (view_end - view_begin) + v - view_begin] = touched;
     sum += count_of(touched);
   }

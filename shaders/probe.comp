@@ -11,26 +11,23 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };  // C, and T left
 layout(std430, binding = 2) buffer FrameCounters { Counters counters; };
-uniform uint probe;  // a view
-uniform uint probed;
-uniform uint background_r, background_g, background_b;  // bits of floats
+#include "frame.glsl"
 
 shared float sums[THREADS];
 
 vec3 shown(uint pixel) {
-  vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
-  return in_bytes(colours[pixel].rgb + colours[pixel].a * background) / 255.0;
+  return in_bytes(colours[pixel].rgb + colours[pixel].a * frame.background.rgb) / 255.0;
 }
 
 float squared_error(uint nth) {
-  View exact = views[probe];
+  View exact = views[frame.asked];
   const uint side = uint(TILE_SIZE);
   uvec2 tile = uvec2(nth / (side * side) % exact.tiles_x, nth / (side * side) / exact.tiles_x);
   uvec2 in_tile = uvec2(nth % side, nth / side % side);
   uvec2 kept = tile * side + in_tile;
   uvec2 at = tile * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + in_tile;
   if (tile.y >= exact.tiles_y || at.x >= exact.width || at.y >= exact.height) return 0.0;
-  vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) - shown(views[probed].pixel_offset + at.y * exact.width + at.x);
+  vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) - shown(views[frame.probed].pixel_offset + at.y * exact.width + at.x);
   return dot(d, d);
 }
 

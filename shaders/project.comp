@@ -29,7 +29,6 @@ layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for project_count_tall.comp, in any order
 uniform uint view_begin;
 uniform uint view_end;
-uniform uint view_count;  // of the frame
 
 void leave_aside(uint splat) {
   uint place = atomicAdd(counters.tall, 1u);
@@ -69,7 +68,7 @@ void main() {
       touched = is_tall ? 1u : touched_lists(splat, view, box);  // not known yet
       if (is_tall) leave_aside(splat_at);
     }
-    if (is_here) touched_by[slot * view_count + v] = touched;
+    if (is_here) touched_by[slot * frame.view_count + v] = touched;
 #if WEIGHS
     if (is_here) {
       measured[2u * splat_at] = 0u;

@@ -12,7 +12,7 @@ layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; }
 layout(std430, binding = 3) writeonly buffer Keys { uint keys[]; };
 layout(std430, binding = 4) writeonly buffer Values { uint values[]; };    // the slots themselves
 layout(std430, binding = 5) writeonly buffer Indices { uint indices[]; };  // Gaussian of each slot
-uniform uint gaussian_count;
+#include "frame.glsl"
 uniform uint nearest_key;  // less than any key: what is sorted needs fewer bits without it
 
 #define EACH (COMPACT_BLOCK / THREADS)
@@ -21,13 +21,13 @@ shared uint masks[EACH][WORDS];  // of each round: a bit for each Gaussian that 
 
 void main() {
   uint block = group_index();
-  if (block * COMPACT_BLOCK >= gaussian_count || amounts[0].count == 0u) return;
+  if (block * COMPACT_BLOCK >= frame.gaussian_count || amounts[0].count == 0u) return;
   uint self = gl_LocalInvocationIndex;
   uint before = block_counts[block];
   uint key[EACH];
   for (uint i = 0u; i < EACH; ++i) {
     uint at = block * COMPACT_BLOCK + i * THREADS + self;
-    key[i] = at < gaussian_count ? depth_keys[at] : DEPTH_KEY_NONE;
+    key[i] = at < frame.gaussian_count ? depth_keys[at] : DEPTH_KEY_NONE;
   }
   if (self < EACH * WORDS) masks[self / WORDS][self % WORDS] = 0u;
   barrier();

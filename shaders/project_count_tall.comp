@@ -19,7 +19,6 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
 layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats
 layout(std430, binding = 4) writeonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
-uniform uint view_count;  // of the frame
 
 shared uvec4 box_at[TALL_EACH];
 shared uint pairs_at[TALL_EACH];
@@ -51,6 +50,6 @@ void main() {
   barrier();
   if (has_one) {
     uint splat = tall[first + self];
-    touched_by[slot_of(splat) * view_count + view_of(splat)] = pairs_at[self];
+    touched_by[slot_of(splat) * frame.view_count + view_of(splat)] = pairs_at[self];
   }
 }

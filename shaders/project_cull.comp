@@ -16,14 +16,13 @@ layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };  
 layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
 #endif
 uniform uint view_begin;
-uniform uint view_end;  // without the probe,
-uniform uint probed;    // of which view that is
+uniform uint view_end;  // without the probe
 
 // What the next frame is to know of a Gaussian that this view does not draw: all the light again for one out of sight,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
 #if RECORDS
 void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
-  if (v >= exact_from) return;  // a probe
+  if (v >= frame.asked) return;  // a probe
   bool left_out = is_hidden(gaussian - page_first, v);
 #if TH != TH_TAU
   if (projected && !drawn) {
@@ -31,8 +30,8 @@ void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
     left_out = touches_a_tile(splat, views[v]);
   }
 #endif
-  float aged = remembers == 0u ? 1.0 : min(1.0, float(UPPER_AGEING) * upper[v * gaussian_count + gaussian]);
-  upper_next[v * gaussian_count + gaussian] = left_out ? aged : 1.0;
+  float aged = frame.remembers == 0u ? 1.0 : min(1.0, float(UPPER_AGEING) * upper[v * frame.gaussian_count + gaussian]);
+  upper_next[v * frame.gaussian_count + gaussian] = left_out ? aged : 1.0;
 }
 #endif
 
@@ -57,9 +56,9 @@ uint key_of(uint i) {
     remember(page_first + i, v, projected, drawn, splat);
 #endif
 #if PROBED
-    if (projected && !drawn && v == probed) {  // all of it that leaves a mark
+    if (projected && !drawn && v == frame.probed && views[v].order_group == views[frame.asked].order_group) {  // all of it that leaves a mark
       splat.colour.w = visible_level(splat.opacity);
-      drawn = touches_a_tile(splat, views[exact_from]);
+      drawn = touches_a_tile(splat, views[frame.asked]);
     }
 #endif
     if (drawn) key = floatBitsToUint(splat.depth);

@@ -1,6 +1,6 @@
 // Where the splats of a frame lie, (view, slot): those of a view side by side, since an eye's tiles read them and not the other's.
-uniform uint slots;  // that each view has room for
+#include "frame.glsl"
 
-uint splat_of(uint slot, uint v) { return v * slots + slot; }
-uint view_of(uint splat) { return splat / slots; }
-uint slot_of(uint splat) { return splat % slots; }
+uint splat_of(uint slot, uint v) { return v * frame.slots + slot; }
+uint view_of(uint splat) { return splat / frame.slots; }
+uint slot_of(uint splat) { return splat % frame.slots; }

@@ -39,6 +39,28 @@ struct View {
   uint unused;
 };
 
+// What holds for all of a frame. It lies in a uniform block, whose std140 agrees with std430 where there are no arrays.
+struct FrameParameters {
+  vec4 background;      // rgb, display-referred; w: unused
+  float loss;           // of the threshold rule: K or kappa
+  float far;            // world units, where the table of depths ends
+  uint depth_bins;      // of that table
+  uint remembers;       // 0: no earlier frame tells anything of this one
+  uint view_count;      // with the probe
+  uint asked;           // without it; views from here on are exact
+  uint probed;          // the view that the probe is of; MAX_VIEWS without one
+  uint gaussian_count;  // of the model
+  uint slots;           // that each view has room for
+  uint tile_count;      // over all views, as their lists have them
+  uint list_per_view;   // 1 with --tiles all: a view's tiles share one list
+  // Of Scaffold-GS.
+  uint offset_count;        // K
+  uint views_per_decoding;  // views that share what the networks made
+  uint decoding_of_probe;   // that of the view it belongs to
+  uint anchor_cull;         // 1: anchors that touch no tile of 3D-GS are not decoded
+  uint unused;
+};
+
 // A Gaussian of the model as the GPU keeps it. Its SH coefficients lie in a buffer of their own.
 struct Gaussian {
   vec4 position;  // world; w: opacity in [0, 1]
@@ -108,6 +130,7 @@ struct Amount {
 
 #ifdef __cplusplus
 static_assert(sizeof(View) == 160 && offsetof(View, slopes) == 96 && offsetof(View, is_probe) == 152);
+static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, loss) == 16);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);

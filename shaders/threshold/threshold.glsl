@@ -3,17 +3,16 @@
 //   float threshold(float size, float upper, float loss)   at least tau
 // size: sqrt(det C2), px^2; upper: T_upper, above 0; loss: K or kappa.
 
-uniform uint loss_bits;   // --loss, a float's bits
-uniform uint exact_from;  // this view and those after it are exact
+#include "frame.glsl"
 
 #include "threshold/upper.glsl"
 #include "threshold/{TH_NAME}.glsl"
 
-float threshold_of(Splat splat, float upper) { return threshold(splat.conic.w, upper, uintBitsToFloat(loss_bits)); }
+float threshold_of(Splat splat, float upper) { return threshold(splat.conic.w, upper, frame.loss); }
 
 // Th of a Gaussian in view v, where it is `splat`.
 float threshold_in(uint v, uint gaussian, Splat splat) {
-  if (v >= exact_from) return float(ALPHA_MIN);
+  if (v >= frame.asked) return float(ALPHA_MIN);
   return threshold_of(splat, upper_of(gaussian, v, splat.depth));
 }
 

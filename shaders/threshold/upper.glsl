@@ -11,22 +11,18 @@ float upper_of(uint gaussian, uint view, float depth) { return 1.0; }
 #elif TRANSMITTANCE == TRANSMITTANCE_DEPTH
 
 layout(std430, binding = 7) readonly buffer DepthTable { float depth_table[]; };  // T_upper of equal bins over [0, far)
-uniform uint depth_bins;
-uniform uint far_bits;  // world units, a float's bits
 
 float upper_of(uint gaussian, uint view, float depth) {
-  precise float bin = depth / uintBitsToFloat(far_bits) * float(depth_bins);
-  return bin < float(depth_bins) ? depth_table[uint(bin)] : 1.0;
+  precise float bin = depth / frame.far * float(frame.depth_bins);
+  return bin < float(frame.depth_bins) ? depth_table[uint(bin)] : 1.0;
 }
 
 #else
 
 layout(std430, binding = 7) readonly buffer Upper { float upper[]; };  // (view, Gaussian)
-uniform uint gaussian_count;                                           // of the model
-uniform uint remembers;                                                // 0: the last frame tells nothing of this one
 
 float upper_of(uint gaussian, uint view, float depth) {
-  return remembers == 0u ? 1.0 : upper[view * gaussian_count + gaussian];
+  return frame.remembers == 0u ? 1.0 : upper[view * frame.gaussian_count + gaussian];
 }
 
 #endif

@@ -41,9 +41,9 @@ void Dispatcher::bind(const Program& program, std::initializer_list<Binding> bin
     const auto* found = std::find_if(bindings.begin(), bindings.end(),
                                      [&](const Binding& b) { return block.name == b.block; });
     if (found == bindings.end() || found->buffer.id() == 0) {
-      throw std::logic_error(program.name() + ": nothing bound to the storage block " + block.name);
+      throw std::logic_error(program.name() + ": nothing bound to the block " + block.name);
     }
-    gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, block.binding, found->buffer.id(), 0, found->buffer.bytes());
+    gl.BindBufferRange(block.target, block.binding, found->buffer.id(), 0, found->buffer.bytes());
   }
   for (const Program::Uniform& uniform : program.uniforms()) {
     const auto* found = std::find_if(uniforms.begin(), uniforms.end(),

@@ -29,7 +29,7 @@ struct Work {
 };
 
 struct Binding {
-  const char* block;  // the storage block's name in the shader
+  const char* block;  // the name of a storage or uniform block in the shader
   const Buffer& buffer;
 };
 

@@ -80,13 +80,17 @@ void Program::reflect() {
   std::array<std::int32_t, 3> size{};
   gl_->GetProgramiv(id_, GL_COMPUTE_WORK_GROUP_SIZE, size.data());
   local_size_ = static_cast<std::uint32_t>(size[0] * size[1] * size[2]);
-  for_each_resource(*gl_, id_, GL_SHADER_STORAGE_BLOCK, GL_BUFFER_BINDING,
-                    [&](const char* name, std::int32_t binding) {
-                      blocks_.push_back({name, static_cast<std::uint32_t>(binding)});
-                    });
-  // Images are bound to units, not given values.
+  const auto add_blocks = [&](GLenum kind, GLenum target) {
+    for_each_resource(*gl_, id_, kind, GL_BUFFER_BINDING, [&](const char* name, std::int32_t binding) {
+      blocks_.push_back({name, static_cast<std::uint32_t>(binding), target});
+    });
+  };
+  add_blocks(GL_SHADER_STORAGE_BLOCK, GL_SHADER_STORAGE_BUFFER);
+  add_blocks(GL_UNIFORM_BLOCK, GL_UNIFORM_BUFFER);
+  // Images are bound to units, not given values, and a block's members have no location.
   for_each_resource(*gl_, id_, GL_UNIFORM, GL_TYPE, [&](const char* name, std::int32_t type) {
-    if (type != GL_IMAGE_2D) uniforms_.push_back({name, gl_->GetUniformLocation(id_, name)});
+    const std::int32_t location = gl_->GetUniformLocation(id_, name);
+    if (type != GL_IMAGE_2D && location >= 0) uniforms_.push_back({name, location});
   });
 }
 

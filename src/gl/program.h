@@ -16,6 +16,7 @@ class Program {
   struct Block {
     std::string name;
     std::uint32_t binding;
+    GLenum target;  // GL_SHADER_STORAGE_BUFFER or GL_UNIFORM_BUFFER
   };
 
   struct Uniform {
@@ -36,8 +37,8 @@ class Program {
   std::uint32_t id() const { return id_; }
   const std::string& name() const { return name_; }
   std::uint32_t local_size() const { return local_size_; }            // invocations of a work group
-  const std::vector<Block>& blocks() const { return blocks_; }        // storage blocks the shader really uses
-  const std::vector<Uniform>& uniforms() const { return uniforms_; }  // those the shader really uses
+  const std::vector<Block>& blocks() const { return blocks_; }        // those the shader really uses
+  const std::vector<Uniform>& uniforms() const { return uniforms_; }  // likewise, outside blocks
 
  private:
   void compile(const ShaderSource& source);

@@ -5,6 +5,7 @@ namespace binosplat::gl {
 KeptState::KeptState(const Context& context) : gl_(context.gl()) {
   gl_.GetIntegerv(GL_CURRENT_PROGRAM, &program_);
   gl_.GetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &storage_);
+  gl_.GetIntegerv(GL_UNIFORM_BUFFER_BINDING, &uniform_);
   gl_.GetIntegerv(GL_DISPATCH_INDIRECT_BUFFER_BINDING, &indirect_);
   gl_.GetIntegeri_v(GL_IMAGE_BINDING_NAME, 0, &image_.texture);
   gl_.GetIntegeri_v(GL_IMAGE_BINDING_LEVEL, 0, &image_.level);
@@ -15,6 +16,9 @@ KeptState::KeptState(const Context& context) : gl_(context.gl()) {
   scissors_ = gl_.IsEnabledi(GL_SCISSOR_TEST, 0);
   encodes_ = gl_.IsEnabled(GL_FRAMEBUFFER_SRGB);
   discards_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
+  gl_.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, 0, &uniforms_.buffer);
+  gl_.GetInteger64i_v(GL_UNIFORM_BUFFER_START, 0, &uniforms_.offset);
+  gl_.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, 0, &uniforms_.size);
   for (GLuint i = 0; i < storage_bindings_needed; ++i) {
     gl_.GetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, i, &storages_[i].buffer);
     gl_.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, i, &storages_[i].offset);
@@ -28,16 +32,19 @@ void KeptState::set_plain() const {
   gl_.Disable(GL_RASTERIZER_DISCARD);
 }
 
-KeptState::~KeptState() {
-  for (GLuint i = 0; i < storage_bindings_needed; ++i) {
-    const Storage& kept = storages_[i];
-    const auto buffer = static_cast<GLuint>(kept.buffer);
-    if (kept.size == 0) {
-      gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, buffer);
-    } else {
-      gl_.BindBufferRange(GL_SHADER_STORAGE_BUFFER, i, buffer, kept.offset, kept.size);
-    }
+void KeptState::bind(GLenum target, GLuint binding, const Range& kept) const {
+  const auto buffer = static_cast<GLuint>(kept.buffer);
+  if (kept.size == 0) {
+    gl_.BindBufferBase(target, binding, buffer);
+  } else {
+    gl_.BindBufferRange(target, binding, buffer, kept.offset, kept.size);
   }
+}
+
+KeptState::~KeptState() {
+  for (GLuint i = 0; i < storage_bindings_needed; ++i) bind(GL_SHADER_STORAGE_BUFFER, i, storages_[i]);
+  bind(GL_UNIFORM_BUFFER, 0, uniforms_);
+  gl_.BindBuffer(GL_UNIFORM_BUFFER, static_cast<GLuint>(uniform_));
   gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(storage_));
   gl_.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, static_cast<GLuint>(indirect_));
   gl_.BindImageTexture(0, static_cast<GLuint>(image_.texture), image_.level, image_.layered != 0,

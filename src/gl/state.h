@@ -10,14 +10,14 @@
 namespace binosplat::gl {
 
 /// Remembers all state that a frame, and pictures written into a texture or framebuffer, change, and sets it
-/// again when it goes: the program; storage buffers, those of the first storage_bindings_needed bindings and
-/// the general one; the buffer of indirect dispatches; the image of unit 0; the scissor test of index 0, the
-/// conversion to sRGB and the rasterizer's discarding.
+/// again when it goes: the program; storage and uniform buffers, those of the first storage_bindings_needed
+/// bindings, of binding 0 and the general ones; the buffer of indirect dispatches; the image of unit 0; the
+/// scissor test of index 0, the conversion to sRGB and the rasterizer's discarding.
 ///
-/// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers,
-/// uniform buffers), and neither are other images, pixel store, clear values, viewports, masks, tests,
-/// blending or the debug callback. Not to be used within transform feedback or conditional rendering; queries
-/// that are active count what is done here.
+/// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers),
+/// and neither are other images, pixel store, clear values, viewports, masks, tests, blending or the debug
+/// callback. Not to be used within transform feedback or conditional rendering; queries that are active count
+/// what is done here.
 class KeptState {
  public:
   explicit KeptState(const Context& context);
@@ -30,7 +30,7 @@ class KeptState {
   void set_plain() const;
 
  private:
-  struct Storage {
+  struct Range {
     GLint buffer = 0;
     std::int64_t offset = 0, size = 0;  // bytes; size 0: the whole buffer
   };
@@ -38,11 +38,14 @@ class KeptState {
     GLint texture = 0, level = 0, layered = 0, layer = 0, access = 0, format = 0;
   };
 
+  void bind(GLenum target, GLuint binding, const Range& kept) const;
+
   const Functions& gl_;
-  GLint program_ = 0, storage_ = 0, indirect_ = 0;
+  GLint program_ = 0, storage_ = 0, uniform_ = 0, indirect_ = 0;
   Image image_;
   GLboolean scissors_ = 0, encodes_ = 0, discards_ = 0;
-  std::array<Storage, storage_bindings_needed> storages_;
+  std::array<Range, storage_bindings_needed> storages_;
+  Range uniforms_;
 };
 
 }  // namespace binosplat::gl

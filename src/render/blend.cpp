@@ -46,7 +46,8 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
   gl::Context& context = dispatcher.context();
   const auto draw = [&](Lists lists, const gl::Work& work) {
     dispatcher.start(program(context, shape, variant, lists), work,
-                     {{"Views", buffers.views},
+                     {{"Frame", buffers.parameters},
+                      {"Views", buffers.views},
                       {"Ranges", buffers.ranges_of_tiles(shape)},
                       {"Values", buffers.values_of_tiles(shape)},
                       {"Splats", buffers.splats},
@@ -55,10 +56,7 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.long_lists},
                       {"Measured", measured},
-                      {"Shown", buffers.shown}},
-                     {{"view_count", shape.view_count()},
-                      {"tile_count", shape.tile_count()},
-                      {"list_per_view", shape.settings.tiles == TILES_ALL ? 1u : 0u}});
+                      {"Shown", buffers.shown}});
   };
   draw(Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
   draw(Lists::of_short, gl::Work::of_groups(shape.tile_count()));
@@ -71,10 +69,10 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
   if (shape.settings.tiles != TILES_ALL) {
     dispatcher.run(dispatcher.context().program("blend_long_lists.comp"),
                    gl::Work::threads(shape.tile_count(), THREADS),
-                   {{"Ranges", buffers.ranges_of_tiles(shape)},
+                   {{"Frame", buffers.parameters},
+                    {"Ranges", buffers.ranges_of_tiles(shape)},
                     {"LongLists", buffers.long_lists},
-                    {"FrameCounters", buffers.counters}},
-                   {{"tile_count", shape.tile_count()}});
+                    {"FrameCounters", buffers.counters}});
   }
   run(dispatcher, shape, buffers, {.records = shape.records, .weighs = shape.settings.weigh},
       buffers.measured);

@@ -15,8 +15,34 @@ std::uint32_t tile_blocks(std::int64_t pairs) {
   return static_cast<std::uint32_t>((pairs + TILE_BLOCK - 1) / TILE_BLOCK);
 }
 
+namespace {
+
+shared::FrameParameters parameters_of(const FrameShape& shape) {
+  const FrameSettings& s = shape.settings;
+  return {.background = glm::vec4(s.background, 0.0f),
+          .loss = s.loss,
+          .far = s.depth_table.far,
+          .depth_bins = static_cast<std::uint32_t>(s.depth_table.upper.size()),
+          .remembers = shape.remembers,
+          .view_count = shape.view_count(),
+          .asked = shape.asked,
+          .probed = shape.probe ? shape.probe->view : MAX_VIEWS,
+          .gaussian_count = shape.gaussian_count,
+          .slots = shape.slots,
+          .tile_count = shape.tile_count(),
+          .list_per_view = s.tiles == TILES_ALL,
+          .offset_count = shape.offset_count,
+          .views_per_decoding = shape.views_per_decoding,
+          .decoding_of_probe = shape.decoding_of_probe(),
+          .anchor_cull = s.anchor_cull,
+          .unused = 0};
+}
+
+}  // namespace
+
 FrameBuffers::FrameBuffers(gl::Context& context)
-    : views(context, "views"),
+    : parameters(context, "parameters of the frame"),
+      views(context, "views"),
       counters(context, "counters"),
       depth_keys(context, "depth keys"),
       block_amount(context, "amount of blocks"),
@@ -47,6 +73,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       context_(context) {}
 
 void FrameBuffers::upload(const FrameShape& shape) {
+  parameters.upload(std::vector{parameters_of(shape)});
   views.upload(shape.views);
   if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = shape.settings.depth_table.upper;

@@ -29,7 +29,7 @@ struct FrameBuffers {
   explicit FrameBuffers(gl::Context& context);
   gl::Context& context() const { return context_; }
 
-  /// What the CPU knows of a frame: its views and its table of depths.
+  /// What the CPU knows of a frame: its parameters, its views and its table of depths.
   void upload(const FrameShape& shape);
 
   /// Room for a frame of this shape and its slots, and so many pairs; and where lists are of several tiles,
@@ -48,8 +48,9 @@ struct FrameBuffers {
     return shape.list_tiles == 1 ? pairs.values() : tile_values;
   }
 
-  gl::Buffer views;     // View, those between eyes last
-  gl::Buffer counters;  // Counters
+  gl::Buffer parameters;  // FrameParameters
+  gl::Buffer views;       // View, the probe last
+  gl::Buffer counters;    // Counters
 
   // Of the order group at hand.
   gl::Buffer depth_keys;          // uint by Gaussian

@@ -1,5 +1,3 @@
-#include <bit>
-
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -45,7 +43,8 @@ void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuff
     const ModelBuffers::Page& page = model.pages[p];
     const AnchorBuffers& anchors = *page.anchors;
     dispatcher.run(program, gl::Work::threads(std::uint64_t{shape.decoding_count()} * anchors.count, THREADS),
-                   {{"Views", buffers.views},
+                   {{"Frame", buffers.parameters},
+                    {"Views", buffers.views},
                     {"Anchors", anchors.anchors},
                     {"Offsets", anchors.offsets},
                     {"Networks", model.networks.weights},
@@ -55,16 +54,7 @@ void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuff
                     {"Kept", *buffers.kept[p]},
                     {"KeptLast", *buffers.kept_last[p]},
                     {"Upper", *buffers.upper}},
-                   {{"anchor_count", anchors.count},
-                    {"view_count", shape.asked},
-                    {"views_per_decoding", shape.views_per_decoding},
-                    {"offset_count", shape.offset_count},
-                    {"page_first", page.first},
-                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
-                    {"exact_from", shape.asked},
-                    {"gaussian_count", shape.gaussian_count},
-                    {"remembers", shape.remembers ? 1u : 0u},
-                    {"anchor_cull", shape.settings.anchor_cull ? 1u : 0u}});
+                   {{"anchor_count", anchors.count}, {"page_first", page.first}});
   }
 }
 

@@ -102,7 +102,6 @@ FrameReport Frame::attempt(const Workings& workings, Stage last) {
   history_.decide(shape_);
   if (model_buffers_->box) limit_keys(shape_, *model_buffers_->box);
   capacity_.start(shape_, workings);
-  buffers_.upload(shape_);
   const std::uint32_t blocks = (shape_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   buffers_.block_amount.upload(
       std::vector{primitives::make_amount(blocks, dispatcher_.context().limits().groups)});
@@ -110,6 +109,7 @@ FrameReport Frame::attempt(const Workings& workings, Stage last) {
   for (;; ++report.redrawn) {
     if (report.redrawn == drawings_max) throw std::logic_error("a frame overflowed again and again");
     shape_.slots = static_cast<std::uint32_t>(capacity_.slots);
+    buffers_.upload(shape_);
     buffers_.reserve(shape_, *model_buffers_, capacity_.pairs, capacity_.tile_pairs);
     model_buffers_->reserve(shape_);
     run_stages(workings, last, report);

@@ -27,19 +27,21 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
   };
   const bool both_eyes = shape.view_count() == 2 && shape.groups.size() == 1;
   dispatcher.run(context.program("pairs_count.comp", {{"BOTH_EYES", both_eyes ? "1" : "0"}}), each(drawn),
-                 {{"Amounts", drawn},
+                 {{"Frame", buffers.parameters},
+                  {"Amounts", drawn},
                   {"Order", buffers.order.values()},
                   {"Touched", buffers.touched},
                   {"PairOffsets", buffers.pair_offsets},
                   {"TouchedInOrder", buffers.touched_in_order}},
-                 {{"view_count", shape.view_count()}, {"view_begin", views.begin}, {"view_end", views.end}});
+                 {{"view_begin", views.begin}, {"view_end", views.end}});
   buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
   count_pairs(dispatcher, shape, AMOUNT_PAIRS, buffers);
   gl::Defines defines = pair_defines(shape);
   defines.push_back(subgroups_define(context));
   dispatcher.run(context.program("pairs.comp", defines),
                  gl::Work::indirect(buffers.pair_amounts, offsetof(shared::Amount, scan_x)),
-                 {{"OrderAmounts", drawn},
+                 {{"Frame", buffers.parameters},
+                  {"OrderAmounts", drawn},
                   {"PairAmounts", buffers.pair_amounts},
                   {"Views", buffers.views},
                   {"Order", buffers.order.values()},
@@ -48,7 +50,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"Splats", buffers.splats},
                   {"Keys", buffers.pairs.keys()},
                   {"Values", buffers.pairs.values()}},
-                 {{"slots", shape.slots}, {"view_begin", views.begin}, {"view_end", views.end}});
+                 {{"view_begin", views.begin}, {"view_end", views.end}});
 }
 
 }  // namespace binosplat::render

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 
 #include "render/stages.h"
 
@@ -19,18 +18,14 @@ std::uint32_t pixels_along(std::uint32_t tiles, std::uint32_t first, std::uint32
 
 void probe(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   if (!shape.probe) return;
-  const glm::vec3& background = shape.settings.background;
   const shared::View& exact = shape.views.back();
   const auto side = static_cast<std::uint32_t>(shape.settings.tile_size);
-  dispatcher.run(
-      dispatcher.context().program("probe.comp", {{"TILE_SIZE", std::to_string(side)}}),
-      gl::Work::threads(std::uint64_t{exact.tiles_x} * exact.tiles_y * side * side, THREADS),
-      {{"Views", buffers.views}, {"Colours", buffers.colours}, {"FrameCounters", buffers.counters}},
-      {{"probe", shape.view_count() - 1},
-       {"probed", shape.probe->view},
-       {"background_r", std::bit_cast<std::uint32_t>(background.r)},
-       {"background_g", std::bit_cast<std::uint32_t>(background.g)},
-       {"background_b", std::bit_cast<std::uint32_t>(background.b)}});
+  dispatcher.run(dispatcher.context().program("probe.comp", {{"TILE_SIZE", std::to_string(side)}}),
+                 gl::Work::threads(std::uint64_t{exact.tiles_x} * exact.tiles_y * side * side, THREADS),
+                 {{"Frame", buffers.parameters},
+                  {"Views", buffers.views},
+                  {"Colours", buffers.colours},
+                  {"FrameCounters", buffers.counters}});
 }
 
 Probed probed(const FrameShape& shape, const shared::Counters& counters) {

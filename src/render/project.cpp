@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <bit>
 #include <cstddef>
 
 #include "render/stages.h"
@@ -37,7 +36,8 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
   for (std::size_t p = 0; p < model.pages.size(); ++p) {
     const ModelBuffers::Page& page = model.pages[p];
     dispatcher.run(program, gl::Work::threads(page.count, THREADS),
-                   {{"Views", buffers.views},
+                   {{"Frame", buffers.parameters},
+                    {"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
                     {"Kept", kept_of(model, p, buffers)},
                     {"DepthKeys", buffers.depth_keys},
@@ -46,18 +46,8 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"UpperNext", *buffers.upper_next}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
-                    {"views_per_decoding", shape.views_per_decoding},
-                    {"decoding_of_probe", shape.decoding_of_probe()},
-                    {"asked", shape.asked},
                     {"view_begin", views.begin},
-                    {"view_end", end},
-                    {"probed", views.end > end ? shape.probe->view : MAX_VIEWS},
-                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
-                    {"exact_from", shape.asked},
-                    {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
-                    {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
-                    {"gaussian_count", shape.gaussian_count},
-                    {"remembers", shape.remembers ? 1u : 0u}});
+                    {"view_end", end}});
   }
 }
 
@@ -66,8 +56,9 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
   gl::Context& context = dispatcher.context();
   const auto blocks = gl::Work::threads(shape.gaussian_count, COMPACT_BLOCK);
   dispatcher.run(context.program("project_compact_count.comp"), blocks,
-                 {{"DepthKeys", buffers.depth_keys}, {"BlockCounts", buffers.block_counts}},
-                 {{"gaussian_count", shape.gaussian_count}});
+                 {{"Frame", buffers.parameters},
+                  {"DepthKeys", buffers.depth_keys},
+                  {"BlockCounts", buffers.block_counts}});
   buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
   dispatcher.run(
       context.program("amount.comp", buffers.order.block_define()), gl::Work::of_groups(1),
@@ -77,13 +68,14 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
        {"groups_max", context.limits().groups},
        {"digit_bits", primitives::RadixSort::digit_bits(group.key_bits)}});
   dispatcher.run(context.program("project_compact.comp"), blocks,
-                 {{"Amounts", drawn.amounts},
+                 {{"Frame", buffers.parameters},
+                  {"Amounts", drawn.amounts},
                   {"DepthKeys", buffers.depth_keys},
                   {"BlockCounts", buffers.block_counts},
                   {"Keys", buffers.order.keys()},
                   {"Values", buffers.order.values()},
                   {"Indices", drawn.indices}},
-                 {{"gaussian_count", shape.gaussian_count}, {"nearest_key", group.nearest_key}});
+                 {{"nearest_key", group.nearest_key}});
 }
 
 }  // namespace
@@ -124,7 +116,8 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   for (std::size_t p = 0; p < model.pages.size(); ++p) {
     const ModelBuffers::Page& page = model.pages[p];
     dispatcher.run(program, gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
-                   {{"Views", buffers.views},
+                   {{"Frame", buffers.parameters},
+                    {"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
                     {"Kept", kept_of(model, p, buffers)},
                     {"Harmonics", *page.harmonics},
@@ -139,30 +132,19 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
-                    {"views_per_decoding", shape.views_per_decoding},
-                    {"decoding_of_probe", shape.decoding_of_probe()},
-                    {"asked", shape.asked},
                     {"view_begin", views.begin},
-                    {"view_end", views.end},
-                    {"view_count", shape.view_count()},
-                    {"slots", shape.slots},
-                    {"loss_bits", std::bit_cast<std::uint32_t>(shape.settings.loss)},
-                    {"exact_from", shape.asked},
-                    {"depth_bins", static_cast<std::uint32_t>(shape.settings.depth_table.upper.size())},
-                    {"far_bits", std::bit_cast<std::uint32_t>(shape.settings.depth_table.far)},
-                    {"gaussian_count", shape.gaussian_count},
-                    {"remembers", shape.remembers ? 1u : 0u}});
+                    {"view_end", views.end}});
   }
   gl::Defines tall_defines = pair_defines(shape);
   tall_defines.push_back(subgroups_define(dispatcher.context()));
   dispatcher.run(dispatcher.context().program("project_count_tall.comp", tall_defines),
                  gl::Work::indirect(buffers.counters, offsetof(shared::Counters, tall_x)),
-                 {{"Views", buffers.views},
+                 {{"Frame", buffers.parameters},
+                  {"Views", buffers.views},
                   {"FrameCounters", buffers.counters},
                   {"Tall", buffers.tall},
                   {"Splats", buffers.splats},
-                  {"Touched", buffers.touched}},
-                 {{"view_count", shape.view_count()}, {"slots", shape.slots}});
+                  {"Touched", buffers.touched}});
 }
 
 }  // namespace binosplat::render

@@ -12,7 +12,8 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
     const DrawnBuffers& drawn = *buffers.drawn[group];
     dispatcher.run(dispatcher.context().program("blend_remember.comp", defines),
                    gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
-                   {{"Amounts", drawn.amounts},
+                   {{"Frame", buffers.parameters},
+                    {"Amounts", drawn.amounts},
                     {"Indices", drawn.indices},
                     {"Touched", buffers.touched},
                     {"Measured", buffers.measured},
@@ -20,11 +21,8 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
                     {"OrderKeys", buffers.order.keys()},
                     {"FrameCounters", buffers.counters}},
                    {{"nearest_key", shape.groups[group].nearest_key},
-                    {"gaussian_count", shape.gaussian_count},
                     {"view_begin", shape.groups[group].begin},
-                    {"view_end", std::min(shape.groups[group].end, shape.asked)},
-                    {"view_count", shape.view_count()},
-                    {"slots", shape.slots}});
+                    {"view_end", std::min(shape.groups[group].end, shape.asked)}});
   }
 }
 

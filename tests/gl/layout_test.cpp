@@ -14,31 +14,38 @@
 namespace binosplat::gl {
 namespace {
 
-// Offsets of the members of a struct in a storage block `struct items[]`, and its stride under the name "".
-std::map<std::string, int> driver_offsets(const std::string& type) {
+// Offsets of the members of a struct in a storage block `struct items[]`, and its stride under the name "";
+// or in a uniform block of one.
+enum class Block { storage, uniform };
+
+std::map<std::string, int> driver_offsets(const std::string& type, Block block = Block::storage) {
   test::TempFolder folder;
   std::filesystem::create_directory(folder / "shared");
   for (const auto& [name, text] : embedded_shaders()) {
     if (name.rfind("shared/", 0) == 0) test::write_text(folder / name, text);
   }
   // Every member must be used, or a driver may leave it out: copying the whole struct uses all.
-  test::write_text(folder / "layout.comp",
-                   "#include \"shared/types.h\"\nlayout(local_size_x = 1) in;\n"
-                   "layout(std430, binding = 0) buffer Items { " +
-                       type +
-                       " items[]; };\n"
-                       "void main() { items[gl_WorkGroupID.x + 1u] = items[gl_WorkGroupID.x]; }\n");
+  const bool is_uniform = block == Block::uniform;
+  test::write_text(
+      folder / "layout.comp",
+      "#include \"shared/types.h\"\nlayout(local_size_x = 1) in;\n"
+      "layout(std430, binding = 0) buffer Items { " +
+          type + " items[]; };\n" +
+          (is_uniform ? "layout(std140, binding = 0) uniform One { " + type + " one; };\n" : "") +
+          "void main() { items[gl_WorkGroupID.x + 1u] = " + (is_uniform ? "one" : "items[gl_WorkGroupID.x]") +
+          "; }\n");
   const Functions& gl = test::gl_context().gl();
   const Program program(gl, "layout.comp", {}, folder.path(), ProgramCache({}, ""));
   std::map<std::string, int> offsets;
   int count = 0;
-  gl.GetProgramInterfaceiv(program.id(), GL_BUFFER_VARIABLE, GL_ACTIVE_RESOURCES, &count);
+  const GLenum kind = is_uniform ? GL_UNIFORM : GL_BUFFER_VARIABLE;
+  gl.GetProgramInterfaceiv(program.id(), kind, GL_ACTIVE_RESOURCES, &count);
   for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
     char name[128] = {};
-    gl.GetProgramResourceName(program.id(), GL_BUFFER_VARIABLE, i, sizeof(name), nullptr, name);
+    gl.GetProgramResourceName(program.id(), kind, i, sizeof(name), nullptr, name);
     const GLenum wanted[] = {GL_OFFSET, GL_TOP_LEVEL_ARRAY_STRIDE};
     int values[2] = {};
-    gl.GetProgramResourceiv(program.id(), GL_BUFFER_VARIABLE, i, 2, wanted, 2, nullptr, values);
+    gl.GetProgramResourceiv(program.id(), kind, i, is_uniform ? 1 : 2, wanted, 2, nullptr, values);
     const std::string path = name;
     offsets[path.substr(path.rfind('.') + 1)] = values[0];
     offsets[""] = values[1];
@@ -60,6 +67,31 @@ TEST(Layout, ViewIsWhereTheDriverPutsIt) {
       AT(View, pixel_offset), AT(View, order_group), AT(View, pitch),   AT(View, shift_x),
       AT(View, shift_y),      AT(View, is_probe),    AT(View, unused),  STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
+}
+
+TEST(Layout, FrameParametersAreWhereTheDriverPutsThem) {
+  const Offsets expected = {AT(FrameParameters, background),
+                            AT(FrameParameters, loss),
+                            AT(FrameParameters, far),
+                            AT(FrameParameters, depth_bins),
+                            AT(FrameParameters, remembers),
+                            AT(FrameParameters, view_count),
+                            AT(FrameParameters, asked),
+                            AT(FrameParameters, probed),
+                            AT(FrameParameters, gaussian_count),
+                            AT(FrameParameters, slots),
+                            AT(FrameParameters, tile_count),
+                            AT(FrameParameters, list_per_view),
+                            AT(FrameParameters, offset_count),
+                            AT(FrameParameters, views_per_decoding),
+                            AT(FrameParameters, decoding_of_probe),
+                            AT(FrameParameters, anchor_cull),
+                            AT(FrameParameters, unused),
+                            STRIDE(FrameParameters)};
+  EXPECT_EQ(driver_offsets("FrameParameters"), expected);
+  Offsets in_block = expected;  // of a frame there is one
+  in_block[""] = 0;
+  EXPECT_EQ(driver_offsets("FrameParameters", Block::uniform), in_block);
 }
 
 TEST(Layout, GaussianAndSplatAreWhereTheDriverPutsThem) {

@@ -89,6 +89,18 @@ struct State : testing::Test {
         "sRGB framebuffer", [this] { gl.Enable(GL_FRAMEBUFFER_SRGB); },
         [this] { return Values{double(gl.IsEnabled(GL_FRAMEBUFFER_SRGB))}; });
     add_enabled("rasterizer discard", GL_RASTERIZER_DISCARD);
+    add(
+        "uniform buffer", [this] { gl.BindBuffer(GL_UNIFORM_BUFFER, buffer.id()); },
+        [this] { return integers(GL_UNIFORM_BUFFER_BINDING); });
+    add(
+        "uniform binding",
+        [this] {
+          gl.BindBufferRange(GL_UNIFORM_BUFFER, 0, buffer.id(), 256, 128);
+          gl.BindBuffer(GL_UNIFORM_BUFFER, buffer.id());
+        },
+        [this] {
+          return binding(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, 0);
+        });
     for (GLuint i = 0; i < gl::storage_bindings_needed; ++i) {
       // Some bound as a range, some as a whole, and the general binding must survive both.
       const auto set = [this, i] {
@@ -100,15 +112,20 @@ struct State : testing::Test {
         gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer.id());
       };
       const auto get = [this, i] {
-        GLint id = 0;
-        GLint64 start = 0, size = 0;
-        gl.GetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, i, &id);
-        gl.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, i, &start);
-        gl.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, i, &size);
-        return Values{double(id), double(start), double(size)};
+        return binding(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+                       GL_SHADER_STORAGE_BUFFER_SIZE, i);
       };
       add("storage binding " + std::to_string(i), set, get);
     }
+  }
+
+  Values binding(GLenum name, GLenum start_name, GLenum size_name, GLuint i) const {
+    GLint id = 0;
+    GLint64 start = 0, size = 0;
+    gl.GetIntegeri_v(name, i, &id);
+    gl.GetInteger64i_v(start_name, i, &start);
+    gl.GetInteger64i_v(size_name, i, &size);
+    return {double(id), double(start), double(size)};
   }
 
   void add_effects() {
@@ -170,9 +187,6 @@ struct State : testing::Test {
     add(
         "sampler", [this] { caller.BindSampler(5, sampler); },
         [this] { return integers(GL_SAMPLER_BINDING); });
-    add(
-        "uniform buffer", [this] { gl.BindBufferRange(GL_UNIFORM_BUFFER, 0, buffer.id(), 0, 256); },
-        [this] { return integers(GL_UNIFORM_BUFFER_BINDING); });
     add(
         "read framebuffer", [this] { gl.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer); },
         [this] { return integers(GL_READ_FRAMEBUFFER_BINDING); });
