@@ -8,28 +8,28 @@
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 5) readonly buffer OrderKeys { uint order_keys[]; };  // sorted
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 uniform uint nearest_key;  // to be added to an order key: then the bits of a depth
 #if RECORDS
 layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };         // Gaussian of each slot
-layout(std430, binding = 2) readonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
+layout(std430, binding = 2) readonly buffer Coverages { uint coverages[]; };  // (slot, view): supertiles.glsl
 layout(std430, binding = 3) readonly buffer Measured { uint measured[]; };       // by splat
-layout(std430, binding = 4) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
+layout(std430, binding = 4) writeonly buffer NextBounds { float next_bounds[]; };  // (view, Gaussian)
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
 #endif
 
 void main() {
   uint slot = thread_index();
-  if (slot >= amounts[0].count) return;
-  if (slot == 0u) counters.median_depth = order_keys[amounts[0].count / 2u] + nearest_key;
+  if (slot >= arguments[0].count) return;
+  if (slot == 0u) counters.median_depth = order_keys[arguments[0].count / 2u] + nearest_key;
 #if RECORDS
   for (uint v = view_begin; v < view_end; ++v) {
-    if (touched_by[slot * frame.view_count + v] == 0u) continue;
+    if (coverages[slot * frame.view_count + v] == 0u) continue;
     float most = uintBitsToFloat(measured[splat_of(slot, v)]);
-    upper_next[v * frame.gaussian_count + indices[slot]] = clamp(most, float(UPPER_FLOOR), 1.0);
+    next_bounds[v * frame.gaussian_count + indices[slot]] = clamp(most, float(BOUND_FLOOR), 1.0);
   }
 #endif
 }

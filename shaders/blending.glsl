@@ -7,7 +7,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
-#include "lists.glsl"
+#include "supertiles.glsl"
 #include "tiles/places.glsl"
 #include "splats.glsl"  // binding 12
 
@@ -201,7 +201,7 @@ bool find_tile() {
   tile = group_index();
   if (tile >= frame.tile_count) return false;
 #endif
-  while (view_index + 1u < frame.view_count && tile >= views[view_index + 1u].list_offset * LISTED) ++view_index;
+  while (view_index + 1u < frame.view_count && tile >= views[view_index + 1u].supertile_offset * SUPERTILE_TILES) ++view_index;
   uint list = frame.list_per_view != 0u ? view_index : tile;
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];

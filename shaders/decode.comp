@@ -55,8 +55,8 @@ bool is_hidden(uint v, Anchor anchor, uint n, uint bits) {
     Gaussian g = Gaussian(vec4(mean_of(anchor, n, k), 1.0), vec4(1.0, 0.0, 0.0, 0.0), vec4(vec3(widest), 0.0));
     Splat splat;
     if (!project(views[v], g, scaled_axes(g), splat)) return false;
-    float upper = upper_of(page_first + n * uint(OFFSETS) + k, v, splat.depth);
-    if (!(threshold_of(splat, upper) > 1.0)) return false;
+    float bound = bound_of(page_first + n * uint(OFFSETS) + k, v, splat.depth);
+    if (!(threshold_of(splat, bound) > 1.0)) return false;
   }
   return bits != 0u;
 }

@@ -3,21 +3,21 @@
 #include "shared/types.h"
 #include "shared/grid.glsl"
 #include "frame.glsl"
-#include "lists.glsl"
+#include "supertiles.glsl"
 
 layout(local_size_x = THREADS) in;
 
 #if BOTH_EYES
-#define TOUCHED uvec2  // of both eyes by one read
+#define COVERAGE uvec2  // of both eyes by one read
 #else
-#define TOUCHED uint
+#define COVERAGE uint
 #endif
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer Order { uint order[]; };
-layout(std430, binding = 2) readonly buffer Touched { TOUCHED touched_by[]; };  // (slot, view): lists.glsl
+layout(std430, binding = 2) readonly buffer Coverages { COVERAGE coverages[]; };  // (slot, view): supertiles.glsl
 layout(std430, binding = 3) writeonly buffer PairOffsets { uint pair_offsets[]; };
-layout(std430, binding = 4) writeonly buffer TouchedInOrder { TOUCHED touched_in_order[]; };  // (rank, view of the group)
+layout(std430, binding = 4) writeonly buffer CoverageInOrder { COVERAGE coverage_in_order[]; };  // (rank, view of the group)
 #if !BOTH_EYES
 uniform uint view_begin;
 uniform uint view_end;
@@ -25,17 +25,17 @@ uniform uint view_end;
 
 void main() {
   uint rank = thread_index();
-  if (rank >= amounts[0].count) return;
+  if (rank >= arguments[0].count) return;
 #if BOTH_EYES
-  TOUCHED both = touched_by[order[rank]];
-  touched_in_order[rank] = both;
+  COVERAGE both = coverages[order[rank]];
+  coverage_in_order[rank] = both;
   pair_offsets[rank] = count_of(both.x) + count_of(both.y);
 #else
   uint sum = 0u;
   for (uint v = view_begin; v < view_end; ++v) {
-    uint touched = touched_by[order[rank] * frame.view_count + v];
-    touched_in_order[rank * (view_end - view_begin) + v - view_begin] = touched;
-    sum += count_of(touched);
+    uint coverage = coverages[order[rank] * frame.view_count + v];
+    coverage_in_order[rank * (view_end - view_begin) + v - view_begin] = coverage;
+    sum += count_of(coverage);
   }
   pair_offsets[rank] = sum;
 #endif

@@ -19,9 +19,9 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "sh.glsl"  // binding 2, of the page
 #define SPLATS_WRITTEN
 #include "splats.glsl"  // binding 12
-layout(std430, binding = 3) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 3) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
-layout(std430, binding = 6) writeonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
+layout(std430, binding = 6) writeonly buffer Coverages { uint coverages[]; };  // (slot, view): supertiles.glsl
 #if RECORDS || WEIGHS
 layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // by splat, of one word or two
 #endif
@@ -40,7 +40,7 @@ void leave_aside(uint splat) {
 
 void main() {
   uint slot = thread_index();
-  uint i = slot < amounts[0].count ? indices[slot] - page_first : page_count;  // wraps, and is too large, before the page
+  uint i = slot < arguments[0].count ? indices[slot] - page_first : page_count;  // wraps, and is too large, before the page
   bool is_here = i < page_count;
   i = is_here ? i : 0u;
   Gaussian g = GAUSSIAN(i);
@@ -56,19 +56,19 @@ void main() {
     axes = scaled_axes(g);
 #endif
     Splat splat;
-    uint touched = 0u;
+    uint coverage = 0u;
     if (is_here && is_kept(i, v) && project(view, g, axes, splat)) {
       splat.colour.w = tile_level(v, indices[slot], splat);
 #if HALF
       splat = rounded(splat);  // as `pairs` will find it
 #endif
       uvec4 box = tile_box(splat, view);
-      uvec2 rows = list_rows(box);
+      uvec2 rows = supertile_rows(box);
       bool is_tall = rows.y - rows.x > TALL_ROWS;
-      touched = is_tall ? 1u : touched_lists(splat, view, box);  // not known yet
+      coverage = is_tall ? 1u : coverage_of(splat, view, box);  // not known yet
       if (is_tall) leave_aside(splat_at);
     }
-    if (is_here) touched_by[slot * frame.view_count + v] = touched;
+    if (is_here) coverages[slot * frame.view_count + v] = coverage;
 #if WEIGHS
     if (is_here) {
       measured[2u * splat_at] = 0u;
@@ -77,13 +77,13 @@ void main() {
 #elif RECORDS
     if (is_here) measured[splat_at] = 0u;
 #endif
-    if (touched != 0u) {
+    if (coverage != 0u) {
 #if SH_DEGREE == 0 && OFFSETS == 0
       splat.colour.rgb = colour;
 #else
       splat.colour.rgb = sh_colour(place_of(i, v), normalize(g.position.xyz - view.anchor.xyz - view.eye.xyz));
 #endif
     }
-    write_splat(splat_at, touched != 0u, splat);
+    write_splat(splat_at, coverage != 0u, splat);
   }
 }

@@ -6,7 +6,7 @@
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer DepthKeys { uint depth_keys[]; };
 layout(std430, binding = 2) readonly buffer BlockCounts { uint block_counts[]; };  // scanned
 layout(std430, binding = 3) writeonly buffer Keys { uint keys[]; };
@@ -21,7 +21,7 @@ shared uint masks[EACH][WORDS];  // of each round: a bit for each Gaussian that 
 
 void main() {
   uint block = group_index();
-  if (block * COMPACT_BLOCK >= frame.gaussian_count || amounts[0].count == 0u) return;
+  if (block * COMPACT_BLOCK >= frame.gaussian_count || arguments[0].count == 0u) return;
   uint self = gl_LocalInvocationIndex;
   uint before = block_counts[block];
   uint key[EACH];

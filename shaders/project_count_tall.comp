@@ -18,7 +18,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer FrameCounters { Counters counters; };
 layout(std430, binding = 2) readonly buffer Tall { uint tall[]; };  // splats
-layout(std430, binding = 4) writeonly buffer Touched { uint touched_by[]; };  // (slot, view): lists.glsl
+layout(std430, binding = 4) writeonly buffer Coverages { uint coverages[]; };  // (slot, view): supertiles.glsl
 
 shared uvec4 box_at[TALL_EACH];
 shared uint pairs_at[TALL_EACH];
@@ -35,7 +35,7 @@ void main() {
     uvec4 box = tile_box(SPLAT(splat), views[view_of(splat)]);
     box_at[self] = box;
     pairs_at[self] = 0u;
-    rows = list_rows(box).y - list_rows(box).x;
+    rows = supertile_rows(box).y - supertile_rows(box).x;
   }
   rows_before[self] = scan_group(rows);
   barrier();
@@ -43,13 +43,13 @@ void main() {
     LAST_BEFORE(rows_before, nth, at)
     uint splat = tall[first + at];
     uvec4 box = box_at[at];
-    uint row = list_rows(box).x + nth - rows_before[at];
-    uvec2 columns = list_row(SPLAT(splat), views[view_of(splat)], box, row).columns;
+    uint row = supertile_rows(box).x + nth - rows_before[at];
+    uvec2 columns = supertile_row(SPLAT(splat), views[view_of(splat)], box, row).columns;
     atomicAdd(pairs_at[at], columns.y - columns.x);
   }
   barrier();
   if (has_one) {
     uint splat = tall[first + self];
-    touched_by[slot_of(splat) * frame.view_count + view_of(splat)] = pairs_at[self];
+    coverages[slot_of(splat) * frame.view_count + view_of(splat)] = pairs_at[self];
   }
 }

@@ -13,7 +13,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 #include "threshold/threshold.glsl"  // binding 7
 layout(std430, binding = 2) writeonly buffer DepthKeys { uint depth_keys[]; };    // of the model
 #if RECORDS
-layout(std430, binding = 8) writeonly buffer UpperNext { float upper_next[]; };  // (view, Gaussian)
+layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; };  // (view, Gaussian)
 #endif
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
@@ -30,8 +30,8 @@ void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
     left_out = touches_a_tile(splat, views[v]);
   }
 #endif
-  float aged = frame.remembers == 0u ? 1.0 : min(1.0, float(UPPER_AGEING) * upper[v * frame.gaussian_count + gaussian]);
-  upper_next[v * frame.gaussian_count + gaussian] = left_out ? aged : 1.0;
+  float aged = frame.remembers == 0u ? 1.0 : min(1.0, float(BOUND_AGEING) * bounds[v * frame.gaussian_count + gaussian]);
+  next_bounds[v * frame.gaussian_count + gaussian] = left_out ? aged : 1.0;
 }
 #endif
 

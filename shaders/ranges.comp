@@ -6,13 +6,13 @@
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer Keys { uint keys[]; };
 layout(std430, binding = 2) buffer Ranges { uint ranges[]; };  // begin, end of each tile
 
 void main() {
   uint at = thread_index();
-  uint count = amounts[0].count;
+  uint count = arguments[0].count;
   if (at >= count) return;
   uint tile = keys[at];
   if (at == 0u || keys[at - 1u] != tile) ranges[2u * tile] = at;

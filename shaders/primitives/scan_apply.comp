@@ -3,20 +3,20 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
-#include "shared/amount.glsl"
+#include "shared/arguments.glsl"
 #include "shared/saturate.glsl"
 #include "primitives/scan_block.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) buffer Values { uvec4 values[]; };  // those beyond the last become anything
 layout(std430, binding = 2) readonly buffer BlockSums { uint block_sums[]; };
 layout(std430, binding = 3) writeonly buffer Total { uint total[]; };
-uniform uint amount;
+uniform uint which;
 
 void main() {
-  uint count = amounts[amount].count;
+  uint count = arguments[which].count;
   uint block = group_index();
   uint blocks = max(1u, blocks_of(count, SCAN_BLOCK));
   if (block >= blocks) return;

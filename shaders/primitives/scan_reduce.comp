@@ -8,13 +8,13 @@
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer Values { uvec4 values[]; };  // by four: fewer, larger reads
 layout(std430, binding = 2) writeonly buffer BlockSums { uint block_sums[]; };
-uniform uint amount;  // which Amount says how many values there are
+uniform uint which;  // of the arguments, those that say how many values there are
 
 void main() {
-  uint count = amounts[amount].count;
+  uint count = arguments[which].count;
   uint block = group_index();
   if (block * SCAN_BLOCK >= count) return;
   uint sum = 0u;

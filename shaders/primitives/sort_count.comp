@@ -4,11 +4,11 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
-#include "shared/amount.glsl"
+#include "shared/arguments.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer Keys { uvec4 keys[]; };  // by four: fewer, larger reads
 layout(std430, binding = 2) writeonly buffer Histogram { uint histogram[]; };
 uniform uint shift;  // of the digit in the key
@@ -18,7 +18,7 @@ uniform uint shift;  // of the digit in the key
 shared uint counts[DIGITS];
 
 void main() {
-  uint count = amounts[0].count;
+  uint count = arguments[0].count;
   uint block = group_index();
   if (block * SORT_BLOCK >= count) return;
   for (uint d = gl_LocalInvocationIndex; d < DIGITS; d += THREADS) counts[d] = 0u;

@@ -4,11 +4,11 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
-#include "shared/amount.glsl"
+#include "shared/arguments.glsl"
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer Keys { uint keys[]; };
 layout(std430, binding = 2) readonly buffer Values { uint values[]; };
 layout(std430, binding = 3) readonly buffer Histogram { uint histogram[]; };
@@ -22,7 +22,7 @@ shared uint masks[DIGITS * WORDS];  // who has the digit in this round
 shared uint places[DIGITS];         // where the digit's next key goes
 
 void main() {
-  uint count = amounts[0].count;
+  uint count = arguments[0].count;
   uint block = group_index();
   if (block * SORT_BLOCK >= count) return;
   uint self = gl_LocalInvocationIndex;

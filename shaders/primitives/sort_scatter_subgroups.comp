@@ -8,7 +8,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
-#include "shared/amount.glsl"
+#include "shared/arguments.glsl"
 #include "shared/saturate.glsl"
 // Twice as many invocations hold half as many pairs each, which leaves room for more of them; but counters of 9 bits would take
 // up the shared memory.
@@ -22,7 +22,7 @@
 
 layout(local_size_x = THREADS) in;
 
-layout(std430, binding = 0) readonly buffer Amounts { Amount amounts[]; };
+layout(std430, binding = 0) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 1) readonly buffer Keys { uint keys[]; };
 layout(std430, binding = 2) readonly buffer Values { uint values[]; };
 layout(std430, binding = 3) readonly buffer Histogram { uint histogram[]; };
@@ -42,7 +42,7 @@ shared uint moves[DIGITS];  // from a place in the block to the place in the buf
 uint digit_of(uint key) { return (key >> shift) % DIGITS; }
 
 void main() {
-  uint count = amounts[0].count;
+  uint count = arguments[0].count;
   uint block = group_index();
   if (block * SORT_BLOCK >= count) return;
   uint self = gl_LocalInvocationIndex;

@@ -25,17 +25,17 @@
 
 #define MAX_VIEWS 8
 
-// Where tiles share a list of pairs, so many bits of a pair's value are its splat; above, a bit for each
+// Where supertiles are of several tiles, so many bits of a pair's value are its splat; above, a bit for each
 // tile.
-#define LIST_SPLAT_BITS 28
+#define SUPERTILE_SPLAT_BITS 28
 // Sorted pairs that a work group splits among their tiles.
 #define TILE_BLOCK 1024
 
 // What a frame remembers of a Gaussian (docs/method.md 5): never less than the floor, or a hidden one would
 // divide by zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be
 // measured again.
-#define UPPER_FLOOR 0.01
-#define UPPER_AGEING 1.25
+#define BOUND_FLOOR 0.01
+#define BOUND_AGEING 1.25
 // Blending weights alpha T are summed in steps of this: the least one that a pixel can blend, tau times the
 // least T, is more than one step, and the sum of a tile of 1,024 px fits a word.
 #define WEIGHT_SCALE 4194304.0

@@ -29,7 +29,7 @@ struct View {
   uint height;  // px
   uint tiles_x;
   uint tiles_y;
-  uint list_offset;   // this view's first list in the frame's lists of pairs
+  uint supertile_offset;   // this view's first supertile in the frame
   uint pixel_offset;  // this view's first pixel in the frame's pixel buffers
   uint order_group;   // views of equal number share one depth order
   uint pitch;  // px from one of its tiles to the next: a tile's side, more in a probe, whose tiles lie apart
@@ -51,7 +51,7 @@ struct FrameParameters {
   uint probed;          // the view that the probe is of; MAX_VIEWS without one
   uint gaussian_count;  // of the model
   uint slots;           // that each view has room for
-  uint tile_count;      // over all views, as their lists have them
+  uint tile_count;      // over all views, as their supertiles have them
   uint list_per_view;   // 1 with --tiles all: a view's tiles share one list
   // Of Scaffold-GS.
   uint offset_count;        // K
@@ -91,7 +91,7 @@ struct Splat {
 struct Counters {
   uint visible;       // Gaussians in depth order, summed over the order groups
   uint order_wanted;  // the most Gaussians that one order group had
-  uint pairs;         // Gaussian-list pairs wanted, all views
+  uint pairs;         // Gaussian-supertile pairs wanted, all views
   uint overflow;      // OVERFLOW_ bits
   uint loop_cut;      // tiles whose list the driver cut short: the picture is wrong and must not be used
   uint median_depth;  // bits of a float: of what the last order group drew, world units
@@ -103,23 +103,23 @@ struct Counters {
   uint long_x, long_y, long_z;
   uint tall;  // splats whose tiles are counted together, and the groups of that launch
   uint tall_x, tall_y, tall_z;
-  uint tile_pairs;  // Gaussian-tile pairs wanted where lists are of several tiles, all views
+  uint tile_pairs;  // Gaussian-tile pairs wanted where supertiles are of several tiles, all views
 };
 
 #define KEPT_HIDDEN 0x80000000u  // among the bits of an anchor's Gaussians: not decoded, the last frame's
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
 #define DEPTH_KEY_NONE 0xFFFFFFFFu  // of a Gaussian that no view of the order group draws
-#define AMOUNT_ORDER 0u             // what a total counts: the Gaussians of one order group
-#define AMOUNT_PAIRS 1u             // the pairs of one order group, after those of the groups before it
-#define AMOUNT_ALL_PAIRS 2u         // the pairs of all groups
+#define ARGUMENTS_ORDER 0u             // what a total counts: the Gaussians of one order group
+#define ARGUMENTS_PAIRS 1u             // the pairs of one order group, after those of the groups before it
+#define ARGUMENTS_ALL_PAIRS 2u         // the pairs of all groups
 #define OVERFLOW_ORDER 1u
 #define OVERFLOW_PAIRS 2u
 #define OVERFLOW_TILE_PAIRS 4u
 
 // How many things there are, known to the GPU only, and the indirect dispatches that go over them. Group
 // counts are split into x and y for drivers that allow few along x.
-struct Amount {
+struct DispatchArguments {
   uint count;
   uint first;                            // where they begin in their buffer
   uint threads_x, threads_y, threads_z;  // THREADS things a group
@@ -135,7 +135,7 @@ static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
 static_assert(sizeof(Counters) == 76 && offsetof(Counters, long_x) == 44 && offsetof(Counters, tall_x) == 60);
-static_assert(sizeof(Amount) == 48 && offsetof(Amount, threads_x) == 8 && offsetof(Amount, sort_x) == 32);
+static_assert(sizeof(DispatchArguments) == 48 && offsetof(DispatchArguments, threads_x) == 8 && offsetof(DispatchArguments, sort_x) == 32);
 }  // namespace binosplat::shared
 #endif
 

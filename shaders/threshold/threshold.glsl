@@ -1,19 +1,19 @@
 // Th: the alpha below which a Gaussian makes no pair with a tile; the blend keeps tau and the true alpha (docs/method.md 5). A
 // rule is a file beside this one with one function:
-//   float threshold(float size, float upper, float loss)   at least tau
-// size: sqrt(det C2), px^2; upper: T_upper, above 0; loss: K or kappa.
+//   float threshold(float size, float bound, float loss)   at least tau
+// size: sqrt(det C2), px^2; bound: T_upper, above 0; loss: K or kappa.
 
 #include "frame.glsl"
 
-#include "threshold/upper.glsl"
+#include "threshold/bound.glsl"
 #include "threshold/{TH_NAME}.glsl"
 
-float threshold_of(Splat splat, float upper) { return threshold(splat.conic.w, upper, frame.loss); }
+float threshold_of(Splat splat, float bound) { return threshold(splat.conic.w, bound, frame.loss); }
 
 // Th of a Gaussian in view v, where it is `splat`.
 float threshold_in(uint v, uint gaussian, Splat splat) {
   if (v >= frame.asked) return float(ALPHA_MIN);
-  return threshold_of(splat, upper_of(gaussian, v, splat.depth));
+  return threshold_of(splat, bound_of(gaussian, v, splat.depth));
 }
 
 // The same for what leaves a mark at all.

@@ -6,7 +6,7 @@
 #endif
 
 #if PROBED
-// The tiles of a probe lie apart: its lists are of tiles that are neighbours among these.
+// The tiles of a probe lie apart: its supertiles are of tiles that are neighbours among these.
 bool is_probe(View view) { return view.is_probe != 0u; }
 uint tile_pitch(View view) { return view.pitch; }
 uvec2 tile_shift(View view) { return uvec2(view.shift_x, view.shift_y); }

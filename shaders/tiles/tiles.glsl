@@ -7,7 +7,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 
-#include "lists.glsl"
+#include "supertiles.glsl"
 #include "tiles/places.glsl"
 #include "tiles/level.glsl"
 
@@ -64,81 +64,81 @@ bool holds_a_centre(Splat splat, View view, vec2 extent) {
 
 #include "tiles/{TILES_NAME}.glsl"
 
-// The rows of lists of a box of tiles: [x, y).
-uvec2 list_rows(uvec4 box) {
-  return box.w <= box.y ? uvec2(0u) : uvec2(box.y / uint(LIST_TILES), (box.w - 1u) / uint(LIST_TILES) + 1u);
+// The rows of supertiles of a box of tiles: [x, y).
+uvec2 supertile_rows(uvec4 box) {
+  return box.w <= box.y ? uvec2(0u) : uvec2(box.y / uint(SUPERTILE_SIDE), (box.w - 1u) / uint(SUPERTILE_SIDE) + 1u);
 }
 
-// A row of lists: the columns of lists [x, y) that a splat is in, and the columns of tiles that it touches in the first row
+// A row of supertiles: the columns [x, y) of those that a splat is in, and the columns of tiles that it touches in the first row
 // of tiles [x, y) and in the second, if there is one, [z, w).
-struct ListRow {
+struct SupertileRow {
   uvec2 columns;
   uvec4 tiles;
 };
 
-ListRow list_row_of(uvec4 tiles) {
-#if LIST_TILES == 1
-  return ListRow(tiles.xy, tiles);
+SupertileRow supertile_row_of(uvec4 tiles) {
+#if SUPERTILE_SIDE == 1
+  return SupertileRow(tiles.xy, tiles);
 #else
   uvec2 upper = tiles.x < tiles.y ? uvec2(tiles.x / 2u, (tiles.y + 1u) / 2u) : uvec2(0xFFFFFFFFu, 0u);
   uvec2 lower = tiles.z < tiles.w ? uvec2(tiles.z / 2u, (tiles.w + 1u) / 2u) : uvec2(0xFFFFFFFFu, 0u);
   uvec2 both = uvec2(min(upper.x, lower.x), max(upper.y, lower.y));
-  return ListRow(both.y == 0u ? uvec2(0u) : both, tiles);
+  return SupertileRow(both.y == 0u ? uvec2(0u) : both, tiles);
 #endif
 }
 
-ListRow list_row(Splat splat, View view, uvec4 box, uint nth) {
+SupertileRow supertile_row(Splat splat, View view, uvec4 box, uint nth) {
   uvec4 tiles = uvec4(0u);
-  uint row = nth * uint(LIST_TILES);
+  uint row = nth * uint(SUPERTILE_SIDE);
   if (row >= box.y) tiles.xy = tile_row(splat, view, box, row);
-#if LIST_TILES == 2
+#if SUPERTILE_SIDE == 2
   if (row + 1u < box.w) tiles.zw = tile_row(splat, view, box, row + 1u);
 #endif
-  return list_row_of(tiles);
+  return supertile_row_of(tiles);
 }
 
-// A pair's value (lists.glsl).
-uint value_of(uint splat, ListRow row, uint column) {
-#if LIST_TILES == 1
+// A pair's value (supertiles.glsl).
+uint value_of(uint splat, SupertileRow row, uint column) {
+#if SUPERTILE_SIDE == 1
   return splat;
 #else
   uvec2 tiles = uvec2(2u * column, 2u * column + 1u);
   uvec2 upper = uvec2(greaterThanEqual(tiles, row.tiles.xx)) * uvec2(lessThan(tiles, row.tiles.yy));
   uvec2 lower = uvec2(greaterThanEqual(tiles, row.tiles.zz)) * uvec2(lessThan(tiles, row.tiles.ww));
-  return splat | (upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3) << LIST_SPLAT_BITS;
+  return splat | (upper.x | upper.y << 1 | lower.x << 2 | lower.y << 3) << SUPERTILE_SPLAT_BITS;
 #endif
 }
 
-// What a splat touches (lists.glsl). Tile row by tile row, so that neighbours ask at the same time.
-uint touched_lists(Splat splat, View view, uvec4 box) {
+// What a splat touches (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
+uint coverage_of(Splat splat, View view, uvec4 box) {
   uint count = 0u;
-#if LIST_TILES == 1
+#if SUPERTILE_SIDE == 1
   for (uint row = box.y; row < box.w; ++row) {
     uvec2 columns = tile_row(splat, view, box, row);
     count += columns.y - columns.x;
   }
 #else
-  uvec2 rows = list_rows(box);
-  uint list = rows.x * lists_across(view) + box.x / 2u;
-  bool are_few = rows.y - rows.x <= 2u && (box.z + 1u) / 2u - box.x / 2u <= 2u && list < FEW_LISTS_END;
+  uvec2 rows = supertile_rows(box);
+  uint supertile = rows.x * supertiles_across(view) + box.x / 2u;
+  bool are_few = rows.y - rows.x <= 2u && (box.z + 1u) / 2u - box.x / 2u <= 2u && supertile < FEW_END;
   uint bits = 0u;
   uvec4 tiles = uvec4(0u);
   for (uint row = box.y; row < box.w; ++row) {
     uvec2 columns = tile_row(splat, view, box, row);
     if (are_few) {
       uvec2 from = columns - (box.x & ~1u);
-      uint touched = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
-      bits |= (touched & 3u | (touched & 12u) << 2) << (8u * (row / 2u - rows.x) + 2u * (row % 2u));
+      uint row_bits = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
+      bits |= (row_bits & 3u | (row_bits & 12u) << 2) << (8u * (row / 2u - rows.x) + 2u * (row % 2u));
     } else {
       if (row % 2u == 0u) tiles = uvec4(columns, 0u, 0u);
       else tiles.zw = columns;
       if (row % 2u == 1u || row + 1u == box.w) {
-        columns = list_row_of(tiles).columns;
+        columns = supertile_row_of(tiles).columns;
         count += columns.y - columns.x;
       }
     }
   }
-  if (bits != 0u) return IN_FEW_LISTS | list << FEW_LIST_SHIFT | bits;
+  if (bits != 0u) return IN_FEW_SUPERTILES | supertile << FEW_SHIFT | bits;
 #endif
   return count;
 }

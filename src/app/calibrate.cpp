@@ -31,7 +31,7 @@ void print(const study::Calibration& c, const CalibrateOptions& o) {
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
              drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
                   : fmt::format("target: {} dB against the exact pictures", c.target.db));
-  fmt::print("light by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.upper.size(),
+  fmt::print("light by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.bounds.size(),
              c.depth_table.far, c.depth_table_seconds);
   fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "T from", "loss",
              drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");

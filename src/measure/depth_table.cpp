@@ -24,12 +24,12 @@ render::DepthTable measure_depth_table(render::Frame& frame, std::span<const sha
   for (const auto& gaussian : all) depths.push_back(gaussian.depth);
   const double reach = depths.empty() ? 1.0 : quantile(std::move(depths), 0.95);
   render::DepthTable table{settings.far.value_or(static_cast<float>(reach)), {}};
-  table.upper.resize(static_cast<std::size_t>(settings.bins));
+  table.bounds.resize(static_cast<std::size_t>(settings.bins));
   for (const auto& gaussian : all) {
     const double bin = gaussian.depth / static_cast<double>(table.far) * settings.bins;
     if (bin >= settings.bins) continue;
-    float& upper = table.upper[static_cast<std::size_t>(bin)];
-    upper = std::max(upper, gaussian.transmittance);
+    float& bound = table.bounds[static_cast<std::size_t>(bin)];
+    bound = std::max(bound, gaussian.transmittance);
   }
   return table;
 }

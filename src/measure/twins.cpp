@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "primitives/amount.h"
+#include "primitives/arguments.h"
 #include "reference/render.h"
 #include "reference/threshold.h"
 #include "render/buffers.h"
@@ -155,7 +155,7 @@ Slots make_slots(const FrameShape& shape, OrderGroup group, const std::vector<Vi
   return slots;
 }
 
-using Pair = std::pair<std::uint32_t, std::uint32_t>;  // list, splat
+using Pair = std::pair<std::uint32_t, std::uint32_t>;  // supertile, splat
 
 // In depth order over the views of each group, as the stage pairs leaves them.
 std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vector<Slots>& slots,
@@ -167,7 +167,7 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
     std::vector<std::uint64_t> rank(shape.gaussian_count);
     for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = r;
     const reference::TileLists& lists = results[v].lists;
-    const std::uint32_t first = shape.settings.tiles == TILES_ALL ? v : shape.views[v].list_offset;
+    const std::uint32_t first = shape.settings.tiles == TILES_ALL ? v : shape.views[v].supertile_offset;
     for (std::uint32_t t = 0; t + 1 < lists.begin.size(); ++t) {
       for (std::uint32_t k = lists.begin[t]; k < lists.begin[t + 1]; ++k) {
         const std::uint32_t i = lists.gaussians[k];
@@ -184,21 +184,21 @@ std::vector<Pair> pairs_in_depth_order(const FrameShape& shape, const std::vecto
   return pairs;
 }
 
-void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t list_bits, std::uint32_t groups_max,
+void upload_pairs(const std::vector<Pair>& pairs, std::uint32_t supertile_bits, std::uint32_t groups_max,
                   FrameBuffers& buffers) {
   std::vector<std::uint32_t> keys;
   std::vector<std::uint32_t> values;
-  for (const auto& [list, splat] : pairs) {
-    keys.push_back(list);
+  for (const auto& [supertile, splat] : pairs) {
+    keys.push_back(supertile);
     values.push_back(splat);
   }
   const auto count = static_cast<std::uint32_t>(pairs.size());
   buffers.pairs.reserve(count);
-  buffers.sort.reserve(buffers.pairs, list_bits);
+  buffers.sort.reserve(buffers.pairs, supertile_bits);
   buffers.pairs.keys().upload(keys);
   buffers.pairs.values().upload(values);
-  buffers.pair_amounts.upload(std::vector{primitives::make_sort_amounts(
-      count, primitives::RadixSort::digit_bits(list_bits), groups_max, buffers.pairs.block())});
+  buffers.pair_arguments.upload(std::vector{primitives::make_sort_arguments(
+      count, primitives::RadixSort::digit_bits(supertile_bits), groups_max, buffers.pairs.block())});
 }
 
 void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
@@ -213,7 +213,7 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
     }
   }
   upload_in(shape.settings.precision, splats, buffers.splats);
-  buffers.touched.upload(pair_counts);
+  buffers.coverages.upload(pair_counts);
 }
 
 // The slots as the stage project leaves them, or `sorted` as the stage order does.
@@ -237,16 +237,16 @@ void upload_order(const OrderGroup& group, const Slots& slots, const std::vector
   buffers.order.keys().upload(keys);
   buffers.order.values().upload(values);
   const auto count = static_cast<std::uint32_t>(values.size());
-  buffers.drawn.front()->amounts.upload(std::vector{primitives::make_sort_amounts(
+  buffers.drawn.front()->arguments.upload(std::vector{primitives::make_sort_arguments(
       count, primitives::RadixSort::digit_bits(group.key_bits), groups_max, buffers.order.block())});
 }
 
 void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, FrameBuffers& buffers) {
-  std::vector<std::uint32_t> ranges(2 * std::size_t{std::max(shape.list_count, shape.view_count())});
+  std::vector<std::uint32_t> ranges(2 * std::size_t{std::max(shape.supertile_count, shape.view_count())});
   for (std::uint32_t k = 0; k < sorted.size(); ++k) {
-    const std::uint32_t list = sorted[k].first;
-    if (k == 0 || sorted[k - 1].first != list) ranges[2 * list] = k;
-    ranges[2 * list + 1] = k + 1;
+    const std::uint32_t supertile = sorted[k].first;
+    if (k == 0 || sorted[k - 1].first != supertile) ranges[2 * supertile] = k;
+    ranges[2 * supertile + 1] = k + 1;
   }
   buffers.ranges.upload(ranges);
 }
@@ -281,7 +281,7 @@ std::vector<Picture> fill(Stage until, const Model& model, const FrameShape& sha
     std::stable_sort(pairs.begin(), pairs.end(),
                      [](const Pair& a, const Pair& b) { return a.first < b.first; });
   }
-  upload_pairs(pairs, shape.list_bits(), groups_max, buffers);
+  upload_pairs(pairs, shape.supertile_bits(), groups_max, buffers);
   if (until == Stage::ranges) upload_ranges(shape, pairs, buffers);
   buffers.counters.upload(std::vector{shared::Counters{.pairs = static_cast<std::uint32_t>(pairs.size())}});
   return pictures;

@@ -39,7 +39,7 @@ std::uint32_t RadixSort::digit_bits(std::uint32_t bits) { return bits <= 8 * pas
 
 std::uint32_t RadixSort::passes(std::uint32_t bits) { return (bits + SORT_BITS_MAX - 1) / SORT_BITS_MAX; }
 
-void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs,
+void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, PairBuffers& pairs,
                     std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
   gl::Defines defines = pairs.block_define();
@@ -49,13 +49,14 @@ void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairB
       context.program(context.limits().subgroups_of_32 ? "primitives/sort_scatter_subgroups.comp"
                                                        : "primitives/sort_scatter.comp",
                       defines);
-  const auto blocks = gl::Work::indirect(amounts, offsetof(shared::Amount, sort_x));
+  const auto blocks = gl::Work::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
   for (std::uint32_t shift = 0; shift < bits; shift += digit_bits(bits)) {
-    dispatcher.run(count, blocks, {{"Amounts", amounts}, {"Keys", pairs.keys()}, {"Histogram", histogram_}},
+    dispatcher.run(count, blocks,
+                   {{"Arguments", arguments}, {"Keys", pairs.keys()}, {"Histogram", histogram_}},
                    {{"shift", shift}});
-    scan_.run(dispatcher, amounts, 1, histogram_);
+    scan_.run(dispatcher, arguments, 1, histogram_);
     dispatcher.run(scatter, blocks,
-                   {{"Amounts", amounts},
+                   {{"Arguments", arguments},
                     {"Keys", pairs.keys()},
                     {"Values", pairs.values()},
                     {"Histogram", histogram_},

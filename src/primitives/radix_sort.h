@@ -42,7 +42,7 @@ class RadixSort {
   void reserve(const PairBuffers& pairs, std::uint32_t bits);
 
   /// Pairs that a work group has where there is room for so many: fewer where it is for few. Who fills
-  /// SortAmounts for them needs it.
+  /// SortArguments for them needs it.
   static std::uint32_t block(std::int64_t capacity);
 
   /// Counters (uint) that a sort of so many pairs by `bits` bits takes besides.
@@ -53,10 +53,10 @@ class RadixSort {
   static std::uint32_t digit_bits(std::uint32_t bits);
   static std::uint32_t passes(std::uint32_t bits);
 
-  /// Sorts the first amounts[0].count pairs by the low `bits` bits of their keys, in whole digits; equal keys
-  /// keep their order. `amounts` holds SortAmounts for such digits. Afterwards pairs.keys() and
+  /// Sorts the first arguments[0].count pairs by the low `bits` bits of their keys, in whole digits; equal
+  /// keys keep their order. `arguments` holds SortArguments for such digits. Afterwards pairs.keys() and
   /// pairs.values() are the sorted ones.
-  void run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, PairBuffers& pairs, std::uint32_t bits);
+  void run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, PairBuffers& pairs, std::uint32_t bits);
 
  private:
   gl::Buffer histogram_;

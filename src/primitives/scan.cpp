@@ -12,16 +12,19 @@ void Scan::reserve(std::int64_t count) {
   total_.reserve(4);
 }
 
-void Scan::run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which,
+void Scan::run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, std::uint32_t which,
                const gl::Buffer& values) {
   gl::Context& context = dispatcher.context();
-  const auto blocks = gl::Work::indirect(
-      amounts, static_cast<std::int64_t>(which * sizeof(shared::Amount) + offsetof(shared::Amount, scan_x)));
+  const auto blocks =
+      gl::Work::indirect(arguments, static_cast<std::int64_t>(which * sizeof(shared::DispatchArguments) +
+                                                              offsetof(shared::DispatchArguments, scan_x)));
   dispatcher.run(context.program("primitives/scan_reduce.comp"), blocks,
-                 {{"Amounts", amounts}, {"Values", values}, {"BlockSums", block_sums_}}, {{"amount", which}});
-  dispatcher.run(context.program("primitives/scan_apply.comp"), blocks,
-                 {{"Amounts", amounts}, {"Values", values}, {"BlockSums", block_sums_}, {"Total", total_}},
-                 {{"amount", which}});
+                 {{"Arguments", arguments}, {"Values", values}, {"BlockSums", block_sums_}},
+                 {{"which", which}});
+  dispatcher.run(
+      context.program("primitives/scan_apply.comp"), blocks,
+      {{"Arguments", arguments}, {"Values", values}, {"BlockSums", block_sums_}, {"Total", total_}},
+      {{"which", which}});
 }
 
 }  // namespace binosplat::primitives

@@ -14,9 +14,10 @@ class Scan {
   /// Room for `count` values; no dispatch may be under way that uses this scan.
   void reserve(std::int64_t count);
 
-  /// Replaces each of the first amounts[which].count values (uint) by the sum of those before it; the sum of
-  /// all is left in total(). Up to three values after them change, too. `amounts` holds Amounts.
-  void run(gl::Dispatcher& dispatcher, const gl::Buffer& amounts, std::uint32_t which,
+  /// Replaces each of the first arguments[which].count values (uint) by the sum of those before it; the sum
+  /// of all is left in total(). Up to three values after them change, too. `arguments` holds
+  /// DispatchArguments.
+  void run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, std::uint32_t which,
            const gl::Buffer& values);
 
   const gl::Buffer& total() const { return total_; }

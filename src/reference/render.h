@@ -17,9 +17,9 @@ struct Settings {
   int tiles = TILES_ELLIPSE;
   int tile_size = TILE_SIZE_DEFAULT;  // px
   int th = TH_TAU;
-  double loss = 0.0;          // of threshold()
-  std::vector<double> upper;  // T_upper or W by Gaussian; empty: 1 for all
-  Decoding decoding;          // of a Scaffold-GS model
+  double loss = 0.0;           // of threshold()
+  std::vector<double> bounds;  // T_upper or W by Gaussian; empty: 1 for all
+  Decoding decoding;           // of a Scaffold-GS model
 };
 
 /// The picture of a model in a view. The view's members for the frame (tiles_x to th_group) are not looked

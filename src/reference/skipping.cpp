@@ -32,7 +32,7 @@ struct Fragment {
 /// Calls visit(pixel, its fragments front to back) for every pixel, tiles in parallel.
 template <typename Visit>
 void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
-                    std::span<const double> upper, const Visit& visit) {
+                    std::span<const double> bounds, const Visit& visit) {
   parallel_for(lists.begin.size() - 1, [&](std::size_t t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
@@ -46,7 +46,7 @@ void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, co
         blend_pixel(splats, list, static_cast<int>(x), static_cast<int>(y), {},
                     [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
                       if (verdict != Verdict::blended) return;
-                      const double light = upper.empty() ? before.transmittance : upper[i];
+                      const double light = bounds.empty() ? before.transmittance : bounds[i];
                       fragments.push_back({i, alpha, bin_of(alpha * light)});
                     });
         visit(std::size_t{y} * view.width + x, fragments);
@@ -58,10 +58,10 @@ void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, co
 }  // namespace
 
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
-                                 const shared::View& view, std::span<const double> upper,
+                                 const shared::View& view, std::span<const double> bounds,
                                  std::span<const double> shares) {
   tbb::combinable<Histogram> of_threads([] { return Histogram{}; });
-  for_each_pixel(splats, lists, view, upper, [&](std::size_t, const std::vector<Fragment>& fragments) {
+  for_each_pixel(splats, lists, view, bounds, [&](std::size_t, const std::vector<Fragment>& fragments) {
     Histogram& counts = of_threads.local();
     for (const Fragment& fragment : fragments) ++counts[static_cast<std::size_t>(fragment.bin)];
   });
@@ -81,7 +81,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
     results.push_back({static_cast<double>(below[static_cast<std::size_t>(kept_from.back())]) / all,
                        Picture(static_cast<int>(view.width), static_cast<int>(view.height))});
   }
-  for_each_pixel(splats, lists, view, upper, [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
+  for_each_pixel(splats, lists, view, bounds, [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
     for (std::size_t k = 0; k < results.size(); ++k) {
       PixelSum sum;
       for (const Fragment& fragment : fragments) {

@@ -15,29 +15,29 @@ constexpr double largest_area = 256.0;
 
 }  // namespace
 
-double threshold(int th, double loss, const Splat& splat, double upper) {
-  if (!(upper > 0.0)) fail("a transmittance of {} behind a threshold: expected more than 0", upper);
+double threshold(int th, double loss, const Splat& splat, double bound) {
+  if (!(bound > 0.0)) fail("a transmittance of {} behind a threshold: expected more than 0", bound);
   const double sqrt_det = std::sqrt(splat.det);
   switch (th) {
     case TH_TAU:
       return ALPHA_MIN;
     case TH_PERIPHERAL:  // AdaGScale, equation 10: `loss` is K, in alpha * px^2
-      return loss / (upper * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
+      return loss / (bound * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
     case TH_SQUARED:  // a pair that would cost less than kappa, `loss` in px * squared colour, is not made
       return std::max(ALPHA_MIN,
-                      std::sqrt(loss / std::min(largest_area, std::numbers::pi * sqrt_det)) / upper);
+                      std::sqrt(loss / std::min(largest_area, std::numbers::pi * sqrt_det)) / bound);
   }
   fail("threshold {}: expected one of shared/axes.h", th);
 }
 
-void set_thresholds(std::vector<Splat>& splats, int th, double loss, std::span<const double> upper) {
-  if (!upper.empty() && upper.size() != splats.size()) {
-    fail("{} transmittances for {} Gaussians: expected as many", upper.size(), splats.size());
+void set_thresholds(std::vector<Splat>& splats, int th, double loss, std::span<const double> bounds) {
+  if (!bounds.empty() && bounds.size() != splats.size()) {
+    fail("{} transmittances for {} Gaussians: expected as many", bounds.size(), splats.size());
   }
   for (std::size_t i = 0; i < splats.size(); ++i) {
     Splat& splat = splats[i];
     if (!splat.drawn) continue;
-    splat.threshold = threshold(th, loss, splat, upper.empty() ? 1.0 : upper[i]);
+    splat.threshold = threshold(th, loss, splat, bounds.empty() ? 1.0 : bounds[i]);
     if (th != TH_TAU && splat.threshold > splat.opacity) splat.drawn = false;
   }
 }

@@ -30,7 +30,7 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
   const bool is_long = lists == Lists::of_long;
   const char* name = by_subgroups(context, shape, variant) ? "blend_subgroups.comp" : "blend.comp";
   return context.program(name, {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-                                {"LIST_TILES", std::to_string(shape.list_tiles)},
+                                {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
                                 {"PROBED", shape.probe ? "1" : "0"},
                                 {"LISTS", std::to_string(static_cast<int>(lists))},
                                 {"COLUMN", is_long ? "1" : "2"},

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "primitives/amount.h"
+#include "primitives/arguments.h"
 #include "render/halves.h"
 
 namespace binosplat::render {
@@ -22,7 +22,7 @@ shared::FrameParameters parameters_of(const FrameShape& shape) {
   return {.background = glm::vec4(s.background, 0.0f),
           .loss = s.loss,
           .far = s.depth_table.far,
-          .depth_bins = static_cast<std::uint32_t>(s.depth_table.upper.size()),
+          .depth_bins = static_cast<std::uint32_t>(s.depth_table.bounds.size()),
           .remembers = shape.remembers,
           .view_count = shape.view_count(),
           .asked = shape.asked,
@@ -45,21 +45,21 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       views(context, "views"),
       counters(context, "counters"),
       depth_keys(context, "depth keys"),
-      block_amount(context, "amount of blocks"),
+      block_arguments(context, "arguments of blocks"),
       block_counts(context, "block counts"),
       order(context, "depth order"),
       pair_offsets(context, "pair offsets"),
-      upper(std::make_unique<gl::Buffer>(context, "remembered transmittance")),
-      upper_next(std::make_unique<gl::Buffer>(context, "transmittance to remember")),
+      bounds(std::make_unique<gl::Buffer>(context, "remembered transmittance")),
+      next_bounds(std::make_unique<gl::Buffer>(context, "transmittance to remember")),
       measured(context, "measured transmittance"),
       depth_table(context, "transmittance by depth"),
       splats(context, "splats"),
-      touched(context, "what splats touch"),
+      coverages(context, "tile coverage"),
       tall(context, "tall splats"),
-      pair_amounts(context, "amounts of pairs"),
+      pair_arguments(context, "arguments of pairs"),
       pairs(context, "Gaussian-tile pairs"),
-      ranges(context, "ranges of lists"),
-      tile_amount(context, "amount of the tiles' counts"),
+      ranges(context, "ranges of supertiles"),
+      tile_arguments(context, "arguments of the tiles' counts"),
       tile_counts(context, "tiles' counts"),
       tile_ranges(context, "ranges of tiles"),
       tile_values(context, "lists of tiles"),
@@ -76,9 +76,8 @@ void FrameBuffers::upload(const FrameShape& shape) {
   parameters.upload(std::vector{parameters_of(shape)});
   views.upload(shape.views);
   if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
-  std::vector<float> table = shape.settings.depth_table.upper;
-  for (float& upper_of_bin : table)
-    upper_of_bin = upper_of_bin > 0.0f ? std::max(upper_of_bin, static_cast<float>(UPPER_FLOOR)) : 1.0f;
+  std::vector<float> table = shape.settings.depth_table.bounds;
+  for (float& bound : table) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;
   depth_table.upload(table);
 }
 
@@ -92,12 +91,12 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   block_counts.reserve(blocks * 4);
   while (drawn.size() < shape.groups.size()) drawn.push_back(std::make_unique<DrawnBuffers>(context_));
   for (const auto& group : drawn) {
-    group->amounts.reserve(sizeof(primitives::SortAmounts));
+    group->arguments.reserve(sizeof(primitives::SortArguments));
     group->indices.reserve(slots * 4);
   }
   if (measures(shape.settings.transmittance)) {
-    upper->reserve(gaussians * shape.asked * 4);
-    upper_next->reserve(gaussians * shape.asked * 4);
+    bounds->reserve(gaussians * shape.asked * 4);
+    next_bounds->reserve(gaussians * shape.asked * 4);
     measured.reserve(slots * shape.view_count() * 4);
   }
   for (std::size_t page = 0; shape.offset_count > 0 && page < model.pages.size(); ++page) {
@@ -111,13 +110,13 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   order.reserve(slots);
   pair_offsets.reserve(slots * 4);
   splats.reserve(slots * shape.view_count() * splat_bytes(shape.settings.precision));
-  touched.reserve(slots * shape.view_count() * 4);
+  coverages.reserve(slots * shape.view_count() * 4);
   tall.reserve(slots * shape.view_count() * 4);
-  pair_amounts.reserve(sizeof(primitives::SortAmounts));
+  pair_arguments.reserve(sizeof(primitives::SortArguments));
   pairs.reserve(pair_capacity);
-  ranges.reserve(std::max<std::int64_t>(shape.list_count, shape.view_count()) * 8);
-  if (shape.list_tiles > 1) {
-    const std::int64_t counts = std::int64_t{tile_blocks(pairs.capacity())} * shape.tiles_a_list();
+  ranges.reserve(std::max<std::int64_t>(shape.supertile_count, shape.view_count()) * 8);
+  if (shape.supertile_side > 1) {
+    const std::int64_t counts = std::int64_t{tile_blocks(pairs.capacity())} * shape.tiles_a_supertile();
     tile_counts.reserve(counts * 4);
     scan.reserve(counts);
     tile_ranges.reserve(shape.tile_count() * 8LL);
@@ -128,11 +127,11 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));
   for (const OrderGroup& group : shape.groups) sort.reserve(order, group.key_bits);
-  sort.reserve(pairs, shape.list_bits());
+  sort.reserve(pairs, shape.supertile_bits());
 }
 
 void FrameBuffers::keep_last(const FrameShape& shape) {
-  if (shape.records) std::swap(upper, upper_next);
+  if (shape.records) std::swap(bounds, next_bounds);
   std::swap(kept, kept_last);
 }
 

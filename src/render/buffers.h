@@ -19,10 +19,11 @@ std::uint32_t tile_blocks(std::int64_t pairs);
 /// The Gaussians that an order group draws.
 struct DrawnBuffers {
   explicit DrawnBuffers(gl::Context& context)
-      : amounts(context, "amounts of the depth order"), indices(context, "indices of the Gaussians drawn") {}
+      : arguments(context, "arguments of the depth order"),
+        indices(context, "indices of the Gaussians drawn") {}
 
-  gl::Buffer amounts;  // SortAmounts
-  gl::Buffer indices;  // Gaussian by slot
+  gl::Buffer arguments;  // SortArguments
+  gl::Buffer indices;    // Gaussian by slot
 };
 
 struct FrameBuffers {
@@ -32,8 +33,8 @@ struct FrameBuffers {
   /// What the CPU knows of a frame: its parameters, its views and its table of depths.
   void upload(const FrameShape& shape);
 
-  /// Room for a frame of this shape and its slots, and so many pairs; and where lists are of several tiles,
-  /// so many of the tiles.
+  /// Room for a frame of this shape and its slots, and so many pairs; and where supertiles are of several
+  /// tiles, so many of the tiles.
   void reserve(const FrameShape& shape, const ModelBuffers& model, std::int64_t pair_capacity,
                std::int64_t tile_pair_capacity);
 
@@ -42,10 +43,10 @@ struct FrameBuffers {
 
   /// What tiles are blended by: begin and end in the values, by tile; and those, splats.
   gl::Buffer& ranges_of_tiles(const FrameShape& shape) {
-    return shape.list_tiles == 1 ? ranges : tile_ranges;
+    return shape.supertile_side == 1 ? ranges : tile_ranges;
   }
   gl::Buffer& values_of_tiles(const FrameShape& shape) {
-    return shape.list_tiles == 1 ? pairs.values() : tile_values;
+    return shape.supertile_side == 1 ? pairs.values() : tile_values;
   }
 
   gl::Buffer parameters;  // FrameParameters
@@ -54,7 +55,7 @@ struct FrameBuffers {
 
   // Of the order group at hand.
   gl::Buffer depth_keys;          // uint by Gaussian
-  gl::Buffer block_amount;        // Amount of the compaction's blocks
+  gl::Buffer block_arguments;     // DispatchArguments of the compaction's blocks
   gl::Buffer block_counts;        // uint, Gaussians drawn by block of COMPACT_BLOCK, scanned
   primitives::PairBuffers order;  // depth bits, slot
   gl::Buffer pair_offsets;        // uint by rank in the depth order, scanned
@@ -63,8 +64,8 @@ struct FrameBuffers {
 
   // What is remembered for the next frame's Th, T_upper as float (view, Gaussian); written while the last
   // frame's is read. Empty where nothing is measured.
-  std::unique_ptr<gl::Buffer> upper;
-  std::unique_ptr<gl::Buffer> upper_next;
+  std::unique_ptr<gl::Buffer> bounds;
+  std::unique_ptr<gl::Buffer> next_bounds;
   // Of Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN:
   // none is, these are the last frame's. Written while the last frame's is read.
   std::vector<std::unique_ptr<gl::Buffer>> kept, kept_last;
@@ -72,20 +73,20 @@ struct FrameBuffers {
   gl::Buffer depth_table;  // float by bin
 
   // Of all views.
-  gl::Buffer splats;   // Splat, or Halves (view, slot)
-  gl::Buffer touched;  // uint (slot, view): lists.glsl
-  gl::Buffer tall;     // splats over many rows of tiles
-  // In their place, once their tiles are counted: uint (rank, view of the group), lists.glsl.
-  gl::Buffer& touched_in_order = tall;
-  gl::Buffer pair_amounts;        // SortAmounts of the pairs at hand
-  primitives::PairBuffers pairs;  // list (view with --tiles all), splat (lists.glsl)
-  gl::Buffer ranges;              // begin, end by list
-  // Where lists are of several tiles, in place of `ranges`.
-  gl::Buffer tile_amount;  // Amount of the counts below
-  gl::Buffer tile_counts;  // uint, pairs by tile of a list, then by block of TILE_BLOCK, scanned
-  gl::Buffer tile_ranges;  // begin, end by tile
-  gl::Buffer tile_values;  // splats by these
-  gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
+  gl::Buffer splats;     // Splat, or Halves (view, slot)
+  gl::Buffer coverages;  // uint (slot, view): supertiles.glsl
+  gl::Buffer tall;       // splats over many rows of tiles
+  // In their place, once their tiles are counted: uint (rank, view of the group), supertiles.glsl.
+  gl::Buffer& coverage_in_order = tall;
+  gl::Buffer pair_arguments;      // SortArguments of the pairs at hand
+  primitives::PairBuffers pairs;  // supertile (view with --tiles all), splat (supertiles.glsl)
+  gl::Buffer ranges;              // begin, end by supertile
+  // Where supertiles are of several tiles, in place of `ranges`.
+  gl::Buffer tile_arguments;  // DispatchArguments of the counts below
+  gl::Buffer tile_counts;     // uint, pairs by tile of a supertile, then by block of TILE_BLOCK, scanned
+  gl::Buffer tile_ranges;     // begin, end by tile
+  gl::Buffer tile_values;     // splats by these
+  gl::Buffer long_lists;      // tiles with more than LONG_LIST pairs
 
   gl::Buffer colours;  // vec4 by pixel: C, T
   gl::Buffer z_sums;   // float by pixel

@@ -53,7 +53,7 @@ void decode(gl::Dispatcher& dispatcher, const FrameShape& shape, const ModelBuff
                     {"Harmonics", *page.harmonics},
                     {"Kept", *buffers.kept[p]},
                     {"KeptLast", *buffers.kept_last[p]},
-                    {"Upper", *buffers.upper}},
+                    {"Bounds", *buffers.bounds}},
                    {{"anchor_count", anchors.count}, {"page_first", page.first}});
   }
 }

@@ -5,7 +5,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "primitives/amount.h"
+#include "primitives/arguments.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -14,12 +14,12 @@ namespace {
 
 constexpr int drawings_max = 8;
 
-// Tiles along a side of a list, where that is left to the frame: 2 where subgroups blend, and where a pair's
-// value has room for the tiles.
-int chosen_lists(const FrameSettings& settings, const Workings& workings, std::uint64_t splats,
-                 bool has_subgroups) {
-  if (workings.list_tiles != 0) return workings.list_tiles;
-  const bool has_room = splats <= std::uint64_t{1} << LIST_SPLAT_BITS;
+// Tiles along a side of a supertile, where that is left to the frame: 2 where subgroups blend, and where a
+// pair's value has room for the tiles.
+int chosen_supertile_side(const FrameSettings& settings, const Workings& workings, std::uint64_t splats,
+                          bool has_subgroups) {
+  if (workings.supertile_side != 0) return workings.supertile_side;
+  const bool has_room = splats <= std::uint64_t{1} << SUPERTILE_SPLAT_BITS;
   const bool usual = settings.tile_size == TILE_SIZE_DEFAULT && settings.tiles != TILES_ALL;
   return has_subgroups && has_room && usual && !workings.stand_in ? 2 : 1;
 }
@@ -67,7 +67,8 @@ void Frame::begin(std::span<const shared::View> views, const FrameSettings& sett
   const std::uint64_t splats =
       static_cast<std::uint64_t>(slots) * (views.size() + 1);  // a probe is a view, too
   const bool has_subgroups = dispatcher_.context().limits().subgroups_of_32;
-  shape_ = make_shape(views, settings, model, chosen_lists(settings, workings, splats, has_subgroups), probe);
+  shape_ = make_shape(views, settings, model,
+                      chosen_supertile_side(settings, workings, splats, has_subgroups), probe);
   if (model_buffers_ && model_buffers_->precision != settings.precision) {
     model_buffers_.reset();  // first, since both together may not fit
     history_.forget_measured();
@@ -87,7 +88,7 @@ FrameReport Frame::draw_with_quality(std::span<const shared::View> views, const 
   } else {
     do {
       const Probe probe = loss_control_.next_probe(views, settings);
-      shape_ = make_shape(views, settings, model_->model(), shape_.list_tiles, probe);
+      shape_ = make_shape(views, settings, model_->model(), shape_.supertile_side, probe);
       shape_.settings.loss = loss_control_.next_loss();
       add(attempt(workings), report);
       loss_control_.measured(probed(shape_, counters_),
@@ -103,8 +104,8 @@ FrameReport Frame::attempt(const Workings& workings, Stage last) {
   if (model_buffers_->box) limit_keys(shape_, *model_buffers_->box);
   capacity_.start(shape_, workings);
   const std::uint32_t blocks = (shape_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
-  buffers_.block_amount.upload(
-      std::vector{primitives::make_amount(blocks, dispatcher_.context().limits().groups)});
+  buffers_.block_arguments.upload(
+      std::vector{primitives::make_arguments(blocks, dispatcher_.context().limits().groups)});
   FrameReport report;
   for (;; ++report.redrawn) {
     if (report.redrawn == drawings_max) throw std::logic_error("a frame overflowed again and again");
@@ -168,13 +169,13 @@ void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report
 void Frame::fill(FrameReport& report) const {
   report.attempts = 1;
   report.visible = counters_.visible;
-  report.pairs = shape_.list_tiles == 1 ? counters_.pairs : counters_.tile_pairs;
-  report.listed_pairs = counters_.pairs;
+  report.pairs = shape_.supertile_side == 1 ? counters_.pairs : counters_.tile_pairs;
+  report.supertile_pairs = counters_.pairs;
   report.order_groups = static_cast<std::uint32_t>(shape_.groups.size());
   report.order_passes = primitives::RadixSort::passes(shape_.groups.front().key_bits);
-  report.tile_sort_passes = primitives::RadixSort::passes(shape_.list_bits());
+  report.tile_sort_passes = primitives::RadixSort::passes(shape_.supertile_bits());
   report.tile_size = shape_.settings.tile_size;
-  report.list_tiles = shape_.list_tiles;
+  report.supertile_side = shape_.supertile_side;
   report.gpu_bytes = model_->context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
   report.loss = shape_.settings.loss;

@@ -23,8 +23,8 @@ namespace binosplat::render {
 struct FrameReport {
   std::uint64_t visible =
       0;  // Gaussians in depth order, summed over the order groups (1 for parallel eyes, else 2)
-  std::uint64_t pairs = 0;         // Gaussian-tile pairs over all views, a probe's included
-  std::uint64_t listed_pairs = 0;  // those that were sorted: fewer where lists are of several tiles
+  std::uint64_t pairs = 0;            // Gaussian-tile pairs over all views, a probe's included
+  std::uint64_t supertile_pairs = 0;  // those that were sorted: fewer where supertiles are of several tiles
   std::uint32_t order_groups = 0;
   std::uint32_t order_passes = 0;      // of the radix sort by depth, of an order group
   std::uint32_t tile_sort_passes = 0;  // of that by tile
@@ -36,7 +36,7 @@ struct FrameReport {
   double submit_ms = 0;               // CPU time of handing the last drawing to the driver
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   int tile_size = 0;                  // px
-  int list_tiles = 0;                 // tiles along a side of a list
+  int supertile_side = 0;             // tiles along a side of a supertile
   float loss = 0.0f;                  // K or kappa that the frame went by
   bool remembered = false;            // it went by what an earlier frame measured
   bool recorded = false;              // it measured for later ones

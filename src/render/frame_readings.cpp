@@ -40,13 +40,13 @@ std::vector<Image> Frame::read_shown(int what) {
 template <typename T, typename Take>
 void Frame::read_drawn(std::uint32_t v, const Take& take) const {
   const DrawnBuffers& drawn = *buffers_.drawn[shape_.views.at(v).order_group];
-  const auto count = drawn.amounts.read<shared::Amount>(1).front().count;
+  const auto count = drawn.arguments.read<shared::DispatchArguments>(1).front().count;
   const auto indices = drawn.indices.read<std::uint32_t>(count);
   const std::size_t views = shape_.view_count();
-  const auto touched = buffers_.touched.read<std::uint32_t>(count * views);
+  const auto coverages = buffers_.coverages.read<std::uint32_t>(count * views);
   const auto measured = buffers_.measured.read<T>(count, std::size_t{v} * shape_.slots);
   for (std::size_t slot = 0; slot < count; ++slot) {
-    if (touched[slot * views + v] != 0) take(indices[slot], measured[slot]);
+    if (coverages[slot * views + v] != 0) take(indices[slot], measured[slot]);
   }
 }
 

@@ -30,13 +30,14 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   const bool measured = measures(shape.settings.transmittance);
   const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
   const std::int64_t bytes_a_gaussian = 4 + (measured ? shape.asked * 8 : 0);
-  const bool shared_lists = shape.list_tiles > 1;
-  const std::int64_t pair_bytes = 4 * 4 + (shared_lists ? 4 : 0);  // list and splat, twice; the tiles' lists
+  const bool has_supertiles = shape.supertile_side > 1;
+  const std::int64_t pair_bytes =
+      4 * 4 + (has_supertiles ? 4 : 0);  // supertile and splat, twice; the tiles' lists
   const std::int64_t slot_bytes =
       shape.view_count() * bytes_a_splat + 6 * 4;  // indices, order twice, offsets
   needs.frame = shape.gaussian_count * bytes_a_gaussian + shape.slots * slot_bytes + shape.pixel_count * 20 +
-                shape.tile_count() * (shared_lists ? 14LL : 12LL) + starting_pairs(shape) * pair_bytes +
-                4 * primitives::RadixSort::counters_of(starting_pairs(shape), shape.list_bits());
+                shape.tile_count() * (has_supertiles ? 14LL : 12LL) + starting_pairs(shape) * pair_bytes +
+                4 * primitives::RadixSort::counters_of(starting_pairs(shape), shape.supertile_bits());
   return needs;
 }
 
@@ -60,7 +61,7 @@ void Capacity::grow(const FrameShape& shape, const shared::Counters& counters) {
   }
   if ((counters.overflow & OVERFLOW_PAIRS) != 0) {
     log_info("drawn again: {} Gaussian-{} pairs, room for {}", counters.pairs,
-             shape.list_tiles == 1 ? "tile" : "list", pairs);
+             shape.supertile_side == 1 ? "tile" : "supertile", pairs);
     pairs = larger(counters.pairs);
   }
   if ((counters.overflow & OVERFLOW_TILE_PAIRS) != 0) {

@@ -26,8 +26,8 @@ MemoryNeeds memory_needs(const FrameShape& shape);
 /// What the buffers of frames that follow one another have room for.
 struct Capacity {
   std::int64_t slots = 0;       // Gaussians that an order group draws
-  std::int64_t pairs = 0;       // Gaussian-list pairs
-  std::int64_t tile_pairs = 0;  // Gaussian-tile pairs, where lists are of several tiles
+  std::int64_t pairs = 0;       // Gaussian-supertile pairs
+  std::int64_t tile_pairs = 0;  // Gaussian-tile pairs, where supertiles are of several tiles
 
   /// At least what a frame of this shape starts with, or exactly what `asked` names.
   void start(const FrameShape& shape, const Workings& asked);

@@ -41,9 +41,9 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
                     {"Gaussians", *page.gaussians},
                     {"Kept", kept_of(model, p, buffers)},
                     {"DepthKeys", buffers.depth_keys},
-                    {"Upper", *buffers.upper},
+                    {"Bounds", *buffers.bounds},
                     {"DepthTable", buffers.depth_table},
-                    {"UpperNext", *buffers.upper_next}},
+                    {"NextBounds", *buffers.next_bounds}},
                    {{"page_first", page.first},
                     {"page_count", page.count},
                     {"view_begin", views.begin},
@@ -59,17 +59,17 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
                  {{"Frame", buffers.parameters},
                   {"DepthKeys", buffers.depth_keys},
                   {"BlockCounts", buffers.block_counts}});
-  buffers.scan.run(dispatcher, buffers.block_amount, 0, buffers.block_counts);
+  buffers.scan.run(dispatcher, buffers.block_arguments, 0, buffers.block_counts);
   dispatcher.run(
-      context.program("amount.comp", buffers.order.block_define()), gl::Work::of_groups(1),
-      {{"Amounts", drawn.amounts}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
-      {{"kind", AMOUNT_ORDER},
+      context.program("arguments.comp", buffers.order.block_define()), gl::Work::of_groups(1),
+      {{"Arguments", drawn.arguments}, {"Total", buffers.scan.total()}, {"FrameCounters", buffers.counters}},
+      {{"kind", ARGUMENTS_ORDER},
        {"capacity", shape.slots},
        {"groups_max", context.limits().groups},
        {"digit_bits", primitives::RadixSort::digit_bits(group.key_bits)}});
   dispatcher.run(context.program("project_compact.comp"), blocks,
                  {{"Frame", buffers.parameters},
-                  {"Amounts", drawn.amounts},
+                  {"Arguments", drawn.arguments},
                   {"DepthKeys", buffers.depth_keys},
                   {"BlockCounts", buffers.block_counts},
                   {"Keys", buffers.order.keys()},
@@ -92,7 +92,7 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"TRANSMITTANCE", std::to_string(s.transmittance)},
                          {"TILES", std::to_string(s.tiles)},
                          {"TILE_SIZE", std::to_string(s.tile_size)},
-                         {"LIST_TILES", std::to_string(shape.list_tiles)},
+                         {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
                          {"PROBED", shape.probe ? "1" : "0"},
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
@@ -115,19 +115,20 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   const gl::Program& program = dispatcher.context().program("project.comp", defines);
   for (std::size_t p = 0; p < model.pages.size(); ++p) {
     const ModelBuffers::Page& page = model.pages[p];
-    dispatcher.run(program, gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
+    dispatcher.run(program,
+                   gl::Work::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
                    {{"Frame", buffers.parameters},
                     {"Views", buffers.views},
                     {"Gaussians", *page.gaussians},
                     {"Kept", kept_of(model, p, buffers)},
                     {"Harmonics", *page.harmonics},
-                    {"Amounts", drawn.amounts},
+                    {"Arguments", drawn.arguments},
                     {"Indices", drawn.indices},
                     {"Splats", buffers.splats},
-                    {"Touched", buffers.touched},
+                    {"Coverages", buffers.coverages},
                     {"FrameCounters", buffers.counters},
                     {"Tall", buffers.tall},
-                    {"Upper", *buffers.upper},
+                    {"Bounds", *buffers.bounds},
                     {"DepthTable", buffers.depth_table},
                     {"Measured", buffers.measured}},
                    {{"page_first", page.first},
@@ -144,7 +145,7 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
                   {"FrameCounters", buffers.counters},
                   {"Tall", buffers.tall},
                   {"Splats", buffers.splats},
-                  {"Touched", buffers.touched}});
+                  {"Coverages", buffers.coverages}});
 }
 
 }  // namespace binosplat::render

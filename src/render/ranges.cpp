@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "primitives/amount.h"
+#include "primitives/arguments.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -14,27 +14,27 @@ void start_clear(gl::Dispatcher& dispatcher, const gl::Buffer& ranges, std::uint
                    {{"Ranges", ranges}}, {{"count", 2 * lists}});
 }
 
-// Each tile's list out of the one that it shares.
+// Each tile's list out of its supertile's.
 void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   start_clear(dispatcher, buffers.tile_ranges, shape.tile_count());
   const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
   const auto program = [&](const char* writes) -> const gl::Program& {
-    return context.program(
-        "ranges_of_tiles.comp",
-        {{"LIST_TILES", std::to_string(shape.list_tiles)}, subgroups_define(context), {"WRITES", writes}});
+    return context.program("ranges_of_tiles.comp", {{"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
+                                                    subgroups_define(context),
+                                                    {"WRITES", writes}});
   };
-  buffers.tile_amount.upload(
-      std::vector{primitives::make_amount(shape.tiles_a_list() * blocks, context.limits().groups)});
+  buffers.tile_arguments.upload(
+      std::vector{primitives::make_arguments(shape.tiles_a_supertile() * blocks, context.limits().groups)});
   dispatcher.run(program("0"), gl::Work::of_groups(blocks),
-                 {{"Amounts", buffers.pair_amounts},
+                 {{"Arguments", buffers.pair_arguments},
                   {"Values", buffers.pairs.values()},
                   {"TileCounts", buffers.tile_counts}},
                  {{"blocks", blocks}});
-  buffers.scan.run(dispatcher, buffers.tile_amount, 0, buffers.tile_counts);
+  buffers.scan.run(dispatcher, buffers.tile_arguments, 0, buffers.tile_counts);
   dispatcher.run(
       program("1"), gl::Work::of_groups(blocks),
-      {{"Amounts", buffers.pair_amounts},
+      {{"Arguments", buffers.pair_arguments},
        {"Values", buffers.pairs.values()},
        {"TileCounts", buffers.tile_counts},
        {"Total", buffers.scan.total()},
@@ -48,16 +48,16 @@ void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffe
 }  // namespace
 
 void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (shape.list_tiles > 1) {
+  if (shape.supertile_side > 1) {
     split_lists(dispatcher, shape, buffers);
     return;
   }
-  start_clear(dispatcher, buffers.ranges, std::max(shape.list_count, shape.view_count()));
+  start_clear(dispatcher, buffers.ranges, std::max(shape.supertile_count, shape.view_count()));
   dispatcher.wait_for_writes();
   dispatcher.run(
       dispatcher.context().program("ranges.comp"),
-      gl::Work::indirect(buffers.pair_amounts, offsetof(shared::Amount, threads_x)),
-      {{"Amounts", buffers.pair_amounts}, {"Keys", buffers.pairs.keys()}, {"Ranges", buffers.ranges}});
+      gl::Work::indirect(buffers.pair_arguments, offsetof(shared::DispatchArguments, threads_x)),
+      {{"Arguments", buffers.pair_arguments}, {"Keys", buffers.pairs.keys()}, {"Ranges", buffers.ranges}});
 }
 
 }  // namespace binosplat::render

@@ -11,13 +11,13 @@ void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers&
   for (std::size_t group = 0; group < shape.groups.size(); ++group) {
     const DrawnBuffers& drawn = *buffers.drawn[group];
     dispatcher.run(dispatcher.context().program("blend_remember.comp", defines),
-                   gl::Work::indirect(drawn.amounts, offsetof(shared::Amount, threads_x)),
+                   gl::Work::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
                    {{"Frame", buffers.parameters},
-                    {"Amounts", drawn.amounts},
+                    {"Arguments", drawn.arguments},
                     {"Indices", drawn.indices},
-                    {"Touched", buffers.touched},
+                    {"Coverages", buffers.coverages},
                     {"Measured", buffers.measured},
-                    {"UpperNext", *buffers.upper_next},
+                    {"NextBounds", *buffers.next_bounds},
                     {"OrderKeys", buffers.order.keys()},
                     {"FrameCounters", buffers.counters}},
                    {{"nearest_key", shape.groups[group].nearest_key},

@@ -17,7 +17,7 @@ namespace binosplat::render {
 /// Gaussian was seen in.
 struct DepthTable {
   float far = 0.0f;
-  std::vector<float> upper;
+  std::vector<float> bounds;
 };
 
 /// Whether frames measure what their successors go by.

@@ -26,8 +26,8 @@ void check_needs(const FrameSettings& s, std::size_t views) {
   const DepthTable& table = s.depth_table;
   const auto is_share = [](float t) { return t >= 0.0f && t <= 1.0f; };
   if (s.transmittance == TRANSMITTANCE_DEPTH &&
-      (!(table.far > 0.0f) || !std::isfinite(table.far) || table.upper.empty() ||
-       !std::all_of(table.upper.begin(), table.upper.end(), is_share))) {
+      (!(table.far > 0.0f) || !std::isfinite(table.far) || table.bounds.empty() ||
+       !std::all_of(table.bounds.begin(), table.bounds.end(), is_share))) {
     fail("transmittance depth: its table needs a far end above 0 and values from 0 to 1");
   }
 }
@@ -48,16 +48,16 @@ void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& 
   view.shift_y = tiles.row * tile;
   view.tiles_x = tiles_in(view.width, tiles.column);
   view.tiles_y = tiles_in(view.height, tiles.row);
-  view.list_offset = shape.list_count;
+  view.supertile_offset = shape.supertile_count;
   view.pixel_offset = static_cast<std::uint32_t>(shape.pixel_count);
   shape.pixel_count += probe ? std::int64_t{view.tiles_x} * view.tiles_y * tile * tile
                              : std::int64_t{view.width} * view.height;
   if (shape.pixel_count > std::int64_t{1} << 31) fail("more than 2^31 pixels in one frame");
   view.is_probe = probe ? 1 : 0;
-  const auto lists = [side = static_cast<std::uint32_t>(shape.list_tiles)](std::uint32_t along) {
+  const auto supertiles = [side = static_cast<std::uint32_t>(shape.supertile_side)](std::uint32_t along) {
     return (along + side - 1) / side;
   };
-  shape.list_count += lists(view.tiles_x) * lists(view.tiles_y);
+  shape.supertile_count += supertiles(view.tiles_x) * supertiles(view.tiles_y);
   if (v == 0 || !same_depths(view, shape.views.back())) shape.groups.push_back({v, v});
   shape.groups.back().end = v + 1;
   view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
@@ -66,9 +66,9 @@ void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& 
 
 }  // namespace
 
-std::uint32_t FrameShape::list_bits() const {
-  const std::uint32_t lists = settings.tiles == TILES_ALL ? view_count() : list_count;
-  return static_cast<std::uint32_t>(std::bit_width(lists - 1));
+std::uint32_t FrameShape::supertile_bits() const {
+  const std::uint32_t keys = settings.tiles == TILES_ALL ? view_count() : supertile_count;
+  return static_cast<std::uint32_t>(std::bit_width(keys - 1));
 }
 
 void limit_keys(FrameShape& shape, const Bounds& box) {
@@ -91,14 +91,14 @@ void limit_keys(FrameShape& shape, const Bounds& box) {
 }
 
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                      int list_tiles, const std::optional<Probe>& probe) {
+                      int supertile_side, const std::optional<Probe>& probe) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   check(settings);
   check_needs(settings, views.size());
   FrameShape shape;
   shape.settings = settings;
-  shape.list_tiles = list_tiles;
+  shape.supertile_side = supertile_side;
   shape.degree = model.degree;
   shape.kernel_px2 = model.kernel_px2;
   shape.antialiased = model.antialiased;

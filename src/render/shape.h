@@ -39,7 +39,7 @@ struct Probed {
 /// The views of a frame with tiles, offsets and groups filled in, and what follows from them.
 struct FrameShape {
   FrameSettings settings;
-  int list_tiles = 1;              // tiles along a side of what shares a list of pairs
+  int supertile_side = 1;          // tiles along a side of what pairs are sorted by
   int degree = 0;                  // of the model's SH
   double kernel_px2 = KERNEL_PX2;  // of the model
   bool antialiased = false;
@@ -51,20 +51,21 @@ struct FrameShape {
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
-  std::uint32_t list_count = 0;  // lists of pairs, over all views
-  std::int64_t pixel_count = 0;  // over all views
+  std::uint32_t supertile_count = 0;  // over all views
+  std::int64_t pixel_count = 0;       // over all views
   // Of Scaffold-GS; K is 0 for other models.
   std::uint32_t offset_count = 0;        // K
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made
   std::int64_t anchor_bytes = 0;
 
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
-  /// Tiles that the lists are of, over all views: a few more than the pictures have where lists are of
-  /// several.
-  std::uint32_t tile_count() const { return list_count * tiles_a_list(); }
-  std::uint32_t tiles_a_list() const { return static_cast<std::uint32_t>(list_tiles * list_tiles); }
-  /// Bits that tell the lists apart by which pairs are sorted: of tiles, or views with --tiles all.
-  std::uint32_t list_bits() const;
+  /// Tiles of all supertiles: a few more than the pictures have where supertiles are of several.
+  std::uint32_t tile_count() const { return supertile_count * tiles_a_supertile(); }
+  std::uint32_t tiles_a_supertile() const {
+    return static_cast<std::uint32_t>(supertile_side * supertile_side);
+  }
+  /// Bits that tell supertiles apart, by which pairs are sorted, or views with --tiles all.
+  std::uint32_t supertile_bits() const;
   /// How often each anchor is decoded. A probe shares the Gaussians of its view.
   std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
@@ -73,7 +74,7 @@ struct FrameShape {
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
 /// contradict each other or the views.
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                      int list_tiles = 1, const std::optional<Probe>& probe = {});
+                      int supertile_side = 1, const std::optional<Probe>& probe = {});
 
 /// Keys of only so many bits as depths of Gaussians within `box` (world) need, in each order group.
 void limit_keys(FrameShape& shape, const Bounds& box);

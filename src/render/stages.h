@@ -47,7 +47,7 @@ Probed probed(const FrameShape& shape, const shared::Counters& counters);
 /// WITH_SUBGROUPS, for programs that do the same by subgroups of 32 where there are some.
 gl::Defines::value_type subgroups_define(const gl::Context& context);
 
-/// Fills the amounts of the pairs that are to be made, AMOUNT_PAIRS, or sorted, AMOUNT_ALL_PAIRS.
+/// Fills the arguments of the pairs that are to be made, ARGUMENTS_PAIRS, or sorted, ARGUMENTS_ALL_PAIRS.
 void count_pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t kind,
                  FrameBuffers& buffers);
 

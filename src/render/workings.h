@@ -27,9 +27,9 @@ struct StandIn {
 };
 
 struct Workings {
-  /// So many tiles along each side share a list of pairs, 1 or 2: with 2 there are fewer pairs to sort. 0:
+  /// So many tiles along each side are a supertile, 1 or 2: with 2 there are fewer pairs to sort. 0:
   /// the frame chooses.
-  int list_tiles = 0;
+  int supertile_side = 0;
   /// Room to start with, in Gaussians in view and in pairs; 0: chosen by the frame. A frame that needs more
   /// grows its buffers and is drawn again.
   std::int64_t slots = 0;

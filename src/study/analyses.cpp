@@ -26,7 +26,7 @@ static void fields(const auto& io, const Spread& s) {
 
 static void fields(const auto& io, const DepthBin& b) {
   io("from", b.from, "to", b.to, "gaussians", b.gaussians, "contribution", b.contribution, "light", b.light,
-     "upper", b.upper);
+     "upper", b.bound);
 }
 
 namespace {
@@ -151,7 +151,7 @@ nlohmann::ordered_json to_json(const Analysis& a) {
                      object("calibration", a.calibration_views, "test", a.test_views), "width", a.width,
                      "height", a.height);
   if (a.drop()) json["photo_db"] = object("calibration", a.calibration_photo_db, "test", a.test_photo_db);
-  FieldWriter{json}("depth_table", object("far", a.depth_table.far, "upper", a.depth_table.upper),
+  FieldWriter{json}("depth_table", object("far", a.depth_table.far, "upper", a.depth_table.bounds),
                     "contributions",
                     object("skipping", a.contributions.skipping, "by_depth", a.contributions.by_depth),
                     "systems", a.systems, "targets", a.targets);

@@ -112,13 +112,13 @@ Section by_depth(const Analysis& a, Spread DepthBin::*value, const char* id, con
   if (light) {
     Series& series =
         plot.series.emplace_back(Series{"T_upper of the calibration views", {}, true, true, false});
-    for (const DepthBin& bin : bins) series.add(bin.from, bin.upper);
+    for (const DepthBin& bin : bins) series.add(bin.from, bin.bound);
   }
   for (const DepthBin& bin : bins) {
     const Spread& of = bin.*value;
     auto& cells =
         table.rows.emplace_back(row(bin.from, bin.to, bin.gaussians, of.median, of.p90, of.largest));
-    if (light) cells.emplace_back(bin.upper);
+    if (light) cells.emplace_back(bin.bound);
   }
   return {id,   title, sentence,
           plot, table, plot.series.front().points.empty() ? "No pixel blends anything." : ""};

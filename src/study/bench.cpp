@@ -101,7 +101,7 @@ void add_work(const render::Frame& frame, const render::FrameReport& report, std
   work.in_view += weight * static_cast<double>(report.visible);
   work.splats += weight * static_cast<double>(report.visible) * views_of_group;
   work.pairs += weight * static_cast<double>(report.pairs);
-  work.listed_pairs += weight * static_cast<double>(report.listed_pairs);
+  work.supertile_pairs += weight * static_cast<double>(report.supertile_pairs);
   work.order_passes += weight * report.order_passes;
   work.tile_sort_passes += weight * report.tile_sort_passes;
   for (const shared::View& view : frame.views()) {
@@ -150,7 +150,7 @@ const std::vector<Bench::Exact>& Bench::exact() {
 }
 
 const render::DepthTable& Bench::depth_table() {
-  if (!depth_table_.upper.empty()) return depth_table_;
+  if (!depth_table_.bounds.empty()) return depth_table_;
   std::vector<shared::View> views;
   for (const BenchView& view : views_) views.push_back(view.eyes.front());
   render::Frame frame(gpu_model_);

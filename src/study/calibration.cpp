@@ -91,9 +91,9 @@ render::DepthTable parse_table(const Reader& table) {
     const double v = value.is_number() ? value.get<double>() : NAN;
     if (!(v >= 0.0 && v <= 1.0))
       fail("{}: 'upper' {}: expected numbers from 0 to 1", table.place(), value.dump());
-    out.upper.push_back(static_cast<float>(v));
+    out.bounds.push_back(static_cast<float>(v));
   }
-  if (out.upper.empty() || out.upper.size() > table_max || !std::isfinite(out.far))
+  if (out.bounds.empty() || out.bounds.size() > table_max || !std::isfinite(out.far))
     fail("{}: expected 1 to {} bins over a finite depth", table.place(), table_max);
   return out;
 }
@@ -157,13 +157,13 @@ std::uint64_t model_hash(const Model& model) {
 
 ordered_json to_json(const Calibration& c) {
   const char* const target = c.target.kind == CalibrationTarget::Kind::drop ? "drop_db" : "psnr_db";
-  ordered_json json =
-      object("format", "binosplat calibration", "version", 1, "model",
-             object("name", c.model_name, "gaussians", c.gaussians, "hash", fmt::format("{:016x}", c.hash)),
-             "width", c.width, "height", c.height, "focal_px", c.focal, "near", c.near_plane, "target",
-             object(target, c.target.db), "depth_table",
-             object("far", c.depth_table.far, "upper", c.depth_table.upper, "seconds", c.depth_table_seconds),
-             "views", ordered_json::array(), "entries", ordered_json::array());
+  ordered_json json = object(
+      "format", "binosplat calibration", "version", 1, "model",
+      object("name", c.model_name, "gaussians", c.gaussians, "hash", fmt::format("{:016x}", c.hash)), "width",
+      c.width, "height", c.height, "focal_px", c.focal, "near", c.near_plane, "target",
+      object(target, c.target.db), "depth_table",
+      object("far", c.depth_table.far, "upper", c.depth_table.bounds, "seconds", c.depth_table_seconds),
+      "views", ordered_json::array(), "entries", ordered_json::array());
   for (const CalibratedView& view : c.views)
     json["views"].push_back(
         object("name", view.name, "position", std::array{view.position.x, view.position.y, view.position.z}));

@@ -26,22 +26,22 @@ struct Shown {
 };
 
 double upper_at(const render::DepthTable& table, double depth) {
-  const auto bins = static_cast<double>(table.upper.size());
+  const auto bins = static_cast<double>(table.bounds.size());
   const double bin = depth / static_cast<double>(table.far) * bins;
   if (!(bin >= 0.0) || bin >= bins) return 1.0;
-  const float upper = table.upper[static_cast<std::size_t>(bin)];
-  return upper > 0.0f ? static_cast<double>(upper) : 1.0;
+  const float bound = table.bounds[static_cast<std::size_t>(bin)];
+  return bound > 0.0f ? static_cast<double>(bound) : 1.0;
 }
 
 /// What each of `known` takes for the light that reaches the Gaussians; empty for what each pixel truly sees.
 std::array<std::vector<double>, known.size()> lights(const std::vector<reference::Splat>& splats,
                                                      const std::vector<double>& largest,
                                                      const render::DepthTable& table) {
-  std::array<std::vector<double>, known.size()> upper;
-  upper[1] = largest;
-  for (const reference::Splat& splat : splats) upper[2].push_back(upper_at(table, splat.depth));
-  upper[3].assign(splats.size(), 1.0);
-  return upper;
+  std::array<std::vector<double>, known.size()> bounds;
+  bounds[1] = largest;
+  for (const reference::Splat& splat : splats) bounds[2].push_back(upper_at(table, splat.depth));
+  bounds[3].assign(splats.size(), 1.0);
+  return bounds;
 }
 
 Spread spread(const std::vector<double>& values) {
@@ -94,9 +94,9 @@ Contributions contributions(const Model& model, std::span<const ContributionView
       if (light[i] > 0.0) shown.push_back({splats[i].depth, contribution[i], light[i]});
     }
     const Image exact = on_black(reference::blend(splats, lists, one.view));
-    const auto upper = lights(splats, light, table);
+    const auto bounds = lights(splats, light, table);
     for (std::size_t by = 0; by < known.size(); ++by) {
-      const auto skipped = reference::skip_lowest(splats, lists, one.view, upper[by], shares);
+      const auto skipped = reference::skip_lowest(splats, lists, one.view, bounds[by], shares);
       for (std::size_t k = 0; k < shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
         SkippingCurve::Point& mean = found.skipping[by].points[k];

@@ -44,7 +44,7 @@ struct DepthBin {
   std::size_t gaussians = 0;    // that a pixel blends
   Spread contribution;          // the largest alpha T of a pixel
   Spread light;                 // max(T)
-  double upper = 0.0;           // the table's
+  double bound = 0.0;           // the table's
 };
 
 struct Contributions {

@@ -97,9 +97,9 @@ std::vector<StageFloor> profile(const FrameWork& work, const Peaks& peaks) {
   least["project"].seconds = least["project"].operations / peaks.fmas;
   least["order"] = {sort_bytes(work.in_view, work.order_passes)};
   // A word of each small splat tells its pairs.
-  least["pairs"] = {work.in_view * 4 + work.splats * 4 + work.listed_pairs * 8};
-  least["tile_sort"] = {sort_bytes(work.listed_pairs, work.tile_sort_passes)};
-  least["ranges"] = {work.listed_pairs * 4 + work.tiles * 8};
+  least["pairs"] = {work.in_view * 4 + work.splats * 4 + work.supertile_pairs * 8};
+  least["tile_sort"] = {sort_bytes(work.supertile_pairs, work.tile_sort_passes)};
+  least["ranges"] = {work.supertile_pairs * 4 + work.tiles * 8};
   least["blend"] = {work.pairs * (splat_bytes + 4) + work.pixels * 20, work.alphas};
   least["blend"].seconds = least["blend"].operations / peaks.alphas;
   std::vector<StageFloor> stages;

@@ -25,9 +25,9 @@ struct FrameWork {
   double gaussians = 0.0;  // of the model
   int degree = 0;          // of its SH
   int precision = PRECISION_FULL;
-  double in_view = 0.0;       // Gaussians, summed over the order groups
-  double splats = 0.0;        // of those, one a view
-  double listed_pairs = 0.0;  // that are sorted
+  double in_view = 0.0;          // Gaussians, summed over the order groups
+  double splats = 0.0;           // of those, one a view
+  double supertile_pairs = 0.0;  // that are sorted
   double pairs = 0.0;
   double tiles = 0.0;   // of all views
   double pixels = 0.0;  // likewise

@@ -63,7 +63,7 @@ TEST(Layout, ViewIsWhereTheDriverPutsIt) {
   const Offsets expected = {
       AT(View, row_x),        AT(View, row_y),       AT(View, row_z),   AT(View, anchor),
       AT(View, eye),          AT(View, lens),        AT(View, slopes),  AT(View, width),
-      AT(View, height),       AT(View, tiles_x),     AT(View, tiles_y), AT(View, list_offset),
+      AT(View, height),       AT(View, tiles_x),     AT(View, tiles_y), AT(View, supertile_offset),
       AT(View, pixel_offset), AT(View, order_group), AT(View, pitch),   AT(View, shift_x),
       AT(View, shift_y),      AT(View, is_probe),    AT(View, unused),  STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
@@ -109,7 +109,7 @@ TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
   EXPECT_EQ(driver_offsets("Anchor"), anchor);
 }
 
-TEST(Layout, CountersAndAmountAreWhereTheDriverPutsThem) {
+TEST(Layout, CountersAndDispatchArgumentsAreWhereTheDriverPutsThem) {
   const Offsets counters = {AT(Counters, visible),
                             AT(Counters, order_wanted),
                             AT(Counters, pairs),
@@ -131,15 +131,16 @@ TEST(Layout, CountersAndAmountAreWhereTheDriverPutsThem) {
                             AT(Counters, tall_z),
                             STRIDE(Counters)};
   EXPECT_EQ(driver_offsets("Counters"), counters);
-  const Offsets amount = {AT(Amount, count),     AT(Amount, first),     AT(Amount, threads_x),
-                          AT(Amount, threads_y), AT(Amount, threads_z), AT(Amount, scan_x),
-                          AT(Amount, scan_y),    AT(Amount, scan_z),    AT(Amount, sort_x),
-                          AT(Amount, sort_y),    AT(Amount, sort_z),    AT(Amount, unused),
-                          STRIDE(Amount)};
-  EXPECT_EQ(driver_offsets("Amount"), amount);
-  Offsets wrong = amount;  // the comparison sees a member out of place
+  const Offsets arguments = {
+      AT(DispatchArguments, count),     AT(DispatchArguments, first),     AT(DispatchArguments, threads_x),
+      AT(DispatchArguments, threads_y), AT(DispatchArguments, threads_z), AT(DispatchArguments, scan_x),
+      AT(DispatchArguments, scan_y),    AT(DispatchArguments, scan_z),    AT(DispatchArguments, sort_x),
+      AT(DispatchArguments, sort_y),    AT(DispatchArguments, sort_z),    AT(DispatchArguments, unused),
+      STRIDE(DispatchArguments)};
+  EXPECT_EQ(driver_offsets("DispatchArguments"), arguments);
+  Offsets wrong = arguments;  // the comparison sees a member out of place
   wrong["sort_x"] += 4;
-  EXPECT_NE(driver_offsets("Amount"), wrong);
+  EXPECT_NE(driver_offsets("DispatchArguments"), wrong);
 }
 
 }  // namespace

@@ -38,8 +38,8 @@ void expect_compiles(const std::string& name, Defines defines, const std::string
 
 TEST_F(SubgroupShaders, Compile) {
   for (const char* half : {"0", "1"}) {
-    for (const char* list_tiles : {"1", "2"}) {
-      const Defines tiles = {{"TILE_SIZE", "16"}, {"LIST_TILES", list_tiles}, {"HALF", half}};
+    for (const char* supertile_side : {"1", "2"}) {
+      const Defines tiles = {{"TILE_SIZE", "16"}, {"SUPERTILE_SIDE", supertile_side}, {"HALF", half}};
       for (const char* lists : {"0", "1"}) {
         Defines defines = {{"COLUMN", *lists == '1' ? "1" : "2"},
                            {"AHEAD", *lists == '1' ? "8" : "4"},
@@ -48,27 +48,27 @@ TEST_F(SubgroupShaders, Compile) {
                            {"WEIGHS", "0"},
                            {"SHOW", "0"}};
         defines.insert(defines.end(), tiles.begin(), tiles.end());
-        expect_compiles("blend_subgroups.comp", defines, std::string(lists) + list_tiles + half);
+        expect_compiles("blend_subgroups.comp", defines, std::string(lists) + supertile_side + half);
       }
     }
   }
   for (const char* name : {"pairs.comp", "project_count_tall.comp"}) {
-    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "0"},      {"TH", "0"},
-                             {"TILE_SIZE", "16"},       {"LIST_TILES", "2"}, {"HALF", "0"},
+    const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "0"},          {"TH", "0"},
+                             {"TILE_SIZE", "16"},       {"SUPERTILE_SIDE", "2"}, {"HALF", "0"},
                              {"WITH_SUBGROUPS", "1"}};
     expect_compiles(name, defines);
   }
   for (const char* half : {"0", "1"}) {
     const Defines defines = {{"TILES_NAME", "ellipse"}, {"TILES", "1"},         {"TH", "0"},
                              {"TH_NAME", "tau"},        {"TRANSMITTANCE", "0"}, {"TILE_SIZE", "16"},
-                             {"LIST_TILES", "2"},       {"HALF", half},         {"ANTIALIASED", "0"},
+                             {"SUPERTILE_SIDE", "2"},   {"HALF", half},         {"ANTIALIASED", "0"},
                              {"OFFSETS", "0"},          {"SH_DEGREE", "1"},     {"RECORDS", "1"},
                              {"WEIGHS", "0"},           {"WITH_SUBGROUPS", "1"}};
     expect_compiles("project.comp", defines, half);
   }
   for (const char* writes : {"0", "1"})
     EXPECT_EQ(said_of("ranges_of_tiles.comp",
-                      {{"LIST_TILES", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
+                      {{"SUPERTILE_SIDE", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
               "");
   for (const char* block : {"1024", "2048"}) {
     for (const char* bits : {"8", "9"}) {

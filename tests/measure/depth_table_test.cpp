@@ -26,28 +26,28 @@ TEST(DepthTable, IsTheLightThatReachesEachDepth) {
   const Model model = curtains();
   render::Frame frame(test::gl_context(), model);
   const auto table = measure_depth_table(frame, views(), {.bins = 10, .far = 10.0f});
-  ASSERT_EQ(table.upper.size(), 10u);
+  ASSERT_EQ(table.bounds.size(), 10u);
   EXPECT_EQ(table.far, 10.0f);
   const float expected[] = {0, 1, 0, 0.5f, 0, 0, 0, 0, 0.1f, 0};
-  for (std::size_t bin = 0; bin < 10; ++bin) EXPECT_NEAR(table.upper[bin], expected[bin], 1e-3) << bin;
+  for (std::size_t bin = 0; bin < 10; ++bin) EXPECT_NEAR(table.bounds[bin], expected[bin], 1e-3) << bin;
 
   // Another view that sees past the first curtain raises what the others get.
   auto two = views();
   two.push_back(two[0]);
   two[1].anchor.w = 2.0f;  // near plane
   const auto larger = measure_depth_table(frame, two, {.bins = 10, .far = 10.0f});
-  EXPECT_NEAR(larger.upper[3], 1.0f, 1e-3);
-  EXPECT_NEAR(larger.upper[8], 0.2f, 1e-3);
+  EXPECT_NEAR(larger.bounds[3], 1.0f, 1e-3);
+  EXPECT_NEAR(larger.bounds[8], 0.2f, 1e-3);
 }
 
 TEST(DepthTable, FitsTheSceneByDefault) {
   const Model model = test::random_model(61, 2000, 0);
   render::Frame frame(test::gl_context(), model);
   const auto table = measure_depth_table(frame, views());
-  EXPECT_EQ(table.upper.size(), 20u);
+  EXPECT_EQ(table.bounds.size(), 20u);
   EXPECT_GT(table.far, 4.0f);  // depths go from 0.2 to 6
   EXPECT_LT(table.far, 6.0f);
-  EXPECT_FLOAT_EQ(*std::max_element(table.upper.begin(), table.upper.end()), 1.0f);
+  EXPECT_FLOAT_EQ(*std::max_element(table.bounds.begin(), table.bounds.end()), 1.0f);
 }
 
 TEST(DepthTable, AnEmptyViewLeavesAnEmptyTable) {
@@ -56,7 +56,7 @@ TEST(DepthTable, AnEmptyViewLeavesAnEmptyTable) {
   auto away = views();
   away[0].anchor.w = 100.0f;
   const auto table = measure_depth_table(frame, away);
-  EXPECT_EQ(table.upper, std::vector<float>(20, 0.0f));
+  EXPECT_EQ(table.bounds, std::vector<float>(20, 0.0f));
   EXPECT_GT(table.far, 0.0f);
 }
 

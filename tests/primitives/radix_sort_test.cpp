@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "primitives/amount.h"
+#include "primitives/arguments.h"
 #include "shared/limits.h"
 #include "support/gl.h"
 
@@ -23,9 +23,9 @@ std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits, std::int
   const auto count = static_cast<std::uint32_t>(keys.size());
   PairBuffers pairs(context, "pairs");
   pairs.reserve(std::max<std::int64_t>(count, room));
-  gl::Buffer amounts(context, "amounts");
-  amounts.upload(std::vector{
-      make_sort_amounts(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block())});
+  gl::Buffer arguments(context, "arguments");
+  arguments.upload(std::vector{
+      make_sort_arguments(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block())});
   Keys values(count);
   std::iota(values.begin(), values.end(), 0u);
   pairs.keys().upload(keys);
@@ -33,7 +33,7 @@ std::pair<Keys, Keys> sort_on_gpu(const Keys& keys, std::uint32_t bits, std::int
   RadixSort sort(context);
   sort.reserve(pairs, bits);
   gl::Dispatcher dispatcher(context);
-  sort.run(dispatcher, amounts, pairs, bits);
+  sort.run(dispatcher, arguments, pairs, bits);
   return {pairs.keys().read<std::uint32_t>(count), pairs.values().read<std::uint32_t>(count)};
 }
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "primitives/amount.h"
+#include "primitives/arguments.h"
 #include "shared/limits.h"
 #include "support/gl.h"
 
@@ -20,15 +20,15 @@ struct Scanned {
 
 Scanned scan_on_gpu(const std::vector<std::uint32_t>& values) {
   gl::Context& context = test::gl_context();
-  gl::Buffer amounts(context, "amounts");
+  gl::Buffer arguments(context, "arguments");
   gl::Buffer buffer(context, "values");
   const auto count = static_cast<std::uint32_t>(values.size());
-  amounts.upload(std::vector{make_amount(count, context.limits().groups)});
+  arguments.upload(std::vector{make_arguments(count, context.limits().groups)});
   buffer.upload(values);
   Scan scan(context);
   scan.reserve(count);
   gl::Dispatcher dispatcher(context);
-  scan.run(dispatcher, amounts, 0, buffer);
+  scan.run(dispatcher, arguments, 0, buffer);
   return {buffer.read<std::uint32_t>(count), scan.total().read<std::uint32_t>(1).front()};
 }
 

@@ -40,8 +40,8 @@ struct Skipping : testing::Test {
   std::vector<Splat> splats = walls();
   TileLists lists = make_lists(splats, depth_order(splats), view, TILES_ELLIPSE);
 
-  void expect(std::span<const double> upper, double share, double skipped, const glm::dvec3& colour) {
-    const auto results = skip_lowest(splats, lists, view, upper, std::array{share});
+  void expect(std::span<const double> bounds, double share, double skipped, const glm::dvec3& colour) {
+    const auto results = skip_lowest(splats, lists, view, bounds, std::array{share});
     ASSERT_EQ(results.size(), 1u);
     EXPECT_DOUBLE_EQ(results[0].share, skipped);
     for (const glm::vec4& pixel : results[0].picture.colour)
@@ -81,8 +81,8 @@ TEST(SkippingMany, KnowingMoreCostsLess) {
   const Picture exact = blend(splats, lists, view);
   const auto light = measure_transmittance(splats, lists, view);
   const std::vector<double> ones(splats.size(), 1.0);
-  const auto error = [&](std::span<const double> upper) {
-    const auto results = skip_lowest(splats, lists, view, upper, std::array{0.0, 0.5});
+  const auto error = [&](std::span<const double> bounds) {
+    const auto results = skip_lowest(splats, lists, view, bounds, std::array{0.0, 0.5});
     EXPECT_TRUE(equal_bits(results[0].picture, exact)) << "nothing skipped";
     EXPECT_NEAR(results[1].share, 0.5, 0.02);
     double sum = 0.0;

@@ -49,8 +49,8 @@ TEST(Threshold, OneNearSplatInEachEye) {
 
 TEST(Threshold, RefusesWhatWouldMakeAHole) {
   const Splat splat = make_splat({8, 8}, {4, 0, 4}, 1.0);
-  for (const double upper : {0.0, -1.0, std::nan("")}) {
-    EXPECT_TRUE(test::fails_saying([&] { threshold(TH_PERIPHERAL, 1.0, splat, upper); }, {"more than 0"}));
+  for (const double bound : {0.0, -1.0, std::nan("")}) {
+    EXPECT_TRUE(test::fails_saying([&] { threshold(TH_PERIPHERAL, 1.0, splat, bound); }, {"more than 0"}));
   }
   EXPECT_TRUE(test::fails_saying([&] { threshold(9, 1.0, splat, 1.0); }, {"threshold 9"}));
   std::vector<Splat> splats = {splat};
@@ -93,18 +93,18 @@ TEST(Threshold, LossOfZeroIsTauBitForBit) {
   const Model model = test::random_model(3, 800, 1);
   const shared::View view = view_of(75, 53);
   test::Uniform uniform(1);
-  std::vector<double> upper(model.count());
-  for (double& value : upper) value = uniform(0.01, 1.0);
+  std::vector<double> bounds(model.count());
+  for (double& value : bounds) value = uniform(0.01, 1.0);
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     const Picture exact = render(model, view, {.tiles = tiles});
     for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
       EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .loss = 0.0}), exact));
-      EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .upper = upper}), exact));
+      EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .bounds = bounds}), exact));
       // A loss must be seen, and so must the light that reaches each.
       const Picture lossy = render(model, view, {.tiles = tiles, .th = th, .loss = 0.01});
       EXPECT_FALSE(equal_bits(lossy, exact));
       EXPECT_FALSE(
-          equal_bits(render(model, view, {.tiles = tiles, .th = th, .loss = 0.01, .upper = upper}), lossy));
+          equal_bits(render(model, view, {.tiles = tiles, .th = th, .loss = 0.01, .bounds = bounds}), lossy));
     }
   }
 }

@@ -94,7 +94,7 @@ TEST(AnchorReuse, AnchorsLeftOutTooSoonAreSeen) {
   render::Frame right(test::gl_context(), model);
   for (int n = 0; n < 4; ++n) right.draw(eyes(), squared);
   const Picture expected = right.read_pictures()[0];
-  const test::FaultyShaders faulty("decode.comp", "upper) > 1.0", "upper) > 0.1");
+  const test::FaultyShaders faulty("decode.comp", "bound) > 1.0", "bound) > 0.1");
   render::Frame wrong(test::gl_context(), model);
   for (int n = 0; n < 4; ++n) wrong.draw(eyes(), squared);
   EXPECT_FALSE(same_bits(wrong.read_pictures()[0], expected));

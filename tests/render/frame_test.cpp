@@ -236,14 +236,14 @@ TEST(Frame, SaysBeforehandWhatMemoryItStartsWith) {
   const Model model = test::random_model(76, 20000, 2);
   const auto rig = stereo::make_rig(test::front_camera(300, 200, 300), {.ipd = 0.1});
   const std::int64_t before = test::gl_context().allocated_bytes();
-  for (const auto& [transmittance, list_tiles] :
+  for (const auto& [transmittance, supertile_side] :
        {std::pair{TRANSMITTANCE_ONE, 1}, {TRANSMITTANCE_LAST, 1}, {TRANSMITTANCE_ONE, 2}}) {
     const FrameSettings settings{.transmittance = transmittance};
-    const auto needs = render::memory_needs(render::make_shape(rig.views, settings, model, list_tiles));
+    const auto needs = render::memory_needs(render::make_shape(rig.views, settings, model, supertile_side));
     render::Frame frame(test::gl_context(), model);
     EXPECT_EQ(test::gl_context().allocated_bytes() - before, needs.model);
-    const double taken =
-        static_cast<double>(frame.draw(rig.views, settings, {.list_tiles = list_tiles}).gpu_bytes - before);
+    const double taken = static_cast<double>(
+        frame.draw(rig.views, settings, {.supertile_side = supertile_side}).gpu_bytes - before);
     const double said = static_cast<double>(needs.model + needs.frame);
     EXPECT_NEAR(said / taken, 1.0, 0.03);  // what the sorts count in besides is small
   }

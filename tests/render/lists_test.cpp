@@ -17,22 +17,22 @@ using test::same_bits;
 using Offers = std::vector<std::vector<std::uint32_t>>;
 
 Offers offers(const Model& model, const std::vector<shared::View>& views, std::uint32_t v, int tiles,
-              int list_tiles) {
-  test::StageRun run(model, views, {.tiles = tiles}, list_tiles);
+              int supertile_side) {
+  test::StageRun run(model, views, {.tiles = tiles}, supertile_side);
   run.run_until(render::Stage::ranges);
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
-  const std::uint32_t pairs = list_tiles == 1 ? counters.pairs : counters.tile_pairs;
+  const std::uint32_t pairs = supertile_side == 1 ? counters.pairs : counters.tile_pairs;
   const auto values = run.frame.values_of_tiles(run.shape).read<std::uint32_t>(pairs);
   const auto ranges =
       run.frame.ranges_of_tiles(run.shape).read<std::uint32_t>(2 * std::size_t{run.shape.tile_count()});
   const shared::View& view = run.shape.views[v];
-  const auto side = static_cast<std::uint32_t>(list_tiles);
+  const auto side = static_cast<std::uint32_t>(supertile_side);
   const std::uint32_t across = (view.tiles_x + side - 1) / side;
   Offers offered(std::size_t{view.tiles_x} * view.tiles_y);
   for (std::uint32_t y = 0; y < view.tiles_y; ++y) {
     for (std::uint32_t x = 0; x < view.tiles_x; ++x) {
-      const std::uint32_t list = view.list_offset + y / side * across + x / side;
+      const std::uint32_t list = view.supertile_offset + y / side * across + x / side;
       const std::uint32_t tile = list * side * side + y % side * side + x % side;
       for (std::uint32_t k = ranges[2 * tile]; k < ranges[2 * tile + 1]; ++k) {
         EXPECT_EQ(values[k] / run.shape.slots, v);
@@ -66,13 +66,13 @@ struct Drawn {
   std::uint64_t listed = 0;  // and of lists
 };
 
-Drawn draw_frames(const Model& model, const FrameSettings& settings, int list_tiles, int count) {
+Drawn draw_frames(const Model& model, const FrameSettings& settings, int supertile_side, int count) {
   render::Frame frame(test::gl_context(), model);
   Drawn drawn;
   for (int n = 0; n < count; ++n) {
-    const render::FrameReport report = frame.draw(two_views(), settings, {.list_tiles = list_tiles});
+    const render::FrameReport report = frame.draw(two_views(), settings, {.supertile_side = supertile_side});
     drawn.pairs = report.pairs;
-    drawn.listed = report.listed_pairs;
+    drawn.listed = report.supertile_pairs;
     for (Picture& picture : frame.read_pictures()) drawn.pictures.push_back(std::move(picture));
   }
   return drawn;
@@ -133,13 +133,13 @@ TEST(Lists, FaultsInWhatIsLeftForPairsAreNoticed) {
   };
   EXPECT_TRUE(fails("pairs.comp", "nth / 2u * across", "nth / 2u"));  // of few lists,
   EXPECT_TRUE(fails("pairs.comp", "to = start_at[place] + in_splat", "to = start_at[place]"));  // of many
-  EXPECT_TRUE(fails("tiles/tiles.glsl", "(touched & 12u) << 2", "0u"));
+  EXPECT_TRUE(fails("tiles/tiles.glsl", "(row_bits & 12u) << 2", "0u"));
   EXPECT_TRUE(fails("pairs_count.comp", "count_of(both.x) + count_of(both.y)", "count_of(both.x)"));
 }
 
 TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
-  const test::FaultyShaders faulty("ranges_of_tiles.comp", "(value >> LIST_SPLAT_BITS >> nth & 1u) != 0u",
-                                   "value != 0u");
+  const test::FaultyShaders faulty("ranges_of_tiles.comp",
+                                   "(value >> SUPERTILE_SPLAT_BITS >> nth & 1u) != 0u", "value != 0u");
   // What the square of 3D-GS cuts, and what Th leaves out of a tile, is seen in the tiles beside.
   const Model model = test::random_model(52, 4000, 1);
   for (const FrameSettings& settings :
@@ -150,9 +150,9 @@ TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
 
 TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
   const Model model = test::random_model(53, 4000, 1);
-  const auto told = [&](int list_tiles) {
+  const auto told = [&](int supertile_side) {
     render::Frame frame(test::gl_context(), model);
-    frame.draw(two_views(), {.th = TH_SQUARED, .loss = 0.5f}, {.list_tiles = list_tiles});
+    frame.draw(two_views(), {.th = TH_SQUARED, .loss = 0.5f}, {.supertile_side = supertile_side});
     std::vector<std::vector<float>> all;
     for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what)
       for (const Image& image : frame.read_shown(what)) all.push_back(image.data);
@@ -161,9 +161,9 @@ TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
   const auto own = told(1), shared = told(2);
   EXPECT_EQ(own, shared);
   EXPECT_NE(own[0], own[2]) << "the same whatever is shown";
-  const auto weights = [&](int list_tiles) {
+  const auto weights = [&](int supertile_side) {
     render::Frame frame(test::gl_context(), model);
-    frame.draw(two_views(), {.weigh = true}, {.list_tiles = list_tiles});
+    frame.draw(two_views(), {.weigh = true}, {.supertile_side = supertile_side});
     std::vector<double> all(model.count());
     for (const render::WeighedGaussian& g : frame.read_weights(0)) all[g.index] = g.weight;
     return all;
@@ -174,26 +174,26 @@ TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
 TEST(Lists, GrowWithTheirTiles) {
   const Model model = test::random_model(52, 4000, 1);
   render::Frame frame(test::gl_context(), model), ample(test::gl_context(), model);
-  const render::FrameReport report = frame.draw(two_views(), {}, {.list_tiles = 2, .pairs = 50});
+  const render::FrameReport report = frame.draw(two_views(), {}, {.supertile_side = 2, .pairs = 50});
   EXPECT_GE(report.redrawn, 2);  // for the lists, then for the tiles
-  EXPECT_EQ(frame.draw(two_views(), {}, {.list_tiles = 2}).redrawn, 0);
+  EXPECT_EQ(frame.draw(two_views(), {}, {.supertile_side = 2}).redrawn, 0);
   ample.draw(two_views(), {});
   EXPECT_TRUE(same_bits(frame.read_pictures()[1], ample.read_pictures()[1]));
 }
 
 TEST(Lists, OfTilesThatAreLeftToTheFrameChangeNoBit) {
   const Model model = test::random_model(54, 400, 1);
-  const auto draw_with = [&](int tile_size, int list_tiles) {
+  const auto draw_with = [&](int tile_size, int supertile_side) {
     render::Frame frame(test::gl_context(), model);
     const render::FrameReport report =
-        frame.draw(two_views(), {.tile_size = tile_size}, {.list_tiles = list_tiles});
-    EXPECT_TRUE(report.list_tiles == 1 || report.list_tiles == 2);
+        frame.draw(two_views(), {.tile_size = tile_size}, {.supertile_side = supertile_side});
+    EXPECT_TRUE(report.supertile_side == 1 || report.supertile_side == 2);
     return frame.read_pictures()[0];
   };
   const Picture expected = draw_with(16, 1);
   EXPECT_TRUE(same_bits(draw_with(16, 0), expected));
   EXPECT_TRUE(same_bits(draw_with(32, 2), expected));
-  EXPECT_TRUE(test::fails_saying([&] { draw_with(16, 3); }, {"lists of 3 x 3 tiles"}));
+  EXPECT_TRUE(test::fails_saying([&] { draw_with(16, 3); }, {"supertiles of 3 x 3 tiles"}));
 }
 
 }  // namespace

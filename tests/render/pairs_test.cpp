@@ -18,10 +18,10 @@ Lists gpu_lists(test::StageRun& run) {
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
   const auto values = run.frame.pairs.values().read<std::uint32_t>(counters.pairs);
-  const auto ranges = run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.shape.list_count});
-  Lists lists(run.shape.list_count);
+  const auto ranges = run.frame.ranges.read<std::uint32_t>(2 * std::size_t{run.shape.supertile_count});
+  Lists lists(run.shape.supertile_count);
   std::size_t total = 0;
-  for (std::uint32_t t = 0; t < run.shape.list_count; ++t) {
+  for (std::uint32_t t = 0; t < run.shape.supertile_count; ++t) {
     for (std::uint32_t k = ranges[2 * t]; k < ranges[2 * t + 1]; ++k) {
       const std::uint32_t view = values[k] / run.shape.slots;
       const std::uint32_t gaussian =

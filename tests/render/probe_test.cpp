@@ -16,8 +16,8 @@ constexpr glm::vec3 background{0.2f, 0.4f, 0.6f};
 // A frame with a probe, stage by stage.
 struct ProbeRun {
   ProbeRun(const Model& model, const std::vector<shared::View>& views, const FrameSettings& settings,
-           int list_tiles, const std::optional<Probe>& probe)
-      : run(model, views, settings, list_tiles, probe) {
+           int supertile_side, const std::optional<Probe>& probe)
+      : run(model, views, settings, supertile_side, probe) {
     run.run_until(render::Stage::probe);
     const auto counters = run.frame.counters.read<shared::Counters>(1).front();
     EXPECT_EQ(counters.overflow, 0u);
@@ -77,24 +77,24 @@ std::vector<shared::View> eyes(int width, int height, double cant = 0.0) {
 }
 
 // Settings without loss, in which a probe must find no error.
-void expect_no_error(const Model& model, const FrameSettings& settings, int list_tiles, double cant) {
+void expect_no_error(const Model& model, const FrameSettings& settings, int supertile_side, double cant) {
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
   const auto views = eyes(width, height, cant);
   const int side = settings.tile_size;
   for (const Probe& probe : probes({1, 3}, tiles_along(width, side), tiles_along(height, side))) {
-    EXPECT_EQ(ProbeRun(model, views, settings, list_tiles, probe).error, 0.0)
-        << tiles_choices[settings.tiles].name << ", tile " << side << ", lists of " << list_tiles << ", cant "
-        << cant << ", view " << probe.view << ", step " << probe.step << " from (" << probe.column << ", "
-        << probe.row << ")";
+    EXPECT_EQ(ProbeRun(model, views, settings, supertile_side, probe).error, 0.0)
+        << tiles_choices[settings.tiles].name << ", tile " << side << ", lists of " << supertile_side
+        << ", cant " << cant << ", view " << probe.view << ", step " << probe.step << " from ("
+        << probe.column << ", " << probe.row << ")";
   }
 }
 
 TEST(Probe, WithoutLossFindsNoErrorWhereverItsTilesLie) {
   const Model model = test::random_model(101, 1500, 1);
   for (const int tile_size : {8, 16, 32}) {
-    for (const int list_tiles : {1, 2}) {
+    for (const int supertile_side : {1, 2}) {
       const FrameSettings settings = {.th = TH_SQUARED, .tile_size = tile_size, .background = background};
-      expect_no_error(model, settings, list_tiles, list_tiles == 1 ? 0.0 : 4.0);
+      expect_no_error(model, settings, supertile_side, supertile_side == 1 ? 0.0 : 4.0);
     }
   }
 }
@@ -102,10 +102,10 @@ TEST(Probe, WithoutLossFindsNoErrorWhereverItsTilesLie) {
 TEST(Probe, WithoutLossFindsNoErrorByAnyTileTest) {
   const Model model = test::random_model(102, 1500, 0);
   for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL}) {
-    for (const int list_tiles : {1, 2}) {
-      if (tiles == TILES_ALL && list_tiles == 2) continue;
-      expect_no_error(model, {.tiles = tiles, .th = TH_PERIPHERAL, .background = background}, list_tiles,
-                      list_tiles == 1 ? 4.0 : 0.0);
+    for (const int supertile_side : {1, 2}) {
+      if (tiles == TILES_ALL && supertile_side == 2) continue;
+      expect_no_error(model, {.tiles = tiles, .th = TH_PERIPHERAL, .background = background}, supertile_side,
+                      supertile_side == 1 ? 4.0 : 0.0);
     }
   }
 }
@@ -177,7 +177,7 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
       for (std::uint32_t eye = 0; eye < 2; ++eye)
         EXPECT_TRUE(test::same_bits(with.picture(eye), without.picture(eye))) << probe.step;
       const std::size_t all = 2 * model.count();
-      EXPECT_EQ(with.run.frame.upper->read<float>(all), without.run.frame.upper->read<float>(all));
+      EXPECT_EQ(with.run.frame.bounds->read<float>(all), without.run.frame.bounds->read<float>(all));
     }
   }
 }

@@ -18,8 +18,8 @@ namespace {
 // What is wrong with a row, by Th of a splat whose Th is above tau at the careful loss.
 std::string wrong_with(const ThresholdRule& rule, int th) {
   const reference::Splat splat = reference::make_splat({8, 8}, {5, 2, 4}, 1.0);
-  const auto threshold = [&](double loss, double upper = 1.0) {
-    return reference::threshold(th, loss, splat, upper);
+  const auto threshold = [&](double loss, double bound = 1.0) {
+    return reference::threshold(th, loss, splat, bound);
   };
   if (threshold(0.0) != ALPHA_MIN) return "a loss of 0 costs something";
   const double careful = rule.exact ? 1.0 : rule.careful_loss;
@@ -79,7 +79,8 @@ TEST(Workings, ThatContradictAreNamed) {
         FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST}}) {
     EXPECT_TRUE(test::fails_saying([&] { check(blended, settings, "--"); }, {"--reference-until"}));
   }
-  EXPECT_TRUE(test::fails_saying([] { check(render::Workings{.list_tiles = 3}, {}); }, {"lists of 3 x 3"}));
+  EXPECT_TRUE(
+      test::fails_saying([] { check(render::Workings{.supertile_side = 3}, {}); }, {"supertiles of 3 x 3"}));
 }
 
 TEST(Settings, ThatGoTogetherDo) {

@@ -186,14 +186,14 @@ void expect_eyes_equal_themselves_alone(const Model& model, const Camera& head, 
   render::Frame frame(test::gl_context(), model);
   for (const double cant : {0.0, 5.0}) {
     const auto rig = stereo::make_rig(head, {.units_per_metre = units_per_metre, .cant_degrees = cant});
-    for (const int list_tiles : {1, 2}) {
-      frame.draw(rig.views, {}, {.list_tiles = list_tiles});
+    for (const int supertile_side : {1, 2}) {
+      frame.draw(rig.views, {}, {.supertile_side = supertile_side});
       const auto both = frame.read_pictures();
       for (const std::size_t eye : {0, 1}) {
-        frame.draw(std::span(&rig.views[eye], 1), {}, {.list_tiles = list_tiles});
+        frame.draw(std::span(&rig.views[eye], 1), {}, {.supertile_side = supertile_side});
         const auto alone = frame.read_pictures().front();
         EXPECT_TRUE(test::same_bits(both[eye], alone))
-            << model.name << " cant " << cant << ", " << list_tiles;
+            << model.name << " cant " << cant << ", " << supertile_side;
         EXPECT_FALSE(test::same_bits(both[1 - eye], alone)) << model.name << " cant " << cant;
       }
     }

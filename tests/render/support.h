@@ -62,25 +62,25 @@ inline double psnr(const Picture& a, const Picture& b) {
 /// A frame drawn as far as a stage, with every buffer at hand.
 struct StageRun {
   StageRun(const Model& model, std::vector<shared::View> of_views, const render::FrameSettings& with = {},
-           int list_tiles = 1, const std::optional<render::Probe>& and_probe = {},
+           int supertile_side = 1, const std::optional<render::Probe>& and_probe = {},
            std::uint32_t page_gaussians = 0)
       : drawn(std::make_shared<render::GpuModel>(gl_context(), model, with.precision, page_gaussians)),
         views(std::move(of_views)),
         settings(with),
-        workings{.list_tiles = list_tiles},
+        workings{.supertile_side = supertile_side},
         probe(and_probe) {}
 
   void run_until(render::Stage stage) {
     drawn.draw_until(stage, views, settings, workings, probe);
     indices.clear();
     for (std::size_t group = 0; stage > render::Stage::decode && group < shape.groups.size(); ++group) {
-      const auto amounts = frame.drawn[group]->amounts.read<shared::Amount>(1);
-      indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(amounts.front().count));
+      const auto arguments = frame.drawn[group]->arguments.read<shared::DispatchArguments>(1);
+      indices.push_back(frame.drawn[group]->indices.read<std::uint32_t>(arguments.front().count));
     }
   }
 
   /// The splats of a view by Gaussian of the model; tiles 0 where the view does not draw it. With lists of
-  /// one tile: those of several are not only counted (lists.glsl).
+  /// one tile: those of several are not only counted (supertiles.glsl).
   struct Projected {
     std::vector<shared::Splat> splats;
     std::vector<std::uint32_t> tiles;
@@ -88,7 +88,7 @@ struct StageRun {
   Projected projected(std::uint32_t view) const {
     const std::size_t all = std::size_t{shape.slots} * shape.view_count();
     const auto splats = frame.splats.read<shared::Splat>(all);
-    const auto tiles = frame.touched.read<std::uint32_t>(all);
+    const auto tiles = frame.coverages.read<std::uint32_t>(all);
     Projected out{std::vector<shared::Splat>(shape.gaussian_count),
                   std::vector<std::uint32_t>(shape.gaussian_count)};
     const auto& of_group = indices[shape.views[view].order_group];
@@ -113,7 +113,7 @@ struct StageRun {
 inline std::vector<float> measured_on_gpu(const Model& model, const shared::View& view) {
   render::Frame frame(gl_context(), model);
   frame.draw(std::span(&view, 1), {.transmittance = TRANSMITTANCE_LAST});
-  return frame.buffers().upper->read<float>(model.count());
+  return frame.buffers().bounds->read<float>(model.count());
 }
 
 /// How many Gaussians have another measurement in the reference than these.
@@ -122,7 +122,7 @@ inline std::size_t differing(const std::vector<float>& measured, const Model& mo
   const auto splats = reference::project_all(model, view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
   const auto expected =
-      reference::floored(reference::measure_transmittance(splats, lists, view), UPPER_FLOOR);
+      reference::floored(reference::measure_transmittance(splats, lists, view), BOUND_FLOOR);
   std::size_t count = 0;
   for (std::size_t i = 0; i < measured.size(); ++i)
     count += std::abs(measured[i] - expected[i]) > 1e-4 ? 1 : 0;

@@ -16,13 +16,13 @@ constexpr double loss = 0.6;
 
 stereo::EyePair rig() { return stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3}); }
 
-// Th of every Gaussian by itself as one view has it, 0 where it does not draw it. `upper` by Gaussian.
+// Th of every Gaussian by itself as one view has it, 0 where it does not draw it. `bounds` by Gaussian.
 std::vector<double> thresholds(const Model& model, const shared::View& view, int th,
-                               const std::vector<double>& upper = {}) {
+                               const std::vector<double>& bounds = {}) {
   std::vector<double> result(model.count());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const reference::Splat splat = reference::project(model, i, view);
-    if (splat.drawn) result[i] = reference::threshold(th, loss, splat, upper.empty() ? 1.0 : upper[i]);
+    if (splat.drawn) result[i] = reference::threshold(th, loss, splat, bounds.empty() ? 1.0 : bounds[i]);
   }
   return result;
 }
@@ -91,11 +91,11 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
   const shared::View view = make_view(test::front_camera(120, 90, 110));
   // Depths reach 6: what lies beyond 4 gets all light, and so does an empty bin; 0.001 is floored.
   const render::DepthTable table{4.0f, {0.5f, 0.001f, 0.0f, 0.8f}};
-  std::vector<double> upper, shifted;
+  std::vector<double> bounds, shifted;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const double z = reference::project(model, i, view).depth;
-    const double of_bin[] = {0.5, UPPER_FLOOR, 1.0, 0.8, 1.0, 1.0, 1.0};
-    upper.push_back(of_bin[static_cast<int>(z)]);
+    const double of_bin[] = {0.5, BOUND_FLOOR, 1.0, 0.8, 1.0, 1.0, 1.0};
+    bounds.push_back(of_bin[static_cast<int>(z)]);
     shifted.push_back(of_bin[static_cast<int>(z) + 1]);
   }
   const FrameSettings settings = {.th = TH_PERIPHERAL,
@@ -104,14 +104,14 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
                                   .loss = static_cast<float>(loss)};
   test::StageRun run(model, {view}, settings);
   run.run_until(render::Stage::project);
-  const Compared c = compare(run, 0, model, thresholds(model, view, TH_PERIPHERAL, upper));
+  const Compared c = compare(run, 0, model, thresholds(model, view, TH_PERIPHERAL, bounds));
   EXPECT_EQ(c.wrong, 0) << "of " << c.all;
   EXPECT_GT(c.all, 300);
   EXPECT_GT(compare(run, 0, model, thresholds(model, view, TH_PERIPHERAL, shifted)).wrong, c.all / 5);
 
-  reference::Settings judged = {.th = TH_PERIPHERAL, .loss = loss, .upper = upper};
+  reference::Settings judged = {.th = TH_PERIPHERAL, .loss = loss, .bounds = bounds};
   EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
-  judged.upper = shifted;
+  judged.bounds = shifted;
   EXPECT_LT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
 }
 

@@ -42,7 +42,7 @@ TEST(Calibration, ComesBackAsItWas) {
   EXPECT_EQ(read.hash, sample().hash);
   EXPECT_EQ(read.target.kind, CalibrationTarget::Kind::drop);
   EXPECT_EQ(read.entries[1].transmittance, TRANSMITTANCE_LAST);
-  EXPECT_EQ(read.depth_table.upper, sample().depth_table.upper);
+  EXPECT_EQ(read.depth_table.bounds, sample().depth_table.bounds);
   Calibration other = sample();
   other.target.kind = CalibrationTarget::Kind::quality;
   EXPECT_EQ(parse_calibration("c", to_json(other).dump()).target.kind, CalibrationTarget::Kind::quality);
@@ -98,7 +98,7 @@ TEST(Calibration, GivesTheLossOfItsEntry) {
   auto found = calibrated(sample(), settings, 100.0);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->loss, 2.0f);
-  EXPECT_EQ(found->depth_table.upper, sample().depth_table.upper);
+  EXPECT_EQ(found->depth_table.bounds, sample().depth_table.bounds);
   EXPECT_FLOAT_EQ(calibrated(sample(), settings, 200.0)->loss, 2.0f * std::pow(2.0f, 1.25f));
   settings.transmittance = TRANSMITTANCE_DEPTH;
   EXPECT_FALSE(calibrated(sample(), settings, 100.0)) << "no entry of this source";
@@ -215,7 +215,7 @@ TEST_F(Calibrating, TheWholeFile) {
                 {.bins = 5, .far = 6.5f}, [&](std::size_t, std::size_t) { ++done; });
   EXPECT_EQ(c.entries.size(), calibrated_settings().size());
   EXPECT_EQ(done, c.entries.size());
-  EXPECT_EQ(c.depth_table.upper.size(), 5);
+  EXPECT_EQ(c.depth_table.bounds.size(), 5);
   EXPECT_EQ(c.depth_table.far, 6.5f);
   EXPECT_TRUE(is_of(c, model));
   for (const CalibrationEntry& e : c.entries) {

@@ -21,7 +21,7 @@ TEST(Floors, AreWhatMustBeMovedAndComputed) {
   work.in_view = 500;
   work.splats = 1000;
   work.pairs = 12000;
-  work.listed_pairs = 10000;
+  work.supertile_pairs = 10000;
   work.tiles = 100;
   work.pixels = 25600;
   work.alphas = 1e6;
@@ -69,7 +69,7 @@ TEST(Floors, RatesAreMeasuredAndAFramesWorkIsCounted) {
   FrameWork work{
       .gaussians = 4000, .degree = 3, .in_view = double(report.visible), .splats = double(report.visible)};
   work.pairs = static_cast<double>(report.pairs);
-  work.listed_pairs = static_cast<double>(report.listed_pairs);
+  work.supertile_pairs = static_cast<double>(report.supertile_pairs);
   work.pixels = 96 * 96;
   work.order_passes = report.order_passes;
   work.tile_sort_passes = report.tile_sort_passes;

@@ -1,4 +1,4 @@
-// Filling an Amount: group counts for things that are counted on the GPU. `groups_max` is the driver's limit along x.
+// Filling dispatch arguments: group counts for things that are counted on the GPU. `groups_max` is the driver's limit along x.
 
 uvec2 split_groups(uint groups, uint groups_max) {
   uint rows = (groups + groups_max - 1u) / groups_max;
@@ -7,11 +7,11 @@ uvec2 split_groups(uint groups, uint groups_max) {
 
 uint blocks_of(uint count, uint block) { return count / block + uint(count % block != 0u); }
 
-Amount make_amount(uint first, uint count, uint groups_max) {
+DispatchArguments make_arguments(uint first, uint count, uint groups_max) {
   uvec2 threads = split_groups(blocks_of(count, THREADS), groups_max);
   uvec2 scan = split_groups(max(1u, blocks_of(count, SCAN_BLOCK)), groups_max);  // of nothing, too, there is a total
   uvec2 sort = split_groups(blocks_of(count, SORT_BLOCK), groups_max);
-  Amount a;
+  DispatchArguments a;
   a.count = count;
   a.first = first;
   a.threads_x = threads.x;

@@ -1,4 +1,4 @@
-#include "primitives/amount.h"
+#include "primitives/arguments.h"
 
 #include <algorithm>
 
@@ -19,8 +19,8 @@ void split(std::uint32_t groups, std::uint32_t groups_max, std::uint32_t& x, std
 
 }  // namespace
 
-shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max, std::uint32_t block) {
-  shared::Amount a{};
+shared::DispatchArguments make_arguments(std::uint32_t count, std::uint32_t groups_max, std::uint32_t block) {
+  shared::DispatchArguments a{};
   a.count = count;
   split(blocks_of(count, THREADS), groups_max, a.threads_x, a.threads_y, a.threads_z);
   split(std::max(1u, blocks_of(count, SCAN_BLOCK)), groups_max, a.scan_x, a.scan_y, a.scan_z);
@@ -28,10 +28,10 @@ shared::Amount make_amount(std::uint32_t count, std::uint32_t groups_max, std::u
   return a;
 }
 
-SortAmounts make_sort_amounts(std::uint32_t count, std::uint32_t digit_bits, std::uint32_t groups_max,
-                              std::uint32_t block) {
-  return {make_amount(count, groups_max, block),
-          make_amount(blocks_of(count, block) << digit_bits, groups_max)};
+SortArguments make_sort_arguments(std::uint32_t count, std::uint32_t digit_bits, std::uint32_t groups_max,
+                                  std::uint32_t block) {
+  return {make_arguments(count, groups_max, block),
+          make_arguments(blocks_of(count, block) << digit_bits, groups_max)};
 }
 
 }  // namespace binosplat::primitives

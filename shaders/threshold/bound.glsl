@@ -1,0 +1,28 @@
+// T_upper of a Gaussian in a view, its transmittance bound: no more reaches it: 1 where nothing is known, at first, after a cut, outside
+// the view, beyond the table of depths (docs/method.md 5).
+
+#include "shared/axes.h"
+#include "shared/limits.h"
+
+#if TRANSMITTANCE == TRANSMITTANCE_ONE
+
+float bound_of(uint gaussian, uint view, float depth) { return 1.0; }
+
+#elif TRANSMITTANCE == TRANSMITTANCE_DEPTH
+
+layout(std430, binding = 7) readonly buffer DepthTable { float depth_table[]; };  // T_upper of equal bins over [0, far)
+
+float bound_of(uint gaussian, uint view, float depth) {
+  precise float bin = depth / frame.far * float(frame.depth_bins);
+  return bin < float(frame.depth_bins) ? depth_table[uint(bin)] : 1.0;
+}
+
+#else
+
+layout(std430, binding = 7) readonly buffer Bounds { float bounds[]; };  // (view, Gaussian)
+
+float bound_of(uint gaussian, uint view, float depth) {
+  return frame.remembers == 0u ? 1.0 : bounds[view * frame.gaussian_count + gaussian];
+}
+
+#endif
