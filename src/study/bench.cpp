@@ -3,11 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/statistics.h"
 #include "measure/depth_table.h"
 #include "measure/metrics.h"
@@ -21,8 +21,6 @@ namespace binosplat::study {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double reference_db = 60.0;  // against float64: the bar below which a driver draws wrongly
 // A pair at its very threshold may fall either way, and calibrated losses lie at such thresholds, where the
 // search ends; at most half of what the loss costs may come from that.
@@ -31,7 +29,7 @@ constexpr double share_db = 3.0;
 // The clock has settled when the medians of two successive windows of frames agree.
 constexpr std::size_t window = 10;
 constexpr double agreement = 0.03;
-constexpr double warm_up_seconds = 3.0;
+constexpr double warm_up_ms = 3000.0;
 
 const glm::vec3 black(0.0f);
 
@@ -52,23 +50,24 @@ double mean_signed(const Image& a, const Image& b) {
   return sum / static_cast<double>(a.data.size());
 }
 
-/// Draws until the GPU's clock has settled. Returns whether it did in time.
-bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSettings& settings) {
-  const auto limit =
-      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(warm_up_seconds));
-  const Clock::time_point end = Clock::now() + limit;
+/// Draws until the GPU's clock has settled. Returns whether it did in time; a software renderer's always has.
+bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSettings& settings,
+             bool software) {
+  const auto start = Clock::now();
+  int drawn = 0;
+  const auto goes_on = [&] {
+    return drawn < render::settling_frames || (!software && ms_since(start) < warm_up_ms);
+  };
   double last = 0.0;
-  for (int drawn = 0; drawn < render::settling_frames || Clock::now() < end;) {
+  while (goes_on()) {
     std::vector<double> times;
-    while (times.size() < window && (drawn < render::settling_frames || Clock::now() < end)) {
+    for (; times.size() < window && goes_on(); ++drawn)
       times.push_back(frame.draw(view.eyes, settings).total_ms);
-      ++drawn;
-    }
     const double now = quantile(times, 0.5);
     if (times.size() == window && std::abs(now - last) <= agreement * now) return true;
     last = now;
   }
-  return false;
+  return software;
 }
 
 double value(double number) { return number; }
@@ -225,7 +224,7 @@ void Bench::time(const render::FrameSettings& settings, BenchNumbers& point) {
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     double of_repeat = 0.0;
     for (const BenchView& view : views_) {
-      if (repeat == 0) settled = warm_up(frame, view, settings) && settled;
+      if (repeat == 0) settled = warm_up(frame, view, settings, gpu_model_->context().software()) && settled;
       for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) frame.draw(view.eyes, settings);
       Run run;
       for (int n = 0; n < effort_.frames; ++n) {

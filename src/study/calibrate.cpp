@@ -1,28 +1,23 @@
 #include "study/calibrate.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
 #include "measure/search.h"
 #include "scene/axes.h"
 #include "study/squared_error.h"
 #include "study/stability.h"
+#include "study/wake.h"
 
 namespace binosplat::study {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // A search ends so near to its target: a drop is asked for in tenths of a dB, a quality in whole ones.
 constexpr double drop_tolerance_db = 0.01, quality_tolerance_db = 0.05;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 double psnr_of(double squared_error) {
   return squared_error > 0.0 ? std::min(equal_db, -10.0 * std::log10(squared_error)) : equal_db;
@@ -74,9 +69,8 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
 
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings) {
   render::Frame frame(context_, other);
-  // While the model was made the GPU slept.
-  const Clock::time_point awake = Clock::now() + std::chrono::milliseconds(drawings > 1 ? 500 : 0);
-  while (Clock::now() < awake) frame.draw(std::span(&views_.front(), 1));
+  // It slept while the model was made.
+  if (drawings > 1) wake(context_, [&] { frame.draw(std::span(&views_.front(), 1)); });
   return cost(frame, {}, drawings);
 }
 
@@ -135,7 +129,7 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
   const Cost reached = cost(settings);
   return {settings.th,           settings.transmittance, found.loss,
           reached.mean_db,       reached.worst_db,       names_[reached.worst_view],
-          reached.pairs_removed, found.evaluations,      seconds_since(start)};
+          reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
 }
 
 std::vector<render::FrameSettings> calibrated_settings() {
@@ -167,10 +161,13 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
   }
   const Clock::time_point start = Clock::now();
   c.depth_table = calibrator.depth_table(table);
-  c.depth_table_seconds = seconds_since(start);
+  c.depth_table_seconds = 1e-3 * ms_since(start);
   const std::vector<render::FrameSettings> all = calibrated_settings();
   for (render::FrameSettings settings : all) {
     settings.depth_table = c.depth_table;
+    // What a rule found with another source is near: each question less is a frame, or eight.
+    if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().loss > 0.0)
+      settings.loss = static_cast<float>(c.entries.back().loss);
     c.entries.push_back(calibrator.find(settings, target.db));
     if (done) done(c.entries.size(), all.size());
   }

@@ -3,11 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
-#include "base/clock.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "measure/depth_table.h"
@@ -16,6 +14,7 @@
 #include "study/exact_frames.h"
 #include "study/fields.h"
 #include "study/settings.h"
+#include "study/wake.h"
 
 namespace binosplat::study {
 
@@ -170,8 +169,8 @@ void Drive::time(MotionResult& result) {
   for (Timed& timed : all) {
     for (const MotionSegment& segment : timed.path->segments) timed.ms.emplace_back(segment.frames.size());
   }
-  const auto awake = Clock::now() + std::chrono::seconds(1);  // while sums were read the GPU slept
-  while (Clock::now() < awake) frame_.draw(result.path.segments.front().frames.front());
+  // It slept while sums were read.
+  wake(frame_.model()->context(), [&] { frame_.draw(result.path.segments.front().frames.front()); });
   std::size_t done = 0;
   for (int round = 0; round < settings_.rounds; ++round) {
     for (std::size_t s = 0; s < segments; ++s) {

@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "base/clock.h"
 #include "base/statistics.h"
 #include "measure/search.h"
 #include "stereo/disagreement.h"
 #include "study/fields.h"
 #include "study/settings.h"
 #include "study/times.h"
+#include "study/wake.h"
 
 namespace binosplat::study {
 
@@ -113,8 +112,7 @@ std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& 
     result.disagreement_db = disagreement_of(still);
     result.problem = problem_of(result, target);
   }
-  const auto awake = Clock::now() + std::chrono::seconds(1);  // while pictures were read the GPU slept
-  while (Clock::now() < awake) still.draw(rules.front());
+  wake(still.context(), [&] { still.draw(rules.front()); });  // it slept while pictures were read
   std::vector<Times> times(rules.size());
   for (int round = 0; round < rule_rounds; ++round) {
     for (std::size_t k = 0; k < rules.size(); ++k) {

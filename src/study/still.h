@@ -14,6 +14,7 @@ class Still {
   /// Draws the exact pictures. Context and model must outlive it.
   Still(gl::Context& context, const Model& model, std::vector<shared::View> views);
 
+  const gl::Context& context() const { return frame_.model()->context(); }
   const std::vector<shared::View>& views() const { return views_; }
   const std::vector<Picture>& exact() const { return exact_; }
   double exact_pairs() const { return exact_pairs_; }
