@@ -57,7 +57,7 @@ FoundLoss find_loss(const std::function<double(double loss)>& value, double targ
     }
     last_held = at_loss >= target;
     if (holds && fails) {
-      if (fails->log_loss - holds->log_loss < 1e-6) return found;  // the value has a step here
+      if (fails->log_loss - holds->log_loss < search.narrowest) return found;  // the value has a step here
       next = between(*holds, *fails);
     } else {
       next = std::clamp(next + (holds ? step : -step), low, high);

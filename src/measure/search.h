@@ -10,6 +10,7 @@ struct LossSearch {
   double smallest = 1e-9;  // what is asked lies between these two
   double largest = 1e9;
   double tolerance = 0.01;  // the search ends where a value that holds is this near to the target
+  double narrowest = 1e-6;  // ... or where the next loss that fails is only this share larger: a step
   int evaluations = 40;     // ... or after so many
 };
 

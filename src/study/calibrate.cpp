@@ -123,6 +123,7 @@ CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_
   };
   measure::LossSearch search;
   search.start = settings.loss;
+  search.narrowest = 1e-3;  // a loss that is a thousandth larger saves nothing
   search.tolerance = sign < 0 ? drop_tolerance_db : quality_tolerance_db;
   const measure::FoundLoss found = measure::find_loss(value, sign * target_db, search);
   settings.loss = static_cast<float>(found.loss);
