@@ -18,7 +18,7 @@ layout(std430, binding = 8) writeonly buffer NextBounds { float next_bounds[]; }
 uniform uint view_begin;
 uniform uint view_end;  // without the probe
 
-// What the next frame is to know of a Gaussian that this view does not draw: all the light again for one out of sight,
+// What the next frame is to know of a Gaussian that this view does not draw: a bound of 1 again for one out of sight,
 // a little more than before for one that Th leaves out, or it would never be measured again. The drawn are measured.
 #if RECORDS
 void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {

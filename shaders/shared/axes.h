@@ -15,7 +15,7 @@
 #define TH_PERIPHERAL 1
 #define TH_SQUARED 2
 
-// --transmittance: where T_upper comes from, the most light that reaches a Gaussian.
+// --transmittance: where T_upper comes from, the transmittance bound of a Gaussian.
 #define TRANSMITTANCE_ONE 0
 #define TRANSMITTANCE_DEPTH 1
 #define TRANSMITTANCE_LAST 2  // measured by frames

@@ -6,7 +6,7 @@
 #define ALPHA_MIN (1.0 / 255.0)
 // alpha is capped so that no single Gaussian makes everything behind it exactly invisible (3D-GS).
 #define ALPHA_MAX 0.99
-// The blend stops before a Gaussian that would leave less than this of the light behind it (3D-GS).
+// The blend stops before a Gaussian that would leave a transmittance of less than this behind it (3D-GS).
 #define TRANSMITTANCE_MIN 1e-4
 // A pixel has a depth where more than this much of it is covered.
 #define COVERAGE_FOR_DEPTH 0.5

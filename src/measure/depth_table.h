@@ -1,5 +1,5 @@
 #pragma once
-// AdaGScale's table: how much light reaches each depth of a scene (Jo et al., section 4.1; docs/method.md 5,
+// AdaGScale's table: the transmittance bound at each depth of a scene (Jo et al., section 4.1; docs/method.md 5,
 // `depth`).
 
 #include <optional>

@@ -74,7 +74,7 @@ bool draw_thresholds(render::FrameSettings& s) {
   changed |= ImGui::SliderFloat("loss", &s.loss, 0.001f, 10.0f, "%.3f", ImGuiSliderFlags_Logarithmic);
   s.loss = std::max(0.0f, s.loss);
   // The depth table needs cameras to be measured from: `binosplat render` has it.
-  if (render::threshold_rules[s.th].goes_by_light)
+  if (render::threshold_rules[s.th].uses_bound)
     changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
   return changed;
 }

@@ -46,8 +46,8 @@ void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, co
         blend_pixel(splats, list, static_cast<int>(x), static_cast<int>(y), {},
                     [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
                       if (verdict != Verdict::blended) return;
-                      const double light = bounds.empty() ? before.transmittance : bounds[i];
-                      fragments.push_back({i, alpha, bin_of(alpha * light)});
+                      const double transmittance = bounds.empty() ? before.transmittance : bounds[i];
+                      fragments.push_back({i, alpha, bin_of(alpha * transmittance)});
                     });
         visit(std::size_t{y} * view.width + x, fragments);
       }

@@ -43,7 +43,7 @@ struct FrameReport {
   double quality = 0.0;  // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
 };
 
-/// A Gaussian that a frame drew in a view, and the most light that reached it.
+/// A Gaussian that a frame drew in a view, and the largest transmittance that it met.
 struct MeasuredGaussian {
   std::uint32_t index = 0;     // in the model
   float depth = 0.0f;          // view z, world units

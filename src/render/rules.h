@@ -10,8 +10,8 @@ namespace binosplat::render {
 /// A rule of th_choices (shared/axes.h), which has the unit of its loss; shaders/threshold/NAME.glsl computes
 /// its Th, reference/threshold.cpp the same in float64.
 struct ThresholdRule {
-  bool exact = false;          // leaves out only what leaves no mark: it has no loss
-  bool goes_by_light = false;  // T_upper matters to it
+  bool exact = false;       // leaves out only what leaves no mark: it has no loss
+  bool uses_bound = false;  // T_upper matters to it
   /// Where a search for a loss begins: gave 40 dB or a little more on every shared scene at a focal length of
   /// 700 px (docs/method.md 8).
   double careful_loss = 0.0;
@@ -21,16 +21,16 @@ struct ThresholdRule {
 /// By TH_ of shared/axes.h.
 inline constexpr ThresholdRule threshold_rules[] = {
     {.exact = true},
-    {.goes_by_light = true, .careful_loss = 1.0, .slope = 2.0},
-    {.goes_by_light = true, .careful_loss = 0.1, .slope = 1.5},
+    {.uses_bound = true, .careful_loss = 1.0, .slope = 2.0},
+    {.uses_bound = true, .careful_loss = 0.1, .slope = 1.5},
 };
 static_assert(std::size(threshold_rules) == std::size(th_choices));
 
 constexpr bool is_exact(int th) { return threshold_rules[th].exact; }
 
-/// Whether a rule can go by light from there.
+/// Whether a rule can use a transmittance bound from there.
 constexpr bool takes(int th, int transmittance) {
-  return transmittance == TRANSMITTANCE_ONE || threshold_rules[th].goes_by_light;
+  return transmittance == TRANSMITTANCE_ONE || threshold_rules[th].uses_bound;
 }
 
 }  // namespace binosplat::render

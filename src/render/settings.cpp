@@ -31,7 +31,7 @@ void check(const FrameSettings& s, std::string_view prefix) {
 void check_choice(const FrameSettings& s, std::string_view prefix) {
   check(s, prefix);
   if (!takes(s.th, s.transmittance)) {
-    fail("{0}transmittance has no effect with {0}th {1}, which goes by no light", prefix,
+    fail("{0}transmittance has no effect with {0}th {1}, which uses no transmittance bound", prefix,
          th_choices[s.th].name);
   }
 }

@@ -66,7 +66,7 @@ struct FrameSettings {
 void check(const FrameSettings& settings, std::string_view prefix = "");
 
 /// The same for what somebody chose to draw by, where all must have an effect: no transmittance with a rule
-/// that goes by no light. (A frame may measure light by any rule, as measure_depth_table does.)
+/// that uses no bound. (A frame may measure by any rule, as measure_depth_table does.)
 void check_choice(const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

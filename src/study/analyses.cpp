@@ -25,8 +25,8 @@ static void fields(const auto& io, const Spread& s) {
 }
 
 static void fields(const auto& io, const DepthBin& b) {
-  io("from", b.from, "to", b.to, "gaussians", b.gaussians, "contribution", b.contribution, "light", b.light,
-     "upper", b.bound);
+  io("from", b.from, "to", b.to, "gaussians", b.gaussians, "contribution", b.contribution, "light",
+     b.transmittance, "upper", b.bound);
 }
 
 namespace {

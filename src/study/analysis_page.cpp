@@ -98,8 +98,8 @@ Section by_depth(const Analysis& a, Spread DepthBin::*value, const char* id, con
   const std::vector<DepthBin>& bins = a.contributions.by_depth;
   Plot plot{{"view depth", "world units"}, {label, ""}, {}};
   Table table{{"from", "to", "Gaussians", "median", "90 of 100 below", "largest"}, {}};
-  const bool light = value == &DepthBin::light;
-  if (light) table.columns.emplace_back("T_upper");
+  const bool of_transmittance = value == &DepthBin::transmittance;
+  if (of_transmittance) table.columns.emplace_back("T_upper");
   for (const auto& [number, name] :
        {std::pair{&Spread::median, "median"}, std::pair{&Spread::p90, "90 of 100 below"},
         std::pair{&Spread::largest, "largest"}}) {
@@ -109,7 +109,7 @@ Section by_depth(const Analysis& a, Spread DepthBin::*value, const char* id, con
       series.add((bin.from + bin.to) / 2, bin.*value.*number, fmt::format("{} Gaussians", bin.gaussians));
     }
   }
-  if (light) {
+  if (of_transmittance) {
     Series& series =
         plot.series.emplace_back(Series{"T_upper of the calibration views", {}, true, true, false});
     for (const DepthBin& bin : bins) series.add(bin.from, bin.bound);
@@ -118,7 +118,7 @@ Section by_depth(const Analysis& a, Spread DepthBin::*value, const char* id, con
     const Spread& of = bin.*value;
     auto& cells =
         table.rows.emplace_back(row(bin.from, bin.to, bin.gaussians, of.median, of.p90, of.largest));
-    if (light) cells.emplace_back(bin.bound);
+    if (of_transmittance) cells.emplace_back(bin.bound);
   }
   return {id,   title, sentence,
           plot, table, plot.series.front().points.empty() ? "No pixel blends anything." : ""};
@@ -129,7 +129,7 @@ std::string lit_bins(const Analysis& a) {
   int lit = 0, all = 0;
   for (const DepthBin& bin : a.contributions.by_depth) {
     all += bin.gaussians > 0;
-    lit += bin.light.largest > 0.5;
+    lit += bin.transmittance.largest > 0.5;
   }
   return fmt::format("{} of {}", lit, all);
 }
@@ -214,7 +214,7 @@ Page analysis_page(const Analysis& a) {
       by_depth(a, &DepthBin::contribution, "contributions", "Contribution against depth (figure 4b)",
                "largest alpha T of a Gaussian",
                "What each Gaussian contributes to the pixel that shows it best, by its depth in the view."),
-      by_depth(a, &DepthBin::light, "light", "Light against depth (figure 6)", "max(T) of a Gaussian",
+      by_depth(a, &DepthBin::transmittance, "light", "Light against depth (figure 6)", "max(T) of a Gaussian",
                fmt::format("In {} bins of depth some Gaussian is lit by more than half: there a table by "
                            "depth can tell little, and what each Gaussian measured tells much.",
                            lit_bins(a))),

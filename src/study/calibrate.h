@@ -1,6 +1,7 @@
 #pragma once
-// Finds the light by depth (AdaGScale, section 4.1) and the loss of each rule and source that costs as much
-// as is asked for, on some views of a model. The pictures stay on the GPU: only sums are read back.
+// Finds the transmittance bound by depth (AdaGScale, section 4.1) and the loss of each rule and source that
+// costs as much as is asked for, on some views of a model. The pictures stay on the GPU: only sums are read
+// back.
 
 #include <functional>
 #include <memory>

@@ -1,6 +1,6 @@
 #pragma once
-// What calibration finds for a model, and the file that keeps it: which light reaches each depth, and which
-// loss costs as much as was asked for.
+// What calibration finds for a model, and the file that keeps it: the transmittance bound at each depth, and
+// which loss costs as much as was asked for.
 //
 // The file is JSON: format "binosplat calibration", version 1; model (name, gaussians, hash), width, height,
 // focal_px and near of the views, views (name, position), target (drop_db against the photos, or psnr_db

@@ -20,12 +20,12 @@ constexpr std::size_t depth_bins = 40;
 
 /// A Gaussian that a pixel of a view blends.
 struct Shown {
-  double depth;         // world units
-  double contribution;  // the largest alpha T
-  double light;         // max(T)
+  double depth;          // world units
+  double contribution;   // the largest alpha T
+  double transmittance;  // max(T)
 };
 
-double upper_at(const render::DepthTable& table, double depth) {
+double bound_at(const render::DepthTable& table, double depth) {
   const auto bins = static_cast<double>(table.bounds.size());
   const double bin = depth / static_cast<double>(table.far) * bins;
   if (!(bin >= 0.0) || bin >= bins) return 1.0;
@@ -33,13 +33,14 @@ double upper_at(const render::DepthTable& table, double depth) {
   return bound > 0.0f ? static_cast<double>(bound) : 1.0;
 }
 
-/// What each of `known` takes for the light that reaches the Gaussians; empty for what each pixel truly sees.
-std::array<std::vector<double>, known.size()> lights(const std::vector<reference::Splat>& splats,
-                                                     const std::vector<double>& largest,
-                                                     const render::DepthTable& table) {
+/// What each of `known` takes for the transmittance bounds of the Gaussians; empty for what each pixel truly
+/// sees.
+std::array<std::vector<double>, known.size()> bounds_by(const std::vector<reference::Splat>& splats,
+                                                        const std::vector<double>& largest,
+                                                        const render::DepthTable& table) {
   std::array<std::vector<double>, known.size()> bounds;
   bounds[1] = largest;
-  for (const reference::Splat& splat : splats) bounds[2].push_back(upper_at(table, splat.depth));
+  for (const reference::Splat& splat : splats) bounds[2].push_back(bound_at(table, splat.depth));
   bounds[3].assign(splats.size(), 1.0);
   return bounds;
 }
@@ -55,17 +56,17 @@ std::vector<DepthBin> by_depth(const std::vector<Shown>& shown, const render::De
   std::vector<double> depths;
   for (const Shown& one : shown) depths.push_back(one.depth);
   const double far = quantile(depths, 0.95), width = far / depth_bins;
-  std::array<std::vector<double>, depth_bins> contribution, light;
+  std::array<std::vector<double>, depth_bins> contribution, transmittance;
   for (const Shown& one : shown) {
     if (one.depth > far) continue;
     const auto b = std::min<std::size_t>(static_cast<std::size_t>(one.depth / width), depth_bins - 1);
     contribution[b].push_back(one.contribution);
-    light[b].push_back(one.light);
+    transmittance[b].push_back(one.transmittance);
   }
   for (std::size_t b = 0; b < depth_bins; ++b) {
     const double from = width * static_cast<double>(b);
-    bins.push_back({from, from + width, contribution[b].size(), spread(contribution[b]), spread(light[b]),
-                    upper_at(table, from + 0.5 * width)});
+    bins.push_back({from, from + width, contribution[b].size(), spread(contribution[b]),
+                    spread(transmittance[b]), bound_at(table, from + 0.5 * width)});
   }
   return bins;
 }
@@ -88,13 +89,13 @@ Contributions contributions(const Model& model, std::span<const ContributionView
   for (const ContributionView& one : views) {
     const auto splats = reference::project_all(model, one.view);
     const auto lists = reference::make_lists(splats, reference::depth_order(splats), one.view, TILES_ELLIPSE);
-    const auto light = reference::measure_transmittance(splats, lists, one.view);
+    const auto transmittance = reference::measure_transmittance(splats, lists, one.view);
     const auto contribution = reference::measure_contributions(splats, lists, one.view);
     for (std::size_t i = 0; i < splats.size(); ++i) {
-      if (light[i] > 0.0) shown.push_back({splats[i].depth, contribution[i], light[i]});
+      if (transmittance[i] > 0.0) shown.push_back({splats[i].depth, contribution[i], transmittance[i]});
     }
     const Image exact = on_black(reference::blend(splats, lists, one.view));
-    const auto bounds = lights(splats, light, table);
+    const auto bounds = bounds_by(splats, transmittance, table);
     for (std::size_t by = 0; by < known.size(); ++by) {
       const auto skipped = reference::skip_lowest(splats, lists, one.view, bounds[by], shares);
       for (std::size_t k = 0; k < shares.size(); ++k) {

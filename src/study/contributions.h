@@ -22,8 +22,8 @@ struct ContributionView {
   std::optional<Image> photo;  // RGB in the view's size
 };
 
-/// What the pictures keep without the lowest contributions, by what is known of the light; means over the
-/// views.
+/// What the pictures keep without the lowest contributions, by what is known of the transmittance; means over
+/// the views.
 struct SkippingCurve {
   struct Point {
     double share = 0.0;             // of the fragments skipped, as reference/skipping.h counts them
@@ -43,7 +43,7 @@ struct DepthBin {
   double from = 0.0, to = 0.0;  // view depth, world units
   std::size_t gaussians = 0;    // that a pixel blends
   Spread contribution;          // the largest alpha T of a pixel
-  Spread light;                 // max(T)
+  Spread transmittance;         // max(T)
   double bound = 0.0;           // the table's
 };
 

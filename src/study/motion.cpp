@@ -48,7 +48,7 @@ class Drive {
         frame_(context, model),
         exact_(frame_.model(), settings.exact_bytes) {}
 
-  /// Light by depth, for the rules that go by it.
+  /// Bounds by depth, for the rules that use them.
   void measure_table(const std::vector<MotionPath>& paths);
   MotionResult along(const MotionPath& path, const std::vector<Variant>& rules);
 

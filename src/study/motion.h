@@ -53,7 +53,7 @@ struct MotionResult {
 /// The rules along each of the paths. Every segment is drawn as by a program that has just started
 /// (Frame::start_over). Frames are judged in one pass and timed in others, which only draw: segment by
 /// segment, rule after rule, so that a clock that drifts does the same to all; --th tau, which goes by no
-/// rule, is timed with them. Tables of light by depth are measured in the first and last views of segments.
+/// rule, is timed with them. Tables of bounds by depth are measured in the first and last views of segments.
 /// `progress(what, done, of)` tells what is under way.
 std::vector<MotionResult> measure_motion(
     gl::Context& context, const Model& model, const std::vector<MotionPath>& paths,
@@ -61,7 +61,7 @@ std::vector<MotionResult> measure_motion(
     const std::function<void(const std::string&, std::size_t, std::size_t)>& progress);
 
 /// Of a rule's moving frames: their time in the exact frames', and it and the pairs in those of the rule that
-/// takes all the light for granted with the same threshold; none where that is not among the rules.
+/// takes a bound of 1 with the same threshold; none where that is not among the rules.
 struct MovedShares {
   std::optional<double> ms_of_exact, ms_of_one, pairs_of_one;
 };

@@ -24,7 +24,7 @@ std::string wrong_with(const ThresholdRule& rule, int th) {
   if (threshold(0.0) != ALPHA_MIN) return "a loss of 0 costs something";
   const double careful = rule.exact ? 1.0 : rule.careful_loss;
   if ((threshold(careful) == ALPHA_MIN) != rule.exact) return "exact";
-  if ((threshold(careful, 0.5) != threshold(careful)) != rule.goes_by_light) return "light";
+  if ((threshold(careful, 0.5) != threshold(careful)) != rule.uses_bound) return "bound";
   if (rule.exact == (rule.careful_loss > 0.0)) return "careful loss";
   if (rule.exact == (rule.slope >= 1.0)) return "slope";
   return "";
@@ -44,7 +44,7 @@ TEST(ThresholdRules, PlantedFaultsAreCaught) {
   };
   EXPECT_EQ(wrong_with(threshold_rules[TH_TAU], TH_SQUARED), "exact");
   EXPECT_EQ(wrong_with(threshold_rules[TH_SQUARED], TH_TAU), "exact");
-  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.goes_by_light = false; }), "light");
+  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.uses_bound = false; }), "bound");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.careful_loss = 0.0; }), "exact");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
 }
@@ -88,7 +88,7 @@ TEST(Settings, ThatGoTogetherDo) {
     for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
       FrameSettings settings{.th = th, .transmittance = source};
       settings.loss = static_cast<float>(threshold_rules[th].careful_loss);
-      check(settings);  // light may be measured by any rule
+      check(settings);  // any rule may measure
       if (takes(th, source)) {
         check_choice(settings);
       } else {
