@@ -10,9 +10,10 @@
 #include <initializer_list>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "base/choices.h"
+#include "shared/axes.h"
 
 namespace binosplat::app {
 
@@ -41,18 +42,39 @@ CLI::Validator one_of(std::initializer_list<T> choices) {
   return CLI::IsMember(std::vector<T>(choices)).description("");
 }
 
-/// The names of a list of shared/axes.h, as a check and as the option's type.
-inline CLI::Option* one_of(CLI::Option* option, std::span<const Choice> choices) {
-  const std::vector<std::string> names = names_of(choices);
-  return option->check(CLI::IsMember(names).description(""))
+/// Words, and what each stands for.
+template <typename Value>
+using Words = std::vector<std::pair<std::string, Value>>;
+
+/// The names of a list of shared/axes.h, which stand for their numbers.
+inline Words<int> words_of(std::span<const Choice> choices) {
+  Words<int> words;
+  for (const Choice& choice : choices) words.emplace_back(choice.name, static_cast<int>(words.size()));
+  return words;
+}
+
+/// A new option that takes one of the words, which its help names as its type, for what that stands for.
+template <typename Value, typename Into>
+CLI::Option* choose(CLI::App& sub, const char* option, Into& into, const std::string& help,
+                    const Words<Value>& words) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : words) names.push_back(name);
+  const auto take = [&into, words](const std::string& given) {
+    for (const auto& [name, value] : words) {
+      if (name == given) into = value;
+    }
+  };
+  return sub.add_option_function<std::string>(option, take, help)
+      ->check(CLI::IsMember(names).description(""))
       ->type_name(fmt::format("{}", fmt::join(names, "|")));
 }
 
-/// The same of a new option, with lines of help.
-inline CLI::Option* choose(CLI::App& sub, const char* option, std::string& into, std::string help,
-                           std::span<const Choice> choices) {
+/// One of a list of shared/axes.h, by its number; the help has a line for each.
+template <typename Into>
+CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std::string help,
+                              std::span<const Choice> choices) {
   for (const Choice& choice : choices) help += fmt::format("\n  {}: {}", choice.name, choice.help);
-  return one_of(sub.add_option(option, into, help), choices);
+  return choose(sub, option, into, help, words_of(choices));
 }
 
 inline CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }

@@ -33,45 +33,42 @@ study::CalibrationTarget TargetOptions::target() const {
   return {max_drop ? Kind::drop : Kind::quality, max_drop ? *max_drop : *quality};
 }
 
-void check_target(const std::string& command, const std::string& what, const TargetOptions& options,
-                  const RenderOptions& render) {
-  if (options.max_drop.has_value() == options.quality.has_value())
+void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
+                  const MeasuredOptions& options) {
+  if (target.max_drop.has_value() == target.quality.has_value())
     fail("{} needs {}: --photos DIR --max-drop DB, or --quality DB against the exact pictures", command,
          what);
-  if (options.max_drop.has_value() != !render.photos.empty())
+  if (target.max_drop.has_value() != !options.photos.empty())
     fail("--max-drop and --photos go together: a drop in dB is against photos");
-  if (render.size && options.max_drop)
+  if (options.camera.lens.size && target.max_drop)
     fail("--size with --photos: a drop is measured in the photos' own size");
 }
 
-study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot) {
+study::CalibrationView with_photo(const std::string& photos, const Shot& shot) {
   study::CalibrationView view{shot.eyes.front().camera, {}};
-  if (options.photos.empty()) return view;
-  const auto file = find_view_photo(options.photos, shot);
-  if (!file) fail("--photos {}: there is no photo of view {}", options.photos, shot.name);
+  if (photos.empty()) return view;
+  const auto file = find_view_photo(photos, shot);
+  if (!file) fail("--photos {}: there is no photo of view {}", photos, shot.name);
   view.photo = load_view_photo(*file, view.camera);
   return view;
 }
 
-std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,
-                                                       const Model& model, double near_plane,
-                                                       std::size_t wanted,
-                                                       std::span<const std::string> without) {
-  RenderOptions render = options;
-  render.mono = true;
-  if (render.views.empty() && list.listed) render.views = {"all"};
-  std::vector<Shot> shots = make_shots(render, list, near_plane, model.axes);
+std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+                                                       const Lens& lens, const OpenScene& scene) {
+  const std::vector<std::string>& without = choice.without;
+  const bool named = !choice.views.empty();
+  std::vector<Shot> shots =
+      make_shots(views_or_all(choice.views), lens, no_rig, scene.list, scene.near_plane, scene.model.axes);
   std::erase_if(shots, [&](const Shot& shot) {
     return std::find(without.begin(), without.end(), shot.name) != without.end();
   });
-  if (!render.photos.empty() && options.views.empty())
-    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(render.photos, shot); });
-  if (shots.empty() && !render.photos.empty() && without.empty())
-    fail("--photos {}: there is no photo of any view", render.photos);
-  if (!options.views.empty()) wanted = shots.size();
+  if (!photos.empty() && !named)
+    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(photos, shot); });
+  if (!photos.empty() && shots.empty() && without.empty())
+    fail("--photos {}: there is no photo of any view", photos);
   std::vector<study::CalibrationView> views;
-  for (const std::size_t i : study::spread_evenly(shots.size(), wanted))
-    views.push_back(with_photo(options, shots[i]));
+  for (const std::size_t i : study::spread_evenly(shots.size(), named ? shots.size() : choice.wanted))
+    views.push_back(with_photo(photos, shots[i]));
   return views;
 }
 

@@ -3,9 +3,10 @@
 
 #include <filesystem>
 #include <optional>
-#include <span>
+#include <string>
 #include <vector>
 
+#include "app/measured_options.h"
 #include "app/shots.h"
 #include "base/image.h"
 #include "study/calibrate.h"
@@ -26,17 +27,22 @@ struct TargetOptions {
 };
 
 /// Throws Error unless there is one of the two, with what it needs; `command` needs `what`, as in "a bound".
-void check_target(const std::string& command, const std::string& what, const TargetOptions& options,
-                  const RenderOptions& render);
+void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
+                  const MeasuredOptions& options);
 
-/// A shot's first camera; with --photos its photo, too. Throws Error where there is none.
-study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot);
+/// A shot's first camera; with a folder of photos its photo, too. Throws Error where there is none.
+study::CalibrationView with_photo(const std::string& photos, const Shot& shot);
 
-/// The cameras, without a rig, that --view names, or else `wanted` of all, evenly spread, but for those
-/// called as one of `without`; with --photos each has its photo, and of all only those count that have one.
-std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,
-                                                       const Model& model, double near_plane,
-                                                       std::size_t wanted,
-                                                       std::span<const std::string> without = {});
+/// Which views of a scene are taken.
+struct ViewChoice {
+  std::vector<std::string> views;         // by name
+  std::size_t wanted = 0;                 // of all, evenly spread, where none is named
+  std::vector<std::string> without = {};  // those called so are left out
+};
+
+/// Cameras, without a rig; with a folder of photos each has its photo, and of all only those count that have
+/// one.
+std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+                                                       const Lens& lens, const OpenScene& scene);
 
 }  // namespace binosplat::app
