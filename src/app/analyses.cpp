@@ -31,7 +31,7 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
   const OpenScene scene = open_scene(options.scene, options.camera);
   const std::vector<std::string>& named = options.camera.views;
   const auto views_of = [&](const ViewChoice& choice) {
-    return photographed_views(choice, options.photos, options.camera.lens, scene);
+    return photographed_views(choice, options.photos, options.camera.lens, scene.list);
   };
   // No view serves both: those named for the one are left out of all for the other.
   const std::vector<study::CalibrationView> tested =

@@ -40,7 +40,7 @@ Shard parse_shard(const std::string& text) {
 std::vector<Shot> choose_shots(const BenchOptions& options, std::size_t wanted, bool photos,
                                std::vector<Shot> shots) {
   if (photos) {
-    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(options.photos, shot); });
+    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(options.photos, shot.name); });
     if (shots.empty()) fail("--photos {}: there is no photo of any view", options.photos);
   }
   if (!options.camera.views.empty()) return shots;
@@ -64,7 +64,7 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
   for (const Shot& shot : shots) {
     study::BenchView& view = views.emplace_back(study::BenchView{shot.name, views_of(shot), {}});
     if (photos)
-      view.photo = load_view_photo(*find_view_photo(options.photos, shot), shot.eyes.front().camera);
+      view.photo = load_view_photo(*find_view_photo(options.photos, shot.name), shot.eyes.front().camera);
   }
   const Camera& camera = shots.front().eyes.front().camera;
   constexpr int small_width = 160;

@@ -46,8 +46,8 @@ ExitCode calibrate(const CalibrateOptions& o) {
   check_target("calibrate", "a target", o.target, o);
   check_output(o.output);
   const OpenScene scene = open_scene(o.scene, o.camera);
-  const std::vector<study::CalibrationView> views =
-      photographed_views({o.camera.views, static_cast<std::size_t>(o.views)}, o.photos, o.camera.lens, scene);
+  const std::vector<study::CalibrationView> views = photographed_views(
+      {o.camera.views, static_cast<std::size_t>(o.views)}, o.photos, o.camera.lens, scene.list);
   const auto context = open_context(o.context);
   Progress progress("calibrating", study::calibrated_settings().size());
   const study::Calibration found =
@@ -64,7 +64,6 @@ void add_calibrate(CLI::App& program, Command& command) {
   CLI::App* sub =
       program.add_subcommand("calibrate", "Find the losses of a model that cost as much as you allow");
   const auto o = std::make_shared<CalibrateOptions>();
-  const auto above_zero = CLI::PositiveNumber.description("");
   sub->add_option("SCENE", o->scene.name, "A model, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();
   sub->add_option("--quality", o->target.quality,

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "app/cli.h"
 #include "scene/camera.h"
 #include "scene/tour.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace binosplat::app {
 

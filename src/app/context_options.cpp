@@ -9,7 +9,7 @@ namespace binosplat::app {
 using gl::Backend;
 
 void add_context_options(CLI::App& sub, ContextOptions& o) {
-  const char* const group = "Drawing";
+  sub.option_defaults()->group("Drawing");
   choose<Backend>(
       sub, "--backend", o.backend,
       "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, Mesa without EGL, "
@@ -17,13 +17,11 @@ void add_context_options(CLI::App& sub, ContextOptions& o) {
       {{"auto", Backend::automatic},
        {"device", Backend::device},
        {"surfaceless", Backend::surfaceless},
-       {"osmesa", Backend::osmesa}})
-      ->group(group);
-  add_device_option(sub, o)->group(group);
+       {"osmesa", Backend::osmesa}});
+  add_device_option(sub, o);
   sub.add_option("--shader-dir", o.shader_dir, "Read shaders from this folder, not the built-in ones")
       ->type_name("DIR")
-      ->check(folder())
-      ->group(group);
+      ->check(folder());
 }
 
 CLI::Option* add_device_option(CLI::App& sub, ContextOptions& o) {

@@ -4,12 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "app/cli.h"
 #include "gl/context.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace binosplat::app {
 

@@ -37,11 +37,10 @@ struct ConvertOptions : MeasuredOptions {
   std::string json;
 };
 
-/// What the views are drawn with, and the pictures of the original.
+/// The same for every model; only its axes differ.
 struct Views {
-  CameraList list;
+  std::vector<Camera> cameras;
   double near_plane = 0.0;
-  std::vector<std::size_t> chosen;  // of the shots
   std::unique_ptr<gl::Context> context;
 };
 
@@ -75,57 +74,40 @@ void check(const ConvertOptions& o, ModelFormat format) {
     fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
 }
 
-/// Of the views that --view names, or of all.
-std::vector<Shot> all_shots(const ConvertOptions& o, const Views& views, const Model& model) {
-  return make_shots(views_or_all(o.camera.views), o.camera.lens, no_rig, views.list, views.near_plane,
-                    model.axes);
-}
-
-/// Shots of one camera each, the same ones for every model; only its axes differ.
-std::vector<Shot> shots_of(const ConvertOptions& o, const Views& views, const Model& model) {
-  const std::vector<Shot> all = all_shots(o, views, model);
-  std::vector<Shot> shots;
-  for (const std::size_t i : views.chosen) shots.push_back(all[i]);
-  return shots;
-}
-
 /// Those that --view names, or so many of the cameras, or of a ring around the model.
 Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   if (!list.listed) {
     log_info("no cameras beside {}: taking {} around the model", o.scene.name, *o.report);
     list = made_up_cameras(o.scene, {.orbit = o.report}, {}, model);
   }
-  Views views{std::move(list), 0.0, {}, nullptr};
-  views.near_plane = near_plane_of(o.camera, views.list, model);
-  const std::size_t all = all_shots(o, views, model).size();
-  views.chosen =
-      study::spread_evenly(all, o.camera.views.empty() ? static_cast<std::size_t>(*o.report) : all);
+  Views views{{}, near_plane_of(o.camera, list, model), nullptr};
+  const std::vector<Camera> all = chosen_cameras(o.camera.views, o.camera.lens, list);
+  const std::size_t wanted = o.camera.views.empty() ? static_cast<std::size_t>(*o.report) : all.size();
+  for (const std::size_t i : study::spread_evenly(all.size(), wanted)) views.cameras.push_back(all[i]);
   views.context = open_context(o.context);
   return views;
 }
 
 /// Pictures of 8 bits.
-std::vector<Image> draw(const ConvertOptions& o, const Views& views, const Model& model, const char* label) {
-  const std::vector<Shot> shots = shots_of(o, views, model);
+std::vector<Image> draw(const Views& views, const Model& model, const char* label) {
   render::Frame frame(*views.context, model);
-  Progress progress(label, shots.size());
+  Progress progress(label, views.cameras.size());
   std::vector<Image> pictures;
-  for (const Shot& shot : shots) {
-    frame.draw(views_of(shot), {});
+  for (const Camera& camera : views.cameras) {
+    const shared::View view = make_view(into_axes(camera, model.axes), views.near_plane);
+    frame.draw({&view, 1});
     pictures.push_back(quantised(composite(frame.read_pictures()[0], glm::vec3(0.0f))));
     progress.update(pictures.size());
   }
   return pictures;
 }
 
-std::vector<ViewCost> compare(const ConvertOptions& o, const Views& views, const Model& back,
-                              const std::vector<Image>& originals) {
-  const std::vector<Image> pictures = draw(o, views, back, "drawing what was written");
-  const std::vector<Shot> shots = shots_of(o, views, back);
+std::vector<ViewCost> compare(const Views& views, const Model& back, const std::vector<Image>& originals) {
+  const std::vector<Image> pictures = draw(views, back, "drawing what was written");
   std::vector<ViewCost> costs;
-  for (std::size_t i = 0; i < shots.size(); ++i) {
-    costs.push_back(
-        {shots[i].name, pictures[i].width, pictures[i].height, measure::psnr(originals[i], pictures[i])});
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    costs.push_back({views.cameras[i].name, pictures[i].width, pictures[i].height,
+                     measure::psnr(originals[i], pictures[i])});
   }
   return costs;
 }
@@ -182,7 +164,7 @@ ExitCode convert(const ConvertOptions& o) {
   std::vector<Image> originals;
   if (o.report) {
     views = find_views(o, list, model);
-    originals = draw(o, views, model, "drawing the original");
+    originals = draw(views, model, "drawing the original");
   }
 
   const std::string axes = model.axes, wanted(axes_of(done.format));
@@ -198,7 +180,7 @@ ExitCode convert(const ConvertOptions& o) {
   done.bytes = fs::file_size(o.output);
   if (o.report) {
     model = load_model(o.output);
-    done.views = compare(o, views, model, originals);
+    done.views = compare(views, model, originals);
   }
   print(o, done);
   if (!o.json.empty()) save_json(o.json, to_json(o, done));
@@ -221,7 +203,7 @@ void add_convert(CLI::App& program, Command& command) {
   sub->add_option("--sh-bits", o->harmonic_bits,
                   "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
                   "costs some 15 dB")
-      ->check(CLI::Range(1, 8).description(""))
+      ->check(range(1, 8))
       ->type_name("N");
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
@@ -230,7 +212,7 @@ void add_convert(CLI::App& program, Command& command) {
          "Draw N views (3) of the original and of what was written, and print\ntheir PSNR")
       ->expected(0, 1)
       ->default_str("3")
-      ->check(CLI::Range(1, 10000).description(""))
+      ->check(range(1, 10000))
       ->type_name("[N]");
   sub->add_option("--cameras", o->camera.file, "Of the views, where they are not beside the model")
       ->type_name("FILE");

@@ -7,39 +7,30 @@
 namespace binosplat::app {
 
 void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
-  const char* const group = "Drawing";
-  choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices)
-      ->group(group);
+  sub.option_defaults()->group("Drawing");
+  choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices);
   choose_explained(sub, "--th", o.th,
                    "The alpha below which a Gaussian is left out of a tile (tau;\nwith --loss: squared)",
-                   th_choices)
-      ->group(group);
+                   th_choices);
   sub.add_option("--loss", o.loss, "How much that may cost, in the unit of --th")
       ->type_name("X")
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->group(group);
+      ->check(not_negative);
   sub.add_option(
          "--quality", o.quality,
          "Choose the loss so that pictures come to about DB against the exact\nones, from the first frame "
          "on: one in four draws some tiles exactly, too")
       ->type_name("DB")
-      ->check(positive)
-      ->group(group);
+      ->check(positive);
   sub.add_option("--calibration", o.calibration, "Take the loss from a file of binosplat calibrate")
-      ->type_name("FILE")
-      ->group(group);
+      ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
-                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices)
-      ->group(group);
+                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices);
   choose_explained(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
-                   decode_choices)
-      ->group(group);
+                   decode_choices);
   choose<std::optional<int>>(sub, "--tile", o.tile, "Side of a tile in px (auto: 16)",
-                             {{"auto", std::nullopt}, {"8", 8}, {"16", 16}, {"32", 32}})
-      ->group(group);
+                             {{"auto", std::nullopt}, {"8", 8}, {"16", 16}, {"32", 32}});
   choose_explained(sub, "--precision", o.precision, "What is kept of the model and of a frame (full)",
-                   precision_choices)
-      ->group(group);
+                   precision_choices);
   Words<render::Stage> stages;
   for (int k = 0; k < render::stages_with_twins; ++k)
     stages.emplace_back(render::name_of(static_cast<render::Stage>(k)), static_cast<render::Stage>(k));
@@ -47,12 +38,10 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
          "Take the stages up to this one from the float64 reference: decode\n(Scaffold-GS), project, order, "
          "pairs, tile_sort, ranges or blend",
          stages)
-      ->type_name("STAGE")
-      ->group(group);
+      ->type_name("STAGE");
   sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")
       ->type_name("N")
-      ->check(range(1, 100000))
-      ->group(group);
+      ->check(range(1, 100000));
 }
 
 void check(const DrawingOptions& o) {

@@ -4,13 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "app/cli.h"
 #include "render/settings.h"
 #include "render/stage.h"
 #include "render/workings.h"
-
-namespace CLI {
-class App;
-}
 
 namespace binosplat::app {
 

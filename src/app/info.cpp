@@ -49,12 +49,9 @@ std::optional<Seen> see(const InfoOptions& o, const Model& model) {
   if (model.scaffold)
     fail("--cameras: {} is a Scaffold-GS model, which makes its Gaussians anew for each eye", o.scene.name);
   const CameraList list = listed_cameras(o.scene, o.camera);
-  const double near_plane = near_plane_of(o.camera, list, model);
-  std::vector<Camera> cameras;
-  for (const Shot& shot : make_shots(all_views, o.camera.lens, no_rig, list, near_plane, model.axes))
-    cameras.push_back(shot.eyes.front().camera);
+  const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
   const auto context = open_context({});
-  study::Weights weights = study::weigh(*context, model, cameras, near_plane);
+  study::Weights weights = study::weigh(*context, model, cameras, near_plane_of(o.camera, list, model));
   std::vector<double>& weight = weights.weight;
   Seen seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());

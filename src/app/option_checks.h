@@ -1,18 +1,24 @@
 #pragma once
-// What the values of options are checked by.
+// What the values of options are checked and read by.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <initializer_list>
+#include <limits>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+#include "base/numbers.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {
@@ -77,7 +83,32 @@ CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std
   return choose(sub, option, into, help, words_of(choices));
 }
 
+/// "1,-2.5,3". Throws Error, naming the option, for anything else.
+inline glm::dvec3 parse_three(const std::string& option, const std::string& text) {
+  glm::dvec3 v{0.0};
+  char comma_1 = 0, comma_2 = 0;
+  std::istringstream in(text);
+  in >> v.x >> comma_1 >> v.y >> comma_2 >> v.z;
+  if (!in || comma_1 != ',' || comma_2 != ',' || in.peek() != std::istringstream::traits_type::eof()) {
+    fail("{} {}: expected three numbers with commas, as in 1,-2.5,3", option, text);
+  }
+  return v;
+}
+
+/// "1280x720", both above zero. Throws Error, naming the option, for anything else; `expected` says what they
+/// mean.
+inline glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
+  const auto two = two_numbers(text, 'x');
+  constexpr unsigned most = std::numeric_limits<int>::max();
+  if (!two || std::min(two->first, two->second) < 1 || std::max(two->first, two->second) > most)
+    fail("{} {}: expected {}", option, text, expected);
+  return {two->first, two->second};
+}
+
 inline CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }
+
+inline const CLI::Validator not_negative = CLI::NonNegativeNumber.description("");
+inline const CLI::Validator above_zero = CLI::PositiveNumber.description("");
 
 inline CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
 

@@ -4,13 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "app/cli.h"
 #include "base/image.h"
 #include "shared/axes.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace binosplat::app {
 

@@ -10,9 +10,9 @@ namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
-std::optional<fs::path> find_view_photo(const fs::path& folder, const Shot& shot) {
-  if (fs::is_regular_file(folder / shot.name)) return folder / shot.name;
-  for (const std::string& name : {shot.name, shot.stem}) {
+std::optional<fs::path> find_view_photo(const fs::path& folder, const std::string& view) {
+  if (fs::is_regular_file(folder / view)) return folder / view;
+  for (const std::string& name : {view, stem_of(view)}) {
     for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
       if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
     }
@@ -44,31 +44,29 @@ void check_target(const std::string& command, const std::string& what, const Tar
     fail("--size with --photos: a drop is measured in the photos' own size");
 }
 
-study::CalibrationView with_photo(const std::string& photos, const Shot& shot) {
-  study::CalibrationView view{shot.eyes.front().camera, {}};
+study::CalibrationView with_photo(const std::string& photos, const Camera& camera) {
+  study::CalibrationView view{camera, {}};
   if (photos.empty()) return view;
-  const auto file = find_view_photo(photos, shot);
-  if (!file) fail("--photos {}: there is no photo of view {}", photos, shot.name);
-  view.photo = load_view_photo(*file, view.camera);
+  const auto file = find_view_photo(photos, camera.name);
+  if (!file) fail("--photos {}: there is no photo of view {}", photos, camera.name);
+  view.photo = load_view_photo(*file, camera);
   return view;
 }
 
 std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
-                                                       const Lens& lens, const OpenScene& scene) {
+                                                       const Lens& lens, const CameraList& list) {
   const std::vector<std::string>& without = choice.without;
   const bool named = !choice.views.empty();
-  std::vector<Shot> shots =
-      make_shots(views_or_all(choice.views), lens, no_rig, scene.list, scene.near_plane, scene.model.axes);
-  std::erase_if(shots, [&](const Shot& shot) {
-    return std::find(without.begin(), without.end(), shot.name) != without.end();
+  std::vector<Camera> cameras = chosen_cameras(choice.views, lens, list);
+  std::erase_if(cameras, [&](const Camera& camera) {
+    return std::find(without.begin(), without.end(), camera.name) != without.end() ||
+           (!photos.empty() && !named && !find_view_photo(photos, camera.name));
   });
-  if (!photos.empty() && !named)
-    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(photos, shot); });
-  if (!photos.empty() && shots.empty() && without.empty())
+  if (!photos.empty() && cameras.empty() && without.empty())
     fail("--photos {}: there is no photo of any view", photos);
   std::vector<study::CalibrationView> views;
-  for (const std::size_t i : study::spread_evenly(shots.size(), named ? shots.size() : choice.wanted))
-    views.push_back(with_photo(photos, shots[i]));
+  for (const std::size_t i : study::spread_evenly(cameras.size(), named ? cameras.size() : choice.wanted))
+    views.push_back(with_photo(photos, cameras[i]));
   return views;
 }
 

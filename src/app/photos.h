@@ -14,7 +14,8 @@
 namespace binosplat::app {
 
 /// The file of a view's photo in a folder: by the view's name as it stands, or with a picture's ending.
-std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path& folder, const Shot& shot);
+std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path& folder,
+                                                     const std::string& view);
 
 /// Reads it. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
@@ -30,8 +31,8 @@ struct TargetOptions {
 void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
                   const MeasuredOptions& options);
 
-/// A shot's first camera; with a folder of photos its photo, too. Throws Error where there is none.
-study::CalibrationView with_photo(const std::string& photos, const Shot& shot);
+/// A camera; with a folder of photos its photo, too. Throws Error where there is none.
+study::CalibrationView with_photo(const std::string& photos, const Camera& camera);
 
 /// Which views of a scene are taken.
 struct ViewChoice {
@@ -40,9 +41,8 @@ struct ViewChoice {
   std::vector<std::string> without = {};  // those called so are left out
 };
 
-/// Cameras, without a rig; with a folder of photos each has its photo, and of all only those count that have
-/// one.
+/// With a folder of photos each has its photo, and of all only those count that have one.
 std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
-                                                       const Lens& lens, const OpenScene& scene);
+                                                       const Lens& lens, const CameraList& list);
 
 }  // namespace binosplat::app

@@ -35,7 +35,7 @@ namespace {
 
 void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
   for (const Shot& shot : shots) {
-    if (find_view_photo(folder, shot)) return;
+    if (find_view_photo(folder, shot.name)) return;
   }
   fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, shots[0].stem);
 }
@@ -44,7 +44,7 @@ void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
 std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& background, const Shot& shot,
                                  const Picture& picture) {
   if (folder.empty()) return std::nullopt;
-  const auto file = find_view_photo(folder, shot);
+  const auto file = find_view_photo(folder, shot.name);
   if (!file) {
     log_info("no photo of {} in {}", shot.name, folder);
     return std::nullopt;

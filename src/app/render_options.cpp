@@ -54,6 +54,7 @@ void add_options(CLI::App& sub, RenderOptions& o) {
   add_drawing_options(sub, o.drawing);
   add_context_options(sub, o.context);
   add_output_options(sub, o.output);
+  sub.option_defaults()->group("Options");
 }
 
 void add_view_options(CLI::App& sub, RenderOptions& o) {
@@ -64,8 +65,8 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   add_context_options(sub, o.context);
   add_look_options(sub, o.output);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
-      ->type_name("DIR")
-      ->group("Outputs");
+      ->type_name("DIR");
+  sub.option_defaults()->group("Options");
 }
 
 void check(const RenderOptions& o) {

@@ -4,9 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace CLI {
-class App;
-}
+#include "app/cli.h"
 
 namespace binosplat::app {
 

@@ -3,7 +3,6 @@
 #include <cctype>
 
 #include "app/option_checks.h"
-#include "app/option_numbers.h"
 #include "base/error.h"
 #include "demo/city.h"
 #include "scene/axes.h"
@@ -16,59 +15,49 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
                  "room, or\ndemo:city, streets of any "
                  "size")
       ->required();
-  const char* const group = "Scene";
-  add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)")
-      ->group(group);
+  sub.option_defaults()->group("Scene");
+  add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)");
   sub.add_option(
          "--detail", o.detail,
          "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
          "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit")
       ->type_name("PX")
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->group(group);
+      ->check(not_negative);
   sub.add_option(
          "--gpu-memory", o.gpu_memory,
          "Of a streamed SOG: levels, near the eyes the finest, that fit in so\nmany MB; for each view "
          "with --detail, else one choice for all")
       ->type_name("MB")
-      ->check(positive)
-      ->group(group);
-  add_axes_option(sub, o)->group(group);
-  auto* antialias =
-      sub.add_flag_callback(
-             "--antialias", [&o] { o.antialias = true; },
-             "Draw as a model that was trained with anti-aliasing (gsplat's,\nMip-Splatting's); by default "
-             "what its file says")
-          ->group(group);
+      ->check(positive);
+  add_axes_option(sub, o);
+  auto* antialias = sub.add_flag_callback(
+      "--antialias", [&o] { o.antialias = true; },
+      "Draw as a model that was trained with anti-aliasing (gsplat's,\nMip-Splatting's); by default "
+      "what its file says");
   sub.add_flag_callback(
          "--no-antialias", [&o] { o.antialias = false; }, "Draw as one that was not")
-      ->excludes(antialias)
-      ->group(group);
+      ->excludes(antialias);
   sub.add_option(
          "--kernel-px2", o.kernel_px2,
          "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)")
       ->type_name("S")
-      ->check(positive)
-      ->group(group);
+      ->check(positive);
   sub.add_option("--appearance", o.appearance,
                  "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
       ->type_name("ID")
-      ->check(whole)
-      ->group(group);
-  add_seed_option(sub, o)->group(group);
-  add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)")->group(group);
+      ->check(whole);
+  add_seed_option(sub, o);
+  add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
   sub.add_option_function<std::string>(
          "--repeat",
          [&o](const std::string& text) {
            o.repeat = parse_two("--repeat", text, "copies along x and z as NXxNZ, for one 4x4");
          },
          "Copies of the scene along x and z; needs --spacing")
-      ->type_name("NXxNZ")
-      ->group(group);
+      ->type_name("NXxNZ");
   sub.add_option("--spacing", o.spacing, "From one copy to the next, in world units")
       ->type_name("S")
-      ->check(positive)
-      ->group(group);
+      ->check(positive);
 }
 
 CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& o, const char* help) {

@@ -6,10 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
+#include "app/cli.h"
 
 namespace binosplat::app {
 

@@ -1,7 +1,6 @@
 #include "app/shots.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <set>
 
@@ -120,8 +119,14 @@ void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings
   shot.ipd = shot.given_eyes ? apart / settings.units_per_metre : settings.ipd;
 }
 
-// A view's name as a file's: trainers' names may have folders, and the endings of the photos.
-std::string stem_of(std::string name, std::set<std::string>& taken) {
+Known known_of(const std::optional<SavedPose>& saved) {
+  if (!saved) return {};
+  return {saved->units_per_metre, saved->ipd, saved->up};
+}
+
+}  // namespace
+
+std::string stem_of(std::string name) {
   std::string lower = name;
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   for (const char* ending : {".png", ".jpg", ".jpeg"}) {
@@ -130,17 +135,8 @@ std::string stem_of(std::string name, std::set<std::string>& taken) {
   std::replace(name.begin(), name.end(), '/', '_');
   if (name.empty()) name = "view";
   if (name[0] == '.') name[0] = '_';
-  std::string unique = name;
-  for (int n = 2; !taken.insert(unique).second; ++n) unique = fmt::format("{}_{}", name, n);
-  return unique;
+  return name;
 }
-
-Known known_of(const std::optional<SavedPose>& saved) {
-  if (!saved) return {};
-  return {saved->units_per_metre, saved->ipd, saved->up};
-}
-
-}  // namespace
 
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
                           const std::optional<SavedPose>& saved) {
@@ -242,6 +238,14 @@ std::vector<shared::View> views_of(const Shot& shot) {
   return views;
 }
 
+std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
+                                   const CameraList& list) {
+  std::vector<Camera> cameras;
+  for (const Choice& choice : chosen(views_or_all(views), list, true))
+    cameras.push_back(sized(lens, choice.cameras[0]));
+  return cameras;
+}
+
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
                              const CameraList& list, double near_plane, const std::string& axes) {
   const stereo::RigSettings settings = rig_settings(rig, list.known, near_plane);
@@ -250,7 +254,8 @@ std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& 
   for (const Choice& choice : chosen(views, list, rig.mono)) {
     Shot& shot = shots.emplace_back();
     shot.name = choice.name;
-    shot.stem = stem_of(choice.name, taken);
+    const std::string stem = shot.stem = stem_of(choice.name);
+    for (int n = 2; !taken.insert(shot.stem).second; ++n) shot.stem = fmt::format("{}_{}", stem, n);
     shot.units_per_metre = settings.units_per_metre;
     add_eyes(lens, rig, settings, choice, axes, shot);
   }

@@ -22,10 +22,13 @@ struct Eye {
   shared::View view;
 };
 
+/// A view's name as a file's: trainers' names may have folders, and the endings of the photos.
+std::string stem_of(std::string name);
+
 /// What one frame draws.
 struct Shot {
   std::string name;  // the view's, as the user knows it
-  std::string stem;  // of its files: unique among the shots, without folders and picture endings
+  std::string stem;  // of its files: stem_of() the name, unique among the shots
   std::vector<Eye> eyes;
   std::optional<double> ipd;     // m, where there is a rig
   double units_per_metre = 1.0;  // world units
@@ -95,9 +98,13 @@ inline const std::vector<std::string>& views_or_all(const std::vector<std::strin
   return views.empty() ? all_views : views;
 }
 
+/// The cameras of the views by name, or all where none is named, as they are drawn without a rig. Throws
+/// Error for a view that is not there; it names some that are.
+std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
+                                   const CameraList& list);
+
 /// The shots of the views by name: NAME, all_views, or none for the first. Of a path and of cameras that are
-/// made up, all. `near_plane` in world units, `axes` those of the model. Throws Error for a view that is not
-/// there; it names some that are.
+/// made up, all. `near_plane` in world units, `axes` those of the model. Throws as chosen_cameras() does.
 std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
                              const CameraList& list, double near_plane, const std::string& axes);
 

@@ -179,7 +179,7 @@ ExitCode study_scene(const StudyOptions& options) {
 }
 
 /// What is studied and where that goes.
-void add_scene_options(CLI::App& sub, StudyOptions& o) {
+void add_studied_options(CLI::App& sub, StudyOptions& o) {
   sub.add_option("--cameras", o.camera.file, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
   sub.add_option("--view", o.camera.views,
@@ -224,7 +224,7 @@ void add_study(CLI::App& program, Command& command) {
          "Timed of each setting in each of three rounds (24; --rules 96);\nwith --motion: that move, of a "
          "segment (60)")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000).description(""));
+      ->check(range(1, 10000));
   sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules, motion);
   sub->add_option("--path", o.camera.path,
                   "Carry one rule along the cameras of this file instead;\nwith --motion: measure along it")
@@ -233,23 +233,23 @@ void add_study(CLI::App& program, Command& command) {
                   "dB that losses are chosen for (40);\nwith --motion: at which rules are compared")
       ->excludes(sub->get_option("--no-equal"))
       ->type_name("DB")
-      ->check(CLI::PositiveNumber.description(""));
+      ->check(above_zero);
   sub->add_option("--loss", o.loss, "Of the rule carried, instead")
       ->excludes(rules, motion)
       ->type_name("X")
-      ->check(CLI::NonNegativeNumber.description(""));
+      ->check(not_negative);
   sub->add_option("--quality", o.quality,
                   "Steer the rule carried to so many dB;\nwith --motion: every rule (40)")
       ->excludes(rules)
       ->type_name("DB")
-      ->check(CLI::PositiveNumber.description(""));
+      ->check(above_zero);
   const auto of_rule = [&](const char* name, int& into, std::span<const Choice> choices) {
     choose(*sub, name, into, fmt::format("Of the rule carried ({})", choices[into].name), words_of(choices))
         ->excludes(rules, motion);
   };
   of_rule("--th", o.th, th_choices);
   of_rule("--transmittance", o.transmittance, transmittance_choices);
-  add_scene_options(*sub, o);
+  add_studied_options(*sub, o);
   sub->footer(
       "By itself it repeats AdaGScale's analyses on the scene, as a page with plots.\n"
       "Examples:\n"

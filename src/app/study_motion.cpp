@@ -9,6 +9,7 @@
 
 #include "app/command.h"
 #include "app/open_scene.h"
+#include "app/option_checks.h"
 #include "app/parts.h"
 #include "app/study_parts.h"
 #include "base/choices.h"
@@ -239,20 +240,20 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
     sub.add_option(name, into, fmt::format("{} ({})", help, into))
         ->needs(motion)
         ->type_name("N")
-        ->check(CLI::Range(0, 10000).description(""));
+        ->check(range(0, 10000));
   };
   sub.add_option(
          "--segments", options.segments,
          fmt::format("Stretches, spread evenly along a tour through the cameras ({})", segments_default))
       ->needs(motion)
       ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""));
+      ->check(range(1, 1000));
   count("--lead", options.lengths.lead, "Frames of a segment before those that count");
   count("--stop", options.lengths.stop, "Frames at the last pose of a segment that moves");
   sub.add_option("--rounds", options.rounds, fmt::format("In which frames are timed ({})", options.rounds))
       ->needs(motion)
       ->type_name("N")
-      ->check(CLI::Range(1, 100).description(""));
+      ->check(range(1, 100));
   sub.add_flag("--no-equal", options.no_equal,
                "Without the comparison at one true quality, which takes longest")
       ->needs(motion);

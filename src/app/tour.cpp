@@ -46,19 +46,17 @@ std::string motions_help() {
 }  // namespace
 
 void add_tour_options(CLI::App& sub, CameraOptions& o) {
-  const char* const group = "Cameras";
+  sub.option_defaults()->group("Cameras");
   sub.add_option_function<std::string>(
          "--tour", [&o](const std::string& text) { o.tour = parse_motion(text); },
          "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in metres "
          "of "
          "--units-per-metre, or else from camera\nto camera, in the median; M,DEG: at other speeds" +
              motions_help())
-      ->type_name("calm|walk|fast|M,DEG")
-      ->group(group);
+      ->type_name("calm|walk|fast|M,DEG");
   sub.add_option("--seconds", o.seconds, "The first S seconds of the tour (all)")
       ->type_name("S")
-      ->check(positive)
-      ->group(group);
+      ->check(positive);
 }
 
 double tour_fps(const std::optional<double>& fps, bool video) {

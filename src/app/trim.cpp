@@ -59,33 +59,31 @@ study::TrimViews choose_views(const TrimOptions& o, const CameraList& list, cons
                               Names& names) {
   study::TrimViews views;
   views.near_plane = near_plane_of(o.camera, list, model);
-  const auto shots_of = [&](const std::vector<std::string>& named) {
-    return make_shots(named, o.camera.lens, no_rig, list, views.near_plane, model.axes);
-  };
-  std::vector<Shot> shots = shots_of(all_views);
-  for (const Shot& shot : o.tests.empty() ? std::vector<Shot>() : shots_of(o.tests)) {
-    views.test.push_back(with_photo(o.photos, shot));
-    names.test.push_back(shot.name);
-    std::erase_if(shots, [&](const Shot& other) { return other.name == shot.name; });
+  std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
+  for (const Camera& camera :
+       o.tests.empty() ? std::vector<Camera>() : chosen_cameras(o.tests, o.camera.lens, list)) {
+    views.test.push_back(with_photo(o.photos, camera));
+    names.test.push_back(camera.name);
+    std::erase_if(cameras, [&](const Camera& other) { return other.name == camera.name; });
   }
-  if (shots.size() < 2)
+  if (cameras.size() < 2)
     fail("{}: {} of its cameras for trim, which needs two at least: one to weigh in, one to hold back",
-         list.source, shots.size());
+         list.source, cameras.size());
   std::vector<std::size_t> judging;
-  for (std::size_t i = 0; i < shots.size(); ++i) {
-    if (o.photos.empty() || find_view_photo(o.photos, shots[i])) judging.push_back(i);
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (o.photos.empty() || find_view_photo(o.photos, cameras[i].name)) judging.push_back(i);
   }
   if (judging.empty()) fail("--photos {}: there is no photo of any view", o.photos);
-  const std::size_t wanted = std::min(static_cast<std::size_t>(o.views), shots.size() / 2);
-  std::vector<bool> held_back(shots.size(), false);
+  const std::size_t wanted = std::min(static_cast<std::size_t>(o.views), cameras.size() / 2);
+  std::vector<bool> held_back(cameras.size(), false);
   for (const std::size_t k : study::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
-  for (std::size_t i = 0; i < shots.size(); ++i) {
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (!held_back[i]) {
-      views.weighed.push_back(shots[i].eyes.front().camera);
+      views.weighed.push_back(cameras[i]);
       continue;
     }
-    views.held_back.push_back(with_photo(o.photos, shots[i]));
-    names.held_back.push_back(shots[i].name);
+    views.held_back.push_back(with_photo(o.photos, cameras[i]));
+    names.held_back.push_back(cameras[i].name);
   }
   names.weighed = views.weighed.size();
   return views;
@@ -225,7 +223,6 @@ ExitCode trim(const TrimOptions& o) {
 void add_trim(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("trim", "Write the smallest model that keeps the pictures");
   const auto o = std::make_shared<TrimOptions>();
-  const auto above_zero = CLI::PositiveNumber.description("");
   sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat or .spz")
       ->type_name("FILE")
