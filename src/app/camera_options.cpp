@@ -52,9 +52,8 @@ CLI::Option* add_size_option(CLI::App& sub, Lens& lens, const char* help) {
 }
 
 CLI::Option* add_preset_option(CLI::App& sub, Lens& lens, const char* help) {
-  return sub.add_option("--preset", lens.preset, help)
-      ->check(one_of<std::string>({"preview", "headset"}))
-      ->type_name("preview|headset");
+  return choose<const char*>(sub, "--preset", lens.preset, help,
+                             {{"preview", "preview"}, {"headset", "headset"}});
 }
 
 CLI::Option* add_near_option(CLI::App& sub, CameraOptions& o, const char* help) {

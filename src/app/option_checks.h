@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <initializer_list>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -41,12 +40,6 @@ inline const CLI::Validator whole(
       return good ? std::string() : text + ": expected a whole number";
     },
     "");
-
-/// A choice of words or numbers; the help names them as the option's type, and once is enough.
-template <typename T>
-CLI::Validator one_of(std::initializer_list<T> choices) {
-  return CLI::IsMember(std::vector<T>(choices)).description("");
-}
 
 /// Words, and what each stands for.
 template <typename Value>

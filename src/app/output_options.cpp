@@ -50,7 +50,7 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
   sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30) or of a tour")
       ->type_name("N")
       ->check(positive);
-  sub.add_option("--bits", o.bits, "Bits a channel of PNG (8)")->check(one_of({8, 16}))->type_name("8|16");
+  choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});
   choose<bool>(sub, "--exr", o.exr_half, "Write OpenEXR too, with depth; half where only -o FILE.exr asks",
                {{"half", true}, {"float", false}});
   choose<bool>(sub, "--exr-encoding", o.exr_display,
