@@ -8,7 +8,8 @@
 
 #include "app/bench_plan.h"
 #include "app/command.h"
-#include "app/drawing.h"
+#include "app/open_scene.h"
+#include "app/output_options.h"
 #include "app/photos.h"
 #include "base/log.h"
 #include "base/numbers.h"
@@ -36,16 +37,15 @@ Shard parse_shard(const std::string& text) {
 
 /// The shots of a case: as many as the axes want, evenly spread, or all that --view names. Where photos can
 /// be compared, only shots that have one count.
-std::vector<Shot> choose_shots(const BenchPlan& plan, const BenchCase& which, const RenderOptions& options,
+std::vector<Shot> choose_shots(const BenchOptions& options, std::size_t wanted, bool photos,
                                std::vector<Shot> shots) {
-  if (!options.photos.empty() && which.eyes == 1 && which.size == "own") {
-    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(options.photos, shot); });
+  if (photos) {
+    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(options.photos, shot.name); });
     if (shots.empty()) fail("--photos {}: there is no photo of any view", options.photos);
   }
-  if (!plan.scenes[which.scene].options.views.empty()) return shots;
+  if (!options.camera.views.empty()) return shots;
   std::vector<Shot> chosen;
-  for (const std::size_t i : study::spread_evenly(shots.size(), static_cast<std::size_t>(plan.axes.views)))
-    chosen.push_back(shots[i]);
+  for (const std::size_t i : study::spread_evenly(shots.size(), wanted)) chosen.push_back(shots[i]);
   return chosen;
 }
 
@@ -53,16 +53,18 @@ std::vector<Shot> choose_shots(const BenchPlan& plan, const BenchCase& which, co
 study::Bench open_case(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
                        const BenchCase& which, const Model& model, const std::optional<study::Peaks>& peaks) {
   const BenchScene& scene = plan.scenes[which.scene];
-  const RenderOptions render = case_options(scene, which);
-  const CameraList list = scene.list.listed ? scene.list : made_up_cameras(render, model);
-  const double near_plane = near_plane_of(render, list, model);
-  const std::vector<Shot> shots =
-      choose_shots(plan, which, render, make_shots(render, list, near_plane, model.axes));
+  const CameraList list =
+      scene.list.listed ? scene.list : made_up_cameras(scene.options, options.camera, {}, model);
+  const double near_plane = near_plane_of(options.camera, list, model);
+  const bool photos = !options.photos.empty() && which.eyes == 1 && which.size == "own";
+  const std::vector<Shot> shots = choose_shots(options, static_cast<std::size_t>(plan.axes.views), photos,
+                                               make_shots(views_or_all(options.camera.views), lens_of(which),
+                                                          rig_of(which), list, near_plane, model.axes));
   std::vector<study::BenchView> views;
   for (const Shot& shot : shots) {
     study::BenchView& view = views.emplace_back(study::BenchView{shot.name, views_of(shot), {}});
-    const bool photos = !render.photos.empty() && which.eyes == 1 && which.size == "own";
-    if (photos) view.photo = load_view_photo(*find_view_photo(render.photos, shot), shot.eyes.front().camera);
+    if (photos)
+      view.photo = load_view_photo(*find_view_photo(options.photos, shot.name), shot.eyes.front().camera);
   }
   const Camera& camera = shots.front().eyes.front().camera;
   constexpr int small_width = 160;
@@ -87,7 +89,7 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
                ? ""
                : fmt::format("; {} are in {}", of_shard - missing.size(), options.output));
   if (missing.empty()) return;
-  const auto context = open_context(options.render);
+  const auto context = open_context(options.context);
 
   std::optional<study::Peaks> peaks;
   if (options.profile) {
@@ -107,7 +109,7 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
       if (loaded != which.scene) {
         bench.reset();
         model.reset();
-        model = plan.scenes[which.scene].scene.model();
+        model = load_scene(plan.scenes[which.scene].options);
         loaded = which.scene;
       }
       if (!bench) bench.emplace(open_case(*context, options, plan, which, *model, peaks));
@@ -192,10 +194,9 @@ void check(const BenchOptions& options) {
   if (!options.merge.empty() && !options.shard.empty())
     fail("--shard measures and --merge does not: choose one");
   if (options.scenes.size() > 1 &&
-      (!options.render.cameras.empty() || !options.render.photos.empty() || !options.calibration.empty()))
+      (!options.camera.file.empty() || !options.photos.empty() || !options.calibration.empty()))
     fail("--cameras, --photos and --calibration are of one scene: bench the scenes one by one");
-  if (options.render.device >= 0 && options.render.backend == "surfaceless")
-    fail("--device is for --backend auto: surfaceless has none");
+  check(options.context, "auto");
 }
 
 ExitCode bench(const BenchOptions& options) {
@@ -226,19 +227,17 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_option("--calibration", o->calibration,
                   "Measure the settings of a file of binosplat calibrate, too")
       ->type_name("FILE");
-  sub->add_option("--cameras", o->render.cameras, "Cameras, where they are not beside the model")
+  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o->render.views, "Views by name, instead of the axes' number of them")
+  sub->add_option("--view", o->camera.views, "Views by name, instead of the axes' number of them")
       ->type_name("NAME...");
-  sub->add_option("--photos", o->render.photos, "Compare with DIR/NAME.jpg or .png as well")
-      ->type_name("DIR")
-      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+  add_photos_option(*sub, o->photos, "Compare with DIR/NAME.jpg or .png as well");
   sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(CLI::Range(1.0, 1000.0).description(""))
       ->type_name("N");
   sub->add_flag("--profile", o->profile,
                 "Set each stage beside what it must move and compute at least, at this GPU's best rates");
-  add_measured_options(*sub, o->render);
+  add_measured_options(*sub, *o);
   sub->add_option("--shard", o->shard, "Measure every Nth point from the Ith on: one job of N")
       ->type_name("I/N");
   sub->add_option("--merge", o->merge, "Join the folders of shards in -o")->type_name("DIR...");

@@ -7,11 +7,12 @@
 
 #include "app/command.h"
 #include "app/content_key.h"
+#include "app/open_scene.h"
 #include "app/report.h"
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/numbers.h"
 #include "base/output_file.h"
-#include "demo/city.h"
 #include "formats/content.h"
 #include "study/calibration.h"
 #include "study/fields.h"
@@ -25,29 +26,28 @@ using nlohmann::ordered_json;
 namespace {
 
 BenchScene open(const BenchOptions& options, const std::string& file) {
-  BenchScene scene;
-  scene.options = options.render;
-  scene.options.scene = file;
-  scene.name = file.rfind("demo:", 0) == 0 ? file : fs::path(file).stem().string();
+  BenchScene scene{is_built_in(file) ? file : fs::path(file).stem().string(), options.scene, {}};
+  scene.options.name = file;
+  scene.list = listed_cameras(scene.options, options.camera);
   return scene;
 }
 
 // What tells a scene from another of the same name.
-ordered_json scene_json(const BenchScene& scene) {
+ordered_json scene_json(const BenchOptions& options, const BenchScene& scene) {
   ordered_json json = {{"name", scene.name}};
   if (scene.name == demo_city_name) {
     json["count"] = city_settings(scene.options).count;
     json["seed"] = city_settings(scene.options).seed;
-  } else if (scene.name.rfind("demo:", 0) != 0) {
-    json["content"] = content_key(fs::path(scene.options.scene));
+  } else if (!is_built_in(scene.name)) {
+    json["content"] = content_key(fs::path(scene.options.name));
   }
   json["cameras"] = ordered_json::array();
   for (const Camera& camera : scene.list.cameras) json["cameras"].push_back(camera.name);
-  if (!scene.options.views.empty()) json["views"] = scene.options.views;
+  if (!options.camera.views.empty()) json["views"] = options.camera.views;
   if (!scene.list.cameras.empty()) json["poses"] = content_key(scene.list.cameras);
-  if (scene.options.near_plane) json["near"] = *scene.options.near_plane;
-  json["photos"] = !scene.options.photos.empty();
-  if (!scene.options.photos.empty()) json["photos_content"] = pictures_key(scene.options.photos);
+  if (options.camera.near_plane) json["near"] = *options.camera.near_plane;
+  json["photos"] = !options.photos.empty();
+  if (!options.photos.empty()) json["photos_content"] = pictures_key(options.photos);
   return json;
 }
 
@@ -90,17 +90,12 @@ ordered_json load_json(const fs::path& path) {
 
 }  // namespace
 
-RenderOptions case_options(const BenchScene& scene, const BenchCase& which) {
-  RenderOptions options = scene.options;
-  options.mono = which.eyes == 1;
-  if (options.views.empty() && scene.list.listed) options.views = {"all"};
-  if (which.size == "preview" || which.size == "headset") {
-    options.preset = which.size;
-  } else if (which.size != "own") {
-    const std::size_t cross = which.size.find('x');
-    options.size = {std::stoi(which.size), std::stoi(which.size.substr(cross + 1))};
-  }
-  return options;
+RigOptions rig_of(const BenchCase& which) { return {.mono = which.eyes == 1}; }
+
+Lens lens_of(const BenchCase& which) {
+  if (which.size == "own") return {};
+  if (const auto size = two_numbers(which.size, 'x')) return {.size = glm::ivec2(size->first, size->second)};
+  return {.preset = which.size};
 }
 
 BenchPlan make_plan(const BenchOptions& options) {
@@ -109,13 +104,10 @@ BenchPlan make_plan(const BenchOptions& options) {
   if (!options.calibration.empty()) add_calibrated(options.calibration, plan.axes);
   ordered_json scenes = ordered_json::array();
   std::set<std::string> names;
-  plan.scenes.reserve(options.scenes.size());  // a scene keeps a reference to its options
   for (const std::string& file : options.scenes) {
-    BenchScene& scene = plan.scenes.emplace_back(open(options, file));
-    scene.scene = open_scene(scene.options);
+    const BenchScene& scene = plan.scenes.emplace_back(open(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
-    scene.list = listed_cameras(scene.options, scene.scene.cameras);
-    scenes.push_back(scene_json(scene));
+    scenes.push_back(scene_json(options, scene));
     add_cases(plan, plan.scenes.size() - 1);
   }
   plan.json = std::make_shared<ordered_json>(

@@ -8,15 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "app/open_scene.h"
-#include "app/render_options.h"
+#include "app/measured_options.h"
+#include "app/rig_options.h"
 #include "app/shots.h"
 #include "study/axes.h"
 #include "study/bench_results.h"
 
 namespace binosplat::app {
 
-struct BenchOptions {
+/// The cameras, photos and the rest are those of every scene.
+struct BenchOptions : MeasuredOptions {
   std::vector<std::string> scenes;
   std::string axes = "quick";
   std::string output = "out/bench";
@@ -26,14 +27,12 @@ struct BenchOptions {
   std::string calibration;         // a file whose settings are measured, too
   double ppd = 67.0;
   bool profile = false;
-  RenderOptions render;  // cameras, photos, views, the built-in scenes' options and the device
 };
 
 /// One scene of the run, and its cameras; the model is read when a point needs it.
 struct BenchScene {
   std::string name;  // the file's, without folders and ending
-  RenderOptions options;
-  Scene scene;
+  SceneOptions options;
   CameraList list;
 };
 
@@ -56,8 +55,9 @@ struct BenchPlan {
 /// Throws Error for scenes, cameras or axes that cannot be used. Reads no model.
 BenchPlan make_plan(const BenchOptions& options);
 
-/// The options that draw a case of a scene.
-RenderOptions case_options(const BenchScene& scene, const BenchCase& which);
+/// Which pictures a case is of.
+RigOptions rig_of(const BenchCase& which);
+Lens lens_of(const BenchCase& which);
 
 /// The points of a folder: what was measured, by number of the plan.
 class BenchFolder {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
-#include "app/drawing.h"
-#include "app/open_scene.h"
+#include "app/option_checks.h"
+#include "app/output_options.h"
 #include "app/photos.h"
 #include "app/shots.h"
 #include "base/log.h"
@@ -18,8 +18,7 @@ namespace binosplat::app {
 
 namespace {
 
-struct CalibrateOptions {
-  RenderOptions render;  // scene, cameras, views, size, photos, device
+struct CalibrateOptions : MeasuredOptions {
   TargetOptions target;
   int views = 16;
   measure::DepthTableSettings table;
@@ -44,19 +43,15 @@ void print(const study::Calibration& c, const CalibrateOptions& o) {
 }
 
 ExitCode calibrate(const CalibrateOptions& o) {
-  check_target("calibrate", "a target", o.target, o.render);
+  check_target("calibrate", "a target", o.target, o);
   check_output(o.output);
-  const Scene scene = open_scene(o.render);
-  CameraList list = listed_cameras(o.render, scene.cameras);
-  const Model model = scene.model();
-  if (!list.listed) list = made_up_cameras(o.render, model);
-  const double near_plane = near_plane_of(o.render, list, model);
-  const std::vector<study::CalibrationView> views =
-      photographed_views(o.render, list, model, near_plane, static_cast<std::size_t>(o.views));
-  const auto context = open_context(o.render);
+  const OpenScene scene = open_scene(o.scene, o.camera);
+  const std::vector<study::CalibrationView> views = photographed_views(
+      {o.camera.views, static_cast<std::size_t>(o.views)}, o.photos, o.camera.lens, scene.list);
+  const auto context = open_context(o.context);
   Progress progress("calibrating", study::calibrated_settings().size());
   const study::Calibration found =
-      study::calibrate(*context, model, views, near_plane, o.target.target(), o.table,
+      study::calibrate(*context, scene.model, views, scene.near_plane, o.target.target(), o.table,
                        [&](std::size_t entries, std::size_t) { progress.update(entries); });
   save_json(o.output, study::to_json(found));
   print(found, o);
@@ -69,8 +64,7 @@ void add_calibrate(CLI::App& program, Command& command) {
   CLI::App* sub =
       program.add_subcommand("calibrate", "Find the losses of a model that cost as much as you allow");
   const auto o = std::make_shared<CalibrateOptions>();
-  const auto above_zero = CLI::PositiveNumber.description("");
-  sub->add_option("SCENE", o->render.scene, "A model, demo:room or demo:city")->required();
+  sub->add_option("SCENE", o->scene.name, "A model, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();
   sub->add_option("--quality", o->target.quality,
                   "Target: PSNR against the exact pictures, mean over the views")
@@ -79,27 +73,22 @@ void add_calibrate(CLI::App& program, Command& command) {
   sub->add_option("--max-drop", o->target.max_drop, "Target: dB lost against the photos, mean over the views")
       ->type_name("DB")
       ->check(above_zero);
-  sub->add_option("--photos", o->render.photos, "DIR/NAME.jpg or .png of the views")
-      ->type_name("DIR")
-      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
-  sub->add_option("--cameras", o->render.cameras, "Cameras, where they are not beside the model")
+  add_photos_option(*sub, o->photos);
+  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o->render.views, "Views by name, instead of --views")->type_name("NAME...");
+  sub->add_option("--view", o->camera.views, "Views by name, instead of --views")->type_name("NAME...");
   sub->add_option("--views", o->views, "So many views, spread evenly over the cameras (16)")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000).description(""));
-  sub->add_option_function<std::string>(
-         "--size", [o](const std::string& text) { o->render.size = parse_size("--size", text); },
-         "Pixels of a view, instead of the cameras' own")
-      ->type_name("WxH");
+      ->check(range(1, 10000));
+  add_size_option(*sub, o->camera.lens);
   sub->add_option("--bins", o->table.bins, "Of the light by depth (20)")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000).description(""));
+      ->check(range(1, 10000));
   sub->add_option("--far", o->table.far,
                   "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)")
       ->type_name("DEPTH")
       ->check(above_zero);
-  add_measured_options(*sub, o->render);
+  add_measured_options(*sub, *o);
   sub->footer(
       "Examples:\n"
       "  binosplat calibrate garden.ply --photos images --max-drop 0.3 -o garden.json\n"

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "base/choices.h"
 #include "base/error.h"
 #include "base/log.h"
 
@@ -21,15 +20,13 @@ render::FrameSettings exact(render::FrameSettings settings) {
 
 }  // namespace
 
-CalibratedSettings::CalibratedSettings(const RenderOptions& options, const Model& model) {
+CalibratedSettings::CalibratedSettings(const DrawingOptions& options, const Model& model) {
   if (options.calibration.empty()) return;
   calibration_ = study::load_calibration(options.calibration);
-  render::FrameSettings asked;
-  asked.th = find_choice("--th", threshold_name(options), th_choices);
-  asked.transmittance = find_choice("--transmittance", options.transmittance, transmittance_choices);
+  const render::FrameSettings asked = settings_of(options);
   if (!study::calibrated(*calibration_, asked, calibration_->focal))
     fail("--calibration {} has no entry for --th {} --transmittance {}", options.calibration,
-         th_choices[asked.th].name, options.transmittance);
+         th_choices[asked.th].name, transmittance_choices[asked.transmittance].name);
   other_model_ = !study::is_of(*calibration_, model);
   if (other_model_)
     log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly",

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "app/render_options.h"
+#include "app/drawing_options.h"
 #include "app/shots.h"
 #include "render/settings.h"
 #include "study/calibration.h"
@@ -14,7 +14,7 @@ class CalibratedSettings {
  public:
   /// Reads the options' file, if they name one; it must have an entry for what they ask for (else: Error). A
   /// file of another model is not gone by: a warning says so.
-  CalibratedSettings(const RenderOptions& options, const Model& model);
+  CalibratedSettings(const DrawingOptions& options, const Model& model);
 
   /// `settings` with the file's loss and light by depth; as they are without a file. Exact for a shot that
   /// is far from the calibrated views, and for another model: a warning says so.

@@ -7,11 +7,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "app/cli.h"
 #include "base/error.h"
-
-namespace CLI {
-class App;
-}
 
 namespace binosplat::app {
 

@@ -1,9 +1,7 @@
 #pragma once
 // What holds for the arguments of every sub-command.
 
-namespace CLI {
-class App;
-}
+#include "app/cli.h"
 
 namespace binosplat::app {
 

@@ -9,9 +9,10 @@
 #include <memory>
 
 #include "app/command.h"
-#include "app/drawing.h"
+#include "app/measured_options.h"
 #include "app/model_files.h"
 #include "app/open_scene.h"
+#include "app/option_checks.h"
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
@@ -28,20 +29,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ConvertOptions {
-  RenderOptions render;  // scene, axes, cameras, views, size, device
+struct ConvertOptions : MeasuredOptions {
   std::string output;
-  std::string to;  // empty: by the output's ending
+  std::optional<ModelFormat> to;  // none: by the output's ending
   std::optional<int> harmonic_bits;
   std::optional<int> report;  // views
   std::string json;
 };
 
-/// What the views are drawn with, and the pictures of the original.
+/// The same for every model; only its axes differ.
 struct Views {
-  CameraList list;
+  std::vector<Camera> cameras;
   double near_plane = 0.0;
-  std::vector<std::size_t> chosen;  // of the shots
   std::unique_ptr<gl::Context> context;
 };
 
@@ -63,11 +62,7 @@ struct Converted {
 };
 
 ModelFormat format_of(const ConvertOptions& o) {
-  if (!o.to.empty()) {
-    const auto* named = std::find(std::begin(model_format_names), std::end(model_format_names), o.to);
-    return static_cast<ModelFormat>(named - std::begin(model_format_names));
-  }
-  return output_format(o.output, "; or say --to");
+  return o.to ? *o.to : output_format(o.output, "; or say --to");
 }
 
 void check(const ConvertOptions& o, ModelFormat format) {
@@ -75,59 +70,44 @@ void check(const ConvertOptions& o, ModelFormat format) {
   if (o.harmonic_bits && format != ModelFormat::spz)
     fail("--sh-bits {}: only spz has a choice of them", *o.harmonic_bits);
   if (!o.json.empty()) check_output(o.json);
-  if (!o.report && (o.render.size || !o.render.cameras.empty() || !o.render.views.empty()))
+  if (!o.report && (o.camera.lens.size || !o.camera.file.empty() || !o.camera.views.empty()))
     fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
 }
 
-/// Shots of one camera each, the same ones for every model; only its axes differ.
-std::vector<Shot> shots_of(const ConvertOptions& o, const Views& views, const Model& model) {
-  const std::vector<Shot> all = make_shots(o.render, views.list, views.near_plane, model.axes);
-  std::vector<Shot> shots;
-  for (const std::size_t i : views.chosen) shots.push_back(all[i]);
-  return shots;
-}
-
 /// Those that --view names, or so many of the cameras, or of a ring around the model.
-Views find_views(ConvertOptions& o, CameraList list, const Model& model) {
-  const bool named = !o.render.views.empty();
-  o.render.mono = true;
+Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   if (!list.listed) {
-    log_info("no cameras beside {}: taking {} around the model", o.render.scene, *o.report);
-    o.render.orbit = *o.report;
-    list = made_up_cameras(o.render, model);
-  } else if (!named) {
-    o.render.views = {"all"};
+    log_info("no cameras beside {}: taking {} around the model", o.scene.name, *o.report);
+    list = made_up_cameras(o.scene, {.orbit = o.report}, {}, model);
   }
-  Views views{std::move(list), 0.0, {}, nullptr};
-  views.near_plane = near_plane_of(o.render, views.list, model);
-  const std::size_t all = make_shots(o.render, views.list, views.near_plane, model.axes).size();
-  views.chosen = study::spread_evenly(all, named ? all : static_cast<std::size_t>(*o.report));
-  views.context = open_context(o.render);
+  Views views{{}, near_plane_of(o.camera, list, model), nullptr};
+  const std::vector<Camera> all = chosen_cameras(o.camera.views, o.camera.lens, list);
+  const std::size_t wanted = o.camera.views.empty() ? static_cast<std::size_t>(*o.report) : all.size();
+  for (const std::size_t i : study::spread_evenly(all.size(), wanted)) views.cameras.push_back(all[i]);
+  views.context = open_context(o.context);
   return views;
 }
 
 /// Pictures of 8 bits.
-std::vector<Image> draw(const ConvertOptions& o, const Views& views, const Model& model, const char* label) {
-  const std::vector<Shot> shots = shots_of(o, views, model);
+std::vector<Image> draw(const Views& views, const Model& model, const char* label) {
   render::Frame frame(*views.context, model);
-  Progress progress(label, shots.size());
+  Progress progress(label, views.cameras.size());
   std::vector<Image> pictures;
-  for (const Shot& shot : shots) {
-    frame.draw(views_of(shot), settings_of(o.render));
+  for (const Camera& camera : views.cameras) {
+    const shared::View view = make_view(into_axes(camera, model.axes), views.near_plane);
+    frame.draw({&view, 1});
     pictures.push_back(quantised(composite(frame.read_pictures()[0], glm::vec3(0.0f))));
     progress.update(pictures.size());
   }
   return pictures;
 }
 
-std::vector<ViewCost> compare(const ConvertOptions& o, const Views& views, const Model& back,
-                              const std::vector<Image>& originals) {
-  const std::vector<Image> pictures = draw(o, views, back, "drawing what was written");
-  const std::vector<Shot> shots = shots_of(o, views, back);
+std::vector<ViewCost> compare(const Views& views, const Model& back, const std::vector<Image>& originals) {
+  const std::vector<Image> pictures = draw(views, back, "drawing what was written");
   std::vector<ViewCost> costs;
-  for (std::size_t i = 0; i < shots.size(); ++i) {
-    costs.push_back(
-        {shots[i].name, pictures[i].width, pictures[i].height, measure::psnr(originals[i], pictures[i])});
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    costs.push_back({views.cameras[i].name, pictures[i].width, pictures[i].height,
+                     measure::psnr(originals[i], pictures[i])});
   }
   return costs;
 }
@@ -146,7 +126,7 @@ void print(const ConvertOptions& o, const Converted& c) {
   fmt::print("{}: {}, {} Gaussians\n", o.output, format, c.count);
   fmt::print("{} bytes, {:.2f} a Gaussian", c.bytes, c.bytes_each());
   if (c.bytes_before) {
-    fmt::print("; {} has {}, {:.2f} times as many", o.render.scene, *c.bytes_before,
+    fmt::print("; {} has {}, {:.2f} times as many", o.scene.name, *c.bytes_before,
                static_cast<double>(*c.bytes_before) / static_cast<double>(c.bytes));
   }
   fmt::print("\n");
@@ -160,7 +140,7 @@ void print(const ConvertOptions& o, const Converted& c) {
 
 nlohmann::ordered_json to_json(const ConvertOptions& o, const Converted& c) {
   nlohmann::ordered_json json =
-      study::object("version", BINOSPLAT_VERSION, "model", o.render.scene, "output", o.output, "format",
+      study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
                     model_format_names[static_cast<int>(c.format)], "gaussians", c.count, "bytes", c.bytes,
                     "bytes_per_gaussian", c.bytes_each(), "losses", c.losses, "model_bytes", c.bytes_before);
   if (c.views.empty()) return json;
@@ -173,19 +153,18 @@ nlohmann::ordered_json to_json(const ConvertOptions& o, const Converted& c) {
   return json;
 }
 
-ExitCode convert(ConvertOptions o) {
+ExitCode convert(const ConvertOptions& o) {
   Converted done;
   done.format = format_of(o);
   check(o, done.format);
-  const Scene scene = open_scene(o.render);
-  const CameraList list = o.report ? listed_cameras(o.render, scene.cameras) : CameraList{};
-  Model model = scene.model();
-  refuse_scaffold(model, o.render.scene);
+  const CameraList list = o.report ? listed_cameras(o.scene, o.camera) : CameraList{};
+  Model model = load_scene(o.scene);
+  refuse_scaffold(model, o.scene.name);
   Views views;
   std::vector<Image> originals;
   if (o.report) {
     views = find_views(o, list, model);
-    originals = draw(o, views, model, "drawing the original");
+    originals = draw(views, model, "drawing the original");
   }
 
   const std::string axes = model.axes, wanted(axes_of(done.format));
@@ -197,11 +176,11 @@ ExitCode convert(ConvertOptions o) {
   done.losses = write_model_file(o.output, model, done.format, o.harmonic_bits.value_or(8));
   for (const std::string& loss : done.losses) log_warning("{}", loss);
   std::error_code ignored;
-  if (fs::is_regular_file(o.render.scene, ignored)) done.bytes_before = fs::file_size(o.render.scene);
+  if (fs::is_regular_file(o.scene.name, ignored)) done.bytes_before = fs::file_size(o.scene.name);
   done.bytes = fs::file_size(o.output);
   if (o.report) {
     model = load_model(o.output);
-    done.views = compare(o, views, model, originals);
+    done.views = compare(views, model, originals);
   }
   print(o, done);
   if (!o.json.empty()) save_json(o.json, to_json(o, done));
@@ -213,40 +192,34 @@ ExitCode convert(ConvertOptions o) {
 void add_convert(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("convert", "Write a model in another format, and say what it costs");
   const auto o = std::make_shared<ConvertOptions>();
-  sub->add_option("MODEL", o->render.scene, "A model file or folder, demo:room or demo:city")->required();
+  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat, .spz\nor .sog")
       ->type_name("FILE")
       ->required();
-  sub->add_option("--to", o->to, "The format, where FILE's ending does not say it")
-      ->check(CLI::IsMember(
-                  std::vector<std::string>(std::begin(model_format_names), std::end(model_format_names)))
-                  .description(""))
-      ->type_name("ply|compressed-ply|splat|spz|sog");
+  Words<ModelFormat> formats;
+  for (const char* name : model_format_names)
+    formats.emplace_back(name, static_cast<ModelFormat>(formats.size()));
+  choose(*sub, "--to", o->to, "The format, where FILE's ending does not say it", formats);
   sub->add_option("--sh-bits", o->harmonic_bits,
                   "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
                   "costs some 15 dB")
-      ->check(CLI::Range(1, 8).description(""))
+      ->check(range(1, 8))
       ->type_name("N");
-  sub->add_option("--lod", o->render.lod, "Level of detail of a streamed SOG, 0 the finest")
-      ->check(CLI::Range(0, 100).description(""))
-      ->type_name("N");
-  add_axes_option(*sub, o->render);
+  add_lod_option(*sub, o->scene);
+  add_axes_option(*sub, o->scene);
   sub->add_option_function<int>(
          "--report", [o](const int& views) { o->report = views; },
          "Draw N views (3) of the original and of what was written, and print\ntheir PSNR")
       ->expected(0, 1)
       ->default_str("3")
-      ->check(CLI::Range(1, 10000).description(""))
+      ->check(range(1, 10000))
       ->type_name("[N]");
-  sub->add_option("--cameras", o->render.cameras, "Of the views, where they are not beside the model")
+  sub->add_option("--cameras", o->camera.file, "Of the views, where they are not beside the model")
       ->type_name("FILE");
-  sub->add_option("--view", o->render.views, "Views by name, instead of N")->type_name("NAME...");
-  sub->add_option_function<std::string>(
-         "--size", [o](const std::string& text) { o->render.size = parse_size("--size", text); },
-         "Pixels of a view, instead of the cameras' own")
-      ->type_name("WxH");
+  sub->add_option("--view", o->camera.views, "Views by name, instead of N")->type_name("NAME...");
+  add_size_option(*sub, o->camera.lens);
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
-  add_measured_options(*sub, o->render);
+  add_measured_options(*sub, *o);
   sub->footer(
       "What a format cannot keep is said on standard error. Cameras are those beside MODEL, or around it.\n"
       "Examples:\n"

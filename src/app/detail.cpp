@@ -1,6 +1,5 @@
 #include "app/detail.h"
 
-#include "app/drawing.h"
 #include "render/memory.h"
 #include "scene/axes.h"
 
@@ -9,10 +8,12 @@ namespace binosplat::app {
 namespace {
 
 std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& list, const std::string& axes) {
-  const double near_plane = options.near_plane.value_or(near_default);
-  if (list.listed) return make_shots(options, list, near_plane, axes);
-  if (options.eye) return make_shots(options, made_up_cameras(options, Model()), near_plane, axes);
-  return {};
+  const CameraOptions& camera = options.camera;
+  if (!list.listed && !camera.eye) return {};
+  const double near_plane = camera.near_plane.value_or(near_default);
+  return make_shots(camera.views, camera.lens, options.rig,
+                    list.listed ? list : made_up_cameras(options.scene, camera, list.known, Model()),
+                    near_plane, axes);
 }
 
 /// Bytes that a frame starts with, the model's included.
@@ -25,11 +26,10 @@ std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians) {
 
 }  // namespace
 
-std::size_t gaussians_that_fit(const RenderOptions& options, std::span<const shared::View> views,
-                               int degree) {
-  render::FrameSettings settings = settings_of(options);
+std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
+                               std::span<const shared::View> views, int degree) {
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
-  const auto bytes = static_cast<std::int64_t>(1e6 * *options.gpu_memory);
+  const auto bytes = static_cast<std::int64_t>(1e6 * megabytes);
   Model model;
   model.degree = degree;
   const render::FrameShape shape = render::make_shape(views, settings, model);
@@ -41,7 +41,7 @@ std::size_t gaussians_that_fit(const RenderOptions& options, std::span<const sha
 }
 
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list) {
-  const std::string axes = options.axes.empty() ? Model().axes : options.axes;
+  const std::string axes = options.scene.axes.empty() ? Model().axes : options.scene.axes;
   const std::vector<Shot> shots = known_shots(options, list, axes);
   DetailBudget budget;
   std::vector<shared::View> widest;  // the shot of the most pixels
@@ -57,9 +57,10 @@ DetailBudget detail_budget(const RenderOptions& options, const CameraList& list)
   }
   if (shots.empty()) {
     Camera camera = look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720);
-    widest.assign(options.mono || !options.only.empty() ? 1 : 2, make_view(sized(options, camera)));
+    widest.assign(options.rig.one_picture() ? 1 : 2, make_view(sized(options.camera.lens, camera)));
   }
-  budget.gaussians = [&options, widest](int degree) { return gaussians_that_fit(options, widest, degree); };
+  budget.gaussians = [megabytes = *options.scene.gpu_memory, settings = settings_of(options.drawing),
+                      widest](int degree) { return gaussians_that_fit(megabytes, settings, widest, degree); };
   return budget;
 }
 

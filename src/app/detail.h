@@ -3,15 +3,17 @@
 
 #include <span>
 
+#include "app/render_options.h"
 #include "app/shots.h"
 #include "formats/detail.h"
 
 namespace binosplat::app {
 
-/// How many Gaussians of a degree fit in options.gpu_memory beside what a frame of these views takes.
-std::size_t gaussians_that_fit(const RenderOptions& options, std::span<const shared::View> views, int degree);
+/// How many Gaussians of a degree fit in so many MB beside what a frame of these views takes.
+std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
+                               std::span<const shared::View> views, int degree);
 
-/// How many Gaussians fit in options.gpu_memory beside what a frame of the views takes, and from where the
+/// How many Gaussians fit in --gpu-memory beside what a frame of the views takes, and from where the
 /// views see the model, both eyes: known before it is read, unless its own place decides (--orbit, no
 /// cameras), where no eye counts.
 DetailBudget detail_budget(const RenderOptions& options, const CameraList& list);

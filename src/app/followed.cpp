@@ -12,10 +12,6 @@ namespace binosplat::app {
 
 namespace {
 
-double psnr(const RenderOptions& options, std::span<const Picture> a, std::span<const Picture> b) {
-  return measure::psnr(a, b, options.background.value_or(glm::vec3(0.0f)));
-}
-
 std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views, int tile_size) {
   render::FrameSettings plain;
   plain.tile_size = tile_size;
@@ -25,10 +21,11 @@ std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> v
 
 }  // namespace
 
-DetailNeed detail_need(const RenderOptions& options, const StreamedSog& scene,
-                       std::span<const shared::View> views) {
-  DetailNeed need{*options.detail};
-  if (options.gpu_memory) need.most = gaussians_that_fit(options, views, scene.degree());
+DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
+                       const StreamedSog& scene, std::span<const shared::View> views) {
+  DetailNeed need{options.detail.value_or(0.0)};
+  if (options.gpu_memory)
+    need.most = gaussians_that_fit(*options.gpu_memory, settings, views, scene.degree());
   return need;
 }
 
@@ -40,7 +37,7 @@ Model FollowedLevels::coarsest() {
 }
 
 void FollowedLevels::bring(Model& model, std::span<const shared::View> views) {
-  if (scene_.choose(views, detail_need(options_, scene_, views))) read(model);
+  if (scene_.choose(views, detail_need(options_, settings_, scene_, views))) read(model);
 }
 
 void FollowedLevels::read(Model& model) {
@@ -54,17 +51,17 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
                                   std::span<const shared::View> views,
                                   const render::FrameSettings& settings) {
   ShotLevels levels;
-  if (scene_.choose(views, detail_need(options_, scene_, views))) {
+  if (scene_.choose(views, detail_need(options_, settings_, scene_, views))) {
     levels.switched = true;
     std::vector<Picture> before;
-    if (options_.detail_report) before = exact(frame, views, settings.tile_size);
+    if (report_) before = exact(frame, views, settings.tile_size);
     read(model);
     show.release();
     const auto start = Clock::now();
     frame.model()->reload();
     levels.upload_ms = ms_since(start);
-    if (options_.detail_report)
-      levels.switch_psnr = psnr(options_, before, exact(frame, views, settings.tile_size));
+    if (report_)
+      levels.switch_psnr = measure::psnr(before, exact(frame, views, settings.tile_size), background_);
   }
   levels.gaussians = model.count();
   levels.read_ms = std::exchange(read_ms_, 0.0);
@@ -75,11 +72,11 @@ double FollowedLevels::against_finest(gl::Context& context, std::span<const shar
                                       std::span<const Picture> pictures,
                                       const render::FrameSettings& settings) {
   if (!finest_) {
-    finest_ = load_model(options_.scene);
+    finest_ = load_model(options_.name);
     set_as_asked(options_, *finest_);
     show_finest_.emplace(std::make_shared<render::GpuModel>(context, *finest_));
   }
-  return psnr(options_, pictures, show_finest_->exact(views, settings));
+  return measure::psnr(pictures, show_finest_->exact(views, settings), background_);
 }
 
 }  // namespace binosplat::app

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "app/render_options.h"
+#include "app/scene_options.h"
+#include "base/image.h"
 #include "formats/streamed_sog.h"
 #include "render/frame.h"
 #include "stereo/show.h"
@@ -23,15 +24,22 @@ struct ShotLevels {
   std::optional<double> finest_psnr;  // dB, against the exact picture of the finest levels
 };
 
-/// What views of a run need (formats/streamed_sog.h): --detail, and --gpu-memory for the model and their
-/// frame.
-DetailNeed detail_need(const RenderOptions& options, const StreamedSog& scene,
-                       std::span<const shared::View> views);
+/// What views of a run need (formats/streamed_sog.h): --detail, or the finest, and --gpu-memory for the model
+/// and their frame.
+DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
+                       const StreamedSog& scene, std::span<const shared::View> views);
 
 class FollowedLevels {
  public:
-  /// Opens the scene. Throws Error where it is no streamed SOG.
-  explicit FollowedLevels(const RenderOptions& options) : options_(options), scene_(options.scene) {}
+  /// Opens the scene, for frames of such settings. With `report` it says what a switch changes, in pictures
+  /// before `background`. Throws Error where it is no streamed SOG.
+  FollowedLevels(const SceneOptions& options, const render::FrameSettings& settings, bool report,
+                 const glm::vec3& background)
+      : options_(options),
+        settings_(settings),
+        report_(report),
+        background_(background),
+        scene_(options.name) {}
 
   /// The coarsest levels, by which cameras are made up where there are none.
   Model coarsest();
@@ -39,7 +47,7 @@ class FollowedLevels {
   /// Brings the model to the levels that the views need, before there is a frame of it.
   void bring(Model& model, std::span<const shared::View> views);
 
-  /// The same with a frame and maps of the model. With --detail-report it says what the switch changes.
+  /// The same with a frame and maps of the model.
   ShotLevels follow(Model& model, render::Frame& frame, stereo::Show& show,
                     std::span<const shared::View> views, const render::FrameSettings& settings);
 
@@ -50,7 +58,10 @@ class FollowedLevels {
  private:
   void read(Model& model);
 
-  const RenderOptions& options_;
+  SceneOptions options_;
+  render::FrameSettings settings_;
+  bool report_;
+  glm::vec3 background_;
   StreamedSog scene_;
   double read_ms_ = 0.0;  // since the last shot
   std::optional<Model> finest_;

@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "app/command.h"
-#include "app/drawing.h"
+#include "app/context_options.h"
 #include "app/render_report.h"
 #include "app/shots.h"
 #include "formats/cameras_file.h"
@@ -32,7 +32,8 @@ using nlohmann::ordered_json;
 using study::object;
 
 struct InfoOptions {
-  RenderOptions render;  // scene, lod, cameras, device
+  SceneOptions scene;
+  CameraOptions camera;
   std::string json;
 };
 
@@ -43,20 +44,14 @@ struct Seen {
   std::size_t most_of = 0;  // Gaussians of the largest weights, which together have 99 % of all
 };
 
-std::optional<Seen> see(const RenderOptions& options, const Model& model) {
-  if (options.cameras.empty()) return std::nullopt;
+std::optional<Seen> see(const InfoOptions& o, const Model& model) {
+  if (o.camera.file.empty()) return std::nullopt;
   if (model.scaffold)
-    fail("--cameras: {} is a Scaffold-GS model, which makes its Gaussians anew for each eye", options.scene);
-  RenderOptions render = options;
-  render.mono = true;
-  render.views = {"all"};
-  const CameraList list = listed_cameras(render, {});
-  const double near_plane = near_plane_of(render, list, model);
-  std::vector<Camera> cameras;
-  for (const Shot& shot : make_shots(render, list, near_plane, model.axes))
-    cameras.push_back(shot.eyes.front().camera);
-  const auto context = open_context(render);
-  study::Weights weights = study::weigh(*context, model, cameras, near_plane);
+    fail("--cameras: {} is a Scaffold-GS model, which makes its Gaussians anew for each eye", o.scene.name);
+  const CameraList list = listed_cameras(o.scene, o.camera);
+  const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
+  const auto context = open_context({});
+  study::Weights weights = study::weigh(*context, model, cameras, near_plane_of(o.camera, list, model));
   std::vector<double>& weight = weights.weight;
   Seen seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());
@@ -193,10 +188,10 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
 
 ExitCode info(const InfoOptions& options) {
   if (!options.json.empty()) check_output(options.json);
-  const Model model = load_model(options.render.scene, {.lod = options.render.lod});
+  const Model model = load_model(options.scene.name, {.lod = options.scene.lod});
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
-  const std::optional<Seen> seen = see(options.render, model);
+  const std::optional<Seen> seen = see(options, model);
   print(model, summary, needs);
   if (seen) print(*seen, model.count());
   if (options.json.empty()) return ExitCode::done;
@@ -213,12 +208,10 @@ ExitCode info(const InfoOptions& options) {
 void add_info(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("info", "Say what a model is made of");
   const auto options = std::make_shared<InfoOptions>();
-  sub->add_option("MODEL", options->render.scene, "A model file, or the folder of a SOG or of Scaffold-GS")
+  sub->add_option("MODEL", options->scene.name, "A model file, or the folder of a SOG or of Scaffold-GS")
       ->required();
-  sub->add_option("--lod", options->render.lod, "Level of detail of a streamed SOG, 0 the finest")
-      ->check(CLI::Range(0, 100).description(""))
-      ->type_name("N");
-  sub->add_option("--cameras", options->render.cameras,
+  add_lod_option(*sub, options->scene);
+  sub->add_option("--cameras", options->camera.file,
                   "Draw the views of these cameras, and say how many Gaussians they show")
       ->type_name("FILE");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");

@@ -1,11 +1,9 @@
 #include "app/open_scene.h"
 
-#include <memory>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
-#include "demo/room.h"
 #include "formats/model_file.h"
 #include "scene/repeat.h"
 
@@ -13,57 +11,51 @@ namespace binosplat::app {
 
 namespace {
 
-Scene open_once(const RenderOptions& options) {
-  if (options.scene == demo_city_name) {
-    const CitySettings settings = city_settings(options);
-    check(settings);
-    return {city_cameras(settings.seed), [settings] { return demo_city(settings).model; }};
-  }
-  if (options.scene == demo_room_name) {
-    const auto room = std::make_shared<Demo>(demo_room());
-    return {room->cameras, [room] { return std::move(room->model); }};
-  }
-  if (options.scene.rfind("demo:", 0) == 0) {
-    fail("{}: the scenes that are built in are called {} and {}", options.scene, demo_room_name,
-         demo_city_name);
-  }
-  return {{}, [&options] {
-            Model model = load_model(options.scene, {options.lod, options.appearance, options.budget});
-            if (model.antialiased && !options.antialias)
-              log_info("{} was trained with anti-aliasing and is drawn so (--no-antialias: as if not)",
-                       options.scene);
-            return model;
-          }};
+[[noreturn]] void fail_unknown(const std::string& name) {
+  fail("{}: the scenes that are built in are called {} and {}", name, demo_room_name, demo_city_name);
+}
+
+Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget) {
+  if (o.name == demo_city_name) return demo_city(city_settings(o)).model;
+  if (o.name == demo_room_name) return demo_room().model;
+  if (is_built_in(o.name)) fail_unknown(o.name);
+  Model model = load_model(o.name, {o.lod, o.appearance, budget});
+  if (model.antialiased && !o.antialias)
+    log_info("{} was trained with anti-aliasing and is drawn so (--no-antialias: as if not)", o.name);
+  return model;
 }
 
 }  // namespace
 
-CitySettings city_settings(const RenderOptions& options) {
+CitySettings city_settings(const SceneOptions& o) {
   CitySettings settings;
-  settings.seed = options.seed.value_or(settings.seed);
-  settings.count = options.count.value_or(settings.count);
+  settings.seed = o.seed.value_or(settings.seed);
+  settings.count = o.count.value_or(settings.count);
   return settings;
 }
 
-void set_as_asked(const RenderOptions& options, Model& model) {
-  if (!options.axes.empty()) model.axes = options.axes;
-  model.antialiased = options.antialias.value_or(model.antialiased);
-  model.kernel_px2 = options.kernel_px2.value_or(model.kernel_px2);
+void set_as_asked(const SceneOptions& o, Model& model) {
+  if (!o.axes.empty()) model.axes = o.axes;
+  model.antialiased = o.antialias.value_or(model.antialiased);
+  model.kernel_px2 = o.kernel_px2.value_or(model.kernel_px2);
 }
 
-Scene open_scene(const RenderOptions& options) {
-  Scene scene = open_once(options);
-  scene.model = [read = scene.model, &options] {
-    Model model = read();
-    set_as_asked(options, model);
-    return model;
-  };
-  if (!options.repeat) return scene;
-  const auto once = scene.model;
-  scene.model = [once, &options] {
-    return repeat(once(), options.repeat->x, options.repeat->y, *options.spacing);
-  };
-  return scene;
+std::vector<Camera> built_in_cameras(const SceneOptions& o) {
+  if (o.name == demo_city_name) {
+    const CitySettings settings = city_settings(o);
+    check(settings);
+    return city_cameras(settings.seed);
+  }
+  if (o.name == demo_room_name) return room_cameras();
+  if (is_built_in(o.name)) fail_unknown(o.name);
+  return {};
+}
+
+Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budget) {
+  Model model = load_once(o, budget);
+  set_as_asked(o, model);
+  if (!o.repeat) return model;
+  return repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing);
 }
 
 }  // namespace binosplat::app

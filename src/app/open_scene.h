@@ -1,29 +1,29 @@
 #pragma once
-// What there is to draw: a model file, or one of the scenes that the program makes itself.
+// Models to draw: from files, or made by the program itself.
 
-#include <functional>
+#include <optional>
 #include <vector>
 
-#include "app/render_options.h"
+#include "app/scene_options.h"
 #include "demo/city.h"
+#include "formats/detail.h"
 #include "scene/camera.h"
 #include "scene/model.h"
 
 namespace binosplat::app {
 
-struct Scene {
-  std::vector<Camera> cameras;  // that come with a scene the program makes; of a file: none
-  /// The long part: reads or makes it, and repeats it where the options ask for that.
-  std::function<Model()> model;
-};
-
 /// The city that the options ask for.
-CitySettings city_settings(const RenderOptions& options);
+CitySettings city_settings(const SceneOptions& options);
 
 /// What the options say of how a model file is to be taken: axes and anti-aliasing.
-void set_as_asked(const RenderOptions& options, Model& model);
+void set_as_asked(const SceneOptions& options, Model& model);
 
-/// The scene that the options name; they must outlive it. Throws Error for a built-in one that there is not.
-Scene open_scene(const RenderOptions& options);
+/// The cameras of a scene that is built in, quickly; of a file: none. Throws Error for a built-in one that
+/// there is not.
+std::vector<Camera> built_in_cameras(const SceneOptions& options);
+
+/// The long part: reads or makes the model, and repeats it where the options ask for that. `budget` of a file
+/// with levels of detail. Throws Error as built_in_cameras() and load_model() do.
+Model load_scene(const SceneOptions& options, const std::optional<DetailBudget>& budget = {});
 
 }  // namespace binosplat::app

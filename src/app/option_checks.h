@@ -1,18 +1,24 @@
 #pragma once
-// What the values of options are checked by.
+// What the values of options are checked and read by.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
+#include <glm/glm.hpp>
+#include <limits>
 #include <span>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "base/choices.h"
+#include "base/error.h"
+#include "base/numbers.h"
+#include "shared/axes.h"
 
 namespace binosplat::app {
 
@@ -35,27 +41,67 @@ inline const CLI::Validator whole(
     },
     "");
 
-/// A choice of words or numbers; the help names them as the option's type, and once is enough.
-template <typename T>
-CLI::Validator one_of(std::initializer_list<T> choices) {
-  return CLI::IsMember(std::vector<T>(choices)).description("");
+/// Words, and what each stands for.
+template <typename Value>
+using Words = std::vector<std::pair<std::string, Value>>;
+
+/// The names of a list of shared/axes.h, which stand for their numbers.
+inline Words<int> words_of(std::span<const Choice> choices) {
+  Words<int> words;
+  for (const Choice& choice : choices) words.emplace_back(choice.name, static_cast<int>(words.size()));
+  return words;
 }
 
-/// The names of a list of shared/axes.h, as a check and as the option's type.
-inline CLI::Option* one_of(CLI::Option* option, std::span<const Choice> choices) {
-  const std::vector<std::string> names = names_of(choices);
-  return option->check(CLI::IsMember(names).description(""))
+/// A new option that takes one of the words, which its help names as its type, for what that stands for.
+template <typename Value, typename Into>
+CLI::Option* choose(CLI::App& sub, const char* option, Into& into, const std::string& help,
+                    const Words<Value>& words) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : words) names.push_back(name);
+  const auto take = [&into, words](const std::string& given) {
+    for (const auto& [name, value] : words) {
+      if (name == given) into = value;
+    }
+  };
+  return sub.add_option_function<std::string>(option, take, help)
+      ->check(CLI::IsMember(names).description(""))
       ->type_name(fmt::format("{}", fmt::join(names, "|")));
 }
 
-/// The same of a new option, with lines of help.
-inline CLI::Option* choose(CLI::App& sub, const char* option, std::string& into, std::string help,
-                           std::span<const Choice> choices) {
+/// One of a list of shared/axes.h, by its number; the help has a line for each.
+template <typename Into>
+CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std::string help,
+                              std::span<const Choice> choices) {
   for (const Choice& choice : choices) help += fmt::format("\n  {}: {}", choice.name, choice.help);
-  return one_of(sub.add_option(option, into, help), choices);
+  return choose(sub, option, into, help, words_of(choices));
+}
+
+/// "1,-2.5,3". Throws Error, naming the option, for anything else.
+inline glm::dvec3 parse_three(const std::string& option, const std::string& text) {
+  glm::dvec3 v{0.0};
+  char comma_1 = 0, comma_2 = 0;
+  std::istringstream in(text);
+  in >> v.x >> comma_1 >> v.y >> comma_2 >> v.z;
+  if (!in || comma_1 != ',' || comma_2 != ',' || in.peek() != std::istringstream::traits_type::eof()) {
+    fail("{} {}: expected three numbers with commas, as in 1,-2.5,3", option, text);
+  }
+  return v;
+}
+
+/// "1280x720", both above zero. Throws Error, naming the option, for anything else; `expected` says what they
+/// mean.
+inline glm::ivec2 parse_two(const std::string& option, const std::string& text, const char* expected) {
+  const auto two = two_numbers(text, 'x');
+  constexpr unsigned most = std::numeric_limits<int>::max();
+  if (!two || std::min(two->first, two->second) < 1 || std::max(two->first, two->second) > most)
+    fail("{} {}: expected {}", option, text, expected);
+  return {two->first, two->second};
 }
 
 inline CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }
+
+inline const CLI::Validator not_negative = CLI::NonNegativeNumber.description("");
+inline const CLI::Validator above_zero = CLI::PositiveNumber.description("");
 
 inline CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
 

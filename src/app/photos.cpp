@@ -10,9 +10,9 @@ namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
-std::optional<fs::path> find_view_photo(const fs::path& folder, const Shot& shot) {
-  if (fs::is_regular_file(folder / shot.name)) return folder / shot.name;
-  for (const std::string& name : {shot.name, shot.stem}) {
+std::optional<fs::path> find_view_photo(const fs::path& folder, const std::string& view) {
+  if (fs::is_regular_file(folder / view)) return folder / view;
+  for (const std::string& name : {view, stem_of(view)}) {
     for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
       if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
     }
@@ -33,45 +33,40 @@ study::CalibrationTarget TargetOptions::target() const {
   return {max_drop ? Kind::drop : Kind::quality, max_drop ? *max_drop : *quality};
 }
 
-void check_target(const std::string& command, const std::string& what, const TargetOptions& options,
-                  const RenderOptions& render) {
-  if (options.max_drop.has_value() == options.quality.has_value())
+void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
+                  const MeasuredOptions& options) {
+  if (target.max_drop.has_value() == target.quality.has_value())
     fail("{} needs {}: --photos DIR --max-drop DB, or --quality DB against the exact pictures", command,
          what);
-  if (options.max_drop.has_value() != !render.photos.empty())
+  if (target.max_drop.has_value() != !options.photos.empty())
     fail("--max-drop and --photos go together: a drop in dB is against photos");
-  if (render.size && options.max_drop)
+  if (options.camera.lens.size && target.max_drop)
     fail("--size with --photos: a drop is measured in the photos' own size");
 }
 
-study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot) {
-  study::CalibrationView view{shot.eyes.front().camera, {}};
-  if (options.photos.empty()) return view;
-  const auto file = find_view_photo(options.photos, shot);
-  if (!file) fail("--photos {}: there is no photo of view {}", options.photos, shot.name);
-  view.photo = load_view_photo(*file, view.camera);
+study::CalibrationView with_photo(const std::string& photos, const Camera& camera) {
+  study::CalibrationView view{camera, {}};
+  if (photos.empty()) return view;
+  const auto file = find_view_photo(photos, camera.name);
+  if (!file) fail("--photos {}: there is no photo of view {}", photos, camera.name);
+  view.photo = load_view_photo(*file, camera);
   return view;
 }
 
-std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,
-                                                       const Model& model, double near_plane,
-                                                       std::size_t wanted,
-                                                       std::span<const std::string> without) {
-  RenderOptions render = options;
-  render.mono = true;
-  if (render.views.empty() && list.listed) render.views = {"all"};
-  std::vector<Shot> shots = make_shots(render, list, near_plane, model.axes);
-  std::erase_if(shots, [&](const Shot& shot) {
-    return std::find(without.begin(), without.end(), shot.name) != without.end();
+std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+                                                       const Lens& lens, const CameraList& list) {
+  const std::vector<std::string>& without = choice.without;
+  const bool named = !choice.views.empty();
+  std::vector<Camera> cameras = chosen_cameras(choice.views, lens, list);
+  std::erase_if(cameras, [&](const Camera& camera) {
+    return std::find(without.begin(), without.end(), camera.name) != without.end() ||
+           (!photos.empty() && !named && !find_view_photo(photos, camera.name));
   });
-  if (!render.photos.empty() && options.views.empty())
-    std::erase_if(shots, [&](const Shot& shot) { return !find_view_photo(render.photos, shot); });
-  if (shots.empty() && !render.photos.empty() && without.empty())
-    fail("--photos {}: there is no photo of any view", render.photos);
-  if (!options.views.empty()) wanted = shots.size();
+  if (!photos.empty() && cameras.empty() && without.empty())
+    fail("--photos {}: there is no photo of any view", photos);
   std::vector<study::CalibrationView> views;
-  for (const std::size_t i : study::spread_evenly(shots.size(), wanted))
-    views.push_back(with_photo(options, shots[i]));
+  for (const std::size_t i : study::spread_evenly(cameras.size(), named ? cameras.size() : choice.wanted))
+    views.push_back(with_photo(photos, cameras[i]));
   return views;
 }
 

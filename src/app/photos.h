@@ -3,9 +3,10 @@
 
 #include <filesystem>
 #include <optional>
-#include <span>
+#include <string>
 #include <vector>
 
+#include "app/measured_options.h"
 #include "app/shots.h"
 #include "base/image.h"
 #include "study/calibrate.h"
@@ -13,7 +14,8 @@
 namespace binosplat::app {
 
 /// The file of a view's photo in a folder: by the view's name as it stands, or with a picture's ending.
-std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path& folder, const Shot& shot);
+std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path& folder,
+                                                     const std::string& view);
 
 /// Reads it. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
@@ -26,17 +28,21 @@ struct TargetOptions {
 };
 
 /// Throws Error unless there is one of the two, with what it needs; `command` needs `what`, as in "a bound".
-void check_target(const std::string& command, const std::string& what, const TargetOptions& options,
-                  const RenderOptions& render);
+void check_target(const std::string& command, const std::string& what, const TargetOptions& target,
+                  const MeasuredOptions& options);
 
-/// A shot's first camera; with --photos its photo, too. Throws Error where there is none.
-study::CalibrationView with_photo(const RenderOptions& options, const Shot& shot);
+/// A camera; with a folder of photos its photo, too. Throws Error where there is none.
+study::CalibrationView with_photo(const std::string& photos, const Camera& camera);
 
-/// The cameras, without a rig, that --view names, or else `wanted` of all, evenly spread, but for those
-/// called as one of `without`; with --photos each has its photo, and of all only those count that have one.
-std::vector<study::CalibrationView> photographed_views(const RenderOptions& options, const CameraList& list,
-                                                       const Model& model, double near_plane,
-                                                       std::size_t wanted,
-                                                       std::span<const std::string> without = {});
+/// Which views of a scene are taken.
+struct ViewChoice {
+  std::vector<std::string> views;         // by name
+  std::size_t wanted = 0;                 // of all, evenly spread, where none is named
+  std::vector<std::string> without = {};  // those called so are left out
+};
+
+/// With a folder of photos each has its photo, and of all only those count that have one.
+std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+                                                       const Lens& lens, const CameraList& list);
 
 }  // namespace binosplat::app

@@ -9,7 +9,6 @@
 #include "app/calibrated.h"
 #include "app/command.h"
 #include "app/detail.h"
-#include "app/drawing.h"
 #include "app/followed.h"
 #include "app/open_scene.h"
 #include "app/photos.h"
@@ -18,7 +17,6 @@
 #include "app/render_report.h"
 #include "app/shots.h"
 #include "app/tour.h"
-#include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/cameras_file.h"
@@ -37,28 +35,27 @@ namespace {
 
 void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
   for (const Shot& shot : shots) {
-    if (find_view_photo(folder, shot)) return;
+    if (find_view_photo(folder, shot.name)) return;
   }
   fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, shots[0].stem);
 }
 
-// PSNR of the picture as 8 bits would keep it against the photo.
-std::optional<double> photo_psnr(const RenderOptions& options, const Shot& shot, const Picture& picture) {
-  if (options.photos.empty()) return std::nullopt;
-  const auto file = find_view_photo(options.photos, shot);
+// PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
+std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& background, const Shot& shot,
+                                 const Picture& picture) {
+  if (folder.empty()) return std::nullopt;
+  const auto file = find_view_photo(folder, shot.name);
   if (!file) {
-    log_info("no photo of {} in {}", shot.name, options.photos);
+    log_info("no photo of {} in {}", shot.name, folder);
     return std::nullopt;
   }
   const Image photo = load_view_photo(*file, shot.eyes.front().camera);
-  const Image drawn = composite(picture, options.background.value_or(glm::vec3(0.0f)));
-  return measure::psnr(quantised(drawn), quantised(photo));
+  return measure::psnr(quantised(composite(picture, background)), quantised(photo));
 }
 
 // What the model takes on the GPU, and the shot that takes most.
-render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& model,
+render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& model,
                                  const std::vector<Shot>& shots) {
-  render::FrameSettings settings = settings_of(options);
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
   render::MemoryNeeds most;
   for (const Shot& shot : shots) {
@@ -69,113 +66,131 @@ render::MemoryNeeds memory_needs(const RenderOptions& options, const Model& mode
 }
 
 // What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
-render::DepthTable depth_table(render::Frame& frame, const RenderOptions& options, const CameraList& list,
+render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const CameraList& list,
                                double near_plane, const std::string& axes) {
   constexpr std::size_t views_max = 16;
   const std::size_t count = std::min(views_max, list.cameras.size());
   std::vector<shared::View> views;
   for (std::size_t k = 0; k < count; ++k)
-    views.push_back(make_view(into_axes(sized(options, list.cameras[k * list.cameras.size() / count]), axes),
-                              near_plane));
+    views.push_back(
+        make_view(into_axes(sized(lens, list.cameras[k * list.cameras.size() / count]), axes), near_plane));
   log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
   return measure::measure_depth_table(frame, views);
 }
 
-// Draws every shot options.frames times and writes its last frame.
-void draw_all(gl::Context& context, const OutputPlan& plan, std::vector<Shot> shots, const CameraList& list,
-              Model& model, std::optional<FollowedLevels>& followed, RenderReport& report) {
-  const RenderOptions& options = report.options;
-  render::FrameSettings settings = settings_of(options);
-  const render::Workings workings = workings_of(options);
-  if (!along_path(options)) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
+// What is drawn, and by what.
+struct Work {
+  OutputPlan plan;
+  CameraList list;
+  std::vector<Shot> shots;
+  std::string photos;  // a folder; empty: none
+  std::optional<FollowedLevels> followed;
+};
+
+// Draws every shot as often as asked for and writes its last frame.
+void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& report) {
+  const DrawingOptions& drawing = report.options.drawing;
+  const OutputOptions& output = report.options.output;
+  render::FrameSettings settings = settings_of(drawing);
+  settings.background = output.backdrop();
+  const render::Workings workings = workings_of(drawing);
+  if (!work.list.path) settings.probe_tiles = std::numeric_limits<int>::max();  // single pictures: all
   const auto gpu_model = std::make_shared<render::GpuModel>(context, report.model, settings.precision);
   render::Frame frame(gpu_model);
   stereo::Show show(gpu_model);
-  const CalibratedSettings calibrated(options, report.model);
-  if (settings.transmittance == TRANSMITTANCE_DEPTH && options.calibration.empty())
-    settings.depth_table = depth_table(frame, options, list, report.near_plane, report.model.axes);
-  const std::unique_ptr<Video> video = open_video(options, plan, shots);
-  Progress progress("drawing", shots.size() * static_cast<std::size_t>(options.frames));
+  const CalibratedSettings calibrated(drawing, report.model);
+  if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
+    settings.depth_table =
+        depth_table(frame, report.options.camera.lens, work.list, report.near_plane, report.model.axes);
+  const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
+  Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
   std::size_t done = 0;
-  for (Shot& shot : shots) {
+  for (Shot& shot : work.shots) {
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
     const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
-    if (followed) drawn.levels = followed->follow(model, frame, show, views, of_shot);
-    for (int n = 0; n < options.frames; ++n) {
+    if (work.followed) drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
+    for (int n = 0; n < drawing.frames; ++n) {
       drawn.report = frame.draw(views, of_shot, workings);
       report.times.add(drawn.report);
       progress.update(++done);
     }
     const std::vector<Picture> pictures = frame.read_pictures();
-    if (options.detail_report)
-      drawn.levels->finest_psnr = followed->against_finest(context, views, pictures, of_shot);
-    drawn.comfort = comfort_of(options, drawn.shot, pictures[0]);
-    const stereo::Shown shown = show.make(find_choice("--show", options.show, show_choices), frame, views,
-                                          pictures, of_shot, options.background);
+    if (output.detail_report)
+      drawn.levels->finest_psnr = work.followed->against_finest(context, views, pictures, of_shot);
+    drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
+    const stereo::Shown shown = show.make(output.show, frame, views, pictures, of_shot, output.background);
     drawn.most_shown = shown.most;
-    if (video) video->add(frame_of(options, plan, shown.pictures));
-    drawn.files = video ? std::vector{plan.video.string()} : write_outputs(options, plan, drawn.shot, shown);
-    drawn.photo_psnr = photo_psnr(options, drawn.shot, pictures[0]);
+    if (video) video->add(frame_of(work.plan, output.background, shown.pictures));
+    drawn.files = video ? std::vector{work.plan.video.string()}
+                        : write_outputs(report.options.scene.name, output, work.plan, drawn.shot, shown);
+    drawn.photo_psnr = photo_psnr(work.photos, output.backdrop(), drawn.shot, pictures[0]);
   }
   if (video) video->finish();
 }
 
-void log_model(const RenderOptions& options, const Model& model) {
+void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model) {
   if (model.scaffold) {
-    log_info("{}: {}", options.scene, describe(*model.scaffold));
-  } else if (!options.decode.empty()) {
-    fail("--decode {}: {} is no Scaffold-GS model, whose Gaussians are made for each eye", options.decode,
-         options.scene);
+    log_info("{}: {}", scene, describe(*model.scaffold));
+  } else if (decode) {
+    fail("--decode {}: {} is no Scaffold-GS model, whose Gaussians are made for each eye",
+         decode_choices[*decode].name, scene);
   } else {
-    log_info("{}: {} Gaussians, harmonics of degree {}", options.scene, model.count(), model.degree);
+    log_info("{}: {} Gaussians, harmonics of degree {}", scene, model.count(), model.degree);
   }
 }
 
 // The folder of photos that --photos names, or the one found beside the cameras.
-std::string photos_folder(const RenderOptions& options, const CameraList& list) {
-  if (options.photos != photos_beside) return options.photos;
+std::string photos_folder(const std::string& asked, const CameraList& list) {
+  if (asked != photos_beside) return asked;
   const auto found = list.listed ? find_photos(list.source) : std::nullopt;
   if (!found)
     fail("--photos {}: there is no folder of photos beside the cameras of {}", photos_beside, list.source);
   return found->string();
 }
 
-ExitCode render(RenderOptions options) {
-  check(options);
-  const OutputPlan plan = plan_outputs(options);
-  const Scene scene = open_scene(options);
-  options.saved = find_saved(options);
-  const auto saved = saved_camera(options);
-  if (saved) log_info("drawing from the pose saved there (--view or --cameras for others)");
-  CameraList list = saved ? *saved : listed_cameras(options, scene.cameras);
-  if (options.tour) go_on_tour(options, !plan.video.empty(), list);
-  options.photos = photos_folder(options, list);
-  std::unique_ptr<gl::Context> context;  // outlives what draws with it
-  std::optional<FollowedLevels> followed;
-  if (options.detail) {
-    followed.emplace(options);
-  } else if (options.gpu_memory) {
-    options.budget = detail_budget(options, list);
+// Those that options or a saved pose choose; none where they are to be made up.
+CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
+  const auto saved = find_saved(o.scene);
+  // Photos are of the cameras that the model was trained on.
+  if (const auto pose = o.output.photos.empty() ? saved_camera(o.scene, o.camera, saved) : std::nullopt) {
+    log_info("drawing from the pose saved there (--view or --cameras for others)");
+    return *pose;
   }
-  Model model = followed ? followed->coarsest() : scene.model();
-  log_model(options, model);
-  if (!list.listed) list = made_up_cameras(options, model);
+  CameraList list = listed_cameras(o.scene, o.camera, saved);
+  return o.camera.tour ? go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list)) : list;
+}
 
-  const double near_plane = near_plane_of(options, list, model);
-  std::vector<Shot> shots = make_shots(options, list, near_plane, model.axes);
-  check_shots(plan, shots);
-  if (!options.photos.empty()) check_photos(options.photos, shots);
-  if (followed) followed->bring(model, views_of(shots[0]));
+ExitCode render(const RenderOptions& o) {
+  check(o);
+  std::unique_ptr<gl::Context> context;  // outlives what draws with it
+  Work work{.plan = plan_outputs(o)};
+  work.list = find_list(o, work.plan);
+  work.photos = photos_folder(o.output.photos, work.list);
+  const render::FrameSettings settings = settings_of(o.drawing);
+  std::optional<DetailBudget> budget;
+  if (o.scene.detail) {
+    work.followed.emplace(o.scene, settings, o.output.detail_report, o.output.backdrop());
+  } else if (o.scene.gpu_memory) {
+    budget = detail_budget(o, work.list);
+  }
+  Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget);
+  log_model(o.scene.name, o.drawing.decode, model);
+  if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
-  context = open_context(options);
-  if (!options.shader_dir.empty()) context->set_shader_folder(options.shader_dir);
-  RenderReport report{options, model, *context, near_plane, memory_needs(options, model, shots), {}, {}};
+  const double near_plane = near_plane_of(o.camera, work.list, model);
+  work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
+  check_shots(work.plan, work.shots);
+  if (!work.photos.empty()) check_photos(work.photos, work.shots);
+  if (work.followed) work.followed->bring(model, views_of(work.shots[0]));
+
+  context = open_context(o.context);
+  RenderReport report{o, model, *context, near_plane, memory_needs(settings, model, work.shots), {}, {}};
   print_needs(report.needs);
-  draw_all(*context, plan, std::move(shots), list, model, followed, report);
+  draw_all(*context, work, model, report);
   print(report);
-  if (!options.json.empty()) save(options.json, report);
+  if (!o.output.json.empty()) save(o.output.json, report);
   return ExitCode::done;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "app/command.h"
-#include "base/choices.h"
+#include "app/tour.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
 #include "stereo/layout.h"
@@ -23,53 +23,50 @@ std::string lower_extension(const fs::path& path) {
 }
 
 // What a picture's file says of how it was drawn: a stereo picture is right only at its scale.
-Notes notes_of(const RenderOptions& options, const Shot& shot, const std::string& side,
-               const std::optional<double>& most_shown) {
+Notes notes_of(const std::string& scene, const OutputOptions& options, const Shot& shot,
+               const std::string& side, const std::optional<double>& most_shown) {
   Notes notes = {{"Software", "binosplat " BINOSPLAT_VERSION},
-                 {"binosplatScene", options.scene},
+                 {"binosplatScene", scene},
                  {"binosplatView", shot.name},
-                 {"binosplatUnitsPerMetre", fmt::format("{}", units_per_metre(options))}};
+                 {"binosplatUnitsPerMetre", fmt::format("{}", shot.units_per_metre)}};
   if (!side.empty()) notes["binosplatEye"] = side;
-  if (most_shown) notes["binosplatShow"] = fmt::format("{}, 0 to {}", options.show, *most_shown);
+  if (most_shown)
+    notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[options.show].name, *most_shown);
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
   return notes;
 }
 
-bool one_picture(const RenderOptions& options) { return options.mono || !options.only.empty(); }
-
 // `picture_file`: one PNG or a video. The layout that is asked for or that fits the output, and what it does
 // not go with.
-int plan_layout(const RenderOptions& options, bool picture_file, bool exr_file) {
-  if (one_picture(options)) {
-    if (!options.layout.empty())
-      fail("--layout {} needs both eyes: leave --mono and --only out", options.layout);
-    return LAYOUT_SEPARATE;
-  }
-  if (options.layout.empty())
+int plan_layout(const OutputOptions& options, bool one_picture, bool picture_file, bool exr_file) {
+  if (!options.layout) {
+    if (one_picture) return LAYOUT_SEPARATE;
     return picture_file ? LAYOUT_PARALLEL : exr_file ? LAYOUT_MULTI_VIEW : LAYOUT_SEPARATE;
-  const int layout = find_choice("--layout", options.layout, layout_choices);
+  }
+  const int layout = *options.layout;
+  const char* const name = layout_choices[layout].name;
+  if (one_picture) fail("--layout {} needs both eyes: leave --mono and --only out", name);
   if (layout == LAYOUT_QUAD_BUFFER)
     fail("--layout quad-buffer is for `binosplat view`: a file has no buffers");
   if (layout == LAYOUT_SEPARATE && (picture_file || exr_file))
     fail("--layout separate writes a file for each eye: -o {} must be a folder", options.output);
   if (layout == LAYOUT_MULTI_VIEW && picture_file)
     fail("--layout multi-view is OpenEXR's: -o {} must be a folder or an .exr", options.output);
-  if (stereo::mixes_colours(layout) && (exr_file || !options.exr.empty())) {
+  if (stereo::mixes_colours(layout) && (exr_file || options.exr_half)) {
     fail("--layout {} mixes both eyes' display colours, which have no light and no depth: write PNG only",
-         options.layout);
+         name);
   }
   if (stereo::mixes_colours(layout) && !options.background) {
-    fail("--layout {} mixes both eyes' colours and leaves no alpha: --background none is not for it",
-         options.layout);
+    fail("--layout {} mixes both eyes' colours and leaves no alpha: --background none is not for it", name);
   }
   return layout;
 }
 
-ExrOptions exr_options(const RenderOptions& options, const Notes& notes) {
-  return {options.exr != "float", options.exr_encoding == "display", options.background, notes};
+ExrOptions exr_options(const OutputOptions& options, const Notes& notes) {
+  return {options.exr_half.value_or(true), options.exr_display.value_or(false), options.background, notes};
 }
 
-void write(const RenderOptions& options, const OutputPlan& plan, const fs::path& path, const Picture& picture,
+void write(const OutputOptions& options, const OutputPlan& plan, const fs::path& path, const Picture& picture,
            const Notes& notes, std::vector<std::string>& written) {
   const Uninterrupted hold;
   if (plan.png) {
@@ -82,23 +79,22 @@ void write(const RenderOptions& options, const OutputPlan& plan, const fs::path&
   }
 }
 
-OutputPlan plan_video(const RenderOptions& options, const fs::path& output) {
+OutputPlan plan_video(const OutputOptions& options, bool one_picture, const fs::path& output) {
   check_output(output);
   find_ffmpeg();
-  if (options.bits || !options.exr.empty() || !options.exr_encoding.empty())
+  if (options.bits || options.exr_half || options.exr_display)
     fail("--bits, --exr and --exr-encoding are for pictures: -o {} is a video", output.string());
   if (!options.background) fail("--background none: a video has no alpha");
   if (!options.json.empty()) check_output(options.json);
   OutputPlan plan;
   plan.video = output;
   plan.png = false;
-  plan.layout = plan_layout(options, true, false);
+  plan.layout = plan_layout(options, one_picture, true, false);
   return plan;
 }
 
 // From the times of a path's cameras, where they are evenly spaced; the usual where they say nothing.
-double frames_a_second(const RenderOptions& options, const std::vector<Shot>& shots) {
-  if (options.fps) return *options.fps;
+double frames_a_second(const std::vector<Shot>& shots) {
   const auto& first = shots.front().eyes[0].camera.time;
   const auto& last = shots.back().eyes[0].camera.time;
   if (shots.size() < 2 || !first || !last || !(*last > *first)) return video_fps;
@@ -113,20 +109,25 @@ double frames_a_second(const RenderOptions& options, const std::vector<Shot>& sh
 }  // namespace
 
 fs::path default_folder(const std::string& scene) {
-  const auto colon = scene.rfind("demo:", 0) == 0 ? scene.find(':') + 1 : 0;
+  const auto colon = is_built_in(scene) ? scene.find(':') + 1 : 0;
   const fs::path path = scene.substr(colon);
   return fs::path("out") / (path.has_filename() ? path : path.parent_path()).stem();
 }
 
-OutputPlan plan_outputs(const RenderOptions& options) {
+OutputPlan plan_outputs(const RenderOptions& render) {
+  const OutputOptions& options = render.output;
+  const bool one_picture = render.rig.one_picture(), tour = render.camera.tour.has_value();
+  const fs::path output =
+      options.output.empty() ? default_folder(render.scene.name) : fs::path(options.output);
+  const bool video = is_video(output);
   OutputPlan plan;
-  plan.exr = !options.exr.empty();
-  const fs::path output = options.output.empty() ? default_folder(options.scene) : fs::path(options.output);
+  if (video) plan = plan_video(options, one_picture, output);
+  plan.fps = tour ? tour_fps(options.fps, video) : options.fps;
+  if (video) return plan;
+  plan.exr = options.exr_half.has_value();
   const std::string extension = lower_extension(output);
   const bool file = extension == ".png" || extension == ".exr";
-  if (is_video(output)) return plan_video(options, output);
-  if (options.fps && !options.tour)
-    fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
+  if (options.fps && !tour) fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
   for (const char* other : {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp"}) {
     if (extension == other) fail("-o {}: pictures are written as .png or .exr", output.string());
   }
@@ -140,17 +141,18 @@ OutputPlan plan_outputs(const RenderOptions& options) {
     check_output(output / "picture");
     plan.folder = output;
   }
-  plan.layout = plan_layout(options, extension == ".png", extension == ".exr");
+  plan.layout = plan_layout(options, one_picture, extension == ".png", extension == ".exr");
   if (plan.layout == LAYOUT_MULTI_VIEW) {
     plan.png = false;
     plan.exr = true;
   }
   if (options.bits && !plan.png)
     fail("--bits is for PNG: this writes OpenEXR to {}, whose depth --exr sets", output.string());
-  if (plan.exr && options.show != show_choices[SHOW_PICTURE].name)
-    fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR", options.show);
-  if (!options.exr_encoding.empty() && !plan.exr)
-    fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
+  if (plan.exr && options.show != SHOW_PICTURE) {
+    fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR",
+         show_choices[options.show].name);
+  }
+  if (options.exr_display && !plan.exr) fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
   if (!options.json.empty()) check_output(options.json);
   return plan;
 }
@@ -180,22 +182,21 @@ void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots) {
   }
 }
 
-std::unique_ptr<Video> open_video(const RenderOptions& options, const OutputPlan& plan,
-                                  const std::vector<Shot>& shots) {
+std::unique_ptr<Video> open_video(const OutputPlan& plan, const std::vector<Shot>& shots) {
   if (plan.video.empty()) return nullptr;
   const Camera& eye = shots[0].eyes[0].camera;
   const glm::ivec2 size = stereo::layout_size(plan.layout, {eye.width, eye.height});
-  return std::make_unique<Video>(plan.video, size.x, size.y, frames_a_second(options, shots), plan.layout);
+  return std::make_unique<Video>(plan.video, size.x, size.y, plan.fps ? *plan.fps : frames_a_second(shots),
+                                 plan.layout);
 }
 
-Image frame_of(const RenderOptions& options, const OutputPlan& plan, const std::vector<Picture>& pictures) {
-  if (plan.layout == LAYOUT_SEPARATE) return composite(pictures[0], options.background);
-  return composite(stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background),
-                   options.background);
+Image frame_of(const OutputPlan& plan, const Background& background, const std::vector<Picture>& pictures) {
+  if (plan.layout == LAYOUT_SEPARATE) return composite(pictures[0], background);
+  return composite(stereo::lay_out(plan.layout, pictures[0], pictures[1], background), background);
 }
 
-std::vector<std::string> write_outputs(const RenderOptions& options, const OutputPlan& plan, const Shot& shot,
-                                       const stereo::Shown& shown) {
+std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
+                                       const OutputPlan& plan, const Shot& shot, const stereo::Shown& shown) {
   const std::vector<Picture>& pictures = shown.pictures;
   std::vector<std::string> written;
   const fs::path base = plan.folder.empty() ? plan.file : plan.folder / shot.stem;
@@ -203,11 +204,11 @@ std::vector<std::string> write_outputs(const RenderOptions& options, const Outpu
     for (std::size_t k = 0; k < shot.eyes.size(); ++k) {
       const std::string& side = shot.eyes[k].side;
       const fs::path path = plan.folder.empty() || side.empty() ? base : fs::path(base.string() + "_" + side);
-      write(options, plan, path, pictures[k], notes_of(options, shot, side, shown.most), written);
+      write(options, plan, path, pictures[k], notes_of(scene, options, shot, side, shown.most), written);
     }
     return written;
   }
-  Notes notes = notes_of(options, shot, "left, right", shown.most);
+  Notes notes = notes_of(scene, options, shot, "left, right", shown.most);
   notes["binosplatLayout"] = layout_choices[plan.layout].name;
   if (plan.layout == LAYOUT_MULTI_VIEW) {
     const Uninterrupted hold;

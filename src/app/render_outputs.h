@@ -21,6 +21,7 @@ struct OutputPlan {
   std::filesystem::path file;    // without its ending
   int layout = LAYOUT_SEPARATE;  // LAYOUT_ of shared/axes.h; separate in `file`: a single eye's
   std::filesystem::path video;   // of all shots, instead of files
+  std::optional<double> fps;     // of the video or the tour; none: by the path's times
   bool png = true;
   bool exr = false;
 };
@@ -31,7 +32,8 @@ constexpr double video_fps = 30.0;
 /// Where a scene's files go without -o: out/ and its name.
 std::filesystem::path default_folder(const std::string& scene);
 
-/// From -o, --layout, --exr and --bits. Throws Error, before any long work, for what cannot be written.
+/// From -o, --layout, --exr, --bits and --fps. Throws Error, before any long work, for what cannot be
+/// written.
 OutputPlan plan_outputs(const RenderOptions& options);
 
 /// Throws Error for shots whose eyes cannot be laid out as planned, for many in one picture, and for videos
@@ -39,14 +41,13 @@ OutputPlan plan_outputs(const RenderOptions& options);
 void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots);
 
 /// The video that is planned, to be given each shot's pictures as frame_of() has them; nothing if none is.
-std::unique_ptr<Video> open_video(const RenderOptions& options, const OutputPlan& plan,
-                                  const std::vector<Shot>& shots);
+std::unique_ptr<Video> open_video(const OutputPlan& plan, const std::vector<Shot>& shots);
 
 /// A shot's pictures as a frame of the video.
-Image frame_of(const RenderOptions& options, const OutputPlan& plan, const std::vector<Picture>& pictures);
+Image frame_of(const OutputPlan& plan, const Background& background, const std::vector<Picture>& pictures);
 
-/// Writes what is shown of a shot's eyes, in their order, and returns the files' names.
-std::vector<std::string> write_outputs(const RenderOptions& options, const OutputPlan& plan, const Shot& shot,
-                                       const stereo::Shown& shown);
+/// Writes what is shown of a shot of the scene, of its eyes in their order, and returns the files' names.
+std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
+                                       const OutputPlan& plan, const Shot& shot, const stereo::Shown& shown);
 
 }  // namespace binosplat::app

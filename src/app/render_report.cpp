@@ -140,41 +140,44 @@ void print_levels(const RenderReport& report) {
 
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
   const render::FrameReport& r = drawn.report;
-  const bool calibrated = !options.calibration.empty();
-  ordered_json json = object("name", drawn.shot.name, "units_per_metre", units_per_metre(options),
-                             "ipd_metres", drawn.shot.ipd, "convergence_metres", options.convergence,
-                             "cant_degrees", options.cant, "eyes", ordered_json::array());
+  const DrawingOptions& drawing = options.drawing;
+  ordered_json json = object("name", drawn.shot.name, "units_per_metre", drawn.shot.units_per_metre,
+                             "ipd_metres", drawn.shot.ipd, "convergence_metres", options.rig.convergence,
+                             "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.total_ms, "tile", r.tile_size,
                     "depth_orders", r.order_groups, "drawn_again", r.redrawn, "loss",
-                    given(options.quality || calibrated, r.loss), "probed_psnr_db",
-                    given(options.quality.has_value(), r.quality), "photo_psnr_db", drawn.photo_psnr);
+                    given(drawing.quality || !drawing.calibration.empty(), r.loss), "probed_psnr_db",
+                    given(drawing.quality.has_value(), r.quality), "photo_psnr_db", drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
-  if (drawn.most_shown) json["show"] = object("what", options.show, "most", *drawn.most_shown);
+  if (drawn.most_shown)
+    json["show"] = object("what", show_choices[options.output.show].name, "most", *drawn.most_shown);
   json["outputs"] = drawn.files;
   return json;
 }
 
 ordered_json settings_json(const RenderReport& report) {
-  const RenderOptions& o = report.options;
+  const DrawingOptions& o = report.options.drawing;
+  const Background& background = report.options.output.background;
   const Model& model = report.model;
-  return object(
-      "tiles", o.tiles, "tile", o.tile == "auto" ? ordered_json(o.tile) : ordered_json(std::stoi(o.tile)),
-      "precision", o.precision, "near", report.near_plane, "antialiased", model.antialiased, "kernel_px2",
-      model.kernel_px2, "th", threshold_name(o), "loss", o.loss, "transmittance", o.transmittance, "decode",
-      given(model.scaffold != nullptr, o.decode.empty() ? decode_choices[DECODE_EYES].name : o.decode),
-      "detail_px", o.detail, "quality_db", o.quality, "calibration",
-      given(!o.calibration.empty(), o.calibration), "background",
-      o.background ? list(glm::dvec3(*o.background)) : ordered_json(), "reference_until",
-      given(!o.reference_until.empty(), o.reference_until));
+  return object("tiles", tiles_choices[o.tiles].name, "tile",
+                o.tile ? ordered_json(*o.tile) : ordered_json("auto"), "precision",
+                precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
+                model.antialiased, "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name,
+                "loss", o.loss, "transmittance", transmittance_choices[o.transmittance].name, "decode",
+                given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
+                "detail_px", report.options.scene.detail, "quality_db", o.quality, "calibration",
+                given(!o.calibration.empty(), o.calibration), "background",
+                background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
+                o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);
 }
 
 ordered_json scene_json(const RenderReport& report) {
-  const RenderOptions& o = report.options;
+  const SceneOptions& o = report.options.scene;
   const Model& model = report.model;
-  const bool city = o.scene == demo_city_name;
-  ordered_json json = object("name", o.scene, "seed", given(city, city_settings(o).seed), "count",
+  const bool city = o.name == demo_city_name;
+  ordered_json json = object("name", o.name, "seed", given(city, city_settings(o).seed), "count",
                              given(city, city_settings(o).count));
   if (o.repeat) json["repeat"] = object("x", o.repeat->x, "z", o.repeat->y, "spacing", *o.spacing);
   FieldWriter{json}("gaussians", model.count(), "left_out", model.left_out, "degree", model.degree);
@@ -187,22 +190,21 @@ ordered_json scene_json(const RenderReport& report) {
 
 }  // namespace
 
-std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot, const Picture& left) {
+std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left) {
   if (shot.eyes.size() != 2) return std::nullopt;
   const std::array<Camera, 2> eyes = {shot.eyes[0].camera, shot.eyes[1].camera};
   // No screen stands in the plane of zero disparity of a headset, and canted eyes have no such plane.
   const bool canted = glm::dot(eyes[0].rotation[2], eyes[1].rotation[2]) < 1.0 - 1e-9;
-  const auto focus = canted || options.preset == "headset"
-                         ? std::optional(headset_focus_metres * units_per_metre(options))
-                         : stereo::screen_distance(eyes);
+  const auto focus = canted || headset ? std::optional(headset_focus_metres * shot.units_per_metre)
+                                       : stereo::screen_distance(eyes);
   const auto range = stereo::disparity_range(eyes, left, focus);
   if (!range) return std::nullopt;
   Comfort comfort{*range, {}};
-  const bool own_rig = !shot.given_eyes && !canted && options.preset != "headset";
+  const bool own_rig = !shot.given_eyes && !canted && !headset;
   if (own_rig && !stereo::comfortable(*range)) {
     comfort.better = stereo::comfortable_rig(*range, eyes);
-    comfort.better->convergence /= units_per_metre(options);
-    if (comfort.better->ipd) *comfort.better->ipd /= units_per_metre(options);
+    comfort.better->convergence /= shot.units_per_metre;
+    if (comfort.better->ipd) *comfort.better->ipd /= shot.units_per_metre;
   }
   return comfort;
 }
@@ -244,13 +246,13 @@ void print(const RenderReport& report) {
   for (const Drawn& drawn : report.drawn) {
     std::string line = fmt::format("{}: {}", drawn.shot.name, fmt::join(drawn.files, ", "));
     line += fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
-    if (report.options.quality)
+    if (report.options.drawing.quality)
       line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
     if (drawn.most_shown)
-      fmt::print("  colours: {}: 0 (dark blue) to {} and more (yellow)\n", report.options.show,
-                 *drawn.most_shown);
+      fmt::print("  colours: {}: 0 (dark blue) to {} and more (yellow)\n",
+                 show_choices[report.options.output.show].name, *drawn.most_shown);
     if (drawn.levels) fmt::print("{}\n", levels_text(*drawn.levels));
     if (drawn.comfort) print_comfort(drawn);
   }

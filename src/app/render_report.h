@@ -42,8 +42,9 @@ struct Comfort {
   std::optional<stereo::ComfortableRig> better;  // m; where the range is not comfortable and the rig ours
 };
 
-/// Of a shot with both eyes and something that has a depth, from the left eye's picture.
-std::optional<Comfort> comfort_of(const RenderOptions& options, const Shot& shot, const Picture& left);
+/// Of a shot with both eyes and something that has a depth, from the left eye's picture; `headset`: seen in
+/// one.
+std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture& left);
 
 /// A shot once it is drawn.
 struct Drawn {

@@ -1,10 +1,10 @@
 #include "app/shots.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <set>
 
+#include "app/open_scene.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
@@ -67,11 +67,10 @@ Choice choose(const std::string& name, const CameraList& list, bool mono) {
   return {name, {(*eyes)[0], (*eyes)[1]}};
 }
 
-std::vector<Choice> chosen(const RenderOptions& options, const CameraList& list) {
-  const bool everything =
-      !list.listed || along_path(options) || options.views == std::vector<std::string>{"all"};
-  if (everything || options.views.empty()) {
-    std::vector<Choice> choices = all_choices(list.cameras, !options.mono);
+std::vector<Choice> chosen(const std::vector<std::string>& views, const CameraList& list, bool mono) {
+  const bool everything = !list.listed || list.path || views == all_views;
+  if (everything || views.empty()) {
+    std::vector<Choice> choices = all_choices(list.cameras, !mono);
     if (everything || choices.size() == 1) return choices;
     log_info("{} has {} views; drawing the first, {} (--view NAME... or --view all for others)", list.source,
              choices.size(), choices[0].name);
@@ -79,52 +78,55 @@ std::vector<Choice> chosen(const RenderOptions& options, const CameraList& list)
     return choices;
   }
   std::vector<Choice> choices;
-  for (const std::string& name : options.views) choices.push_back(choose(name, list, options.mono));
+  for (const std::string& name : views) choices.push_back(choose(name, list, mono));
   return choices;
 }
 
-stereo::EyePair rig_of(const RenderOptions& options, const Choice& choice, double near_plane) {
-  if (choice.cameras.size() == 1) {
-    return stereo::make_rig(sized(options, choice.cameras[0]), rig_settings(options, near_plane));
-  }
-  if (options.ipd || options.convergence || options.cant) {
+stereo::EyePair eyes_of(const Lens& lens, const RigOptions& rig, const stereo::RigSettings& settings,
+                        const Choice& choice) {
+  if (choice.cameras.size() == 1) return stereo::make_rig(sized(lens, choice.cameras[0]), settings);
+  if (rig.places_eyes()) {
     fail("view {} is a pair of eyes that the cameras give: leave --ipd, --convergence and --cant out",
          choice.name);
   }
-  if (options.preset == "headset") {
+  if (lens.headset()) {
     fail(
         "view {} is a pair of eyes with lenses of their own, which --preset headset would replace: use "
         "--size",
         choice.name);
   }
-  return stereo::rig_from_eyes(sized(options, choice.cameras[0]), sized(options, choice.cameras[1]),
-                               near_plane);
+  return stereo::rig_from_eyes(sized(lens, choice.cameras[0]), sized(lens, choice.cameras[1]),
+                               settings.near_plane);
 }
 
-void add_eyes(const RenderOptions& options, const Choice& choice, double near_plane, const std::string& axes,
-              Shot& shot) {
-  if (options.mono) {
-    const Camera camera = sized(options, choice.cameras[0]);
-    shot.eyes = {{"", camera, make_view(into_axes(camera, axes), near_plane)}};
+void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings& settings,
+              const Choice& choice, const std::string& axes, Shot& shot) {
+  if (rig.mono) {
+    const Camera camera = sized(lens, choice.cameras[0]);
+    shot.eyes = {{"", camera, make_view(into_axes(camera, axes), settings.near_plane)}};
     return;
   }
-  const stereo::EyePair pair = rig_of(options, choice, near_plane);
+  const stereo::EyePair pair = eyes_of(lens, rig, settings, choice);
   Choice entered = choice;
   for (Camera& camera : entered.cameras) camera = into_axes(camera, axes);
-  const stereo::EyePair drawn = rig_of(options, entered, near_plane);
+  const stereo::EyePair drawn = eyes_of(lens, rig, settings, entered);
   for (std::size_t k = 0; k < 2; ++k) {
-    const std::string side = k == 0 ? "left" : "right";
-    if (options.only.empty() || options.only == side)
-      shot.eyes.push_back({side, pair.cameras[k], drawn.views[k]});
+    if (rig.only.value_or(k) == k)
+      shot.eyes.push_back({k == 0 ? "left" : "right", pair.cameras[k], drawn.views[k]});
   }
   shot.given_eyes = choice.cameras.size() == 2;
   const double apart = glm::length(pair.cameras[1].position - pair.cameras[0].position);
-  shot.ipd =
-      choice.cameras.size() == 1 ? rig_settings(options, near_plane).ipd : apart / units_per_metre(options);
+  shot.ipd = shot.given_eyes ? apart / settings.units_per_metre : settings.ipd;
 }
 
-// A view's name as a file's: trainers' names may have folders, and the endings of the photos.
-std::string stem_of(std::string name, std::set<std::string>& taken) {
+Known known_of(const std::optional<SavedPose>& saved) {
+  if (!saved) return {};
+  return {saved->units_per_metre, saved->ipd, saved->up};
+}
+
+}  // namespace
+
+std::string stem_of(std::string name) {
   std::string lower = name;
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   for (const char* ending : {".png", ".jpg", ".jpeg"}) {
@@ -133,24 +135,99 @@ std::string stem_of(std::string name, std::set<std::string>& taken) {
   std::replace(name.begin(), name.end(), '/', '_');
   if (name.empty()) name = "view";
   if (name[0] == '.') name[0] = '_';
-  std::string unique = name;
-  for (int n = 2; !taken.insert(unique).second; ++n) unique = fmt::format("{}_{}", name, n);
-  return unique;
+  return name;
 }
 
-}  // namespace
+CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
+                          const std::optional<SavedPose>& saved) {
+  const std::vector<Camera> built_in = built_in_cameras(scene);
+  const Known known = known_of(saved);
+  if (camera.made_up()) return {.known = known};
+  std::string file = camera.path.empty() ? camera.file : camera.path;
+  if (file.empty() && built_in.empty()) {
+    const auto found = find_cameras(scene.name);
+    if (found) {
+      file = found->string();
+      note_input(*found);
+    }
+  }
+  CameraList list = file.empty() ? CameraList{scene.name, built_in} : CameraList{file, load_cameras(file)};
+  list.listed = !list.cameras.empty();
+  list.path = camera.along_path();
+  list.known = known;
+  if (list.listed && (camera.up || camera.fov)) {
+    fail(
+        "--up and --fov are for cameras that are made up: {} has cameras; use --eye and --at, or --orbit, "
+        "with them",
+        list.source);
+  }
+  if (!list.listed && !camera.views.empty())
+    fail("--view {}: no cameras beside {}; name their file with --cameras", camera.views[0], scene.name);
+  return list;
+}
 
-double near_plane_of(const RenderOptions& options, const CameraList& list, const Model& model) {
-  if (options.near_plane) return *options.near_plane;
+std::optional<SavedPose> find_saved(const SceneOptions& scene) {
+  if (is_built_in(scene.name)) return std::nullopt;
+  auto saved = find_pose(scene.name);
+  if (saved)
+    log_info("{}: {} world units a metre, eyes {} m apart, unless options say otherwise",
+             pose_path(scene.name).string(), saved->units_per_metre, saved->ipd);
+  return saved;
+}
+
+std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& o,
+                                       const std::optional<SavedPose>& saved) {
+  const bool chosen = !o.file.empty() || !o.views.empty() || o.along_path() || o.made_up() || o.up || o.fov;
+  if (!saved || chosen) return std::nullopt;
+  return CameraList{.source = pose_path(scene.name).string(),
+                    .cameras = {saved->camera},
+                    .listed = true,
+                    .near_plane = saved->near_plane,
+                    .known = known_of(saved)};
+}
+
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const Known& known,
+                           const Model& model) {
+  const double fov = camera.fov.value_or(default_fov_degrees);
+  const glm::dvec3 up = up_of(camera, known);
+  CameraList list{.source = scene.name, .known = known};
+  if (camera.eye) {
+    list.source = "--eye";
+    list.cameras = {look_at(*camera.eye, *camera.at, up, fov, made_up_width, made_up_height)};
+  } else if (camera.orbit) {
+    list.source = "--orbit";
+    list.cameras = orbit(model, *camera.orbit, made_up_width, made_up_height, fov, up);
+  } else {
+    log_info("no cameras beside {}: framing the model", scene.name);
+    list.cameras = {frame_model(model, made_up_width, made_up_height, fov, up)};
+  }
+  return list;
+}
+
+glm::dvec3 up_of(const CameraOptions& camera, const Known& known) {
+  return camera.up.value_or(known.up.value_or(default_up));
+}
+
+double near_plane_of(const CameraOptions& camera, const CameraList& list, const Model& model) {
+  if (camera.near_plane) return *camera.near_plane;
   return list.near_plane.value_or(list.listed ? near_default : near_for(model));
 }
 
-stereo::RigSettings rig_settings(const RenderOptions& options, double near_plane) {
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera) {
+  OpenScene opened{.list = listed_cameras(scene, camera)};
+  opened.model = load_scene(scene);
+  if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.known, opened.model);
+  opened.near_plane = near_plane_of(camera, opened.list, opened.model);
+  return opened;
+}
+
+stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane) {
   stereo::RigSettings settings;
-  settings.ipd = options.ipd.value_or(options.saved ? options.saved->ipd : settings.ipd);
-  settings.units_per_metre = units_per_metre(options);
-  settings.convergence = options.convergence;
-  settings.cant_degrees = options.cant.value_or(settings.cant_degrees);
+  settings.ipd = rig.ipd.value_or(known.ipd.value_or(settings.ipd));
+  settings.units_per_metre =
+      rig.units_per_metre.value_or(known.units_per_metre.value_or(settings.units_per_metre));
+  settings.convergence = rig.convergence;
+  settings.cant_degrees = rig.cant.value_or(settings.cant_degrees);
   settings.near_plane = near_plane;
   return settings;
 }
@@ -161,74 +238,26 @@ std::vector<shared::View> views_of(const Shot& shot) {
   return views;
 }
 
-Camera sized(const RenderOptions& options, const Camera& camera) {
-  Camera out = options.preset.empty() ? camera : stereo::apply_preset(camera, options.preset);
-  return options.size ? resized(out, options.size->x, options.size->y) : out;
+std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
+                                   const CameraList& list) {
+  std::vector<Camera> cameras;
+  for (const Choice& choice : chosen(views_or_all(views), list, true))
+    cameras.push_back(sized(lens, choice.cameras[0]));
+  return cameras;
 }
 
-glm::dvec3 up_of(const RenderOptions& options) {
-  return options.up.value_or(options.saved ? options.saved->up : default_up);
-}
-
-std::optional<SavedPose> find_saved(const RenderOptions& options) {
-  if (options.scene.rfind("demo:", 0) == 0) return std::nullopt;
-  auto saved = find_pose(options.scene);
-  if (saved)
-    log_info("{}: {} world units a metre, eyes {} m apart, unless options say otherwise",
-             pose_path(options.scene).string(), saved->units_per_metre, saved->ipd);
-  return saved;
-}
-
-std::optional<CameraList> saved_camera(const RenderOptions& options) {
-  const RenderOptions& o = options;
-  const bool chosen = !o.cameras.empty() || !o.views.empty() || along_path(o) || !o.photos.empty() || o.eye ||
-                      o.orbit || o.up || o.fov;
-  if (!o.saved || chosen) return std::nullopt;
-  return CameraList{pose_path(o.scene).string(), {o.saved->camera}, true, o.saved->near_plane};
-}
-
-CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera>& built_in) {
-  if (options.eye || options.orbit) return {};
-  std::string file = options.path.empty() ? options.cameras : options.path;
-  if (file.empty() && built_in.empty()) {
-    const auto found = find_cameras(options.scene);
-    if (found) {
-      file = found->string();
-      note_input(*found);
-    }
-  }
-  CameraList list = file.empty() ? CameraList{options.scene, built_in} : CameraList{file, load_cameras(file)};
-  list.listed = !list.cameras.empty();
-  if (list.listed && (options.up || options.fov)) {
-    fail(
-        "--up and --fov are for cameras that are made up: {} has cameras; use --eye and --at, or --orbit, "
-        "with them",
-        list.source);
-  }
-  if (!list.listed && !options.views.empty()) {
-    fail("--view {}: no cameras beside {}; name their file with --cameras", options.views[0], options.scene);
-  }
-  return list;
-}
-
-CameraList made_up_cameras(const RenderOptions& options, const Model& model) {
-  const double fov = options.fov.value_or(default_fov_degrees);
-  const glm::dvec3 up = up_of(options);
-  if (options.eye) {
-    return {"--eye", {look_at(*options.eye, *options.at, up, fov, made_up_width, made_up_height)}};
-  }
-  if (options.orbit) return {"--orbit", orbit(model, *options.orbit, made_up_width, made_up_height, fov, up)};
-  log_info("no cameras beside {}: framing the model", options.scene);
-  return {options.scene, {frame_model(model, made_up_width, made_up_height, fov, up)}};
-}
-
-std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane,
-                             const std::string& axes) {
+std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
+                             const CameraList& list, double near_plane, const std::string& axes) {
+  const stereo::RigSettings settings = rig_settings(rig, list.known, near_plane);
   std::vector<Shot> shots;
   std::set<std::string> taken;
-  for (const Choice& choice : chosen(options, list)) {
-    Shot& shot = shots.emplace_back(Shot{choice.name, stem_of(choice.name, taken), {}, {}, false});
-    add_eyes(options, choice, near_plane, axes, shot);
+  for (const Choice& choice : chosen(views, list, rig.mono)) {
+    Shot& shot = shots.emplace_back();
+    shot.name = choice.name;
+    const std::string stem = shot.stem = stem_of(choice.name);
+    for (int n = 2; !taken.insert(shot.stem).second; ++n) shot.stem = fmt::format("{}_{}", stem, n);
+    shot.units_per_metre = settings.units_per_metre;
+    add_eyes(lens, rig, settings, choice, axes, shot);
   }
   return shots;
 }

@@ -4,7 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "app/render_options.h"
+#include "app/camera_options.h"
+#include "app/rig_options.h"
+#include "app/scene_options.h"
+#include "formats/pose_file.h"
 #include "scene/camera.h"
 #include "scene/model.h"
 #include "shared/types.h"
@@ -19,54 +22,90 @@ struct Eye {
   shared::View view;
 };
 
+/// A view's name as a file's: trainers' names may have folders, and the endings of the photos.
+std::string stem_of(std::string name);
+
 /// What one frame draws.
 struct Shot {
   std::string name;  // the view's, as the user knows it
-  std::string stem;  // of its files: unique among the shots, without folders and picture endings
+  std::string stem;  // of its files: stem_of() the name, unique among the shots
   std::vector<Eye> eyes;
-  std::optional<double> ipd;  // m, where there is a rig
-  bool given_eyes = false;    // as a pair by the cameras
+  std::optional<double> ipd;     // m, where there is a rig
+  double units_per_metre = 1.0;  // world units
+  bool given_eyes = false;       // as a pair by the cameras
+};
+
+/// What goes for a rig and for cameras that are made up where no option says it.
+struct Known {
+  std::optional<double> units_per_metre;  // world units
+  std::optional<double> ipd;              // m
+  std::optional<glm::dvec3> up;           // the world's
 };
 
 /// Where cameras come from, for the log, and which they are.
 struct CameraList {
   std::string source;
   std::vector<Camera> cameras;
-  bool listed = false;  // in a file or by the built-in scene: --view chooses; made-up ones are all drawn
+  bool listed = false;               // in a file or by the built-in scene, and not made up
+  bool path = false;                 // the frames of one path
   std::optional<double> near_plane;  // world units, where it is known
+  Known known;
 };
 
-/// The cameras that --cameras, a file beside the model, or the built-in scene (`built_in`) gives; empty if
-/// none does or the options make up their own. Quick: comes before the model is read.
-CameraList listed_cameras(const RenderOptions& options, const std::vector<Camera>& built_in);
+/// The cameras that --cameras, a file beside the model, or the built-in scene gives; empty if none does or
+/// the options make up their own. Quick: comes before the model is read. `saved` as find_saved() has it.
+CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
+                          const std::optional<SavedPose>& saved = {});
 
-/// What lies beside the model, if anything does; says so.
-std::optional<SavedPose> find_saved(const RenderOptions& options);
+/// What `binosplat view` saved beside the model, if it did; says so.
+std::optional<SavedPose> find_saved(const SceneOptions& scene);
 
-/// The pose that options.saved holds, where no option chooses cameras or asks for those of photos.
-std::optional<CameraList> saved_camera(const RenderOptions& options);
-
-/// --up, or what was saved.
-glm::dvec3 up_of(const RenderOptions& options);
+/// The saved pose as a camera, where no option chooses cameras.
+std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& camera,
+                                       const std::optional<SavedPose>& saved);
 
 /// Cameras made up from --eye, --orbit or the model.
-CameraList made_up_cameras(const RenderOptions& options, const Model& model);
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const Known& known,
+                           const Model& model);
+
+/// --up, or what is known.
+glm::dvec3 up_of(const CameraOptions& camera, const Known& known);
 
 /// --near, or what suits the cameras of a file, or those made up for the model; world units.
-double near_plane_of(const RenderOptions& options, const CameraList& list, const Model& model);
+double near_plane_of(const CameraOptions& camera, const CameraList& list, const Model& model);
 
-/// What the options say of a rig. `near_plane` in world units.
-stereo::RigSettings rig_settings(const RenderOptions& options, double near_plane);
+/// A model and the cameras that it is seen from.
+struct OpenScene {
+  Model model;
+  CameraList list;
+  double near_plane = 0.0;  // world units
+};
 
-/// A camera with the size and lens that --preset and --size ask for.
-Camera sized(const RenderOptions& options, const Camera& camera);
+/// Those listed for the scene, or made up for its model.
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera);
+
+/// What there is of a rig. `near_plane` in world units.
+stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane = near_default);
 
 /// What a frame draws of a shot.
 std::vector<shared::View> views_of(const Shot& shot);
 
-/// The shots that --view, --mono and the rig's options ask for. `near_plane` in world units, `axes` those of
-/// the model. Throws Error for a view that is not there; it names some that are.
-std::vector<Shot> make_shots(const RenderOptions& options, const CameraList& list, double near_plane,
-                             const std::string& axes);
+/// As --view: all that a list has.
+inline const std::vector<std::string> all_views = {"all"};
+
+/// The views of that name, for commands that take all where none is named.
+inline const std::vector<std::string>& views_or_all(const std::vector<std::string>& views) {
+  return views.empty() ? all_views : views;
+}
+
+/// The cameras of the views by name, or all where none is named, as they are drawn without a rig. Throws
+/// Error for a view that is not there; it names some that are.
+std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
+                                   const CameraList& list);
+
+/// The shots of the views by name: NAME, all_views, or none for the first. Of a path and of cameras that are
+/// made up, all. `near_plane` in world units, `axes` those of the model. Throws as chosen_cameras() does.
+std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& lens, const RigOptions& rig,
+                             const CameraList& list, double near_plane, const std::string& axes);
 
 }  // namespace binosplat::app

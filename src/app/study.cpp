@@ -11,13 +11,11 @@
 
 #include "app/analyses.h"
 #include "app/command.h"
-#include "app/drawing.h"
-#include "app/open_scene.h"
 #include "app/option_checks.h"
+#include "app/output_options.h"
 #include "app/report.h"
 #include "app/shots.h"
 #include "app/study_parts.h"
-#include "base/choices.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "render/stage.h"
@@ -34,41 +32,31 @@ using study::Variant;
 
 Studied open(const StudyOptions& options) {
   // A case takes a head along paths of its own, and makes the eyes itself.
-  RenderOptions render = options.scene;
-  render.mono = render.mono || options.stability;
-  const Scene scene = open_scene(options.scene);
-  CameraList list = listed_cameras(render, scene.cameras);
-  Studied studied{std::make_shared<const Model>(scene.model())};
-  if (!list.listed) list = made_up_cameras(render, *studied.model);
-  studied.near_plane = near_plane_of(render, list, *studied.model);
-  studied.shots = make_shots(render, list, studied.near_plane, studied.model->axes);
-  if (options.scene.path.empty() && studied.shots.size() > 1) fail("--view all: a study is of one view");
-  return studied;
-}
-
-Variant variant_of(const StudyOptions& o) {
-  return {find_choice("--th", o.th, th_choices),
-          find_choice("--transmittance", o.transmittance, transmittance_choices)};
+  const RigOptions& rig = options.stability ? no_rig : options.rig;
+  OpenScene scene = open_scene(options.scene, options.camera);
+  std::vector<Shot> shots = make_shots(options.camera.views, options.camera.lens, rig, scene.list,
+                                       scene.near_plane, scene.model.axes);
+  if (options.camera.path.empty() && shots.size() > 1) fail("--view all: a study is of one view");
+  return {std::make_shared<const Model>(std::move(scene.model)), scene.near_plane, std::move(shots)};
 }
 
 ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
-  Variant variant = variant_of(options);
+  Variant variant{options.th, options.transmittance, options.loss.value_or(0.0f)};
   std::vector<std::vector<shared::View>> frames;
   for (const Shot& shot : studied.shots) frames.push_back(views_of(shot));
-  if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
-  const float quality = options.scene.quality.value_or(0.0f);
-  variant.loss = options.scene.loss.value_or(0.0f);
+  if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.camera.path);
+  const float quality = options.quality.value_or(0.0f);
   render::FrameSettings asked = variant.settings();
   asked.quality = quality;
   render::check_choice(asked, "--");
-  if (quality == 0.0f && !options.scene.loss)
+  if (quality == 0.0f && !options.loss)
     variant.loss = study::carried_loss(context, *studied.model, frames, variant, options.target);
   Progress progress("frames", frames.size());
   std::size_t done = 0;
   const auto results =
       study::run_carried(context, *studied.model, frames, variant, quality, [&] { progress.update(++done); });
   fmt::print(
-      "{} along {}, {}\n\n", variant.name(), options.scene.path,
+      "{} along {}, {}\n\n", variant.name(), options.camera.path,
       quality > 0 ? fmt::format("steered to {} dB", quality) : fmt::format("loss {:.4g}", variant.loss));
   fmt::print(
       "| frame | dB | removed | signed | `one` with as many pairs, dB | gain |\n|---|---|---|---|---|---|\n");
@@ -127,10 +115,10 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
   const auto results =
       study::measure_rules(still, variants, options.target, frames, [&] { progress.update(++done); });
   const shared::View& view = still.views().front();
-  fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.scene, shot.name,
+  fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.name, shot.name,
              still.views().size(), view.width, view.height, options.target);
   print_rules(results);
-  ordered_json json = study::object("renderer", context.renderer(), "scene", options.scene.scene, "gaussians",
+  ordered_json json = study::object("renderer", context.renderer(), "scene", options.scene.name, "gaussians",
                                     studied.model->count(), "view", shot.name, "eyes", still.views().size(),
                                     "width", view.width, "height", view.height, "target_db", options.target,
                                     "frames", frames, "rounds", study::rule_rounds);
@@ -142,7 +130,7 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
 enum class Kind { analyses, stability, rules, motion, carried };
 
 Kind kind_of(const StudyOptions& o) {
-  const bool path = !o.scene.path.empty() && !o.motion.chosen;  // --motion goes along one, too
+  const bool path = !o.camera.path.empty() && !o.motion.chosen;  // --motion goes along one, too
   if (int{o.stability} + int{o.rules} + int{o.motion.chosen} + int{path} > 1)
     fail("study: --stability, --rules, --motion and --path FILE are studies of their own");
   return o.stability       ? Kind::stability
@@ -154,13 +142,14 @@ Kind kind_of(const StudyOptions& o) {
 
 void check(const StudyOptions& options, Kind kind) {
   const bool of_page = kind == Kind::stability || kind == Kind::motion;
-  if (!options.test.empty() || !options.scene.photos.empty())
+  if (!options.test.empty() || !options.photos.empty())
     fail(
         "study: --test and --photos are for the analyses, without --stability, --rules, --motion and --path");
   if (options.frames && kind != Kind::rules && kind != Kind::motion)
     fail("--frames goes with --rules and --motion, or with the analyses");
-  if (options.scene.views.size() > 1) fail("--view: this study is of one view");
-  if (kind == Kind::motion && !options.scene.views.empty()) fail("--view: --motion goes through all cameras");
+  if (options.camera.views.size() > 1) fail("--view: this study is of one view");
+  if (kind == Kind::motion && !options.camera.views.empty())
+    fail("--view: --motion goes through all cameras");
   if (!options.output.empty() && !of_page)
     fail("study: -o is for the analyses, --stability and --motion: --json keeps the numbers of the others");
 }
@@ -171,8 +160,8 @@ ExitCode study_scene(const StudyOptions& options) {
     if (!options.not_for_analyses.empty())
       fail("study: {} {} with --stability, --rules, --motion or --path FILE",
            fmt::join(options.not_for_analyses, ", "), options.not_for_analyses.size() > 1 ? "go" : "goes");
-    return analyse_scene({options.scene, options.test, options.frames.value_or(24),
-                          options.output.empty() ? "out/study" : options.output});
+    return analyse_scene(options, options.test, options.frames.value_or(24),
+                         options.output.empty() ? "out/study" : options.output);
   }
   check(options, kind);
   if (!options.output.empty()) check_output(std::filesystem::path(options.output) / "study.json");
@@ -182,7 +171,7 @@ ExitCode study_scene(const StudyOptions& options) {
     return ExitCode::done;
   }
   const Studied studied = open(options);
-  const auto context = open_context(options.scene);
+  const auto context = open_context(options.context);
   if (kind == Kind::stability) study_stability(*context, options, studied);
   if (kind == Kind::rules) save(options, rules(*context, options, studied), {});
   if (kind == Kind::carried) save(options, carried(*context, options, studied), {});
@@ -190,32 +179,25 @@ ExitCode study_scene(const StudyOptions& options) {
 }
 
 /// What is studied and where that goes.
-void add_scene_options(CLI::App& sub, StudyOptions& o) {
-  sub.add_option("--cameras", o.scene.cameras, "cameras.json; default: the one beside the model")
+void add_studied_options(CLI::App& sub, StudyOptions& o) {
+  sub.add_option("--cameras", o.camera.file, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
-  sub.add_option("--view", o.scene.views,
+  sub.add_option("--view", o.camera.views,
                  "The camera to study from; default: the first. Without --stability, --rules, --motion\n"
                  "and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
       ->type_name("NAME...");
   sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
-  sub.add_option("--photos", o.scene.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB")
-      ->type_name("DIR")
-      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
+  add_photos_option(sub, o.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB");
   sub.add_option("-o,--output", o.output,
                  "Folder for report.html and study.json (out/study);\nwith --stability and --motion, too")
       ->type_name("DIR");
-  sub.add_option_function<std::string>(
-         "--size", [&o](const std::string& text) { o.scene.size = parse_size("--size", text); },
-         "Of an eye's picture")
-      ->type_name("WxH");
-  sub.add_option("--preset", o.scene.preset,
-                 "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees")
-      ->check(CLI::IsMember({"preview", "headset"}).description(""))
-      ->type_name("preview|headset");
-  sub.add_flag("--mono", o.scene.mono, "With --path, --rules and --motion: the cameras themselves, no rig");
-  add_measured_options(sub, o.scene);
-  sub.add_option("--ipd", o.scene.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
-  sub.add_option("--units-per-metre", o.scene.units_per_metre,
+  add_size_option(sub, o.camera.lens, "Of an eye's picture");
+  add_preset_option(sub, o.camera.lens,
+                    "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees");
+  sub.add_flag("--mono", o.rig.mono, "With --path, --rules and --motion: the cameras themselves, no rig");
+  add_measured_options(sub, o);
+  sub.add_option("--ipd", o.rig.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
+  sub.add_option("--units-per-metre", o.rig.units_per_metre,
                  "World units that make a metre (1);\nwith --motion: by the distances of cameras")
       ->type_name("U");
   sub.add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
@@ -232,7 +214,7 @@ void add_study(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("study", "What thresholds gain on a scene, and where they fail");
   const auto options = std::make_shared<StudyOptions>();
   StudyOptions& o = *options;
-  sub->add_option("SCENE", o.scene.scene, "A model, or demo:room or demo:city")->required();
+  sub->add_option("SCENE", o.scene.name, "A model, or demo:room or demo:city")->required();
   sub->add_flag("--stability", o.stability, "Every rule and source on every failure case");
   auto* rules =
       sub->add_flag("--rules", o.rules, "Every rule and source at one error on a still pair, timed");
@@ -242,32 +224,32 @@ void add_study(CLI::App& program, Command& command) {
          "Timed of each setting in each of three rounds (24; --rules 96);\nwith --motion: that move, of a "
          "segment (60)")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000).description(""));
+      ->check(range(1, 10000));
   sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules, motion);
-  sub->add_option("--path", o.scene.path,
+  sub->add_option("--path", o.camera.path,
                   "Carry one rule along the cameras of this file instead;\nwith --motion: measure along it")
       ->type_name("FILE");
   sub->add_option("--target", o.target,
                   "dB that losses are chosen for (40);\nwith --motion: at which rules are compared")
       ->excludes(sub->get_option("--no-equal"))
       ->type_name("DB")
-      ->check(CLI::PositiveNumber.description(""));
-  sub->add_option("--loss", o.scene.loss, "Of the rule carried, instead")
+      ->check(above_zero);
+  sub->add_option("--loss", o.loss, "Of the rule carried, instead")
       ->excludes(rules, motion)
       ->type_name("X")
-      ->check(CLI::NonNegativeNumber.description(""));
-  sub->add_option("--quality", o.scene.quality,
+      ->check(not_negative);
+  sub->add_option("--quality", o.quality,
                   "Steer the rule carried to so many dB;\nwith --motion: every rule (40)")
       ->excludes(rules)
       ->type_name("DB")
-      ->check(CLI::PositiveNumber.description(""));
-  const auto choose = [&](const char* name, std::string& into, std::span<const Choice> choices) {
-    one_of(sub->add_option(name, into, fmt::format("Of the rule carried ({})", into)), choices)
+      ->check(above_zero);
+  const auto of_rule = [&](const char* name, int& into, std::span<const Choice> choices) {
+    choose(*sub, name, into, fmt::format("Of the rule carried ({})", choices[into].name), words_of(choices))
         ->excludes(rules, motion);
   };
-  choose("--th", o.th, th_choices);
-  choose("--transmittance", o.transmittance, transmittance_choices);
-  add_scene_options(*sub, o);
+  of_rule("--th", o.th, th_choices);
+  of_rule("--transmittance", o.transmittance, transmittance_choices);
+  add_studied_options(*sub, o);
   sub->footer(
       "By itself it repeats AdaGScale's analyses on the scene, as a page with plots.\n"
       "Examples:\n"

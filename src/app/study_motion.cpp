@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
-#include "app/drawing.h"
 #include "app/open_scene.h"
+#include "app/option_checks.h"
 #include "app/parts.h"
 #include "app/study_parts.h"
 #include "base/choices.h"
@@ -69,49 +69,50 @@ std::vector<Variant> rules_for(const StudyOptions& options) {
 /// What a metre is in world units, and why.
 struct Metre {
   double units = 1.0;
-  std::string source;
+  std::string source = "nothing says otherwise";
 };
 
 /// What is driven through: the model, the rig, and the cameras that the paths are made of.
 struct Driven {
   std::shared_ptr<const Model> model;
-  RenderOptions render;  // with the metre
-  std::vector<Camera> cameras;
+  CameraList list;
   double near_plane = 0.0;
   Metre metre;
+  Lens lens;
+  RigOptions rig;
 };
 
+Metre metre(const StudyOptions& options, const std::vector<Camera>& cameras) {
+  if (options.rig.units_per_metre) return {*options.rig.units_per_metre, "--units-per-metre"};
+  if (options.camera.path.empty() && !is_built_in(options.scene.name))
+    return {metre_of(cameras), "the cameras' distances"};
+  return {};
+}
+
 Driven open(const StudyOptions& options) {
-  Driven driven{.render = options.scene};
-  const Scene scene = open_scene(options.scene);
-  const CameraList list = listed_cameras(options.scene, scene.cameras);
-  if (!list.listed)
+  Driven driven{
+      .list = listed_cameras(options.scene, options.camera), .lens = options.camera.lens, .rig = options.rig};
+  if (!driven.list.listed)
     fail("--motion goes through the cameras of a model: name their file with --cameras, or a --path");
-  driven.cameras = list.cameras;
-  if (options.scene.units_per_metre) {
-    driven.metre = {*options.scene.units_per_metre, "--units-per-metre"};
-  } else if (options.scene.path.empty() && options.scene.scene.rfind("demo:", 0) != 0) {
-    driven.metre = {metre_of(driven.cameras), "the cameras' distances"};
-  } else {
-    driven.metre = {1.0, "nothing says otherwise"};
-  }
-  driven.render.units_per_metre = driven.metre.units;
-  driven.model = std::make_shared<const Model>(scene.model());
-  driven.near_plane = near_plane_of(options.scene, list, *driven.model);
+  driven.metre = metre(options, driven.list.cameras);
+  driven.model = std::make_shared<const Model>(load_scene(options.scene));
+  driven.near_plane = near_plane_of(options.camera, driven.list, *driven.model);
   return driven;
 }
 
 /// The views of cameras that follow one another.
 std::vector<std::vector<shared::View>> frames_of(const Driven& driven, std::vector<Camera> cameras) {
   std::vector<std::vector<shared::View>> frames;
-  const CameraList list{"a path", std::move(cameras), false, {}};  // not listed: all are drawn
-  for (const Shot& shot : make_shots(driven.render, list, driven.near_plane, driven.model->axes))
+  const CameraList list{
+      .cameras = std::move(cameras), .path = true, .known = {.units_per_metre = driven.metre.units}};
+  for (const Shot& shot :
+       make_shots({}, driven.lens, driven.rig, list, driven.near_plane, driven.model->axes))
     frames.push_back(views_of(shot));
   return frames;
 }
 
 std::vector<Camera> toured(const Driven& driven, const Motion& motion) {
-  return tour(driven.cameras, {motion, frames_per_second, driven.metre.units});
+  return tour(driven.list.cameras, {motion, frames_per_second, driven.metre.units});
 }
 
 /// How long a stretch of a tour is, without its stop, in frames; and where they begin.
@@ -156,15 +157,15 @@ study::MotionPath standing(const Driven& driven, const MotionOptions& options) {
 }
 
 std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions& options) {
-  if (!options.scene.path.empty()) {
+  if (!options.camera.path.empty()) {
     if (options.motion.segments || !options.motion.motions.empty() || options.frames)
       fail(
           "--motions, --segments and --frames are for tours through the cameras: --path FILE is gone along "
           "once, whole");
-    auto frames = frames_of(driven, driven.cameras);
-    if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.scene.path);
-    const std::string name = std::filesystem::path(options.scene.path).stem().string();
-    return {{name, options.scene.path, {study::segment_of(std::move(frames), options.motion.lengths)}}};
+    auto frames = frames_of(driven, driven.list.cameras);
+    if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.camera.path);
+    const std::string name = std::filesystem::path(options.camera.path).stem().string();
+    return {{name, options.camera.path, {study::segment_of(std::move(frames), options.motion.lengths)}}};
   }
   std::vector<study::MotionPath> paths;
   for (const std::string& name : options.motion.motions.empty() ? all_motions() : options.motion.motions) {
@@ -239,20 +240,20 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
     sub.add_option(name, into, fmt::format("{} ({})", help, into))
         ->needs(motion)
         ->type_name("N")
-        ->check(CLI::Range(0, 10000).description(""));
+        ->check(range(0, 10000));
   };
   sub.add_option(
          "--segments", options.segments,
          fmt::format("Stretches, spread evenly along a tour through the cameras ({})", segments_default))
       ->needs(motion)
       ->type_name("N")
-      ->check(CLI::Range(1, 1000).description(""));
+      ->check(range(1, 1000));
   count("--lead", options.lengths.lead, "Frames of a segment before those that count");
   count("--stop", options.lengths.stop, "Frames at the last pose of a segment that moves");
   sub.add_option("--rounds", options.rounds, fmt::format("In which frames are timed ({})", options.rounds))
       ->needs(motion)
       ->type_name("N")
-      ->check(CLI::Range(1, 100).description(""));
+      ->check(range(1, 100));
   sub.add_flag("--no-equal", options.no_equal,
                "Without the comparison at one true quality, which takes longest")
       ->needs(motion);
@@ -264,9 +265,9 @@ void study_motion(const StudyOptions& options) {
   const std::vector<study::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
   const std::vector<Variant> rules = rules_for(options);
-  const auto context = open_context(options.scene);
+  const auto context = open_context(options.context);
   study::MotionStudy study{.device = context->renderer(),
-                           .scene = options.scene.scene,
+                           .scene = options.scene.name,
                            .gaussians = driven.model->count(),
                            .eyes = views.size(),
                            .width = views.front().width,
@@ -274,7 +275,7 @@ void study_motion(const StudyOptions& options) {
                            .frames_per_second = frames_per_second,
                            .units_per_metre = driven.metre.units,
                            .metre_source = driven.metre.source,
-                           .settings = {.quality = options.scene.quality.value_or(40.0f),
+                           .settings = {.quality = options.quality.value_or(40.0f),
                                         .target = options.target,
                                         .equal = !options.motion.no_equal,
                                         .rounds = options.motion.rounds}};

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "app/render_options.h"
+#include "app/measured_options.h"
+#include "app/rig_options.h"
 #include "app/shots.h"
-#include "gl/context.h"
-#include "scene/model.h"
+#include "shared/axes.h"
 #include "study/motion_paths.h"
 #include "study/page.h"
 
@@ -27,8 +27,8 @@ struct MotionOptions {
   bool no_equal = false;
 };
 
-struct StudyOptions {
-  RenderOptions scene;  // those of `render` that name the scene, its camera and the rig
+struct StudyOptions : MeasuredOptions {
+  RigOptions rig;
   bool stability = false;
   bool rules = false;
   MotionOptions motion;
@@ -37,7 +37,9 @@ struct StudyOptions {
   std::string output;
   std::vector<std::string> cases;
   double target = 40.0;  // dB
-  std::string th = "squared", transmittance = "one";
+  // Of the rule that is carried, where it is steered, and where motion is.
+  int th = TH_SQUARED, transmittance = TRANSMITTANCE_ONE;  // of shared/axes.h
+  std::optional<float> loss, quality;                      // quality in dB
   std::string json;
   std::vector<std::string> not_for_analyses;  // options given that these know nothing of
 };

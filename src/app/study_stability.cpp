@@ -60,12 +60,12 @@ void check_cases(const std::vector<std::string>& wanted, const std::vector<study
 
 void study_stability(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   const Camera head = into_axes(studied.shots.front().eyes.front().camera, studied.model->axes);
-  const stereo::RigSettings settings = rig_settings(options.scene, studied.near_plane);
+  const stereo::RigSettings settings = rig_settings(options.rig, {}, studied.near_plane);
   auto cases = study::built_in_cases();
   for (auto& one : study::cases_in(studied.model, head, settings)) cases.push_back(std::move(one));
   check_cases(options.cases, cases);
   study::StabilityStudy study{
-      options.scene.scene, context.renderer(), options.target, {}, study::all_variants(), {}};
+      options.scene.name, context.renderer(), options.target, {}, study::all_variants(), {}};
   std::vector<Variant>& variants = study.rules;
   {
     const stereo::EyePair eyes = stereo::make_rig(head, settings);
@@ -73,7 +73,7 @@ void study_stability(gl::Context& context, const StudyOptions& options, const St
     find_losses(still, options.target, variants);
   }
 
-  fmt::print("Losses for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.scene,
+  fmt::print("Losses for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.name,
              head.name, head.width, head.height);
   for (const Variant& variant : variants) fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
   for (const study::StabilityCase& one : cases) {

@@ -43,51 +43,50 @@ std::string motions_help() {
   return lines;
 }
 
-// --units-per-metre, where neither an option nor the scene tells.
-void estimate_metre(RenderOptions& options, const CameraList& list) {
-  if (options.units_per_metre || options.saved || options.scene.rfind("demo:", 0) == 0) return;
-  options.units_per_metre = metre_of(list.cameras);
-  log_info(
-      "--tour: {:.4g} world units count as a metre, for the eyes' distance, too: from each camera to the "
-      "next, in the median (--units-per-metre for another)",
-      *options.units_per_metre);
-}
-
 }  // namespace
 
-void add_tour_options(CLI::App& sub, RenderOptions& o) {
-  const char* const group = "Cameras";
+void add_tour_options(CLI::App& sub, CameraOptions& o) {
+  sub.option_defaults()->group("Cameras");
   sub.add_option_function<std::string>(
          "--tour", [&o](const std::string& text) { o.tour = parse_motion(text); },
          "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in metres "
          "of "
          "--units-per-metre, or else from camera\nto camera, in the median; M,DEG: at other speeds" +
              motions_help())
-      ->type_name("calm|walk|fast|M,DEG")
-      ->group(group);
+      ->type_name("calm|walk|fast|M,DEG");
   sub.add_option("--seconds", o.seconds, "The first S seconds of the tour (all)")
       ->type_name("S")
-      ->check(positive)
-      ->group(group);
+      ->check(positive);
 }
 
-void go_on_tour(RenderOptions& options, bool video, CameraList& list) {
+double tour_fps(const std::optional<double>& fps, bool video) {
+  return fps.value_or(video ? video_fps : headset_fps);
+}
+
+CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                      double fps, CameraList list) {
   if (list.cameras.empty()) {
     fail(
         "--tour: no cameras beside {} to go through: name their file with --cameras, or go around the model "
         "with --orbit",
-        options.scene);
+        scene.name);
   }
-  estimate_metre(options, list);
-  if (!options.fps) options.fps = video ? video_fps : headset_fps;
+  if (!rig.units_per_metre && !list.known.units_per_metre && !is_built_in(scene.name)) {
+    list.known.units_per_metre = metre_of(list.cameras);
+    log_info(
+        "--tour: {:.4g} world units count as a metre, for the eyes' distance, too: from each camera to the "
+        "next, in the median (--units-per-metre for another)",
+        *list.known.units_per_metre);
+  }
   const std::size_t count = list.cameras.size();
-  TourSettings settings{*options.tour, *options.fps, units_per_metre(options)};
-  settings.seconds = options.seconds.value_or(settings.seconds);
+  TourSettings settings{*camera.tour, fps, rig_settings(rig, list.known).units_per_metre};
+  settings.seconds = camera.seconds.value_or(settings.seconds);
   list.cameras = tour(list.cameras, settings);
   log_info("--tour: through {} cameras of {} at up to {} m and {} degrees a second: {} frames, {:.3g} s{}",
            count, list.source, settings.motion.metres_per_second, settings.motion.degrees_per_second,
-           list.cameras.size(), static_cast<double>(list.cameras.size()) / *options.fps,
-           options.seconds ? "" : " (--seconds S for the first S of them)");
+           list.cameras.size(), static_cast<double>(list.cameras.size()) / fps,
+           camera.seconds ? "" : " (--seconds S for the first S of them)");
+  return list;
 }
 
 }  // namespace binosplat::app

@@ -1,22 +1,22 @@
 #pragma once
 // render --tour: along the way of a head that goes through a model's cameras.
 
-#include "app/render_options.h"
+#include "app/camera_options.h"
+#include "app/rig_options.h"
 #include "app/shots.h"
-
-namespace CLI {
-class App;
-}
 
 namespace binosplat::app {
 
 /// Adds --tour and --seconds.
-void add_tour_options(CLI::App& sub, RenderOptions& options);
+void add_tour_options(CLI::App& sub, CameraOptions& options);
 
-/// Puts the tour's cameras, one a frame, in the place of those it goes through, and says so. Where they are
-/// not given fills in --fps (30 for a video, as for others, else 90 as headsets have) and --units-per-metre
-/// (metre_of the cameras; scenes that are built in are in metres), by which the eyes are apart, too. Throws
-/// Error where there are not two cameras.
-void go_on_tour(RenderOptions& options, bool video, CameraList& list);
+/// --fps, or what fits a tour: 30 for a video, as for others, else 90 as headsets have.
+double tour_fps(const std::optional<double>& fps, bool video);
+
+/// The tour's cameras, one a frame, in the place of those that it goes through; says so. Where nothing tells
+/// of a metre, it is metre_of those (scenes that are built in are in metres), and the eyes are apart by it,
+/// too. Throws Error where there are not two cameras.
+CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
+                      double fps, CameraList list);
 
 }  // namespace binosplat::app

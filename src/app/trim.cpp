@@ -7,9 +7,10 @@
 #include <memory>
 
 #include "app/command.h"
-#include "app/drawing.h"
 #include "app/model_files.h"
 #include "app/open_scene.h"
+#include "app/option_checks.h"
+#include "app/output_options.h"
 #include "app/photos.h"
 #include "app/shots.h"
 #include "base/log.h"
@@ -30,8 +31,7 @@ using nlohmann::ordered_json;
 using study::Calibrator;
 using Kind = study::CalibrationTarget::Kind;
 
-struct TrimOptions {
-  RenderOptions render;  // scene, lod, axes, cameras, size, photos, device
+struct TrimOptions : MeasuredOptions {
   TargetOptions bound;
   int views = 16;                  // held back
   std::vector<std::string> tests;  // views by name
@@ -46,7 +46,7 @@ struct Names {
 };
 
 ModelFormat check(const TrimOptions& o) {
-  check_target("trim", "a bound", o.bound, o.render);
+  check_target("trim", "a bound", o.bound, o);
   const ModelFormat format = output_format(o.output);
   check_output(o.output);
   if (!o.json.empty()) check_output(o.json);
@@ -58,37 +58,32 @@ ModelFormat check(const TrimOptions& o) {
 study::TrimViews choose_views(const TrimOptions& o, const CameraList& list, const Model& model,
                               Names& names) {
   study::TrimViews views;
-  views.near_plane = near_plane_of(o.render, list, model);
-  RenderOptions render = o.render;
-  render.mono = true;
-  const auto shots_of = [&](const std::vector<std::string>& named) {
-    render.views = named;
-    return make_shots(render, list, views.near_plane, model.axes);
-  };
-  std::vector<Shot> shots = shots_of({"all"});
-  for (const Shot& shot : o.tests.empty() ? std::vector<Shot>() : shots_of(o.tests)) {
-    views.test.push_back(with_photo(o.render, shot));
-    names.test.push_back(shot.name);
-    std::erase_if(shots, [&](const Shot& other) { return other.name == shot.name; });
+  views.near_plane = near_plane_of(o.camera, list, model);
+  std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
+  for (const Camera& camera :
+       o.tests.empty() ? std::vector<Camera>() : chosen_cameras(o.tests, o.camera.lens, list)) {
+    views.test.push_back(with_photo(o.photos, camera));
+    names.test.push_back(camera.name);
+    std::erase_if(cameras, [&](const Camera& other) { return other.name == camera.name; });
   }
-  if (shots.size() < 2)
+  if (cameras.size() < 2)
     fail("{}: {} of its cameras for trim, which needs two at least: one to weigh in, one to hold back",
-         list.source, shots.size());
+         list.source, cameras.size());
   std::vector<std::size_t> judging;
-  for (std::size_t i = 0; i < shots.size(); ++i) {
-    if (o.render.photos.empty() || find_view_photo(o.render.photos, shots[i])) judging.push_back(i);
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (o.photos.empty() || find_view_photo(o.photos, cameras[i].name)) judging.push_back(i);
   }
-  if (judging.empty()) fail("--photos {}: there is no photo of any view", o.render.photos);
-  const std::size_t wanted = std::min(static_cast<std::size_t>(o.views), shots.size() / 2);
-  std::vector<bool> held_back(shots.size(), false);
+  if (judging.empty()) fail("--photos {}: there is no photo of any view", o.photos);
+  const std::size_t wanted = std::min(static_cast<std::size_t>(o.views), cameras.size() / 2);
+  std::vector<bool> held_back(cameras.size(), false);
   for (const std::size_t k : study::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
-  for (std::size_t i = 0; i < shots.size(); ++i) {
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (!held_back[i]) {
-      views.weighed.push_back(shots[i].eyes.front().camera);
+      views.weighed.push_back(cameras[i]);
       continue;
     }
-    views.held_back.push_back(with_photo(o.render, shots[i]));
-    names.held_back.push_back(shots[i].name);
+    views.held_back.push_back(with_photo(o.photos, cameras[i]));
+    names.held_back.push_back(cameras[i].name);
   }
   names.weighed = views.weighed.size();
   return views;
@@ -109,7 +104,7 @@ study::TrimWriter trial_writer(const TrimOptions& o, ModelFormat format) {
 std::optional<fs::path> same_format(const TrimOptions& o, const std::string& format_read,
                                     ModelFormat format) {
   constexpr const char* names[] = {"ply", "compressed ply", ".splat", "spz"};  // as readers say it
-  const fs::path file = model_file(o.render.scene);
+  const fs::path file = model_file(o.scene.name);
   const std::string_view name = names[static_cast<int>(format)];
   const bool same = format_read == name || format_read.starts_with(fmt::format("{} ", name));
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
@@ -155,7 +150,7 @@ ordered_json to_json(const Calibrator::Cost& cost, const std::vector<std::string
 ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const Names& names,
                      ModelFormat format, const std::vector<std::string>& losses) {
   ordered_json json =
-      study::object("version", BINOSPLAT_VERSION, "model", o.render.scene, "output", o.output, "format",
+      study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
                     model_format_names[static_cast<int>(format)], "as_it_was", !found.less, "unseen",
                     found.unseen, "views_weighed", names.weighed, "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
@@ -187,23 +182,22 @@ std::vector<std::string> write(const TrimOptions& o, const study::Trimmed& found
 
 ExitCode trim(const TrimOptions& o) {
   const ModelFormat format = check(o);
-  const Scene scene = open_scene(o.render);
-  const CameraList list = listed_cameras(o.render, scene.cameras);
+  const CameraList list = listed_cameras(o.scene, o.camera);
   if (!list.listed)
     fail(
         "trim needs the cameras that the pictures are of, and there are none beside {}: name their file with "
         "--cameras",
-        o.render.scene);
-  Model model = scene.model();
-  refuse_scaffold(model, o.render.scene);
+        o.scene.name);
+  Model model = load_scene(o.scene);
+  refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model.format, format);
   bring_into_axes(model, axes_of(format));
   Names names;
   const study::TrimViews views = choose_views(o, list, model, names);
-  const auto context = open_context(o.render);
+  const auto context = open_context(o.context);
   study::Trimmed found =
       study::trim(*context, model, views, o.bound.target(), format, trial_writer(o, format));
-  if (const fs::path file = model_file(o.render.scene); fs::is_regular_file(file))
+  if (const fs::path file = model_file(o.scene.name); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
   if (original && found.steps.back().bytes >= found.steps.front().bytes) found.less = false;
   print(o, found, names, model.count());
@@ -229,8 +223,7 @@ ExitCode trim(const TrimOptions& o) {
 void add_trim(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("trim", "Write the smallest model that keeps the pictures");
   const auto o = std::make_shared<TrimOptions>();
-  const auto above_zero = CLI::PositiveNumber.description("");
-  sub->add_option("MODEL", o->render.scene, "A model file or folder, demo:room or demo:city")->required();
+  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat or .spz")
       ->type_name("FILE")
       ->required();
@@ -241,29 +234,22 @@ void add_trim(CLI::App& program, Command& command) {
   sub->add_option("--quality", o->bound.quality, "Bound: PSNR against the exact pictures, likewise")
       ->type_name("DB")
       ->check(above_zero);
-  sub->add_option("--photos", o->render.photos, "DIR/NAME.jpg or .png of the views")
-      ->type_name("DIR")
-      ->check(CLI::Validator(CLI::ExistingDirectory).description(""));
-  sub->add_option("--cameras", o->render.cameras, "Cameras, where they are not beside the model")
+  add_photos_option(*sub, o->photos);
+  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
   sub->add_option(
          "--views", o->views,
          "So many views (that have a photo) are held back to judge by, spread\nevenly, at most half of the "
          "cameras (16); the others say what each\nGaussian is worth")
       ->type_name("N")
-      ->check(CLI::Range(1, 10000).description(""));
+      ->check(range(1, 10000));
   sub->add_option("--test", o->tests, "Views by name that decide nothing: what they lose is stated")
       ->type_name("NAME...");
-  sub->add_option_function<std::string>(
-         "--size", [o](const std::string& text) { o->render.size = parse_size("--size", text); },
-         "Pixels of a view, instead of the cameras' own")
-      ->type_name("WxH");
-  sub->add_option("--lod", o->render.lod, "Level of detail of a streamed SOG, 0 the finest")
-      ->check(CLI::Range(0, 100).description(""))
-      ->type_name("N");
-  add_axes_option(*sub, o->render);
+  add_size_option(*sub, o->camera.lens);
+  add_lod_option(*sub, o->scene);
+  add_axes_option(*sub, o->scene);
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
-  add_measured_options(*sub, o->render);
+  add_measured_options(*sub, *o);
   sub->footer(
       "Steps: fewer bits a harmonic (spz), lower harmonics, fewer Gaussians; each as far as the bound holds\n"
       "for what is written. A model of which nothing can be left out is written as it was.\n"

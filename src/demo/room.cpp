@@ -35,6 +35,12 @@ Camera head(const char* name, const dvec3& eye, const dvec3& at, double fov_degr
 
 }  // namespace
 
+std::vector<Camera> room_cameras() {
+  return {head("room", {-0.95, -1.45, -1.75}, {0.30, -0.98, 1.0}, 62.0),
+          head("window", {0.62, -1.08, -0.75}, {-0.70, -1.35, 2.0}, 60.0),
+          head("table", {0.10, -1.25, -0.35}, {1.10, -0.80, 0.60}, 55.0)};
+}
+
 Demo demo_room() {
   const dvec3 to_sun = glm::normalize(dvec3(-0.42, -0.43, 0.84));
   Stage stage(9);
@@ -62,9 +68,7 @@ Demo demo_room() {
   Demo demo;
   demo.model = bake(stage, evening_light(to_sun));
   demo.model.name = demo_room_name;
-  demo.cameras = {head("room", {-0.95, -1.45, -1.75}, {0.30, -0.98, 1.0}, 62.0),
-                  head("window", {0.62, -1.08, -0.75}, {-0.70, -1.35, 2.0}, 60.0),
-                  head("table", {0.10, -1.25, -0.35}, {1.10, -0.80, 0.60}, 55.0)};
+  demo.cameras = room_cameras();
   return demo;
 }
 

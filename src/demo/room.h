@@ -15,6 +15,9 @@ struct Demo {
   std::vector<Camera> cameras;  // heads, 1,280 x 720; the first is the one to show
 };
 
+/// Its heads.
+std::vector<Camera> room_cameras();
+
 /// A furnished room of 5 x 4 x 2.8 m (metres, y downwards) with a window on hills as far as 400 m away, some
 /// 90 thousand Gaussians of degree 3. Every call makes the same bits.
 Demo demo_room();

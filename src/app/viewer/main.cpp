@@ -9,13 +9,11 @@
 
 #include "app/command.h"
 #include "app/command_line.h"
-#include "app/drawing.h"
 #include "app/followed.h"
 #include "app/open_scene.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/shots.h"
-#include "base/choices.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "preview/window.h"
@@ -28,99 +26,108 @@ namespace fs = std::filesystem;
 
 void check_view(const RenderOptions& o) {
   check(o);
-  if (o.mono || !o.only.empty() || o.frames > 1 || o.orbit || !o.path.empty() || o.views.size() > 1 ||
-      !o.reference_until.empty() || o.quality || !o.calibration.empty() || o.backend != "auto" ||
-      o.device >= 0) {
+  const bool of_render = o.rig.one_picture() || o.camera.orbit || !o.camera.path.empty() ||
+                         o.camera.views.size() > 1 || o.drawing.frames > 1 || o.drawing.reference_until ||
+                         o.drawing.quality || !o.drawing.calibration.empty() ||
+                         o.context.backend != gl::Backend::automatic || o.context.device >= 0;
+  if (of_render) {
     fail(
         "--mono, --only, --frames, --orbit, --path, --reference-until, --quality, --calibration, --backend, "
         "--device and more than one --view are for `binosplat render`");
   }
-  if (o.transmittance == "depth") fail("--transmittance depth is for `binosplat render`");
-  if (o.layout == "multi-view") fail("--layout multi-view is for OpenEXR files of `binosplat render`");
+  if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) fail("--transmittance depth is for `binosplat render`");
+  if (o.output.layout == LAYOUT_MULTI_VIEW)
+    fail("--layout multi-view is for OpenEXR files of `binosplat render`");
 }
 
 preview::Choices choices_of(const RenderOptions& o) {
   preview::Choices choices;
-  choices.layout = o.layout.empty() ? LAYOUT_PARALLEL : find_choice("--layout", o.layout, layout_choices);
-  choices.settings = settings_of(o);
-  choices.rig = rig_settings(o, near_default);  // until the model tells
-  choices.background = o.background.value_or(glm::vec3(0.0f));
-  choices.show = find_choice("--show", o.show, show_choices);
+  choices.layout = o.output.layout.value_or(LAYOUT_PARALLEL);
+  choices.settings = settings_of(o.drawing);
+  choices.settings.background = choices.background = o.output.backdrop();
+  choices.rig = rig_settings(o.rig, {});  // until the model tells
+  choices.show = o.output.show;
   return choices;
 }
 
+// What is opened, and what goes for files that are dropped on the window, too.
+struct Wanted {
+  SceneOptions scene;
+  CameraOptions camera;
+  RigOptions rig;
+  render::FrameSettings settings;
+};
+
 // The coarsest levels of a streamed SOG are there at once, the others come while one looks.
-void follow_levels(const std::shared_ptr<RenderOptions>& o, preview::Opened& opened) {
-  if (o->lod || o->scene.rfind("demo:", 0) == 0) return;
-  const bool asked = o->detail || o->gpu_memory;
-  if (!o->detail) o->detail = 0.0;
+void follow_levels(const Wanted& wanted, preview::Opened& opened) {
+  const SceneOptions& scene = wanted.scene;
+  if (scene.lod || is_built_in(scene.name)) return;
+  const bool asked = scene.detail || scene.gpu_memory;
   const auto levels = std::make_shared<std::optional<StreamedSog>>();
-  const auto read = [o, levels] {
+  const auto read = [scene, levels] {
     Model model = (*levels)->read();
-    set_as_asked(*o, model);
+    set_as_asked(scene, model);
     return model;
   };
-  opened.load = [o, levels, read, asked, other = opened.load] {
-    if (!asked && !is_streamed_sog(o->scene)) return other();
-    levels->emplace(o->scene);
+  opened.load = [scene, levels, read, asked, other = opened.load] {
+    if (!asked && !is_streamed_sog(scene.name)) return other();
+    levels->emplace(scene.name);
     (*levels)->choose({}, {});
     return read();
   };
-  opened.levels = [o, levels, read](std::span<const shared::View> views) -> std::function<Model()> {
+  opened.levels = [wanted, levels, read](std::span<const shared::View> views) -> std::function<Model()> {
     if (!*levels || views.empty()) return nullptr;
-    return (*levels)->choose(views, detail_need(*o, **levels, views)) ? std::function<Model()>(read)
-                                                                      : nullptr;
+    const DetailNeed need = detail_need(wanted.scene, wanted.settings, **levels, views);
+    return (*levels)->choose(views, need) ? std::function<Model()>(read) : nullptr;
   };
 }
 
-// The scene of these options, which the result keeps. Cameras that come as pairs of eyes are taken one by
-// one.
-preview::Opened open(const std::shared_ptr<RenderOptions>& o) {
-  const auto scene = std::make_shared<Scene>(open_scene(*o));
-  const auto list = std::make_shared<CameraList>(listed_cameras(*o, scene->cameras));
-  const auto saved = saved_camera(*o);
+// Cameras that come as pairs of eyes are taken one by one.
+preview::Opened open(const Wanted& wanted) {
+  const SceneOptions& scene = wanted.scene;
+  const CameraOptions& camera = wanted.camera;
+  const auto saved = find_saved(scene);
+  const CameraList list = listed_cameras(scene, camera, saved);
+  const auto pose = saved_camera(scene, camera, saved);
   preview::Opened opened;
-  opened.name = o->scene;
-  opened.up = up_of(*o);
-  if (o->scene.rfind("demo:", 0) != 0) opened.pose_file = pose_path(o->scene);
-  opened.load = [o, scene] { return scene->model(); };
-  follow_levels(o, opened);
-  opened.cameras = [o, list, saved](const Model& model, preview::Choices& choices) {
-    const double near_plane = near_plane_of(*o, saved ? *saved : *list, model);
-    const stereo::RigSettings rig = rig_settings(*o, near_plane);
-    choices.rig.ipd = rig.ipd;
-    choices.rig.units_per_metre = rig.units_per_metre;
-    choices.rig.near_plane = near_plane;
-    std::vector<Camera> cameras = list->listed ? list->cameras : made_up_cameras(*o, model).cameras;
-    if (!o->views.empty()) {
-      const auto at = std::find_if(cameras.begin(), cameras.end(),
-                                   [&](const Camera& c) { return c.name == o->views[0]; });
-      if (at == cameras.end()) fail("--view {}: {} has no camera of this name", o->views[0], list->source);
+  opened.name = scene.name;
+  opened.up = up_of(camera, list.known);
+  if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
+  opened.load = [scene = scene] { return load_scene(scene); };
+  follow_levels(wanted, opened);
+  opened.cameras = [wanted, list, pose](const Model& model, preview::Choices& choices) {
+    const CameraOptions& o = wanted.camera;
+    const stereo::RigSettings found =
+        rig_settings(wanted.rig, list.known, near_plane_of(o, pose ? *pose : list, model));
+    choices.rig.ipd = found.ipd;
+    choices.rig.units_per_metre = found.units_per_metre;
+    choices.rig.near_plane = found.near_plane;
+    std::vector<Camera> cameras =
+        list.listed ? list.cameras : made_up_cameras(wanted.scene, o, list.known, model).cameras;
+    if (!o.views.empty()) {
+      const auto at =
+          std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == o.views[0]; });
+      if (at == cameras.end()) fail("--view {}: {} has no camera of this name", o.views[0], list.source);
       std::rotate(cameras.begin(), at, cameras.end());
     }
-    if (saved) cameras.insert(cameras.begin(), saved->cameras[0]);
+    if (pose) cameras.insert(cameras.begin(), pose->cameras[0]);
     return cameras;
   };
   return opened;
 }
 
-void view(const std::shared_ptr<RenderOptions>& options) {
-  check_view(*options);
-  const fs::path folder =
-      options->output.empty() ? default_folder(options->scene) : fs::path(options->output);
+void view(const RenderOptions& o) {
+  check_view(o);
+  const fs::path folder = o.output.output.empty() ? default_folder(o.scene.name) : fs::path(o.output.output);
   check_output(folder / "picture");
-  preview::WindowSettings settings;
-  if (options->size) settings.size = *options->size;
-  settings.folder = folder;
-  settings.shader_folder = options->shader_dir;
-  options->saved = find_saved(*options);
-  preview::run(open(options), choices_of(*options), settings, [options](const std::string& file) {
-    const auto other = std::make_shared<RenderOptions>();
-    other->scene = file;
-    other->units_per_metre = options->units_per_metre;
-    other->saved = find_saved(*other);
-    return open(other);
-  });
+  preview::WindowSettings window;
+  window.size = o.camera.lens.size.value_or(window.size);
+  window.folder = folder;
+  window.shader_folder = o.context.shader_dir;
+  preview::run(open({o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
+               [metre = o.rig.units_per_metre](const std::string& file) {
+                 return open({{.name = file}, {}, {.units_per_metre = metre}, {}});
+               });
 }
 
 int end(ExitCode code, const std::string& text) {
@@ -130,9 +137,9 @@ int end(ExitCode code, const std::string& text) {
 
 int run(int argc, char** argv) {
   CLI::App program("binosplat view: look at a model with both eyes", "binosplat view");
-  const auto options = std::make_shared<RenderOptions>();
+  RenderOptions options;
   try {
-    add_view_options(program, *options);
+    add_view_options(program, options);
     add_max_memory(program);
     check_arguments(argc, argv);
     program.parse(argc, argv);

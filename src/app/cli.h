@@ -1,0 +1,7 @@
+#pragma once
+// CLI11's names, for headers that need no more of it.
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI

@@ -1,0 +1,47 @@
+#include "app/context_options.h"
+
+#include "app/option_checks.h"
+#include "base/error.h"
+#include "base/log.h"
+
+namespace binosplat::app {
+
+using gl::Backend;
+
+void add_context_options(CLI::App& sub, ContextOptions& o) {
+  sub.option_defaults()->group("Drawing");
+  choose<Backend>(
+      sub, "--backend", o.backend,
+      "Where OpenGL comes from: a GPU through EGL's devices, Mesa without\na GPU, Mesa without EGL, "
+      "or the first that works (auto)",
+      {{"auto", Backend::automatic},
+       {"device", Backend::device},
+       {"surfaceless", Backend::surfaceless},
+       {"osmesa", Backend::osmesa}});
+  add_device_option(sub, o);
+  sub.add_option("--shader-dir", o.shader_dir, "Read shaders from this folder, not the built-in ones")
+      ->type_name("DIR")
+      ->check(folder());
+}
+
+CLI::Option* add_device_option(CLI::App& sub, ContextOptions& o) {
+  return sub.add_option("--device", o.device, "Number of the EGL device")
+      ->type_name("N")
+      ->check(range(0, 1000));
+}
+
+void check(const ContextOptions& o, const char* with_devices) {
+  if (o.device >= 0 && (o.backend == Backend::surfaceless || o.backend == Backend::osmesa)) {
+    fail("--device is for --backend {}: {} has none", with_devices,
+         o.backend == Backend::surfaceless ? "surfaceless" : "osmesa");
+  }
+}
+
+std::unique_ptr<gl::Context> open_context(const ContextOptions& o) {
+  auto context = gl::Context::open(o.backend, o.device);
+  log_info("drawing with {} ({}, OpenGL {})", context->renderer(), context->backend(), context->version());
+  if (!o.shader_dir.empty()) context->set_shader_folder(o.shader_dir);
+  return context;
+}
+
+}  // namespace binosplat::app

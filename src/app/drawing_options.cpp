@@ -1,0 +1,88 @@
+#include "app/drawing_options.h"
+
+#include "app/option_checks.h"
+#include "base/error.h"
+#include "measure/twins.h"
+
+namespace binosplat::app {
+
+void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
+  sub.option_defaults()->group("Drawing");
+  choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices);
+  choose_explained(sub, "--th", o.th,
+                   "The alpha below which a Gaussian is left out of a tile (tau;\nwith --loss: squared)",
+                   th_choices);
+  sub.add_option("--loss", o.loss, "How much that may cost, in the unit of --th")
+      ->type_name("X")
+      ->check(not_negative);
+  sub.add_option(
+         "--quality", o.quality,
+         "Choose the loss so that pictures come to about DB against the exact\nones, from the first frame "
+         "on: one in four draws some tiles exactly, too")
+      ->type_name("DB")
+      ->check(positive);
+  sub.add_option("--calibration", o.calibration, "Take the loss from a file of binosplat calibrate")
+      ->type_name("FILE");
+  choose_explained(sub, "--transmittance", o.transmittance,
+                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices);
+  choose_explained(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
+                   decode_choices);
+  choose<std::optional<int>>(sub, "--tile", o.tile, "Side of a tile in px (auto: 16)",
+                             {{"auto", std::nullopt}, {"8", 8}, {"16", 16}, {"32", 32}});
+  choose_explained(sub, "--precision", o.precision, "What is kept of the model and of a frame (full)",
+                   precision_choices);
+  Words<render::Stage> stages;
+  for (int k = 0; k < render::stages_with_twins; ++k)
+    stages.emplace_back(render::name_of(static_cast<render::Stage>(k)), static_cast<render::Stage>(k));
+  choose(sub, "--reference-until", o.reference_until,
+         "Take the stages up to this one from the float64 reference: decode\n(Scaffold-GS), project, order, "
+         "pairs, tile_sort, ranges or blend",
+         stages)
+      ->type_name("STAGE");
+  sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")
+      ->type_name("N")
+      ->check(range(1, 100000));
+}
+
+void check(const DrawingOptions& o) {
+  const render::FrameSettings settings = settings_of(o);
+  const char* const th = th_choices[settings.th].name;
+  const bool exact = render::is_exact(settings.th);
+  const bool given = o.loss || o.quality, calibrated = !o.calibration.empty();
+  if (given && calibrated) {
+    fail("{} with --calibration: each chooses the loss: leave one of them out",
+         o.loss ? "--loss" : "--quality");
+  }
+  if (!exact && !given && !calibrated)
+    fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
+  if (exact && calibrated) fail("--calibration has no effect with --th {}, which is exact", th);
+  if (o.reference_until && calibrated)
+    fail("--reference-until: the reference goes by no calibration: leave --calibration out");
+  render::check_choice(settings, "--");
+  render::check(workings_of(o), settings, "--");
+}
+
+int threshold_of(const DrawingOptions& o) {
+  return o.th.value_or(o.loss || o.quality || !o.calibration.empty() ? TH_SQUARED : TH_TAU);
+}
+
+render::FrameSettings settings_of(const DrawingOptions& o) {
+  render::FrameSettings settings;
+  settings.tiles = o.tiles;
+  settings.th = threshold_of(o);
+  settings.loss = o.loss.value_or(0.0f);
+  settings.transmittance = o.transmittance;
+  settings.quality = o.quality.value_or(0.0f);
+  settings.decode = o.decode.value_or(DECODE_EYES);
+  settings.tile_size = o.tile.value_or(TILE_SIZE_DEFAULT);
+  settings.precision = o.precision;
+  return settings;
+}
+
+render::Workings workings_of(const DrawingOptions& o) {
+  render::Workings workings;
+  if (o.reference_until) workings.stand_in = measure::reference_until(*o.reference_until);
+  return workings;
+}
+
+}  // namespace binosplat::app

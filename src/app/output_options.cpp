@@ -1,0 +1,71 @@
+#include "app/output_options.h"
+
+#include "app/option_checks.h"
+#include "base/error.h"
+
+namespace binosplat::app {
+
+namespace {
+
+Background parse_background(const std::string& text) {
+  if (text == "none") return std::nullopt;
+  const glm::dvec3 rgb = parse_three("--background", text);
+  for (int i = 0; i < 3; ++i) {
+    if (!(rgb[i] >= 0.0 && rgb[i] <= 1.0))
+      fail("--background {}: expected numbers from 0 to 1, or none", text);
+  }
+  return glm::vec3(rgb);
+}
+
+}  // namespace
+
+void add_look_options(CLI::App& sub, OutputOptions& o) {
+  sub.option_defaults()->group("Outputs");
+  choose_explained(sub, "--layout", o.layout,
+                   "How both eyes are shown (a folder: separate; FILE.png and videos:\nparallel; FILE.exr: "
+                   "multi-view)",
+                   layout_choices);
+  choose_explained(sub, "--show", o.show,
+                   "What is shown in place of the picture; numbers as colours from 0\n(dark) to yellow "
+                   "(picture)",
+                   show_choices);
+  sub.add_option_function<std::string>(
+         "--background", [&o](const std::string& text) { o.background = parse_background(text); },
+         "Colour behind the model, 0 to 1, or none: keep alpha (0,0,0)")
+      ->type_name("R,G,B|none");
+}
+
+void add_output_options(CLI::App& sub, OutputOptions& o) {
+  sub.option_defaults()->group("Outputs");
+  sub.add_flag("--detail-report", o.detail_report,
+               "Print PSNR against the finest levels, and between those before and\nafter each switch")
+      ->group("Scene");
+  sub.add_option(
+         "-o,--output", o.output,
+         "A folder for NAME_left.png, NAME_right.png (NAME.png with --mono),\nor FILE.png or "
+         "FILE.exr with both eyes, or a video of all views:\nFILE.mp4, .mov, .mkv or .webm, by ffmpeg "
+         "(out/SCENE)")
+      ->type_name("DIR|FILE");
+  add_look_options(sub, o);
+  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30) or of a tour")
+      ->type_name("N")
+      ->check(positive);
+  choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});
+  choose<bool>(sub, "--exr", o.exr_half, "Write OpenEXR too, with depth; half where only -o FILE.exr asks",
+               {{"half", true}, {"float", false}});
+  choose<bool>(sub, "--exr-encoding", o.exr_display,
+               "Scene-linear light, or display values as in PNG (linear)",
+               {{"linear", false}, {"display", true}});
+  sub.add_option(
+         "--photos", o.photos,
+         "Print PSNR against DIR/NAME.jpg or .png, or the photos found beside\nthe cameras; with --mono")
+      ->type_name(fmt::format("DIR|{}", photos_beside))
+      ->check(folder() | CLI::IsMember({photos_beside}).description(""));
+  sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE");
+}
+
+CLI::Option* add_photos_option(CLI::App& sub, std::string& photos, const char* help) {
+  return sub.add_option("--photos", photos, help)->type_name("DIR")->check(folder());
+}
+
+}  // namespace binosplat::app

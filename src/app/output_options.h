@@ -1,0 +1,43 @@
+#pragma once
+// What becomes of the pictures.
+
+#include <optional>
+#include <string>
+
+#include "app/cli.h"
+#include "base/image.h"
+#include "shared/axes.h"
+
+namespace binosplat::app {
+
+/// In the place of a folder: the photos that lie beside the cameras.
+constexpr const char* photos_beside = "beside";
+
+struct OutputOptions {
+  std::string output;         // a folder or a file; empty: default_folder()
+  std::optional<int> layout;  // LAYOUT_ of shared/axes.h; none: by what `output` names
+  int show = SHOW_PICTURE;    // SHOW_
+  std::optional<double> fps;  // of a tour, or of a video; none: by the path's times
+  Background background = glm::vec3(0.0f);
+  std::optional<int> bits;
+  std::optional<bool> exr_half;     // OpenEXR, too, as half or float
+  std::optional<bool> exr_display;  // display values instead of light
+  std::string photos;               // a folder, or photos_beside
+  std::string json;
+  bool detail_report = false;
+
+  /// What pictures are compared before: black for none.
+  glm::vec3 backdrop() const { return background.value_or(glm::vec3(0.0f)); }
+};
+
+/// Adds all of them; `options` must outlive the parsing.
+void add_output_options(CLI::App& sub, OutputOptions& options);
+
+/// Those of them that a window has, too: --layout, --show and --background.
+void add_look_options(CLI::App& sub, OutputOptions& options);
+
+/// --photos of commands that look for none beside the cameras.
+CLI::Option* add_photos_option(CLI::App& sub, std::string& photos,
+                               const char* help = "DIR/NAME.jpg or .png of the views");
+
+}  // namespace binosplat::app

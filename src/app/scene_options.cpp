@@ -1,0 +1,110 @@
+#include "app/scene_options.h"
+
+#include <cctype>
+
+#include "app/option_checks.h"
+#include "base/error.h"
+#include "demo/city.h"
+#include "scene/axes.h"
+
+namespace binosplat::app {
+
+void add_scene_options(CLI::App& sub, SceneOptions& o) {
+  sub.add_option("SCENE", o.name,
+                 "A model (ply; SOG as folder, .sog or streamed), or one that is\nbuilt in: demo:room, a "
+                 "room, or\ndemo:city, streets of any "
+                 "size")
+      ->required();
+  sub.option_defaults()->group("Scene");
+  add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)");
+  sub.add_option(
+         "--detail", o.detail,
+         "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
+         "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit")
+      ->type_name("PX")
+      ->check(not_negative);
+  sub.add_option(
+         "--gpu-memory", o.gpu_memory,
+         "Of a streamed SOG: levels, near the eyes the finest, that fit in so\nmany MB; for each view "
+         "with --detail, else one choice for all")
+      ->type_name("MB")
+      ->check(positive);
+  add_axes_option(sub, o);
+  auto* antialias = sub.add_flag_callback(
+      "--antialias", [&o] { o.antialias = true; },
+      "Draw as a model that was trained with anti-aliasing (gsplat's,\nMip-Splatting's); by default "
+      "what its file says");
+  sub.add_flag_callback(
+         "--no-antialias", [&o] { o.antialias = false; }, "Draw as one that was not")
+      ->excludes(antialias);
+  sub.add_option(
+         "--kernel-px2", o.kernel_px2,
+         "Variance of the low-pass of projected Gaussians in px^2 (0.3; 0.1\nfor Mip-Splatting's files)")
+      ->type_name("S")
+      ->check(positive);
+  sub.add_option("--appearance", o.appearance,
+                 "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
+      ->type_name("ID")
+      ->check(whole);
+  add_seed_option(sub, o);
+  add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
+  sub.add_option_function<std::string>(
+         "--repeat",
+         [&o](const std::string& text) {
+           o.repeat = parse_two("--repeat", text, "copies along x and z as NXxNZ, for one 4x4");
+         },
+         "Copies of the scene along x and z; needs --spacing")
+      ->type_name("NXxNZ");
+  sub.add_option("--spacing", o.spacing, "From one copy to the next, in world units")
+      ->type_name("S")
+      ->check(positive);
+}
+
+CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& o, const char* help) {
+  return sub.add_option("--lod", o.lod, help)->type_name("N")->check(range(0, 100));
+}
+
+CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& o) {
+  return sub
+      .add_option_function<std::string>(
+          "--axes",
+          [&o](const std::string& text) {
+            for (const char c : text)
+              o.axes += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+            world_from_axes(o.axes);
+          },
+          "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
+          "or Back, "
+          "as in rdf, rub (the format's)")
+      ->type_name("XYZ");
+}
+
+CLI::Option* add_seed_option(CLI::App& sub, SceneOptions& o) {
+  return sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole);
+}
+
+CLI::Option* add_count_option(CLI::App& sub, SceneOptions& o, const char* help) {
+  return sub.add_option("--count", o.count, help)->type_name("N")->check(whole);
+}
+
+void check(const SceneOptions& o) {
+  if (o.name != demo_city_name && (o.seed || o.count))
+    fail("{} is for {}, and {} is none", o.seed ? "--seed" : "--count", demo_city_name, o.name);
+  if (o.lod && (o.gpu_memory || o.detail)) {
+    fail("--lod and {} both choose the levels of detail: leave one of them out",
+         o.gpu_memory ? "--gpu-memory" : "--detail");
+  }
+  if (o.detail && o.repeat) fail("--detail and --repeat: copies have one level of detail for all");
+  const char* const of_files = o.lod             ? "--lod"
+                               : o.gpu_memory    ? "--gpu-memory"
+                               : o.detail        ? "--detail"
+                               : o.appearance    ? "--appearance"
+                               : !o.axes.empty() ? "--axes"
+                                                 : nullptr;
+  if (of_files != nullptr && is_built_in(o.name))
+    fail("{} is for model files, and {} is none", of_files, o.name);
+  if (o.repeat.has_value() != o.spacing.has_value())
+    fail("--repeat and --spacing go together: how many copies, and how far apart");
+}
+
+}  // namespace binosplat::app
