@@ -43,13 +43,13 @@ TEST(Contributions, ByDepthAreThoseOfTheWalls) {
   std::size_t walls = 0;
   for (const DepthBin& bin : of_walls().by_depth) {
     if (bin.gaussians == 0) {
-      EXPECT_TRUE(std::isnan(bin.light.largest));
+      EXPECT_TRUE(std::isnan(bin.transmittance.largest));
       continue;
     }
     ASSERT_EQ(bin.gaussians, 1u);
     const std::size_t i = walls;
     for (double Spread::*which : {&Spread::median, &Spread::p90, &Spread::largest}) {
-      expect_near(bin.light.*which, wall_light[i], "light");
+      expect_near(bin.transmittance.*which, wall_light[i], "light");
       expect_near(bin.contribution.*which, wall_alpha[i] * wall_light[i], "contribution");
     }
     ++walls;
