@@ -42,7 +42,7 @@ struct View {
 // What holds for all of a frame. It lies in a uniform block, whose std140 agrees with std430 where there are no arrays.
 struct FrameParameters {
   vec4 background;      // rgb, display-referred; w: unused
-  float loss;           // of the threshold rule: K or kappa
+  float tolerance;      // of the threshold rule: K or kappa
   float far;            // world units, where the table of depths ends
   uint depth_bins;      // of that table
   uint remembers;       // 0: no earlier frame tells anything of this one
@@ -130,7 +130,7 @@ struct DispatchArguments {
 
 #ifdef __cplusplus
 static_assert(sizeof(View) == 160 && offsetof(View, slopes) == 96 && offsetof(View, is_probe) == 152);
-static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, loss) == 16);
+static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, tolerance) == 16);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);

@@ -1,3 +1,3 @@
 // Exact: what leaves a mark makes a pair.
 
-float threshold(float size, float bound, float loss) { return float(ALPHA_MIN); }
+float threshold(float size, float bound, float tolerance) { return float(ALPHA_MIN); }

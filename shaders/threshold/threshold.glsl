@@ -1,14 +1,14 @@
 // Th: the alpha below which a Gaussian makes no pair with a tile; the blend keeps tau and the true alpha (docs/method.md 5). A
 // rule is a file beside this one with one function:
-//   float threshold(float size, float bound, float loss)   at least tau
-// size: sqrt(det C2), px^2; bound: T_upper, above 0; loss: K or kappa.
+//   float threshold(float size, float bound, float tolerance)   at least tau
+// size: sqrt(det C2), px^2; bound: T_upper, above 0; tolerance: K or kappa.
 
 #include "frame.glsl"
 
 #include "threshold/bound.glsl"
 #include "threshold/{TH_NAME}.glsl"
 
-float threshold_of(Splat splat, float bound) { return threshold(splat.conic.w, bound, frame.loss); }
+float threshold_of(Splat splat, float bound) { return threshold(splat.conic.w, bound, frame.tolerance); }
 
 // Th of a Gaussian in view v, where it is `splat`.
 float threshold_in(uint v, uint gaussian, Splat splat) {

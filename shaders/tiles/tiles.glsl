@@ -1,6 +1,6 @@
 // Which tiles of a view a splat is offered to (docs/method.md 4). A shape is a file beside this one with three functions:
 //   uvec4 tile_box(Splat, View)                      columns [x, z) and rows [y, w) that it can touch, inside the grid
-//   uint likely_row(Splat, View, uvec4 box)          the row most likely to have such a tile
+//   uint likely_row(Splat, View, uvec4 box)          the row most likely to have such a tile; one of the box, if it has any
 //   uvec2 tile_row(Splat, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
 // Counting and emission call the same code and must agree to the bit, so everything that decides is `precise`.
 #include "shared/axes.h"

@@ -41,7 +41,7 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
   std::vector<study::CalibrationView> calibrated =
       views_of({named, calibration_views, named.empty() ? names : std::vector<std::string>()});
   if (calibrated.empty()) {
-    log_warning("there are no other views than those to test on: losses are found on them, too");
+    log_warning("there are no other views than those to test on: tolerances are found on them, too");
     calibrated = tested;
   }
 

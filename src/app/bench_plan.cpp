@@ -68,7 +68,7 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
   }
 }
 
-/// A calibration's ways to draw, with the losses as they are, after the axes' own.
+/// A calibration's ways to draw, with the tolerances as they are, after the axes' own.
 void add_calibrated(const std::string& file, study::Axes& axes) {
   std::set<study::NamedSettings> known;
   for (const render::FrameSettings& settings : axes.settings) known.insert(study::named(settings));
@@ -76,7 +76,7 @@ void add_calibrated(const std::string& file, study::Axes& axes) {
     render::FrameSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;
-    settings.loss = static_cast<float>(entry.loss);
+    settings.tolerance = static_cast<float>(entry.tolerance);
     study::check(file, settings);
     if (known.insert(study::named(settings)).second) axes.settings.push_back(settings);
   }

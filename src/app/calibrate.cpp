@@ -1,4 +1,5 @@
-// binosplat calibrate: the light by depth and the losses of a model, in a file that render and bench take.
+// binosplat calibrate: the light by depth and the tolerances of a model, in a file that render and bench
+// take.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -32,12 +33,12 @@ void print(const study::Calibration& c, const CalibrateOptions& o) {
                   : fmt::format("target: {} dB against the exact pictures", c.target.db));
   fmt::print("light by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.bounds.size(),
              c.depth_table.far, c.depth_table_seconds);
-  fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "T from", "loss",
+  fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "T from", "tolerance",
              drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
   for (const study::CalibrationEntry& e : c.entries) {
     fmt::print("{:<12}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n", th_choices[e.th].name,
-               transmittance_choices[e.transmittance].name, e.loss, e.reached_db, e.worst_db, e.worst_view,
-               -100 * e.pairs_removed, e.seconds);
+               transmittance_choices[e.transmittance].name, e.tolerance, e.reached_db, e.worst_db,
+               e.worst_view, -100 * e.pairs_removed, e.seconds);
   }
   fmt::print("\n{}\n", o.output);
 }
@@ -62,7 +63,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
 
 void add_calibrate(CLI::App& program, Command& command) {
   CLI::App* sub =
-      program.add_subcommand("calibrate", "Find the losses of a model that cost as much as you allow");
+      program.add_subcommand("calibrate", "Find the tolerances of a model that cost as much as you allow");
   const auto o = std::make_shared<CalibrateOptions>();
   sub->add_option("SCENE", o->scene.name, "A model, demo:room or demo:city")->required();
   sub->add_option("-o,--output", o->output, "The file to write")->type_name("CALIB.json")->required();

@@ -9,11 +9,11 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr double same_focal = 0.05;  // share: nearer than this the loss needs no scaling to speak of
+constexpr double same_focal = 0.05;  // share: nearer than this the tolerance needs no scaling to speak of
 
 render::FrameSettings exact(render::FrameSettings settings) {
   settings.th = TH_TAU;
-  settings.loss = 0.0f;
+  settings.tolerance = 0.0f;
   settings.transmittance = TRANSMITTANCE_ONE;
   return settings;
 }
@@ -43,7 +43,8 @@ render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSett
   }
   if (std::abs(camera.fx / calibration_->focal - 1.0) > same_focal)
     log_warning(
-        "{} has a focal length of {:.0f} px and was calibrated at {:.0f}: the loss is scaled, the dB are "
+        "{} has a focal length of {:.0f} px and was calibrated at {:.0f}: the tolerance is scaled, the dB "
+        "are "
         "rough",
         shot.name, camera.fx, calibration_->focal);
   return *study::calibrated(*calibration_, settings, camera.fx);

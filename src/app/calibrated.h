@@ -16,8 +16,8 @@ class CalibratedSettings {
   /// file of another model is not gone by: a warning says so.
   CalibratedSettings(const DrawingOptions& options, const Model& model);
 
-  /// `settings` with the file's loss and light by depth; as they are without a file. Exact for a shot that
-  /// is far from the calibrated views, and for another model: a warning says so.
+  /// `settings` with the file's tolerance and light by depth; as they are without a file. Exact for a shot
+  /// that is far from the calibrated views, and for another model: a warning says so.
   render::FrameSettings of(const Shot& shot, render::FrameSettings settings) const;
 
  private:

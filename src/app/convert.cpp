@@ -122,7 +122,7 @@ std::string decibels(double psnr) {
 }
 
 void print(const ConvertOptions& o, const Converted& c) {
-  const char* format = model_format_names[static_cast<int>(c.format)];
+  const char* format = written_format(c.format).name;
   fmt::print("{}: {}, {} Gaussians\n", o.output, format, c.count);
   fmt::print("{} bytes, {:.2f} a Gaussian", c.bytes, c.bytes_each());
   if (c.bytes_before) {
@@ -141,7 +141,7 @@ void print(const ConvertOptions& o, const Converted& c) {
 nlohmann::ordered_json to_json(const ConvertOptions& o, const Converted& c) {
   nlohmann::ordered_json json =
       study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
-                    model_format_names[static_cast<int>(c.format)], "gaussians", c.count, "bytes", c.bytes,
+                    written_format(c.format).name, "gaussians", c.count, "bytes", c.bytes,
                     "bytes_per_gaussian", c.bytes_each(), "losses", c.losses, "model_bytes", c.bytes_before);
   if (c.views.empty()) return json;
   const auto psnr = [](const ViewCost& view) {
@@ -170,7 +170,7 @@ ExitCode convert(const ConvertOptions& o) {
   const std::string axes = model.axes, wanted(axes_of(done.format));
   if (axes != wanted)
     log_info("its axes are turned from {} to {}, the ones of {}", axes, wanted,
-             model_format_names[static_cast<int>(done.format)]);
+             written_format(done.format).name);
   bring_into_axes(model, wanted);
   done.count = model.count();
   done.losses = write_model_file(o.output, model, done.format, o.harmonic_bits.value_or(8));
@@ -193,12 +193,12 @@ void add_convert(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("convert", "Write a model in another format, and say what it costs");
   const auto o = std::make_shared<ConvertOptions>();
   sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat, .spz\nor .sog")
+  sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
       ->type_name("FILE")
       ->required();
   Words<ModelFormat> formats;
-  for (const char* name : model_format_names)
-    formats.emplace_back(name, static_cast<ModelFormat>(formats.size()));
+  for (const WrittenFormat& format : written_formats)
+    formats.emplace_back(format.name, static_cast<ModelFormat>(formats.size()));
   choose(*sub, "--to", o->to, "The format, where FILE's ending does not say it", formats);
   sub->add_option("--sh-bits", o->harmonic_bits,
                   "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "

@@ -10,18 +10,18 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   sub.option_defaults()->group("Drawing");
   choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices);
   choose_explained(sub, "--th", o.th,
-                   "The alpha below which a Gaussian is left out of a tile (tau;\nwith --loss: squared)",
+                   "The alpha below which a Gaussian is left out of a tile (tau;\nwith --tolerance: squared)",
                    th_choices);
-  sub.add_option("--loss", o.loss, "How much that may cost, in the unit of --th")
+  sub.add_option("--tolerance,--loss", o.tolerance, "How much that may cost, in the unit of --th")
       ->type_name("X")
       ->check(not_negative);
-  sub.add_option(
-         "--quality", o.quality,
-         "Choose the loss so that pictures come to about DB against the exact\nones, from the first frame "
-         "on: one in four draws some tiles exactly, too")
+  sub.add_option("--quality", o.quality,
+                 "Choose the tolerance so that pictures come to about DB against the exact\nones, from the "
+                 "first frame "
+                 "on: one in four draws some tiles exactly, too")
       ->type_name("DB")
       ->check(positive);
-  sub.add_option("--calibration", o.calibration, "Take the loss from a file of binosplat calibrate")
+  sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
                    "The light that reaches a Gaussian, for --th (one)", transmittance_choices);
@@ -34,10 +34,11 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   Words<render::Stage> stages;
   for (int k = 0; k < render::stages_with_twins; ++k)
     stages.emplace_back(render::name_of(static_cast<render::Stage>(k)), static_cast<render::Stage>(k));
-  choose(sub, "--reference-until", o.reference_until,
-         "Take the stages up to this one from the float64 reference: decode\n(Scaffold-GS), project, order, "
-         "pairs, tile_sort, ranges or blend",
-         stages)
+  choose(
+      sub, "--reference-until", o.reference_until,
+      fmt::format("Take the stages up to this one from the float64 reference:\n{} (decode: of Scaffold-GS)",
+                  fmt::join(std::span(render::stage_names).first(render::stages_with_twins), ", ")),
+      stages)
       ->type_name("STAGE");
   sub.add_option("--frames", o.frames, "Draw each view N times, for the table of times (1)")
       ->type_name("N")
@@ -48,13 +49,13 @@ void check(const DrawingOptions& o) {
   const render::FrameSettings settings = settings_of(o);
   const char* const th = th_choices[settings.th].name;
   const bool exact = render::is_exact(settings.th);
-  const bool given = o.loss || o.quality, calibrated = !o.calibration.empty();
+  const bool given = o.tolerance || o.quality, calibrated = !o.calibration.empty();
   if (given && calibrated) {
-    fail("{} with --calibration: each chooses the loss: leave one of them out",
-         o.loss ? "--loss" : "--quality");
+    fail("{} with --calibration: each chooses the tolerance: leave one of them out",
+         o.tolerance ? "--tolerance" : "--quality");
   }
   if (!exact && !given && !calibrated)
-    fail("--th {} needs --loss, --quality or --calibration: what it may cost", th);
+    fail("--th {} needs --tolerance, --quality or --calibration: what it may cost", th);
   if (exact && calibrated) fail("--calibration has no effect with --th {}, which is exact", th);
   if (o.reference_until && calibrated)
     fail("--reference-until: the reference goes by no calibration: leave --calibration out");
@@ -63,14 +64,14 @@ void check(const DrawingOptions& o) {
 }
 
 int threshold_of(const DrawingOptions& o) {
-  return o.th.value_or(o.loss || o.quality || !o.calibration.empty() ? TH_SQUARED : TH_TAU);
+  return o.th.value_or(o.tolerance || o.quality || !o.calibration.empty() ? TH_SQUARED : TH_TAU);
 }
 
 render::FrameSettings settings_of(const DrawingOptions& o) {
   render::FrameSettings settings;
   settings.tiles = o.tiles;
   settings.th = threshold_of(o);
-  settings.loss = o.loss.value_or(0.0f);
+  settings.tolerance = o.tolerance.value_or(0.0f);
   settings.transmittance = o.transmittance;
   settings.quality = o.quality.value_or(0.0f);
   settings.decode = o.decode.value_or(DECODE_EYES);

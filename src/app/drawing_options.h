@@ -12,9 +12,9 @@
 namespace binosplat::app {
 
 struct DrawingOptions {
-  int tiles = TILES_ELLIPSE;  // TILES_ of shared/axes.h, as are those below by their names
-  std::optional<int> th;      // none: threshold_of()
-  std::optional<float> loss;  // K or kappa
+  int tiles = TILES_ELLIPSE;       // TILES_ of shared/axes.h, as are those below by their names
+  std::optional<int> th;           // none: threshold_of()
+  std::optional<float> tolerance;  // K or kappa
   int transmittance = TRANSMITTANCE_ONE;
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
@@ -31,8 +31,8 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& options);
 /// Throws Error for options that contradict each other.
 void check(const DrawingOptions& options);
 
-/// What --th is, TH_: squared where only a loss, a quality or a calibration is given, which costs less at
-/// equal error than the paper's rule (docs/method.md 8).
+/// What --th is, TH_: squared where only a tolerance, a quality or a calibration is given, which costs less
+/// at equal error than the paper's rule (docs/method.md 8).
 int threshold_of(const DrawingOptions& options);
 
 /// What the options say of a frame; of a table of depths or a calibration it knows nothing.

@@ -175,8 +175,8 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
              "antialiased", model.antialiased, "bounds", to_json(s.all), "core_bounds", to_json(s.core),
              "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest is made for each eye
-  for (std::size_t k = 0; k < std::size(model_format_names); ++k)
-    json["file_bytes"][model_format_names[k]] =
+  for (std::size_t k = 0; k < std::size(written_formats); ++k)
+    json["file_bytes"][written_formats[k].name] =
         bytes_in(static_cast<ModelFormat>(k), model.count(), model.degree);
   study::FieldWriter{json}("opacity", object("median", s.opacity_median, "tenths", s.opacity),
                            "largest_scale", object("median", s.scale_median, "decades", scale),

@@ -10,10 +10,7 @@ namespace fs = std::filesystem;
 ModelFormat output_format(const std::string& output, const std::string& hint) {
   const auto format = model_format_of(output);
   if (!format) {
-    fail(
-        "-o {}: its ending names no format that can be written: .ply, .compressed.ply, .splat, .spz or "
-        ".sog{}",
-        output, hint);
+    fail("-o {}: its ending names no format that can be written: {}{}", output, written_endings(), hint);
   }
   return *format;
 }

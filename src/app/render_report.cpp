@@ -146,8 +146,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
                              "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.total_ms, "tile", r.tile_size,
-                    "depth_orders", r.order_groups, "drawn_again", r.redrawn, "loss",
-                    given(drawing.quality || !drawing.calibration.empty(), r.loss), "probed_psnr_db",
+                    "depth_orders", r.order_groups, "drawn_again", r.redrawn, "tolerance",
+                    given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
                     given(drawing.quality.has_value(), r.quality), "photo_psnr_db", drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
@@ -161,16 +161,16 @@ ordered_json settings_json(const RenderReport& report) {
   const DrawingOptions& o = report.options.drawing;
   const Background& background = report.options.output.background;
   const Model& model = report.model;
-  return object("tiles", tiles_choices[o.tiles].name, "tile",
-                o.tile ? ordered_json(*o.tile) : ordered_json("auto"), "precision",
-                precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
-                model.antialiased, "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name,
-                "loss", o.loss, "transmittance", transmittance_choices[o.transmittance].name, "decode",
-                given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
-                "detail_px", report.options.scene.detail, "quality_db", o.quality, "calibration",
-                given(!o.calibration.empty(), o.calibration), "background",
-                background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
-                o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);
+  return object(
+      "tiles", tiles_choices[o.tiles].name, "tile", o.tile ? ordered_json(*o.tile) : ordered_json("auto"),
+      "precision", precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
+      model.antialiased, "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
+      o.tolerance, "transmittance", transmittance_choices[o.transmittance].name, "decode",
+      given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name), "detail_px",
+      report.options.scene.detail, "quality_db", o.quality, "calibration",
+      given(!o.calibration.empty(), o.calibration), "background",
+      background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
+      o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);
 }
 
 ordered_json scene_json(const RenderReport& report) {
@@ -247,7 +247,8 @@ void print(const RenderReport& report) {
     std::string line = fmt::format("{}: {}", drawn.shot.name, fmt::join(drawn.files, ", "));
     line += fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
     if (report.options.drawing.quality)
-      line += fmt::format(", loss {:.4g} for about {:.1f} dB", drawn.report.loss, drawn.report.quality);
+      line +=
+          fmt::format(", tolerance {:.4g} for about {:.1f} dB", drawn.report.tolerance, drawn.report.quality);
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
     if (drawn.most_shown)

@@ -19,7 +19,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "render/stage.h"
-#include "study/carried.h"
+#include "study/along_path.h"
 #include "study/fields.h"
 #include "study/rules.h"
 
@@ -40,8 +40,8 @@ Studied open(const StudyOptions& options) {
   return {std::make_shared<const Model>(std::move(scene.model)), scene.near_plane, std::move(shots)};
 }
 
-ordered_json carried(gl::Context& context, const StudyOptions& options, const Studied& studied) {
-  Variant variant{options.th, options.transmittance, options.loss.value_or(0.0f)};
+ordered_json along_path(gl::Context& context, const StudyOptions& options, const Studied& studied) {
+  Variant variant{options.th, options.transmittance, options.tolerance.value_or(0.0f)};
   std::vector<std::vector<shared::View>> frames;
   for (const Shot& shot : studied.shots) frames.push_back(views_of(shot));
   if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.camera.path);
@@ -49,20 +49,20 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
   render::FrameSettings asked = variant.settings();
   asked.quality = quality;
   render::check_choice(asked, "--");
-  if (quality == 0.0f && !options.loss)
-    variant.loss = study::carried_loss(context, *studied.model, frames, variant, options.target);
+  if (quality == 0.0f && !options.tolerance)
+    variant.tolerance = study::tolerance_along_path(context, *studied.model, frames, variant, options.target);
   Progress progress("frames", frames.size());
   std::size_t done = 0;
-  const auto results =
-      study::run_carried(context, *studied.model, frames, variant, quality, [&] { progress.update(++done); });
-  fmt::print(
-      "{} along {}, {}\n\n", variant.name(), options.camera.path,
-      quality > 0 ? fmt::format("steered to {} dB", quality) : fmt::format("loss {:.4g}", variant.loss));
+  const auto results = study::draw_along_path(context, *studied.model, frames, variant, quality,
+                                              [&] { progress.update(++done); });
+  fmt::print("{} along {}, {}\n\n", variant.name(), options.camera.path,
+             quality > 0 ? fmt::format("steered to {} dB", quality)
+                         : fmt::format("tolerance {:.4g}", variant.tolerance));
   fmt::print(
       "| frame | dB | removed | signed | `one` with as many pairs, dB | gain |\n|---|---|---|---|---|---|\n");
-  ordered_json json = {{"variant", variant.name()}, {"loss", variant.loss}, {"quality", quality}};
+  ordered_json json = {{"variant", variant.name()}, {"tolerance", variant.tolerance}, {"quality", quality}};
   for (std::size_t n = 0; n < results.size(); ++n) {
-    const study::CarriedFrame& r = results[n];
+    const study::PathFrame& r = results[n];
     const std::string note = !r.fell_back   ? ""
                              : quality > 0  ? " (fell back)"
                              : r.equals_one ? " (fell back: equals `one`)"
@@ -80,14 +80,16 @@ ordered_json carried(gl::Context& context, const StudyOptions& options, const St
 void print_rules(const std::vector<study::RuleResult>& results) {
   const auto shown = std::span(render::stage_names).subspan(1, render::stages_with_twins - 1);  // no decode
   fmt::print(
-      "| rule | loss | dB | disagreement dB | pairs, M | removed | frame ms | {} | rest | of exact | of "
+      "| rule | tolerance | dB | disagreement dB | pairs, M | removed | frame ms | {} | rest | of exact | of "
       "`one` "
       "| |\n",
       fmt::join(shown, " | "));
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print("|");
+  for (std::size_t k = 0; k < shown.size() + 11; ++k) fmt::print("---|");
+  fmt::print("\n");
   for (const study::RuleResult& r : results) {
     fmt::print("| {} | {:.4g} | {:.2f} | {:.2f} | {:.3f} | {:.1f} % | {:.3f} |", r.variant.name(),
-               r.variant.loss, r.db, r.disagreement_db, 1e-6 * r.pairs, 100.0 * r.removed, r.frame_ms);
+               r.variant.tolerance, r.db, r.disagreement_db, 1e-6 * r.pairs, 100.0 * r.removed, r.frame_ms);
     std::map<std::string, double> ms;
     for (const gl::StageTime& stage : r.stages) ms[stage.name] = stage.ms;
     for (const char* name : shown) {
@@ -103,23 +105,23 @@ void print_rules(const std::vector<study::RuleResult>& results) {
 ordered_json rules(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   const int frames = options.frames.value_or(96);
   const Shot& shot = studied.shots.front();
-  study::Still still(context, *studied.model, views_of(shot));
+  study::FixedCamera camera(context, *studied.model, views_of(shot));
   std::vector<Variant> variants = study::all_variants();
   std::size_t done = 0;
   {
-    Progress progress("losses", variants.size());
-    study::find_losses(still, variants, options.target, [&] { progress.update(++done); });
+    Progress progress("tolerances", variants.size());
+    study::find_tolerances(camera, variants, options.target, [&] { progress.update(++done); });
   }
   Progress progress("timing", study::rule_rounds * variants.size());
   done = 0;
   const auto results =
-      study::measure_rules(still, variants, options.target, frames, [&] { progress.update(++done); });
-  const shared::View& view = still.views().front();
+      study::measure_rules(camera, variants, options.target, frames, [&] { progress.update(++done); });
+  const shared::View& view = camera.views().front();
   fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.name, shot.name,
-             still.views().size(), view.width, view.height, options.target);
+             camera.views().size(), view.width, view.height, options.target);
   print_rules(results);
   ordered_json json = study::object("renderer", context.renderer(), "scene", options.scene.name, "gaussians",
-                                    studied.model->count(), "view", shot.name, "eyes", still.views().size(),
+                                    studied.model->count(), "view", shot.name, "eyes", camera.views().size(),
                                     "width", view.width, "height", view.height, "target_db", options.target,
                                     "frames", frames, "rounds", study::rule_rounds);
   for (const study::RuleResult& result : results) json["rules"].push_back(to_json(result));
@@ -127,7 +129,7 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
 }
 
 /// Which study the options ask for, beside the analyses.
-enum class Kind { analyses, stability, rules, motion, carried };
+enum class Kind { analyses, stability, rules, motion, path };
 
 Kind kind_of(const StudyOptions& o) {
   const bool path = !o.camera.path.empty() && !o.motion.chosen;  // --motion goes along one, too
@@ -136,7 +138,7 @@ Kind kind_of(const StudyOptions& o) {
   return o.stability       ? Kind::stability
          : o.rules         ? Kind::rules
          : o.motion.chosen ? Kind::motion
-         : path            ? Kind::carried
+         : path            ? Kind::path
                            : Kind::analyses;
 }
 
@@ -174,7 +176,7 @@ ExitCode study_scene(const StudyOptions& options) {
   const auto context = open_context(options.context);
   if (kind == Kind::stability) study_stability(*context, options, studied);
   if (kind == Kind::rules) save(options, rules(*context, options, studied), {});
-  if (kind == Kind::carried) save(options, carried(*context, options, studied), {});
+  if (kind == Kind::path) save(options, along_path(*context, options, studied), {});
   return ExitCode::done;
 }
 
@@ -187,7 +189,7 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
                  "and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
       ->type_name("NAME...");
   sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
-  add_photos_option(sub, o.photos, "DIR/NAME.jpg or .png of the views: losses for 0.1 to 0.5 dB");
+  add_photos_option(sub, o.photos, "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB");
   sub.add_option("-o,--output", o.output,
                  "Folder for report.html and study.json (out/study);\nwith --stability and --motion, too")
       ->type_name("DIR");
@@ -230,11 +232,11 @@ void add_study(CLI::App& program, Command& command) {
                   "Carry one rule along the cameras of this file instead;\nwith --motion: measure along it")
       ->type_name("FILE");
   sub->add_option("--target", o.target,
-                  "dB that losses are chosen for (40);\nwith --motion: at which rules are compared")
+                  "dB that tolerances are chosen for (40);\nwith --motion: at which rules are compared")
       ->excludes(sub->get_option("--no-equal"))
       ->type_name("DB")
       ->check(above_zero);
-  sub->add_option("--loss", o.loss, "Of the rule carried, instead")
+  sub->add_option("--tolerance,--loss", o.tolerance, "Of the rule carried, instead")
       ->excludes(rules, motion)
       ->type_name("X")
       ->check(not_negative);
@@ -259,7 +261,7 @@ void add_study(CLI::App& program, Command& command) {
       "  binosplat study garden.ply --stability --size 320x320");
   sub->callback([options, sub, &command] {
     for (const char* name :
-         {"--case", "--target", "--loss", "--quality", "--th", "--transmittance", "--mono", "--json"}) {
+         {"--case", "--target", "--tolerance", "--quality", "--th", "--transmittance", "--mono", "--json"}) {
       if (sub->count(name) > 0) options->not_for_analyses.emplace_back(name);
     }
     options->motion.lengths.moving = static_cast<std::size_t>(options->frames.value_or(60));

@@ -39,7 +39,7 @@ struct StudyOptions : MeasuredOptions {
   double target = 40.0;  // dB
   // Of the rule that is carried, where it is steered, and where motion is.
   int th = TH_SQUARED, transmittance = TRANSMITTANCE_ONE;  // of shared/axes.h
-  std::optional<float> loss, quality;                      // quality in dB
+  std::optional<float> tolerance, quality;                 // quality in dB
   std::string json;
   std::vector<std::string> not_for_analyses;  // options given that these know nothing of
 };

@@ -10,8 +10,8 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "scene/axes.h"
+#include "study/fixed_camera.h"
 #include "study/stability_page.h"
-#include "study/still.h"
 
 namespace binosplat::app {
 
@@ -19,10 +19,10 @@ using study::Variant;
 
 namespace {
 
-void find_losses(study::Still& still, double target, std::vector<Variant>& variants) {
-  Progress progress("losses", variants.size());
+void find_tolerances(study::FixedCamera& camera, double target, std::vector<Variant>& variants) {
+  Progress progress("tolerances", variants.size());
   for (std::size_t k = 0; k < variants.size(); ++k) {
-    variants[k].loss = still.loss_at(variants[k], target);
+    variants[k].tolerance = camera.tolerance_at(variants[k], target);
     progress.update(k + 1);
   }
 }
@@ -69,13 +69,13 @@ void study_stability(gl::Context& context, const StudyOptions& options, const St
   std::vector<Variant>& variants = study.rules;
   {
     const stereo::EyePair eyes = stereo::make_rig(head, settings);
-    study::Still still(context, *studied.model, {eyes.views.begin(), eyes.views.end()});
-    find_losses(still, options.target, variants);
+    study::FixedCamera camera(context, *studied.model, {eyes.views.begin(), eyes.views.end()});
+    find_tolerances(camera, options.target, variants);
   }
 
-  fmt::print("Losses for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.name,
+  fmt::print("Tolerances for {} dB on {}, {} at {} x {} px an eye:\n\n", options.target, options.scene.name,
              head.name, head.width, head.height);
-  for (const Variant& variant : variants) fmt::print("- {}: {:.4g}\n", variant.name(), variant.loss);
+  for (const Variant& variant : variants) fmt::print("- {}: {:.4g}\n", variant.name(), variant.tolerance);
   for (const study::StabilityCase& one : cases) {
     if (!options.cases.empty() &&
         std::find(options.cases.begin(), options.cases.end(), one.name) == options.cases.end()) {

@@ -103,9 +103,8 @@ study::TrimWriter trial_writer(const TrimOptions& o, ModelFormat format) {
 /// The file that was read, where it has the format that is to be written.
 std::optional<fs::path> same_format(const TrimOptions& o, const std::string& format_read,
                                     ModelFormat format) {
-  constexpr const char* names[] = {"ply", "compressed ply", ".splat", "spz"};  // as readers say it
   const fs::path file = model_file(o.scene.name);
-  const std::string_view name = names[static_cast<int>(format)];
+  const std::string_view name = written_format(format).read_as;
   const bool same = format_read == name || format_read.starts_with(fmt::format("{} ", name));
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
 }
@@ -149,10 +148,9 @@ ordered_json to_json(const Calibrator::Cost& cost, const std::vector<std::string
 
 ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const Names& names,
                      ModelFormat format, const std::vector<std::string>& losses) {
-  ordered_json json =
-      study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
-                    model_format_names[static_cast<int>(format)], "as_it_was", !found.less, "unseen",
-                    found.unseen, "views_weighed", names.weighed, "losses", losses);
+  ordered_json json = study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
+                                    "format", written_format(format).name, "as_it_was", !found.less, "unseen",
+                                    found.unseen, "views_weighed", names.weighed, "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
   for (const study::TrimStep& s : found.steps) {
@@ -224,7 +222,7 @@ void add_trim(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("trim", "Write the smallest model that keeps the pictures");
   const auto o = std::make_shared<TrimOptions>();
   sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
-  sub->add_option("-o,--output", o->output, "The file to write: .ply, .compressed.ply, .splat or .spz")
+  sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
       ->type_name("FILE")
       ->required();
   sub->add_option("--max-drop", o->bound.max_drop,

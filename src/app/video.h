@@ -23,10 +23,10 @@ std::filesystem::path find_ffmpeg();
 
 class Video {
  public:
-  /// Starts ffmpeg: H.264 of a quality at which losses are hard to see, VP9 in .webm. Matroska's files say
-  /// which layout the pictures are in. Colours are stored at half resolution, as players expect, except in
-  /// layouts whose neighbouring pixels belong to different eyes. A picture of odd size is given another row
-  /// or column.
+  /// Starts ffmpeg: H.264 of a quality at which losses are hard to see, VP9 in .webm. Matroska's files
+  /// say which layout the pictures are in. Colours are stored at half resolution, as players expect, except
+  /// in layouts whose neighbouring pixels belong to different eyes. A picture of odd size is given another
+  /// row or column.
   Video(const std::filesystem::path& path, int width, int height, double frames_a_second, int layout);
   ~Video();
   Video(const Video&) = delete;

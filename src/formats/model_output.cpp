@@ -32,7 +32,7 @@ Losses write(OutputFile& file, const Model& model, ModelFormat format, int harmo
 }  // namespace
 
 void read_back(OutputFile& file, const Model& model, ModelFormat format) {
-  const char* name = model_format_names[static_cast<int>(format)];
+  const char* name = written_format(format).name;
   file.flush();
   std::size_t count = 0;
   try {
@@ -49,15 +49,28 @@ void read_back(OutputFile& file, const Model& model, ModelFormat format) {
   }
 }
 
+std::string written_endings() {
+  std::string all;
+  for (std::size_t k = 0; k < std::size(written_formats); ++k) {
+    const bool is_last = k + 1 == std::size(written_formats);
+    all += k == 0 ? "" : is_last ? " or " : ", ";
+    all += written_formats[k].ending;
+  }
+  return all;
+}
+
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
   std::string name = path.filename().string();
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (name.ends_with(".compressed.ply")) return ModelFormat::compressed_ply;
-  if (name.ends_with(".ply")) return ModelFormat::ply;
-  if (name.ends_with(".splat")) return ModelFormat::splat;
-  if (name.ends_with(".spz")) return ModelFormat::spz;
-  if (name.ends_with(".sog")) return ModelFormat::sog;
-  return std::nullopt;
+  std::optional<ModelFormat> found;  // .compressed.ply ends in .ply, too
+  std::size_t longest = 0;
+  for (std::size_t k = 0; k < std::size(written_formats); ++k) {
+    const std::string_view ending = written_formats[k].ending;
+    if (!name.ends_with(ending) || ending.size() <= longest) continue;
+    found = static_cast<ModelFormat>(k);
+    longest = ending.size();
+  }
+  return found;
 }
 
 std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree) {
@@ -87,8 +100,8 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
         model.name);
   }
   if (model.axes != axes_of(format)) {
-    fail("{}: its axes are {}, and {} has {}", model.name, model.axes,
-         model_format_names[static_cast<int>(format)], axes_of(format));
+    fail("{}: its axes are {}, and {} has {}", model.name, model.axes, written_format(format).name,
+         axes_of(format));
   }
   Losses losses = write(file, model, format, harmonic_bits);
   const bool kernel_kept =
@@ -96,7 +109,7 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
   if (!kernel_kept) {
     losses.push_back(
         fmt::format("{} does not tell the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
-                    model_format_names[static_cast<int>(format)], model.kernel_px2, model.kernel_px2));
+                    written_format(format).name, model.kernel_px2, model.kernel_px2));
   }
   return losses;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,10 +16,28 @@ namespace binosplat {
 
 enum class ModelFormat { ply, compressed_ply, splat, spz, sog };
 
-/// As --to and reports call them, in the order of the enum.
-constexpr const char* model_format_names[] = {"ply", "compressed-ply", "splat", "spz", "sog"};
+struct WrittenFormat {
+  const char* name;     // as --to and reports call it
+  const char* ending;   // of files
+  const char* read_as;  // what Model::format of one that is read begins with
+};
 
-/// By the end of a name: .compressed.ply, .ply, .splat, .spz or .sog, in any case.
+/// In the order of the enum.
+constexpr WrittenFormat written_formats[] = {{"ply", ".ply", "ply"},
+                                             {"compressed-ply", ".compressed.ply", "compressed ply"},
+                                             {"splat", ".splat", ".splat"},
+                                             {"spz", ".spz", "spz"},
+                                             {"sog", ".sog", "SOG"}};
+static_assert(std::size(written_formats) == static_cast<std::size_t>(ModelFormat::sog) + 1);
+
+constexpr const WrittenFormat& written_format(ModelFormat format) {
+  return written_formats[static_cast<std::size_t>(format)];
+}
+
+/// ".ply, .compressed.ply, .splat, .spz or .sog".
+std::string written_endings();
+
+/// By the end of a name, in any case.
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path);
 
 /// The frame in which a format's numbers are by convention; none of these files says so itself.

@@ -10,54 +10,55 @@ namespace binosplat::measure {
 
 namespace {
 
-/// One answer: the logarithm of a loss, in which PSNR falls nearly in a line, and how far the value there
-/// lies above what is aimed at.
+/// One answer: the logarithm of a tolerance, in which PSNR falls nearly in a line, and how far the value
+/// there lies above what is aimed at.
 struct Asked {
-  double log_loss, above;
+  double log_tolerance, above;
 };
 
-/// Between a loss that holds and one that does not: where a line through the two meets the aim, but not
+/// Between a tolerance that holds and one that does not: where a line through the two meets the aim, but not
 /// close to either end, so that the bracket shrinks whatever the values do.
 double between(const Asked& holds, const Asked& fails) {
   double share = holds.above / (holds.above - fails.above);
   if (!std::isfinite(share)) share = 0.5;
-  return std::lerp(holds.log_loss, fails.log_loss, std::clamp(share, 0.05, 0.95));
+  return std::lerp(holds.log_tolerance, fails.log_tolerance, std::clamp(share, 0.05, 0.95));
 }
 
 }  // namespace
 
-FoundLoss find_loss(const std::function<double(double loss)>& value, double target,
-                    const LossSearch& search) {
+FoundTolerance find_tolerance(const std::function<double(double tolerance)>& value, double target,
+                              const ToleranceSearch& search) {
   if (!(search.smallest > 0.0 && search.smallest <= search.start && search.start <= search.largest)) {
-    fail("a search for a loss from {} within {} to {}: expected numbers above 0, in order", search.start,
+    fail("a search for a tolerance from {} within {} to {}: expected numbers above 0, in order", search.start,
          search.smallest, search.largest);
   }
   const double low = std::log(search.smallest), high = std::log(search.largest);
-  const double aim = target + 0.5 * search.tolerance;
-  FoundLoss found;
+  const double aim = target + 0.5 * search.within;
+  FoundTolerance found;
   std::optional<Asked> holds, fails;
   bool last_held = false;
   double next = std::log(search.start), step = std::log(2.0);
   while (found.evaluations < search.evaluations) {
-    const double loss = std::clamp(std::exp(next), search.smallest, search.largest);
-    const double at_loss = value(loss);
+    const double tolerance = std::clamp(std::exp(next), search.smallest, search.largest);
+    const double at_tolerance = value(tolerance);
     ++found.evaluations;
     // An end of the bracket that stays where it is for two rounds counts for half as much from then on: the
     // line then passes beyond the aim, and the bracket closes from both sides (the Illinois rule).
-    if (at_loss >= target) {
+    if (at_tolerance >= target) {
       if (fails && last_held) fails->above *= 0.5;
-      holds = {next, at_loss - aim};
-      found.loss = loss;
-      found.value = at_loss;
-      if (at_loss - target <= search.tolerance || next >= high) return found;
+      holds = {next, at_tolerance - aim};
+      found.tolerance = tolerance;
+      found.value = at_tolerance;
+      if (at_tolerance - target <= search.within || next >= high) return found;
     } else {
       if (holds && !last_held) holds->above *= 0.5;
-      fails = {next, at_loss - aim};
+      fails = {next, at_tolerance - aim};
       if (next <= low) break;
     }
-    last_held = at_loss >= target;
+    last_held = at_tolerance >= target;
     if (holds && fails) {
-      if (fails->log_loss - holds->log_loss < search.narrowest) return found;  // the value has a step here
+      if (fails->log_tolerance - holds->log_tolerance < search.narrowest)
+        return found;  // the value has a step here
       next = between(*holds, *fails);
     } else {
       next = std::clamp(next + (holds ? step : -step), low, high);
@@ -68,7 +69,7 @@ FoundLoss find_loss(const std::function<double(double loss)>& value, double targ
   found.value = value(0.0);
   ++found.evaluations;
   if (!(found.value >= target)) {
-    fail("no loss reaches {}: even without any the value is {}", target, found.value);
+    fail("no tolerance reaches {}: even without any the value is {}", target, found.value);
   }
   return found;
 }

@@ -46,7 +46,7 @@ reference::Settings reference_settings(const FrameShape& shape, std::uint32_t v)
   return {.tiles = s.tiles,
           .tile_size = s.tile_size,
           .th = s.th,
-          .loss = s.loss,
+          .tolerance = s.tolerance,
           .decoding = decoding_for(shape, v)};
 }
 
@@ -120,7 +120,7 @@ ViewResult reference_view(const Model& model, const FrameShape& shape, std::uint
   const FrameSettings& settings = shape.settings;
   ViewResult result;
   result.splats = reference::project_all(model, view, decoding_for(shape, v));
-  reference::set_thresholds(result.splats, settings.th, settings.loss);
+  reference::set_thresholds(result.splats, settings.th, settings.tolerance);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
     // One list for the whole view, as on the GPU.

@@ -71,8 +71,9 @@ bool draw_thresholds(render::FrameSettings& s) {
     changed = true;
   }
   if (render::is_exact(s.th)) return changed;
-  changed |= ImGui::SliderFloat("loss", &s.loss, 0.001f, 10.0f, "%.3f", ImGuiSliderFlags_Logarithmic);
-  s.loss = std::max(0.0f, s.loss);
+  changed |=
+      ImGui::SliderFloat("tolerance", &s.tolerance, 0.001f, 10.0f, "%.3f", ImGuiSliderFlags_Logarithmic);
+  s.tolerance = std::max(0.0f, s.tolerance);
   // The depth table needs cameras to be measured from: `binosplat render` has it.
   if (render::threshold_rules[s.th].uses_bound)
     changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});

@@ -46,13 +46,13 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
 
 void choose_threshold(render::FrameSettings& settings, int th) {
   settings.th = th;
-  settings.loss = static_cast<float>(render::threshold_rules[th].careful_loss);
+  settings.tolerance = static_cast<float>(render::threshold_rules[th].careful_tolerance);
 }
 
 void make_consistent(Choices& choices) {
   render::FrameSettings& s = choices.settings;
   const render::ThresholdRule& rule = render::threshold_rules[s.th];
-  if (rule.exact) s.loss = 0.0f;
+  if (rule.exact) s.tolerance = 0.0f;
   if (!render::takes(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
   s.background = choices.background;
 }

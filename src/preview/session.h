@@ -27,11 +27,11 @@ struct Choices {
   glm::vec3 background{0.0f};
 };
 
-/// Another rule, with the loss at which a search would begin.
+/// Another rule, with the tolerance at which a search would begin.
 void choose_threshold(render::FrameSettings& settings, int th);
 
-/// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no loss without
-/// one, and so on (docs/method.md 5).
+/// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no tolerance
+/// without one, and so on (docs/method.md 5).
 void make_consistent(Choices& choices);
 
 class Session {

@@ -17,7 +17,7 @@ struct Settings {
   int tiles = TILES_ELLIPSE;
   int tile_size = TILE_SIZE_DEFAULT;  // px
   int th = TH_TAU;
-  double loss = 0.0;           // of threshold()
+  double tolerance = 0.0;      // of threshold()
   std::vector<double> bounds;  // T_upper or W by Gaussian; empty: 1 for all
   Decoding decoding;           // of a Scaffold-GS model
 };

@@ -15,29 +15,30 @@ constexpr double largest_area = 256.0;
 
 }  // namespace
 
-double threshold(int th, double loss, const Splat& splat, double bound) {
+double threshold(int th, double tolerance, const Splat& splat, double bound) {
   if (!(bound > 0.0)) fail("a transmittance of {} behind a threshold: expected more than 0", bound);
   const double sqrt_det = std::sqrt(splat.det);
   switch (th) {
     case TH_TAU:
       return ALPHA_MIN;
-    case TH_PERIPHERAL:  // AdaGScale, equation 10: `loss` is K, in alpha * px^2
-      return loss / (bound * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
-    case TH_SQUARED:  // a pair that would cost less than kappa, `loss` in px * squared colour, is not made
+    case TH_PERIPHERAL:  // AdaGScale, equation 10: `tolerance` is K, in alpha * px^2
+      return tolerance / (bound * 2.0 * std::numbers::pi * sqrt_det) + ALPHA_MIN;
+    case TH_SQUARED:  // a pair that would cost less than kappa, `tolerance` in px * squared colour, is not
+                      // made
       return std::max(ALPHA_MIN,
-                      std::sqrt(loss / std::min(largest_area, std::numbers::pi * sqrt_det)) / bound);
+                      std::sqrt(tolerance / std::min(largest_area, std::numbers::pi * sqrt_det)) / bound);
   }
   fail("threshold {}: expected one of shared/axes.h", th);
 }
 
-void set_thresholds(std::vector<Splat>& splats, int th, double loss, std::span<const double> bounds) {
+void set_thresholds(std::vector<Splat>& splats, int th, double tolerance, std::span<const double> bounds) {
   if (!bounds.empty() && bounds.size() != splats.size()) {
     fail("{} transmittances for {} Gaussians: expected as many", bounds.size(), splats.size());
   }
   for (std::size_t i = 0; i < splats.size(); ++i) {
     Splat& splat = splats[i];
     if (!splat.drawn) continue;
-    splat.threshold = threshold(th, loss, splat, bounds.empty() ? 1.0 : bounds[i]);
+    splat.threshold = threshold(th, tolerance, splat, bounds.empty() ? 1.0 : bounds[i]);
     if (th != TH_TAU && splat.threshold > splat.opacity) splat.drawn = false;
   }
 }

@@ -11,13 +11,14 @@
 namespace binosplat::reference {
 
 /// Th of a splat by a rule of shared/axes.h, never below tau; its case in threshold.cpp says by which
-/// equation, and what `loss` is. `bound` is T_upper, the transmittance bound of the splat: 1, or
+/// equation, and what `tolerance` is. `bound` is T_upper, the transmittance bound of the splat: 1, or
 /// a measured value (transmittance.h) with a floor. Throws Error where it is not above 0, which would leave a
 /// hole in the picture.
-double threshold(int th, double loss, const Splat& splat, double bound);
+double threshold(int th, double tolerance, const Splat& splat, double bound);
 
 /// Sets Th of every splat. By all rules but TH_TAU, what has Th > sigma is out of this view: it is
 /// not drawn any more, whatever the tile test. `bounds` are by Gaussian; empty: 1 for all.
-void set_thresholds(std::vector<Splat>& splats, int th, double loss, std::span<const double> bounds = {});
+void set_thresholds(std::vector<Splat>& splats, int th, double tolerance,
+                    std::span<const double> bounds = {});
 
 }  // namespace binosplat::reference

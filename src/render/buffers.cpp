@@ -20,7 +20,7 @@ namespace {
 shared::FrameParameters parameters_of(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
   return {.background = glm::vec4(s.background, 0.0f),
-          .loss = s.loss,
+          .tolerance = s.tolerance,
           .far = s.depth_table.far,
           .depth_bins = static_cast<std::uint32_t>(s.depth_table.bounds.size()),
           .remembers = shape.remembers,

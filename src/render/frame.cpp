@@ -81,21 +81,21 @@ void Frame::begin(std::span<const shared::View> views, const FrameSettings& sett
 FrameReport Frame::draw_with_quality(std::span<const shared::View> views, const FrameSettings& settings,
                                      const Workings& workings) {
   FrameReport report;
-  if (!history_.goes_on(shape_)) loss_control_.forget();
-  if (loss_control_.knows(settings) && history_.probed_lately(shape_)) {
-    shape_.settings.loss = loss_control_.loss();
+  if (!history_.goes_on(shape_)) tolerance_control_.forget();
+  if (tolerance_control_.knows(settings) && history_.probed_lately(shape_)) {
+    shape_.settings.tolerance = tolerance_control_.tolerance();
     report = attempt(workings);
   } else {
     do {
-      const Probe probe = loss_control_.next_probe(views, settings);
+      const Probe probe = tolerance_control_.next_probe(views, settings);
       shape_ = make_shape(views, settings, model_->model(), shape_.supertile_side, probe);
-      shape_.settings.loss = loss_control_.next_loss();
+      shape_.settings.tolerance = tolerance_control_.next_tolerance();
       add(attempt(workings), report);
-      loss_control_.measured(probed(shape_, counters_),
-                             shape_.remembers || !measures(settings.transmittance));
-    } while (!loss_control_.holds());
+      tolerance_control_.measured(probed(shape_, counters_),
+                                  shape_.remembers || !measures(settings.transmittance));
+    } while (!tolerance_control_.holds());
   }
-  report.quality = loss_control_.quality();
+  report.quality = tolerance_control_.quality();
   return report;
 }
 
@@ -178,7 +178,7 @@ void Frame::fill(FrameReport& report) const {
   report.supertile_side = shape_.supertile_side;
   report.gpu_bytes = model_->context().allocated_bytes();
   for (const gl::StageTime& stage : report.stages) report.total_ms += stage.ms;
-  report.loss = shape_.settings.loss;
+  report.tolerance = shape_.settings.tolerance;
   report.remembered = shape_.remembers;
   report.recorded = shape_.records;
 }

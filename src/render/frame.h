@@ -12,9 +12,9 @@
 #include "render/buffers.h"
 #include "render/gpu_model.h"
 #include "render/history.h"
-#include "render/loss_control.h"
 #include "render/memory.h"
 #include "render/settings.h"
+#include "render/tolerance_control.h"
 #include "render/workings.h"
 
 namespace binosplat::render {
@@ -37,7 +37,7 @@ struct FrameReport {
   std::int64_t gpu_bytes = 0;         // in buffers, the model's included
   int tile_size = 0;                  // px
   int supertile_side = 0;             // tiles along a side of a supertile
-  float loss = 0.0f;                  // K or kappa that the frame went by
+  float tolerance = 0.0f;             // K or kappa that the frame went by
   bool remembered = false;            // it went by what an earlier frame measured
   bool recorded = false;              // it measured for later ones
   double quality = 0.0;  // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
@@ -68,13 +68,13 @@ class Frame {
   /// Draws all views at once. Views that follow one another with equal depths (third row and anchor equal to
   /// the bit) share one depth order; each eye of a rig has the same bits drawn together with the other or
   /// alone. A frame that overflows its buffers is drawn again with larger ones. After GpuModel::reload() a
-  /// loss that was found stays, but no measured transmittance. Throws Error: bad views or settings
+  /// tolerance that was found stays, but no measured transmittance. Throws Error: bad views or settings
   /// (bad_input), no room (out_of_memory).
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
                    const Workings& workings = {});
 
-  /// As draw() with settings.loss, but no further than stage `last`: what it leaves is read from buffers().
-  /// Only a frame drawn to its end is one that the next goes by.
+  /// As draw() with settings.tolerance, but no further than stage `last`: what it leaves is read from
+  /// buffers(). Only a frame drawn to its end is one that the next goes by.
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
                          const Workings& workings = {}, const std::optional<Probe>& probe = {});
 
@@ -84,10 +84,11 @@ class Frame {
   /// The next frame goes by nothing that earlier ones measured, as a first one does.
   void forget() { history_.forget(); }
 
-  /// The next frame is drawn as this Frame's first one was: the loss that was found for a quality goes, too.
+  /// The next frame is drawn as this Frame's first one was: the tolerance that was found for a quality goes,
+  /// too.
   void start_over() {
     forget();
-    loss_control_ = {};
+    tolerance_control_ = {};
   }
 
   /// What the last frame measured in its view `v`, in index order; none unless it did (FrameReport), or after
@@ -135,7 +136,7 @@ class Frame {
   shared::Counters counters_{};  // of the last drawing
   Capacity capacity_;
   FrameHistory history_;
-  LossControl loss_control_;
+  ToleranceControl tolerance_control_;
   std::vector<Picture> pictures_stood_in_;  // where something else stood in for blend
 };
 

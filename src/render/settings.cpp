@@ -8,15 +8,16 @@ namespace binosplat::render {
 
 // Written so that values that are not finite fail, too.
 void check(const FrameSettings& s, std::string_view prefix) {
-  if (!(s.loss >= 0.0f) || !std::isfinite(s.loss)) fail("{}loss {}: expected zero or more", prefix, s.loss);
+  if (!(s.tolerance >= 0.0f) || !std::isfinite(s.tolerance))
+    fail("{}tolerance {}: expected zero or more", prefix, s.tolerance);
   if (!(s.quality >= 0.0f) || !std::isfinite(s.quality))
     fail("{}quality {}: expected dB, above zero", prefix, s.quality);
-  if (is_exact(s.th) && (s.loss > 0.0f || s.quality > 0.0f)) {
-    fail("{0}{1} has no effect with {0}th {2}, which is exact", prefix, s.loss > 0.0f ? "loss" : "quality",
-         th_choices[s.th].name);
+  if (is_exact(s.th) && (s.tolerance > 0.0f || s.quality > 0.0f)) {
+    fail("{0}{1} has no effect with {0}th {2}, which is exact", prefix,
+         s.tolerance > 0.0f ? "tolerance" : "quality", th_choices[s.th].name);
   }
-  if (s.loss > 0.0f && s.quality > 0.0f)
-    fail("{0}loss with {0}quality: each chooses the loss: leave one of them out", prefix);
+  if (s.tolerance > 0.0f && s.quality > 0.0f)
+    fail("{0}tolerance with {0}quality: each chooses the tolerance: leave one of them out", prefix);
   if (s.tile_size != 8 && s.tile_size != 16 && s.tile_size != 32)
     fail("{}tile {}: expected 8, 16 or 32", prefix, s.tile_size);
   if (s.probe_every < 1) fail("looking at one of {} frames: expected at least one", s.probe_every);

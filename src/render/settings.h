@@ -35,11 +35,12 @@ struct FrameSettings {
   /// Measured are at least 1 of so many frames, so many after a cut, and whenever the eyes have gone a third
   /// of the way to a cut (history.h). Models of Scaffold-GS measure every frame.
   int record_every = settling_frames;
-  float loss = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
-  /// Above 0: the frame chooses its loss itself, so that its PSNR against the exact frame comes to so many
-  /// dB, both as 8 bits would keep them, in the view that errs most. A frame that looks draws some tiles of a
-  /// view exactly, too, and the next loss follows from what they show; one that misses, and the first one, is
-  /// drawn again (loss_control.h). About so many tiles; all of the view where it has no more.
+  float tolerance = 0.0f;  // what Th may cost, in the unit of its rule (th_choices)
+  /// Above 0: the frame chooses its tolerance itself, so that its PSNR against the exact frame comes to so
+  /// many dB, both as 8 bits would keep them, in the view that errs most. A frame that looks draws some tiles
+  /// of a view exactly, too, and the next tolerance follows from what they show; one that misses, and the
+  /// first one, is drawn again (tolerance_control.h). About so many tiles; all of the view where it has no
+  /// more.
   float quality = 0.0f;
   int probe_tiles = 256;
   /// At least 1 of so many frames looks, and each whose eyes have gone a fifteenth of the way to a cut since
@@ -61,7 +62,7 @@ struct FrameSettings {
 };
 
 /// Throws Error for values that no frame has and for settings that contradict each other: an exact rule with
-/// a loss or a quality, a loss with a quality, weights with what earlier frames tell.
+/// a tolerance or a quality, a tolerance with a quality, weights with what earlier frames tell.
 /// `prefix` goes before the names of settings in the text: "--" where they were given as options.
 void check(const FrameSettings& settings, std::string_view prefix = "");
 

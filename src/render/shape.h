@@ -21,8 +21,8 @@ struct OrderGroup {
   std::uint32_t key_bits = 32;
 };
 
-/// Tiles of one of a frame's views that are drawn exactly, too, to see what the frame's loss costs: one of
-/// every `step` x `step`, from the one in this column and row on.
+/// Tiles of one of a frame's views that are drawn exactly, too, to see what the frame's tolerance costs: one
+/// of every `step` x `step`, from the one in this column and row on.
 struct Probe {
   std::uint32_t view = 0;
   std::uint32_t step = 1;

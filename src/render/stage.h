@@ -11,6 +11,7 @@ namespace binosplat::render {
 enum class Stage { decode, project, order, pairs, tile_sort, ranges, blend, probe };
 constexpr std::array stage_names = {"decode",    "project", "order", "pairs",
                                     "tile_sort", "ranges",  "blend", "probe"};
+static_assert(stage_names.size() == static_cast<std::size_t>(Stage::probe) + 1);
 constexpr const char* name_of(Stage stage) { return stage_names[static_cast<std::size_t>(stage)]; }
 
 /// So many of them, from the first on, the float64 reference can stand in for (measure/twins.h).

@@ -117,13 +117,13 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
     for (render::FrameSettings& rule : rules) {
       rule.depth_table = analysis.depth_table;
       const CalibrationEntry found = calibrator.find(rule, target);
-      rule.loss = static_cast<float>(found.loss);
+      rule.tolerance = static_cast<float>(found.tolerance);
       AnalysedSystem& entry =
           analysis.targets.emplace_back(system_of(describe_family(rule), rule, tester, test));
       entry.target_db = target;
       entry.reached_db = found.reached_db;
-      if (!(found.loss > 0.0)) rule.loss = 1e-3f;  // where the next search begins
-      progress("losses", ++done, settings.targets.size() * rules.size());
+      if (!(found.tolerance > 0.0)) rule.tolerance = 1e-3f;  // where the next search begins
+      progress("tolerances", ++done, settings.targets.size() * rules.size());
     }
   }
 

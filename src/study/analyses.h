@@ -1,6 +1,6 @@
 #pragma once
 // AdaGScale's analyses (Jo et al.: figures 2, 4 to 6 and 8, tables I to IV) on any scene: what contributions
-// are worth, what losses found on some views cost on others, and what that gains in pairs and in time.
+// are worth, what tolerances found on some views cost on others, and what that gains in pairs and in time.
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -18,7 +18,7 @@ struct AnalysisSettings {
   std::string scene;  // its name
   double near_plane = 0.2;
   CalibrationTarget::Kind kind = CalibrationTarget::Kind::drop;
-  std::vector<double> targets;  // dB that losses are found for; the middle one is the systems'
+  std::vector<double> targets;  // dB that tolerances are found for; the middle one is the systems'
   int frames = 24;              // timed of each setting, a view and round
 };
 
@@ -26,8 +26,9 @@ struct AnalysisSettings {
 struct AnalysedSystem {
   double mean_db = 0.0, worst_db = 0.0;  // the drop against the photos, or PSNR against exact
   std::string worst_view;
-  double pairs_removed = 0.0;                   // a share; below 0: more pairs
-  std::optional<double> target_db, reached_db;  // where its loss was found for a target: on calibration views
+  double pairs_removed = 0.0;  // a share; below 0: more pairs
+  std::optional<double> target_db,
+      reached_db;  // where its tolerance was found for a target: on calibration views
   std::string name;
   render::FrameSettings settings;
   Typical times;  // medians of a view's frames, in the mean over views

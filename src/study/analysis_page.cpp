@@ -140,17 +140,17 @@ const char* label_of_tests(const Analysis& a) {
 
 Section real_drops(const Analysis& a) {
   Plot plot{{"target on the calibration views", "dB"}, {label_of_tests(a), "dB"}, {}};
-  Table table{{"rule", "target dB", "reached dB", "test views dB", "worst dB", "in view", "loss"}, {}};
+  Table table{{"rule", "target dB", "reached dB", "test views dB", "worst dB", "in view", "tolerance"}, {}};
   double excess = -INFINITY;
   by_rule(a, plot, [&](Series& series, const AnalysedSystem& entry) {
     const double target = *entry.target_db, real = entry.mean_db;
     excess = std::max(excess, a.drop() ? real - target : target - real);
     series.add(target, real, fmt::format("worst: {}", entry.worst_view));
     table.rows.push_back(row(entry.name, target, entry.reached_db, real, entry.worst_db, entry.worst_view,
-                             named(entry.settings).loss));
+                             named(entry.settings).tolerance));
   });
   return {"real-drops", "What is lost where nothing was calibrated (table III)",
-          fmt::format("Losses found on {} calibration views cost {} other views {}.",
+          fmt::format("Tolerances found on {} calibration views cost {} other views {}.",
                       a.calibration_views.size(), a.test_views.size(),
                       excess > 0 ? fmt::format("at most {:.3f} dB more than the target, in the mean", excess)
                                  : std::string("no more than the target, in the mean")),
@@ -192,7 +192,7 @@ Section speed(const Analysis& a) {
     fastest = times;
     best = entry.name;
   });
-  return {"speed", "Speed at equal loss (figure 8)",
+  return {"speed", "Speed at equal error (figure 8)",
           fmt::format("The fastest is “{}”: {:.2f} times as fast as the exact frame ({:.4g} ms).", best,
                       fastest, exact_ms(a)),
           plot};

@@ -54,10 +54,10 @@ class Block {
     return object_.contains(key) ? whole(key, object_.at(key), low, high) : otherwise;
   }
 
-  float loss(const json& value) const {
+  float tolerance(const json& value) const {
     const double number = value.is_number() ? value.get<double>() : -1.0;
     const bool good = number >= 0.0 && std::isfinite(static_cast<float>(number));
-    if (!good) fail("{}: 'loss' {}: expected a number of 0 or more", place_, value.dump());
+    if (!good) fail("{}: 'tolerance' {}: expected a number of 0 or more", place_, value.dump());
     return static_cast<float>(number);
   }
 
@@ -97,7 +97,7 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
       choice("precision", &S::precision, precision_choices),
       {"tile", TILE_SIZE_DEFAULT,
        [&block](S& s, const json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
-      {"loss", 0.0, [&block](S& s, const json& v) { s.loss = block.loss(v); }},
+      {"tolerance", 0.0, [&block](S& s, const json& v) { s.tolerance = block.tolerance(v); }},
   };
   std::vector<S> all(1);
   for (const Key& key : keys) {
@@ -152,8 +152,9 @@ Axes parse_axes(const std::string& name, const std::string& text) {
     fail("{}: expected a list 'settings' of blocks", name);
   int number = 0;
   for (const json& object : root["settings"]) {
-    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), object,
-                      {"tiles", "tile", "th", "precision", "transmittance", "loss"});
+    const json present = with_present_names(object);
+    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), present,
+                      {"tiles", "tile", "th", "precision", "transmittance", "tolerance"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);
     for (std::size_t i = before; i < axes.settings.size(); ++i) check(block.place(), axes.settings[i]);

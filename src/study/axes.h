@@ -4,11 +4,11 @@
 //
 //   {"views": 4, "frames": 30, "repeats": 3, "eyes": [1, 2], "sizes": ["own", "1280x720", "headset"],
 //    "settings": [{"tiles": ["aabb", "ellipse"]},
-//                 {"th": "squared", "transmittance": ["one", "last"], "loss": [0.1, 0.2]}]}
+//                 {"th": "squared", "transmittance": ["one", "last"], "tolerance": [0.1, 0.2]}]}
 //
 // Every combination of eyes, sizes and each block's lists is measured; a single value stands for a list of
-// one. Blocks have tiles (ellipse), tile (16), th (tau), transmittance (one) and loss. What is left out is as
-// in brackets, views 4, frames 30, repeats 3, eyes 1, sizes own.
+// one. Blocks have tiles (ellipse), tile (16), th (tau), transmittance (one) and tolerance. What is left out
+// is as in brackets, views 4, frames 30, repeats 3, eyes 1, sizes own.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -22,8 +22,8 @@ namespace binosplat::study {
 namespace {
 
 constexpr double reference_db = 60.0;  // against float64: the bar below which a driver draws wrongly
-// A pair at its very threshold may fall either way, and calibrated losses lie at such thresholds, where the
-// search ends; at most half of what the loss costs may come from that.
+// A pair at its very threshold may fall either way, and calibrated tolerances lie at such thresholds, where
+// the search ends; at most half of what the tolerance costs may come from that.
 constexpr double share_db = 3.0;
 
 // The clock has settled when the medians of two successive windows of frames agree.
@@ -167,7 +167,7 @@ std::string Bench::verify(const render::FrameSettings& settings) {
     const auto judge = [&](const reference::Settings& by) {
       return composite(reference::render(model_, small_, by), black);
     };
-    const Image judged = judge({settings.tiles, settings.tile_size, settings.th, settings.loss, {}});
+    const Image judged = judge({settings.tiles, settings.tile_size, settings.th, settings.tolerance, {}});
     const double db = measure::psnr(drawn, judged);
     double needed = reference_db;
     if (!(db >= needed) && !render::is_exact(settings.th))

@@ -92,7 +92,8 @@ double stage_ms(const BenchPoint& p, const char* name) {
 
 constexpr const char* csv_columns =
     "scene,eyes,size,name,settings_tiles,settings_tile,settings_precision,settings_th,"
-    "settings_transmittance,settings_loss,device,frame_ms,p99_ms,noise_ms,settled,submit_ms,pairs,visible,"
+    "settings_transmittance,settings_tolerance,device,frame_ms,p99_ms,noise_ms,settled,submit_ms,pairs,"
+    "visible,"
     "gpu_bytes,alphas,alphas_visible,exact_psnr_db,exact_worst_psnr_db,exact_ssim,exact_flip,exact_signed,"
     "exact_disagreement_db,photos_psnr_db,photos_drop_db,photos_ssim,photos_flip,stages_ms_project,"
     "stages_ms_order,stages_ms_pairs,stages_ms_tile_sort,stages_ms_ranges,stages_ms_blend,problem,pareto\n";
@@ -104,7 +105,7 @@ std::string csv_line(const BenchPoint& p, bool pareto) {
   const auto measured = [&](const Cell& cell) { return p.measured() ? cell : Cell(); };
   std::string line;
   for (const Cell& cell :
-       row(p.scene, p.eyes, p.size, p.name, s.tiles, s.tile, s.precision, s.th, s.transmittance, s.loss,
+       row(p.scene, p.eyes, p.size, p.name, s.tiles, s.tile, s.precision, s.th, s.transmittance, s.tolerance,
            p.device, p.frame_ms, p.p99_ms, p.noise_ms, measured(p.settled), p.submit_ms, p.pairs, p.visible,
            measured(p.gpu_bytes), p.alphas, p.alphas_visible, exact.psnr_db, exact.worst_psnr_db, exact.ssim,
            exact.flip, exact.signed_mean, exact.disagreement_db, photos.psnr_db, photos.drop_db, photos.ssim,

@@ -17,7 +17,7 @@ namespace binosplat::study {
 namespace {
 
 // A search ends so near to its target: a drop is asked for in tenths of a dB, a quality in whole ones.
-constexpr double drop_tolerance_db = 0.01, quality_tolerance_db = 0.05;
+constexpr double drop_within_db = 0.01, quality_within_db = 0.05;
 
 double psnr_of(double squared_error) {
   return squared_error > 0.0 ? std::min(equal_db, -10.0 * std::log10(squared_error)) : equal_db;
@@ -117,18 +117,18 @@ render::DepthTable Calibrator::depth_table(const measure::DepthTableSettings& se
 CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_db) {
   const Clock::time_point start = Clock::now();
   const double sign = kind_ == CalibrationTarget::Kind::drop ? -1.0 : 1.0;
-  const auto value = [&](double loss) {
-    settings.loss = static_cast<float>(loss);
+  const auto value = [&](double tolerance) {
+    settings.tolerance = static_cast<float>(tolerance);
     return sign * cost(settings).mean_db;
   };
-  measure::LossSearch search;
-  search.start = settings.loss;
-  search.narrowest = 1e-3;  // a loss that is a thousandth larger saves nothing
-  search.tolerance = sign < 0 ? drop_tolerance_db : quality_tolerance_db;
-  const measure::FoundLoss found = measure::find_loss(value, sign * target_db, search);
-  settings.loss = static_cast<float>(found.loss);
+  measure::ToleranceSearch search;
+  search.start = settings.tolerance;
+  search.narrowest = 1e-3;  // a tolerance that is a thousandth larger saves nothing
+  search.within = sign < 0 ? drop_within_db : quality_within_db;
+  const measure::FoundTolerance found = measure::find_tolerance(value, sign * target_db, search);
+  settings.tolerance = static_cast<float>(found.tolerance);
   const Cost reached = cost(settings);
-  return {settings.th,           settings.transmittance, found.loss,
+  return {settings.th,           settings.transmittance, found.tolerance,
           reached.mean_db,       reached.worst_db,       names_[reached.worst_view],
           reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
 }
@@ -137,7 +137,7 @@ std::vector<render::FrameSettings> calibrated_settings() {
   std::vector<render::FrameSettings> all;
   for (Variant variant : all_variants()) {
     if (render::is_exact(variant.th)) continue;
-    variant.loss = static_cast<float>(render::threshold_rules[variant.th].careful_loss);
+    variant.tolerance = static_cast<float>(render::threshold_rules[variant.th].careful_tolerance);
     all.push_back(variant.settings());
   }
   return all;
@@ -167,8 +167,8 @@ Calibration calibrate(gl::Context& context, const Model& model, const std::vecto
   for (render::FrameSettings settings : all) {
     settings.depth_table = c.depth_table;
     // What a rule found with another source is near: each question less is a frame, or eight.
-    if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().loss > 0.0)
-      settings.loss = static_cast<float>(c.entries.back().loss);
+    if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
+      settings.tolerance = static_cast<float>(c.entries.back().tolerance);
     c.entries.push_back(calibrator.find(settings, target.db));
     if (done) done(c.entries.size(), all.size());
   }

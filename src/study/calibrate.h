@@ -1,7 +1,7 @@
 #pragma once
-// Finds the transmittance bound by depth (AdaGScale, section 4.1) and the loss of each rule and source that
-// costs as much as is asked for, on some views of a model. The pictures stay on the GPU: only sums are read
-// back.
+// Finds the transmittance bound by depth (AdaGScale, section 4.1) and the tolerance of each rule and source
+// that costs as much as is asked for, on some views of a model. The pictures stay on the GPU: only sums are
+// read back.
 
 #include <functional>
 #include <memory>
@@ -56,8 +56,8 @@ class Calibrator {
 
   render::DepthTable depth_table(const measure::DepthTableSettings& settings = {});
 
-  /// The largest loss that costs no more than the target: the mean over the views. The settings' own loss is
-  /// where the search begins.
+  /// The largest tolerance that costs no more than the target: the mean over the views. The settings' own
+  /// tolerance is where the search begins.
   CalibrationEntry find(render::FrameSettings settings, double target_db);
 
  private:

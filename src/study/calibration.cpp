@@ -114,8 +114,8 @@ CalibrationEntry parse_entry(const Reader& entry) {
   CalibrationEntry e;
   e.th = entry.choice("th", th_choices);
   e.transmittance = entry.choice("transmittance", transmittance_choices);
-  e.loss = entry.number("loss", 0.0);
-  if (!std::isfinite(static_cast<float>(e.loss))) fail("{}: 'loss' is too large", entry.place());
+  e.tolerance = entry.number(entry.has("loss") ? "loss" : "tolerance", 0.0);  // with_present_names()
+  if (!std::isfinite(static_cast<float>(e.tolerance))) fail("{}: 'tolerance' is too large", entry.place());
   e.reached_db = entry.number("reached_db");
   e.worst_db = entry.number("worst_db");
   e.worst_view = entry.text("worst_view");
@@ -168,10 +168,10 @@ ordered_json to_json(const Calibration& c) {
     json["views"].push_back(
         object("name", view.name, "position", std::array{view.position.x, view.position.y, view.position.z}));
   for (const CalibrationEntry& e : c.entries)
-    json["entries"].push_back(
-        object("th", th_choices[e.th].name, "transmittance", transmittance_choices[e.transmittance].name,
-               "loss", e.loss, "reached_db", e.reached_db, "worst_db", e.worst_db, "worst_view", e.worst_view,
-               "pairs_removed", e.pairs_removed, "evaluations", e.evaluations, "seconds", e.seconds));
+    json["entries"].push_back(object(
+        "th", th_choices[e.th].name, "transmittance", transmittance_choices[e.transmittance].name,
+        "tolerance", e.tolerance, "reached_db", e.reached_db, "worst_db", e.worst_db, "worst_view",
+        e.worst_view, "pairs_removed", e.pairs_removed, "evaluations", e.evaluations, "seconds", e.seconds));
   return json;
 }
 
@@ -231,7 +231,8 @@ std::optional<render::FrameSettings> calibrated(const Calibration& calibration,
                                                 render::FrameSettings settings, double focal) {
   for (const CalibrationEntry& e : calibration.entries) {
     if (e.th != settings.th || e.transmittance != settings.transmittance) continue;
-    settings.loss = static_cast<float>(e.loss * std::pow(focal / calibration.focal, loss_power));
+    settings.tolerance =
+        static_cast<float>(e.tolerance * std::pow(focal / calibration.focal, tolerance_power));
     settings.depth_table = calibration.depth_table;
     return settings;
   }

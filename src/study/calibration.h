@@ -1,11 +1,11 @@
 #pragma once
 // What calibration finds for a model, and the file that keeps it: the transmittance bound at each depth, and
-// which loss costs as much as was asked for.
+// which tolerance costs as much as was asked for.
 //
 // The file is JSON: format "binosplat calibration", version 1; model (name, gaussians, hash), width, height,
 // focal_px and near of the views, views (name, position), target (drop_db against the photos, or psnr_db
-// against the exact pictures), depth_table (far, upper) and entries: th, transmittance, loss, and what it
-// reached: reached_db and worst_db of worst_view in the target's terms, pairs_removed (share),
+// against the exact pictures), depth_table (far, upper) and entries: th, transmittance, tolerance, and what
+// it reached: reached_db and worst_db of worst_view in the target's terms, pairs_removed (share),
 // evaluations, seconds.
 
 #include <cstdint>
@@ -30,12 +30,12 @@ struct CalibrationTarget {
 struct CalibrationEntry {
   int th = TH_SQUARED;                    // TH_ of shared/axes.h
   int transmittance = TRANSMITTANCE_ONE;  // TRANSMITTANCE_
-  double loss = 0.0;                      // K or kappa, at the calibration's focal length
+  double tolerance = 0.0;                 // K or kappa, at the calibration's focal length
   double reached_db = 0.0;                // the drop, or PSNR: the mean over the views
   double worst_db = 0.0;                  // of the worst view
   std::string worst_view;
   double pairs_removed = 0.0;  // share of the exact frames' pairs, mean over the views
-  int evaluations = 0;         // losses tried
+  int evaluations = 0;         // tolerances tried
   double seconds = 0.0;
 };
 
@@ -76,12 +76,12 @@ bool is_of(const Calibration& calibration, const Model& model);
 /// calibrated view from its nearest neighbour. With one view: everywhere.
 bool covers(const Calibration& calibration, const glm::dvec3& position);
 
-/// The settings with the loss (and table) of the calibration's entry for their th and transmittance, at a
-/// focal length in px; nothing if it has none. At another focal length f the loss is scaled by
-/// (f / focal)^loss_power: 2.4 at twice the focal length, where K grew 2.2- and 3.3-fold on two scenes and
+/// The settings with the tolerance (and table) of the calibration's entry for their th and transmittance, at
+/// a focal length in px; nothing if it has none. At another focal length f the tolerance is scaled by (f /
+/// focal)^tolerance_power: 2.4 at twice the focal length, where K grew 2.2- and 3.3-fold on two scenes and
 /// kappa 1.6- and 2.7-fold. Good for a first picture; calibrate anew where the dB matter.
 std::optional<render::FrameSettings> calibrated(const Calibration& calibration,
                                                 render::FrameSettings settings, double focal);
-constexpr double loss_power = 1.25;
+constexpr double tolerance_power = 1.25;
 
 }  // namespace binosplat::study

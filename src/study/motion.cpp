@@ -95,7 +95,7 @@ MovedPass Drive::judged(const MotionPath& path, const Variant& variant, float re
                         .told_db = report.quality,
                         .pairs = static_cast<double>(report.pairs),
                         .exact_pairs = exact_.pairs(s, n),
-                        .loss = report.loss,
+                        .tolerance = report.tolerance,
                         .drawn = report.attempts});
     }
   }
@@ -131,11 +131,11 @@ void Drive::bring_to_target(const MotionPath& path, MovedRule& rule) {
   const FoundRequest found = find_request(value, {.target = settings_.target,
                                                   .start = settings_.quality,
                                                   .start_value = rule.asked.moving.true_db,
-                                                  .tolerance = settings_.equal_tolerance});
+                                                  .within = settings_.equal_within});
   rule.compared = true;
   rule.evaluations = found.evaluations;
   if (!found.reached)
-    rule.problem = fmt::format("not within {} dB of {:g} dB", settings_.equal_tolerance, settings_.target);
+    rule.problem = fmt::format("not within {} dB of {:g} dB", settings_.equal_within, settings_.target);
 }
 
 // What is timed: frames drawn without a word, and where their times go.
@@ -233,7 +233,7 @@ ordered_json path_json(const MotionResult& result) {
   json["exact"] = object("moving", to_json(result.exact.moving), "segments", to_json(result.exact.frames));
   for (const MovedRule& rule : result.rules) {
     ordered_json settings = to_json(rule.variant.settings());
-    settings.erase("loss");  // each frame chooses its own
+    settings.erase("tolerance");  // each frame chooses its own
     json["rules"].push_back(object("name", rule.variant.name(), "settings", settings, "asked",
                                    pass_json(rule.asked, shares(result, rule, false))));
     if (!rule.compared) continue;

@@ -15,11 +15,11 @@
 namespace binosplat::study {
 
 struct MotionSettings {
-  float quality = 40.0f;         // dB that every rule is asked for
-  double target = 40.0;          // dB of the moving frames' true mean that rules are compared at
-  bool equal = true;             // whether they are
-  double equal_tolerance = 0.1;  // dB
-  int rounds = 2;                // in which frames are timed
+  float quality = 40.0f;      // dB that every rule is asked for
+  double target = 40.0;       // dB of the moving frames' true mean that rules are compared at
+  bool equal = true;          // whether they are
+  double equal_within = 0.1;  // dB
+  int rounds = 2;             // in which frames are timed
   /// Exact pictures stay on the GPU up to so many bytes; those beyond are drawn again for each rule.
   std::int64_t exact_bytes = std::int64_t{8} << 30;
 };

@@ -95,7 +95,7 @@ ordered_json to_json(const MovedFrames& frames) {
       one["told_db"].push_back(frame.told());
       one["pairs"].push_back(frame.pairs);
       one["pairs_removed"].push_back(1.0 - frame.pairs / frame.exact_pairs);
-      one["loss"].push_back(frame.loss);
+      one["tolerance"].push_back(frame.tolerance);
       one["frame_ms"].push_back(frame.ms);
       one["drawn"].push_back(frame.drawn);
     }
@@ -113,7 +113,7 @@ FoundRequest find_request(const std::function<double(double)>& value, const Requ
   for (;;) {
     (last.value < search.target ? low : high) = last;
     if (off(last) < off(best)) best = last;
-    if (off(best) <= search.tolerance || evaluations == search.evaluations) break;
+    if (off(best) <= search.within || evaluations == search.evaluations) break;
     const double step = std::clamp((search.target - last.value) / slope, -step_max, step_max);
     const double next = low && high ? between(*low, *high, search.target)
                                     : std::clamp(last.request + step, request_min, request_max);
@@ -124,7 +124,7 @@ FoundRequest find_request(const std::function<double(double)>& value, const Requ
     last = now;
   }
   best.evaluations = evaluations;
-  best.reached = off(best) <= search.tolerance;
+  best.reached = off(best) <= search.within;
   return best;
 }
 

@@ -16,7 +16,7 @@ struct MovedFrame {
   double told_db = 0.0;         // what the frame said of itself
   double pairs = 0.0;           // its probe's included
   double exact_pairs = 0.0;
-  double loss = 0.0;
+  double tolerance = 0.0;
   double ms = 0.0;  // GPU time, by itself: the median of the rounds; 0 before any
   int drawn = 1;    // times, until it held what it was asked for: ms are of all, the rest is of the last
 
@@ -61,18 +61,18 @@ struct FoundRequest {
   double request = 0.0;
   double value = 0.0;
   int evaluations = 0;
-  bool reached = false;  // within the tolerance
+  bool reached = false;  // as near as asked
 };
 
 struct RequestSearch {
   double target = 40.0;
   double start = 40.0;        // asked before the search
   double start_value = 40.0;  // what came of it
-  double tolerance = 0.1;
+  double within = 0.1;
   int evaluations = 8;
 };
 
-/// The request whose value(request) is the target, within the tolerance; where none is found, the nearest
+/// The request whose value(request) is the target, as near as asked; where none is found, the nearest
 /// that was asked. `value` is to rise with the request, and need not do so quite steadily.
 FoundRequest find_request(const std::function<double(double)>& value, const RequestSearch& search);
 

@@ -228,7 +228,7 @@ Table target_table(const MotionResult& path) {
 std::string lengths_of(const MotionPath& path) {
   std::set<std::string> kinds;
   for (const MotionSegment& one : path.segments) {
-    std::string kind = fmt::format("{} frames, after {} to find a loss", one.moving(), one.lead);
+    std::string kind = fmt::format("{} frames, after {} to find a tolerance", one.moving(), one.lead);
     if (one.stop != 0) kind += fmt::format(", then a stop of {}", one.stop);
     kinds.insert(std::move(kind));
   }

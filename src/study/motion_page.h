@@ -12,8 +12,8 @@ Table asked_table(const MotionResult& path);
 /// The same at one true quality; without rows where that was not looked for.
 Table target_table(const MotionResult& path);
 
-/// "3 stretches of 60 frames, after 12 to find a loss; then a stop of 15": how long the segments of a path
-/// are.
+/// "3 stretches of 60 frames, after 12 to find a tolerance; then a stop of 15": how long the segments of a
+/// path are.
 std::string lengths_of(const MotionPath& path);
 
 Page motion_page(const MotionStudy& study);

@@ -21,7 +21,7 @@ namespace binosplat::study {
 namespace {
 
 constexpr double near_target_db = 0.3;  // rules nearer than this to the target are compared
-constexpr double tolerance_db = 0.1;
+constexpr double within_db = 0.1;
 constexpr int evaluations_max = 20;
 constexpr int warm_up_frames = 5;
 // Once what frames measure of themselves has settled, single frames swing in a round of twelve, as what was
@@ -38,27 +38,27 @@ std::string problem_of(const RuleResult& result, double target) {
 double db_of(double squared_error) { return -10.0 * std::log10(squared_error); }
 
 // What settled frames cost.
-RuleResult settled(Still& still, const Variant& rule) {
+RuleResult settled(FixedCamera& camera, const Variant& rule) {
   RuleResult result{.variant = rule};
-  still.settle(rule);
+  camera.settle(rule);
   const int frames = render::measures(rule.transmittance) ? round_frames : 1;
   double sum = 0.0, largest = 0.0;
   for (int n = 0; n < frames; ++n) {
-    result.pairs += static_cast<double>(still.draw(rule).pairs) / frames;
-    const double error = still.squared_error();
+    result.pairs += static_cast<double>(camera.draw(rule).pairs) / frames;
+    const double error = camera.squared_error();
     sum += error / frames;
     largest = std::max(largest, error);
   }
-  result.removed = 1.0 - result.pairs / still.exact_pairs();
+  result.removed = 1.0 - result.pairs / camera.exact_pairs();
   result.db = db_of(sum);
   result.worst_db = db_of(largest);
   return result;
 }
 
-double disagreement_of(Still& still) {
-  const std::vector<shared::View>& views = still.views();
+double disagreement_of(FixedCamera& camera) {
+  const std::vector<shared::View>& views = camera.views();
   if (views.size() != 2) return std::numeric_limits<double>::quiet_NaN();
-  return stereo::disagreement(std::array{views[0], views[1]}, still.exact(), still.pictures()).db;
+  return stereo::disagreement(std::array{views[0], views[1]}, camera.exact(), camera.pictures()).db;
 }
 
 void take_means(const Times& times, RuleResult& result) {
@@ -80,46 +80,46 @@ double frame_ms_of(const std::vector<RuleResult>& results, const Is& is) {
 
 }  // namespace
 
-void find_losses(Still& still, std::vector<Variant>& rules, double target,
-                 const std::function<void()>& progress) {
-  // The loss of the last rule with the same threshold is near.
+void find_tolerances(FixedCamera& camera, std::vector<Variant>& rules, double target,
+                     const std::function<void()>& progress) {
+  // The tolerance of the last rule with the same threshold is near.
   std::map<int, double> starts;
   for (Variant& rule : rules) {
-    const auto db_at = [&](double loss) {
-      if (loss == 0.0) return std::numeric_limits<double>::infinity();  // every rule is exact there
-      rule.loss = static_cast<float>(loss);
-      return settled(still, rule).db;
+    const auto db_at = [&](double tolerance) {
+      if (tolerance == 0.0) return std::numeric_limits<double>::infinity();  // every rule is exact there
+      rule.tolerance = static_cast<float>(tolerance);
+      return settled(camera, rule).db;
     };
     if (!render::is_exact(rule.th)) {
       double& start =
-          starts.try_emplace(rule.th, render::threshold_rules[rule.th].careful_loss).first->second;
-      const double loss =
-          measure::find_loss(db_at, target,
-                             {.start = start, .tolerance = tolerance_db, .evaluations = evaluations_max})
-              .loss;
-      rule.loss = static_cast<float>(loss);
-      if (loss > 0.0) start = loss;
+          starts.try_emplace(rule.th, render::threshold_rules[rule.th].careful_tolerance).first->second;
+      const double tolerance =
+          measure::find_tolerance(db_at, target,
+                                  {.start = start, .within = within_db, .evaluations = evaluations_max})
+              .tolerance;
+      rule.tolerance = static_cast<float>(tolerance);
+      if (tolerance > 0.0) start = tolerance;
     }
     progress();
   }
 }
 
-std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& rules, double target,
+std::vector<RuleResult> measure_rules(FixedCamera& camera, const std::vector<Variant>& rules, double target,
                                       int frames, const std::function<void()>& progress) {
   std::vector<RuleResult> results;
   for (const Variant& rule : rules) {
-    RuleResult& result = results.emplace_back(settled(still, rule));
-    result.disagreement_db = disagreement_of(still);
+    RuleResult& result = results.emplace_back(settled(camera, rule));
+    result.disagreement_db = disagreement_of(camera);
     result.problem = problem_of(result, target);
   }
-  wake(still.context(), [&] { still.draw(rules.front()); });  // it slept while pictures were read
+  wake(camera.context(), [&] { camera.draw(rules.front()); });  // it slept while pictures were read
   std::vector<Times> times(rules.size());
   for (int round = 0; round < rule_rounds; ++round) {
     for (std::size_t k = 0; k < rules.size(); ++k) {
-      still.settle(rules[k]);
+      camera.settle(rules[k]);
       const int record_every = rules[k].settings().record_every;
-      for (int n = 0; n < warm_up_frames; ++n) still.draw(rules[k], record_every);
-      for (int n = 0; n < frames; ++n) times[k].add(still.draw(rules[k], record_every));
+      for (int n = 0; n < warm_up_frames; ++n) camera.draw(rules[k], record_every);
+      for (int n = 0; n < frames; ++n) times[k].add(camera.draw(rules[k], record_every));
       progress();
     }
   }

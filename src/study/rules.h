@@ -1,13 +1,13 @@
 #pragma once
-// What every rule gains where the camera stands still: each at the loss that costs as much as the others',
-// then all timed in turns.
+// What every rule gains where the camera stands still: each at the tolerance that costs as much as the
+// others', then all timed in turns.
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "study/still.h"
+#include "study/fixed_camera.h"
 
 namespace binosplat::study {
 
@@ -24,10 +24,10 @@ struct RuleResult {
   std::string problem;                  // why it cannot be compared with the others; empty: it can
 };
 
-/// Gives each rule the loss at which it comes to `target` dB, at most 0.1 dB above; 0 where none does.
+/// Gives each rule the tolerance at which it comes to `target` dB, at most 0.1 dB above; 0 where none does.
 /// `progress` is called after each.
-void find_losses(Still& still, std::vector<Variant>& rules, double target,
-                 const std::function<void()>& progress);
+void find_tolerances(FixedCamera& camera, std::vector<Variant>& rules, double target,
+                     const std::function<void()>& progress);
 
 /// How often measure_rules() times each rule.
 constexpr int rule_rounds = 3;
@@ -35,7 +35,7 @@ constexpr int rule_rounds = 3;
 /// Draws each rule until it has settled, and checks that it comes to `target` dB; then times `frames` frames
 /// of each in every one of the rounds, so that a clock that drifts does the same to all. Measured rules carry
 /// what they measure from frame to frame. `progress` is called after each rule of a round.
-std::vector<RuleResult> measure_rules(Still& still, const std::vector<Variant>& rules, double target,
+std::vector<RuleResult> measure_rules(FixedCamera& camera, const std::vector<Variant>& rules, double target,
                                       int frames, const std::function<void()>& progress);
 
 nlohmann::ordered_json to_json(const RuleResult& result);

@@ -18,17 +18,20 @@ NamedSettings named(const render::FrameSettings& s) {
   if (s.precision != PRECISION_FULL) names.precision = precision_choices[s.precision].name;
   if (render::is_exact(s.th)) return names;
   names.transmittance = transmittance_choices[s.transmittance].name;
-  names.loss = std::stod(fmt::format("{}", s.loss));
+  names.tolerance = std::stod(fmt::format("{}", s.tolerance));
   return names;
 }
 
 static void fields(const auto& io, Some<NamedSettings> auto& s) {
   io("tiles", s.tiles, "tile", s.tile, "th", s.th, "precision", s.precision, "transmittance", s.transmittance,
-     "loss", s.loss);
+     "tolerance", s.tolerance);
 }
 
 void to_json(ordered_json& json, const NamedSettings& settings) { fields(FieldWriter{json}, settings); }
-void from_json(const ordered_json& json, NamedSettings& settings) { fields(FieldReader{json}, settings); }
+void from_json(const ordered_json& json, NamedSettings& settings) {
+  const ordered_json present = with_present_names(json);
+  fields(FieldReader{present}, settings);
+}
 ordered_json to_json(const render::FrameSettings& settings) { return named(settings); }
 
 std::string describe_family(const render::FrameSettings& s) {
@@ -44,12 +47,13 @@ std::string describe_family(const render::FrameSettings& s) {
 }
 
 std::string describe(const render::FrameSettings& s) {
-  return render::is_exact(s.th) ? describe_family(s) : fmt::format("{}, {:g}", describe_family(s), s.loss);
+  return render::is_exact(s.th) ? describe_family(s)
+                                : fmt::format("{}, {:g}", describe_family(s), s.tolerance);
 }
 
 void check(const std::string& place, const render::FrameSettings& s) {
   try {
-    if (!render::is_exact(s.th) && !(s.loss > 0.0f)) fail("th needs a loss above 0");
+    if (!render::is_exact(s.th) && !(s.tolerance > 0.0f)) fail("th needs a tolerance above 0");
     render::check_choice(s);
   } catch (const Error& error) {
     fail("{}: {}: {}", place, to_json(s).dump(), error.what());

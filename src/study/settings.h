@@ -20,12 +20,22 @@ struct NamedSettings {
   std::string th;
   std::optional<std::string> precision;      // where it is not full
   std::optional<std::string> transmittance;  // where th is not tau
-  std::optional<double> loss;                // likewise: the decimal number that was meant
+  std::optional<double> tolerance;           // likewise: the decimal number that was meant
 
   auto operator<=>(const NamedSettings&) const = default;  // NOLINT(modernize-use-nullptr): none is meant
 };
 
 NamedSettings named(const render::FrameSettings& settings);
+
+/// Settings of a file with a tolerance where it says `loss`, which was its name until 2026-11-22.
+template <typename Json>
+Json with_present_names(Json settings) {
+  if (settings.is_object() && settings.contains("loss") && !settings.contains("tolerance")) {
+    settings["tolerance"] = settings["loss"];
+    settings.erase("loss");
+  }
+  return settings;
+}
 
 void to_json(nlohmann::ordered_json& json, const NamedSettings& settings);
 void from_json(const nlohmann::ordered_json& json, NamedSettings& settings);
@@ -36,10 +46,11 @@ nlohmann::ordered_json to_json(const render::FrameSettings& settings);
 /// tiles of another size than 16 px as "tile 8".
 std::string describe(const render::FrameSettings& settings);
 
-/// The same without the loss: what a line of the chart joins.
+/// The same without the tolerance: what a line of the chart joins.
 std::string describe_family(const render::FrameSettings& settings);
 
-/// render::check_choice() of what a file says: Error begins with `place`. There a threshold needs a loss.
+/// render::check_choice() of what a file says: Error begins with `place`. There a threshold needs a
+/// tolerance.
 void check(const std::string& place, const render::FrameSettings& settings);
 
 /// Whether the picture is exact by definition: no pair that could be seen is left out, nothing is in fp16.

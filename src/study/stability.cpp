@@ -112,7 +112,7 @@ StabilityResult run_variant(render::Frame& frame, const StabilityCase& one, cons
 }  // namespace
 
 render::FrameSettings Variant::settings() const {
-  return {.th = th, .transmittance = transmittance, .loss = loss};
+  return {.th = th, .transmittance = transmittance, .tolerance = tolerance};
 }
 
 std::string Variant::name() const {

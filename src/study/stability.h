@@ -13,17 +13,17 @@
 
 namespace binosplat::study {
 
-/// A rule with all that it goes by, at a loss.
+/// A rule with all that it goes by, at a tolerance.
 struct Variant {
   int th = TH_SQUARED;
   int transmittance = TRANSMITTANCE_ONE;
-  float loss = 0.0f;
+  float tolerance = 0.0f;
 
   render::FrameSettings settings() const;
   std::string name() const;  // "squared, last"
 };
 
-/// Every threshold with every source that it takes; the exact one first. Losses are 0.
+/// Every threshold with every source that it takes; the exact one first. Tolerances are 0.
 std::vector<Variant> all_variants();
 
 /// What a verdict follows from. A case holds if none of these is broken.
@@ -62,7 +62,7 @@ struct StabilityStudy {
     std::vector<StabilityResult> results;
   };
   std::string scene, device;
-  double target = 0.0;  // dB that the rules' losses are chosen for
+  double target = 0.0;  // dB that the rules' tolerances are chosen for
   StabilityBounds bounds;
   std::vector<Variant> rules;
   std::vector<Case> cases;

@@ -12,13 +12,13 @@ using nlohmann::ordered_json;
 
 /// Which rules hold in which cases.
 Section verdicts(const StabilityStudy& study) {
-  Table table{{"rule", "loss", "cases that hold"}, {}};
+  Table table{{"rule", "tolerance", "cases that hold"}, {}};
   for (const StabilityStudy::Case& one : study.cases) table.columns.push_back(one.name);
   std::size_t best = 0;
   std::string steadiest;
   for (std::size_t k = 0; k < study.rules.size(); ++k) {
     const Variant& rule = study.rules[k];
-    auto& cells = table.rows.emplace_back(row(rule.name(), rule.loss, 0));
+    auto& cells = table.rows.emplace_back(row(rule.name(), rule.tolerance, 0));
     std::size_t holds = 0;
     for (const StabilityStudy::Case& one : study.cases) {
       holds += one.results[k].verdict == "holds";
@@ -30,7 +30,7 @@ Section verdicts(const StabilityStudy& study) {
     steadiest = rule.name();
   }
   std::string sentence =
-      fmt::format("Each rule at the loss for {} dB on this scene, in {} cases made to break it",
+      fmt::format("Each rule at the tolerance for {} dB on this scene, in {} cases made to break it",
                   json_text(study.target), study.cases.size());
   if (!steadiest.empty())
     sentence += fmt::format(": “{}” holds in {} of them, no rule but tau in more", steadiest, best);
@@ -85,10 +85,10 @@ Page stability_page(const StabilityStudy& study) {
 ordered_json to_json(const StabilityStudy& study) {
   const ordered_json none = ordered_json::object();
   ordered_json json = object("scene", study.scene, "device", study.device, "target_db", study.target,
-                             "bounds", none, "losses", none, "cases", none);
+                             "bounds", none, "tolerances", none, "cases", none);
   for (const auto& bound : bounds_of(study.bounds))
     json["bounds"][std::get<std::string>(bound[0].value)] = bound[1];
-  for (const Variant& rule : study.rules) json["losses"][rule.name()] = rule.loss;
+  for (const Variant& rule : study.rules) json["tolerances"][rule.name()] = rule.tolerance;
   for (const StabilityStudy::Case& one : study.cases) {
     json["cases"][one.name]["fear"] = one.fear;
     for (std::size_t k = 0; k < study.rules.size(); ++k)

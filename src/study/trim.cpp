@@ -37,7 +37,7 @@ class Trimmer {
 
   Trimmed run(ModelFormat format) {
     found_.unseen = weights_.unseen();
-    const std::string name = model_format_names[static_cast<int>(format)];
+    const std::string name = written_format(format).name;
     const bool packs = format == ModelFormat::spz;
     if (!holds(cost(model_, 8), 1.0)) {
       found_.fits = false;
@@ -68,10 +68,10 @@ class Trimmer {
 
   /// The largest amount that holds a share of the bound, at which the model's cost is `db(amount)`; 0 must
   /// hold.
-  double largest(const std::function<double(double)>& db, double share, measure::LossSearch search) {
-    search.tolerance = target_.kind == CalibrationTarget::Kind::drop ? 0.03 * target_.db : 0.1;
+  double largest(const std::function<double(double)>& db, double share, measure::ToleranceSearch search) {
+    search.within = target_.kind == CalibrationTarget::Kind::drop ? 0.03 * target_.db : 0.1;
     const auto value = [&](double amount) { return sign() * db(amount); };
-    return measure::find_loss(value, sign() * bound(share), search).loss;
+    return measure::find_tolerance(value, sign() * bound(share), search).tolerance;
   }
 
   void lower_bits() {

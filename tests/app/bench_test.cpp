@@ -21,7 +21,7 @@ struct BenchTest : test::SceneTest {
   BenchTest() {
     add_cameras();
     write_text(axes, R"({"views": 2, "frames": 2, "repeats": 2, "eyes": [1, 2], "sizes": ["own", "36x24"],
-      "settings": [{"tiles": ["aabb", "ellipse"]}, {"th": "squared", "transmittance": "last", "loss": [0.05, 2]}]})");
+      "settings": [{"tiles": ["aabb", "ellipse"]}, {"th": "squared", "transmittance": "last", "tolerance": [0.05, 2]}]})");
   }
   Outcome bench(std::vector<std::string> arguments, const std::string& to) const {
     arguments.insert(arguments.begin(), {"bench", "-o", to});
@@ -141,7 +141,8 @@ TEST_F(BenchTest, MeasuresWhatWasCalibrated) {
   const ordered_json entries = ordered_json::parse(read_text(calibration))["entries"];
   for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(points[i + 1]["settings"]["th"], entries[i]["th"]);
-    EXPECT_NEAR(points[i + 1]["settings"]["loss"].get<double>(), entries[i]["loss"].get<double>(), 1e-5);
+    EXPECT_NEAR(points[i + 1]["settings"]["tolerance"].get<double>(), entries[i]["tolerance"].get<double>(),
+                1e-5);
     EXPECT_NEAR(points[i + 1]["exact"]["psnr_db"].get<double>(), entries[i]["reached_db"].get<double>(), 0.3);
   }
 }

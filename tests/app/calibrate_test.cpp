@@ -36,7 +36,8 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
   ASSERT_TRUE(good(render({"--mono", "--view", "front", "-o", folder / "exact.png", "--bits", "16"})));
   ASSERT_TRUE(good(render({"--mono", "--view", "front", "-o", folder / "lossy.png", "--bits", "16",
                            "--calibration", file, "--transmittance", "depth", "--json", folder / "r.json"})));
-  EXPECT_NEAR(report()["views"][0]["loss"].get<double>(), found["entries"][4]["loss"].get<double>(), 1e-6);
+  EXPECT_NEAR(report()["views"][0]["tolerance"].get<double>(), found["entries"][4]["tolerance"].get<double>(),
+              1e-6);
   EXPECT_EQ(report()["settings"]["th"], "squared");
   const double db = measure::psnr(load_image(folder / "exact.png"), load_image(folder / "lossy.png"));
   EXPECT_GT(db, 34.0);
@@ -58,7 +59,7 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
   const Outcome small = render(
       {"--mono", "--view", "front", "--size", "36x24", "-o", folder / "small.png", "--calibration", file});
   ASSERT_TRUE(good(small));
-  EXPECT_NE(small.err.find("the loss is scaled"), std::string::npos) << small.err;
+  EXPECT_NE(small.err.find("the tolerance is scaled"), std::string::npos) << small.err;
 }
 
 TEST(CalibrateFox, AtAQuarterOfItsSize) {
@@ -107,7 +108,8 @@ TEST_F(CalibrateTest, ErrorsSayWhatToDo) {
   EXPECT_TRUE(ended(calibrate({"--quality", "40", "--size", "big"}), 2, "--size big: expected pixels"));
   EXPECT_TRUE(ended(render({"-o", out, "--calibration", none}), 2, "none.json"));
   EXPECT_TRUE(ended(render({"-o", out, "--calibration", model}), 2, "not valid JSON"));
-  EXPECT_TRUE(ended(render({"-o", out, "--calibration", file, "--loss", "1"}), 2, "leave one of them out"));
+  EXPECT_TRUE(
+      ended(render({"-o", out, "--calibration", file, "--tolerance", "1"}), 2, "leave one of them out"));
   EXPECT_TRUE(
       ended(render({"-o", out, "--calibration", file, "--th", "tau"}), 2, "has no effect with --th tau"));
   ordered_json cut = ordered_json::parse(read_text(file));

@@ -22,7 +22,8 @@ TEST_F(RenderShow, EveryChoiceIsAnotherPictureAndSaysItsRange) {
                                           "alphas",  "visible", "pairs",      "light"};
   std::vector<Image> images;
   for (const std::string& name : names) {
-    const Outcome outcome = render({"-o", png, "--loss", "0.5", "--show", name, "--json", folder / "r.json"});
+    const Outcome outcome =
+        render({"-o", png, "--tolerance", "0.5", "--show", name, "--json", folder / "r.json"});
     ASSERT_TRUE(good(outcome)) << name;
     images.push_back(load_image(png));
     for (std::size_t k = 0; k + 1 < images.size(); ++k) {

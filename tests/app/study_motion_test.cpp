@@ -84,7 +84,7 @@ TEST_F(MotionCommand, WhatMakesNoSenseIsNamed) {
       {{"--motion", "--rules"}, "are studies of their own"},
       {{"--motion", "--stability"}, "are studies of their own"},
       {{"--motion", "--view", "front"}, "--view: --motion goes through all cameras"},
-      {{"--motion", "--loss", "0.1"}, "--loss"},
+      {{"--motion", "--tolerance", "0.1"}, "--tolerance"},
       {{"--motion", "--th", "squared"}, "--th"},
       {{"--motion", "--motions", "crawl"}, "crawl"},
       {{"--motion", "--rule", "squared"}, "expected TH,SOURCE"},

@@ -24,7 +24,7 @@ TEST(Study, APathIsCarriedAndTold) {
   test::write_text(folder / "path.json", "[" + frames + "]");
   const test::Outcome outcome =
       test::run_program({"study", "demo:room", "--path", folder / "path.json", "--transmittance", "last",
-                         "--loss", "0.05", "--json", folder / "s.json"});
+                         "--tolerance", "0.05", "--json", folder / "s.json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("fell back: equals `one`"), std::string::npos) << outcome.out;
   const auto json = nlohmann::json::parse(test::read_text(folder / "s.json"));
@@ -36,7 +36,7 @@ TEST(Study, APathIsCarriedAndTold) {
 // What frames of a file of the same 1000 Gaussians come to.
 nlohmann::json carried(const test::TempFolder& folder, const std::string& model) {
   const test::Outcome outcome = test::run_program(
-      {"study", model, "--path", folder / "path.json", "--loss", "0.05", "--json", folder / "s.json"});
+      {"study", model, "--path", folder / "path.json", "--tolerance", "0.05", "--json", folder / "s.json"});
   EXPECT_TRUE(test::good(outcome));
   return nlohmann::json::parse(test::read_text(folder / "s.json")).at("frames");
 }
@@ -74,7 +74,7 @@ struct RulesCommand : test::SceneTest {
 };
 
 TEST_F(RulesCommand, PrintsARowForEachRuleAndKeepsAll) {
-  // No loss makes pictures of 1 dB: quickly seen, and no reason to end.
+  // No tolerance makes pictures of 1 dB: quickly seen, and no reason to end.
   const auto json = rules({"--view", "pair", "--target", "1"});
   const std::string renderer = json.at("renderer");
   EXPECT_EQ(printed.rfind(renderer + ": " + model + ", pair, 2 x 72 x 48 px, 1 dB\n", 0), 0u) << printed;
@@ -164,7 +164,7 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--rules", "--stability"}, "are studies of their own"},
       {{"--rules", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--th", "squared"}, "--rules"},
-      {{"--rules", "--loss", "0.1"}, "--loss"},
+      {{"--rules", "--tolerance", "0.1"}, "--tolerance"},
       {{"--stability", "--frames", "5"}, "--rules"},
       {{"--path", "no_such.json"}, "no_such.json"},
       {{"--stability", "--json", folder / "file/s.json"}, "file"},

@@ -28,27 +28,27 @@ nlohmann::json pairs_of(const test::TempFolder& folder, std::vector<std::string>
 TEST(Threshold, ALossMakesFewerPairs) {
   const test::TempFolder folder;
   const auto exact = pairs_of(folder, {});
-  const auto lossy = pairs_of(folder, {"--loss", "0.1"});
-  const auto paper = pairs_of(folder, {"--th", "peripheral", "--loss", "2"});
+  const auto lossy = pairs_of(folder, {"--tolerance", "0.1"});
+  const auto paper = pairs_of(folder, {"--th", "peripheral", "--tolerance", "2"});
   EXPECT_EQ(exact.at("settings").at("th"), "tau");
   EXPECT_EQ(lossy.at("settings").at("th"), "squared");
   EXPECT_LT(lossy.at("views")[0].at("pairs"), exact.at("views")[0].at("pairs"));
   EXPECT_LT(paper.at("views")[0].at("pairs"), exact.at("views")[0].at("pairs"));
-  const auto repeated = pairs_of(folder, {"--loss", "0.1", "--transmittance", "last", "--frames", "3"});
+  const auto repeated = pairs_of(folder, {"--tolerance", "0.1", "--transmittance", "last", "--frames", "3"});
   EXPECT_LT(repeated.at("views")[0].at("pairs"), lossy.at("views")[0].at("pairs"));
 }
 
 TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
-      {{"--th", "squared"}, "needs --loss, --quality or --calibration"},
+      {{"--th", "squared"}, "needs --tolerance, --quality or --calibration"},
       {{"--th", "tau", "--quality", "40"}, "--quality has no effect"},
-      {{"--loss", "1", "--quality", "40"}, "--loss with --quality"},
+      {{"--tolerance", "1", "--quality", "40"}, "--tolerance with --quality"},
       {{"--quality", "-3"}, "--quality"},
       {{"--quality", "40", "--reference-until", "project"}, "--reference-until"},
-      {{"--th", "tau", "--loss", "1"}, "--loss has no effect"},
-      {{"--loss", "-1"}, "--loss"},
+      {{"--th", "tau", "--tolerance", "1"}, "--tolerance has no effect"},
+      {{"--tolerance", "-1"}, "--tolerance"},
       {{"--transmittance", "last"}, "--transmittance has no effect with --th tau"},
-      {{"--loss", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
+      {{"--tolerance", "1", "--transmittance", "last", "--reference-until", "project"}, "--reference-until"},
       {{"--path", "x.json", "--frames", "3"}, "--path names its own cameras"},
   };
   for (const auto& [options, message] : wrong) {
@@ -61,7 +61,7 @@ TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
 TEST(Threshold, AQualityIsComeToWithoutALoss) {
   const test::TempFolder folder;
   const auto draw = [&](const std::string& name, std::vector<std::string> more) {
-    // Not smaller: where dozens of Gaussians share a pixel the error is a step of the loss.
+    // Not smaller: where dozens of Gaussians share a pixel the error is a step of the tolerance.
     std::vector<std::string> all = {"render", "demo:room",   "--mono", "--size",           "192x108",
                                     "-o",     folder / name, "--json", folder / "run.json"};
     all.insert(all.end(), more.begin(), more.end());
@@ -73,7 +73,7 @@ TEST(Threshold, AQualityIsComeToWithoutALoss) {
   const auto run = draw("near.png", {"--quality", "36"});
   EXPECT_EQ(run.at("settings").at("th"), "squared");
   EXPECT_EQ(run.at("settings").at("transmittance"), "one");
-  EXPECT_GT(run.at("views")[0].at("loss").get<double>(), 0.0);
+  EXPECT_GT(run.at("views")[0].at("tolerance").get<double>(), 0.0);
   const test::Outcome compared = test::run_program(
       {"compare", folder / "near.png", folder / "exact.png", "--json", folder / "compared.json"});
   ASSERT_EQ(compared.code, 0) << compared.err;
@@ -84,7 +84,7 @@ TEST(Threshold, AQualityIsComeToWithoutALoss) {
 TEST(Threshold, DepthsHaveATable) {
   const test::TempFolder folder;
   const auto pairs = [&](std::vector<std::string> more) {
-    more.insert(more.end(), {"--loss", "0.1"});
+    more.insert(more.end(), {"--tolerance", "0.1"});
     return pairs_of(folder, more).at("views")[0].at("pairs").get<double>();
   };
   EXPECT_LE(pairs({"--transmittance", "depth"}), pairs({}));
@@ -101,7 +101,7 @@ TEST(Path, DrawsEveryFrameByWhatTheLastOneMeasured) {
   }
   test::write_text(folder / "path.json", "[" + frames + "]");
   const test::Outcome outcome =
-      test::run_program({"render", "demo:room", "--path", folder / "path.json", "--loss", "0.1",
+      test::run_program({"render", "demo:room", "--path", folder / "path.json", "--tolerance", "0.1",
                          "--transmittance", "last", "-o", folder / "out", "--json", folder / "run.json"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto run = nlohmann::json::parse(test::read_text(folder / "run.json"));

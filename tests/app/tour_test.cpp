@@ -91,22 +91,22 @@ TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
   expect({"--units-per-metre", "0.5"}, 0.5, "at up to 3 m and 90 degrees a second");
 }
 
-TEST_F(Tour, ItsFirstLossIsSearchedAsThatOfAnyPictureIs) {
-  const auto losses = [&](std::vector<std::string> more) {
+TEST_F(Tour, ItsFirstToleranceIsSearchedAsThatOfAnyPictureIs) {
+  const auto tolerances = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--quality", "40", "--preset", "headset"});
     EXPECT_TRUE(good(tour(more)));
     std::vector<double> found;
-    for (const auto& view : views()) found.push_back(view.at("loss"));
+    for (const auto& view : views()) found.push_back(view.at("tolerance"));
     return found;
   };
   const std::vector<double> on_tour =
-      losses({"--tour", "fast", "--seconds", "0.03", "--units-per-metre", "1"});
+      tolerances({"--tour", "fast", "--seconds", "0.03", "--units-per-metre", "1"});
   ASSERT_EQ(on_tour.size(), 3u);
   EXPECT_TRUE(std::filesystem::exists(out + "/tour_00002_right.png"));
-  const std::vector<double> on_path = losses({"--path", folder / "cameras.json"});
+  const std::vector<double> on_path = tolerances({"--path", folder / "cameras.json"});
   EXPECT_EQ(on_tour[0], on_path[0]);
-  EXPECT_EQ(on_tour[0], losses({"--view", "v0"})[0]);
-  EXPECT_NE(on_tour[0], on_path.back()) << "another view's loss goes unnoticed";
+  EXPECT_EQ(on_tour[0], tolerances({"--view", "v0"})[0]);
+  EXPECT_NE(on_tour[0], on_path.back()) << "another view's tolerance goes unnoticed";
 }
 
 TEST_F(Tour, PairsAreHeads) {

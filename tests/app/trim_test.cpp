@@ -134,6 +134,14 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   EXPECT_EQ(test::read_text(folder / "a.splat"), test::read_text(folder / "b.splat"));
 }
 
+TEST_F(TrimTest, WritesEveryFormat) {
+  for (const WrittenFormat& format : written_formats) {
+    const std::string file = std::string("t") + format.ending;
+    ASSERT_TRUE(good(trim(file, {"--quality", "12"}))) << file;
+    EXPECT_TRUE(load_model(folder / file).format.starts_with(format.read_as)) << file;
+  }
+}
+
 TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
   Model shiny = seen();
   for (std::size_t i = 0; i < visible; ++i) {

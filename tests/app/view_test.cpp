@@ -45,7 +45,7 @@ TEST(View, BadOptionsEndBeforeAnyWindow) {
   EXPECT_TRUE(refused({"--mono"}, "binosplat render"));
   EXPECT_TRUE(refused({"--layout", "multi-view"}, "multi-view"));
   EXPECT_TRUE(refused({"--show", "colour"}, "--show"));
-  EXPECT_TRUE(refused({"--th", "squared"}, "--loss"));
+  EXPECT_TRUE(refused({"--th", "squared"}, "--tolerance"));
   EXPECT_TRUE(refused({"--no-such-option"}, "--no-such-option"));
 }
 
@@ -149,8 +149,8 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   key("h");
   key("F12");
   ASSERT_TRUE(says(program, "saved", 4));
-  const std::vector<std::string> approximate = {"--layout", "cross-eyed", "--tiles", "obb",
-                                                "--th",     "peripheral", "--loss",  "0.15"};
+  const std::vector<std::string> approximate = {"--layout", "cross-eyed", "--tiles",     "obb",
+                                                "--th",     "peripheral", "--tolerance", "0.15"};
   EXPECT_TRUE(same(picture(3), rendered("key_000", "300x400", approximate)));
   EXPECT_FALSE(same(picture(3), picture(2))) << "tiles and th changed nothing";
 
@@ -186,7 +186,7 @@ TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
 }
 
 TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
-  Program program = view({"--loss", "0.5"});
+  Program program = view({"--tolerance", "0.5"});
   ASSERT_TRUE(says(program, "Gaussians"));
   key("k");
   ASSERT_TRUE(says(program, "saved", 1));
@@ -198,7 +198,7 @@ TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
     key("F12");
     ASSERT_TRUE(says(program, "saved", n + 1));
     const auto written = [&](const std::string& show) {
-      return rendered("key_000", "300x400", {"--layout", "parallel", "--loss", "0.5", "--show", show});
+      return rendered("key_000", "300x400", {"--layout", "parallel", "--tolerance", "0.5", "--show", show});
     };
     EXPECT_TRUE(same(picture(n), written(name))) << name;
     EXPECT_FALSE(same(picture(n), written(before))) << name << " is shown as " << before;

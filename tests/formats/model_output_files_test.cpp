@@ -216,7 +216,7 @@ TEST(ModelOutputFiles, NamesTellTheFormat) {
   EXPECT_EQ(model_format_of("b.SOG"), ModelFormat::sog);
   EXPECT_EQ(model_format_of("ply"), std::nullopt);
   EXPECT_EQ(model_format_of("b.ply.gz"), std::nullopt);
-  EXPECT_STREQ(model_format_names[static_cast<int>(ModelFormat::spz)], "spz");
+  EXPECT_STREQ(written_format(ModelFormat::spz).name, "spz");
 }
 
 TEST(Morton, NeighboursStayTogether) {

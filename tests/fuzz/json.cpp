@@ -37,7 +37,8 @@ void check(const study::Calibration& calibration) {
   demand(calibration.width >= 1 && calibration.height >= 1 && calibration.focal > 0.0, "a view of nothing");
   demand(!calibration.depth_table.bounds.empty() && calibration.depth_table.far > 0.0f, "no table of depths");
   for (const study::CalibrationEntry& entry : calibration.entries)
-    demand(entry.loss >= 0.0 && std::isfinite(static_cast<float>(entry.loss)), "a loss that is none");
+    demand(entry.tolerance >= 0.0 && std::isfinite(static_cast<float>(entry.tolerance)),
+           "a tolerance that is none");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(Layout, ViewIsWhereTheDriverPutsIt) {
 
 TEST(Layout, FrameParametersAreWhereTheDriverPutsThem) {
   const Offsets expected = {AT(FrameParameters, background),
-                            AT(FrameParameters, loss),
+                            AT(FrameParameters, tolerance),
                             AT(FrameParameters, far),
                             AT(FrameParameters, depth_bins),
                             AT(FrameParameters, remembers),

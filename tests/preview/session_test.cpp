@@ -18,7 +18,7 @@ struct SessionTest : testing::Test {
   test::TempFolder folder;
   Choices coarse = [] {
     Choices choices;
-    choices.settings = {.th = TH_SQUARED, .loss = 3.0f};
+    choices.settings = {.th = TH_SQUARED, .tolerance = 3.0f};
     return choices;
   }();
   Session session{test::gl_context(),
@@ -49,7 +49,7 @@ TEST_F(SessionTest, TheSplitIsWhereTheSliderStands) {
   };
   EXPECT_EQ(apart(split_at(1.0), drawn), 0.0);
   const Image exact = split_at(0.0);
-  EXPECT_GT(apart(exact, drawn), 0.05) << "this loss changes nothing";
+  EXPECT_GT(apart(exact, drawn), 0.05) << "this tolerance changes nothing";
   EXPECT_GT(apart(split_at(0.5), drawn), 0.0);
   EXPECT_GT(apart(split_at(0.5), exact), 0.0);
   session.choices.show = SHOW_PICTURE;

@@ -1,6 +1,6 @@
-// Thresholds on the shared scenes against the numbers of docs/method.md 8: what a loss takes away, and
-// what measured transmittance is worth. A few figures by default; all of them, and the searches for a loss at
-// a quality, with BINOSPLAT_LONG=1.
+// Thresholds on the shared scenes against the numbers of docs/method.md 8: what a tolerance takes away, and
+// what measured transmittance is worth. A few figures by default; all of them, and the searches for a
+// tolerance at a quality, with BINOSPLAT_LONG=1.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a loss does to a view, or to the mean of some.
+/// What a tolerance does to a view, or to the mean of some.
 struct Effect {
   double removed = 0.0;   // % of the pairs of `ellipse` at tau
   double drop = 0.0;      // dB against the photo, 8 bits
@@ -55,9 +55,9 @@ class Judged {
     upper_ = floored(measure_transmittance(seen.splats, seen.lists(TILES_ELLIPSE), seen.view), 0.01);
   }
 
-  Effect effect(int th, double loss) const {
+  Effect effect(int th, double tolerance) const {
     std::vector<Splat> splats = scene_.splats;
-    set_thresholds(splats, th, loss, upper_);
+    set_thresholds(splats, th, tolerance, upper_);
     const TileLists lists = make_lists(splats, scene_.order, scene_.view, TILES_ELLIPSE);
     const Image image = on_black(blend(splats, lists, scene_.view));
     return {100.0 * (1.0 - double(lists.pairs()) / double(exact_lists_.pairs())),
@@ -150,16 +150,16 @@ TEST(TransmittanceOnFox, MeasuredTransmittanceRemovesWhatIsHidden) {
   EXPECT_NEAR(got.to_exact, 69, 0.5);
 }
 
-/// Pairs that a rule removes from the views of a scene at a quality, one loss for all of them.
+/// Pairs that a rule removes from the views of a scene at a quality, one tolerance for all of them.
 struct AtQuality {
   const char* name;
   Trained model;
   std::vector<const char*> views;
   int th;
   Source source;
-  double quality;   // dB: mean against exact where above 0, else the negated mean drop against the photos
-  double at_least;  // % removed, mean
-  double loss;      // where the search starts
+  double quality;    // dB: mean against exact where above 0, else the negated mean drop against the photos
+  double at_least;   // % removed, mean
+  double tolerance;  // where the search starts
 };
 
 std::ostream& operator<<(std::ostream& out, const AtQuality& c) { return out << c.name; }
@@ -197,24 +197,24 @@ TEST_P(PairsRemovedAtQuality, AreAsMany) {
   for (const char* name : c.views) views.emplace_back(model, folder, name, c.source);
   const bool by_photos = c.quality < 0;
   std::map<double, Effect> means;
-  const auto quality = [&](double loss) {
-    Effect& mean = means[loss];
+  const auto quality = [&](double tolerance) {
+    Effect& mean = means[tolerance];
     for (const Judged& view : views) {
-      const Effect effect = view.effect(c.th, loss);
+      const Effect effect = view.effect(c.th, tolerance);
       mean.removed += effect.removed / double(views.size());
       mean.drop += effect.drop / double(views.size());
       mean.to_exact += effect.to_exact / double(views.size());
     }
     return by_photos ? -mean.drop : mean.to_exact;
   };
-  const measure::FoundLoss found = measure::find_loss(
-      quality, c.quality, {.start = c.loss, .tolerance = by_photos ? 0.004 : 0.02, .evaluations = 16});
-  const Effect& mean = means.at(found.loss);
+  const measure::FoundTolerance found = measure::find_tolerance(
+      quality, c.quality, {.start = c.tolerance, .within = by_photos ? 0.004 : 0.02, .evaluations = 16});
+  const Effect& mean = means.at(found.tolerance);
   EXPECT_NEAR(found.value, c.quality, 0.05);
   EXPECT_GE(mean.removed, c.at_least);
   EXPECT_LT(mean.removed, c.at_least + 2.5) << "more than docs/method.md found possible";
-  std::printf("%s: loss %.4f removes %.2f %% at a drop of %.3f dB, %.2f dB against exact (%d asked)\n",
-              c.name, found.loss, mean.removed, mean.drop, mean.to_exact, found.evaluations);
+  std::printf("%s: tolerance %.4f removes %.2f %% at a drop of %.3f dB, %.2f dB against exact (%d asked)\n",
+              c.name, found.tolerance, mean.removed, mean.drop, mean.to_exact, found.evaluations);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PairsRemovedAtQuality, testing::ValuesIn(at_quality),

@@ -61,12 +61,12 @@ TEST(Threshold, RefusesWhatWouldMakeAHole) {
 TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
   const shared::View view = view_of(64, 64);
   // Thresholds of 0.0835 by the paper's rule and 0.0892 by the squared one.
-  for (const auto& [th, loss] : {std::pair(TH_PERIPHERAL, 2.0), {TH_SQUARED, 0.1}}) {
+  for (const auto& [th, tolerance] : {std::pair(TH_PERIPHERAL, 2.0), {TH_SQUARED, 0.1}}) {
     const std::vector<Splat> before = {make_splat({24, 24}, {4, 0, 4}, 0.08),
                                        make_splat({24, 24}, {4, 0, 4}, 0.09),
                                        make_splat({24, 24}, {4, 0, 4}, 0.003)};
     std::vector<Splat> splats = before;
-    set_thresholds(splats, th, loss);
+    set_thresholds(splats, th, tolerance);
     for (const int tiles : {TILES_AABB, TILES_OBB, TILES_SNUG, TILES_ELLIPSE, TILES_ALL}) {
       // An order made before or after: both leave out what is not drawn.
       for (const auto& order : {depth_order(before), depth_order(splats)}) {
@@ -89,7 +89,7 @@ TEST(Threshold, AboveTheOpacityLeavesTheViewWhateverTheTiles) {
   }
 }
 
-TEST(Threshold, LossOfZeroIsTauBitForBit) {
+TEST(Threshold, ToleranceOfZeroIsTauBitForBit) {
   const Model model = test::random_model(3, 800, 1);
   const shared::View view = view_of(75, 53);
   test::Uniform uniform(1);
@@ -98,25 +98,25 @@ TEST(Threshold, LossOfZeroIsTauBitForBit) {
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     const Picture exact = render(model, view, {.tiles = tiles});
     for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-      EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .loss = 0.0}), exact));
+      EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.0}), exact));
       EXPECT_TRUE(equal_bits(render(model, view, {.tiles = tiles, .th = th, .bounds = bounds}), exact));
-      // A loss must be seen, and so must the light that reaches each.
-      const Picture lossy = render(model, view, {.tiles = tiles, .th = th, .loss = 0.01});
+      // A tolerance must be seen, and so must the light that reaches each.
+      const Picture lossy = render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.01});
       EXPECT_FALSE(equal_bits(lossy, exact));
-      EXPECT_FALSE(
-          equal_bits(render(model, view, {.tiles = tiles, .th = th, .loss = 0.01, .bounds = bounds}), lossy));
+      EXPECT_FALSE(equal_bits(
+          render(model, view, {.tiles = tiles, .th = th, .tolerance = 0.01, .bounds = bounds}), lossy));
     }
   }
 }
 
-/// Largest alpha, as it is blended, of the pairs that a loss leaves out, over the Th of their Gaussians.
+/// Largest alpha, as it is blended, of the pairs that a tolerance leaves out, over the Th of their Gaussians.
 /// `planted` is what the thresholds of the lists are multiplied with.
-double largest_left_out(int th, double loss, double planted) {
+double largest_left_out(int th, double tolerance, double planted) {
   const shared::View view = view_of(75, 53);
   std::vector<Splat> splats = random_splats(6, 500, 75, 53);
   const std::vector<std::uint32_t> order = depth_order(splats);
   std::vector<Splat> rated = splats;
-  set_thresholds(rated, th, loss);
+  set_thresholds(rated, th, tolerance);
   std::vector<Splat> listed = rated;
   for (Splat& splat : listed) {
     splat.threshold *= planted;
@@ -141,11 +141,11 @@ double largest_left_out(int th, double loss, double planted) {
 }
 
 TEST(Threshold, LeavesOutNoPixelThatReachesTh) {
-  for (const auto& [th, loss] : {std::pair(TH_TAU, 0.0), {TH_PERIPHERAL, 8.0}, {TH_SQUARED, 0.2}}) {
-    const double largest = largest_left_out(th, loss, 1.0);
+  for (const auto& [th, tolerance] : {std::pair(TH_TAU, 0.0), {TH_PERIPHERAL, 8.0}, {TH_SQUARED, 0.2}}) {
+    const double largest = largest_left_out(th, tolerance, 1.0);
     EXPECT_LT(largest, 1.0);
     EXPECT_GT(largest, 0.97) << "more is kept than need be";
-    EXPECT_GT(largest_left_out(th, loss, 1.05), 1.0) << "a threshold that is too large goes unnoticed";
+    EXPECT_GT(largest_left_out(th, tolerance, 1.05), 1.0) << "a threshold that is too large goes unnoticed";
   }
 }
 

@@ -55,8 +55,8 @@ std::size_t reused(const Model& model, const FrameSettings& settings,
   return count;
 }
 
-const FrameSettings squared{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.1f};
-const FrameSettings peripheral{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST, .loss = 8.0f};
+const FrameSettings squared{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.1f};
+const FrameSettings peripheral{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST, .tolerance = 8.0f};
 
 TEST(AnchorReuse, WhatIsHiddenIsNotDecodedAgain) {
   const Model model = wall();
@@ -134,7 +134,7 @@ TEST(AnchorReuse, OfARealModel) {
   const auto rig = stereo::make_rig(resized(*found, 259, 472), {.ipd = 0.11});
   const std::vector<shared::View> views(rig.views.begin(), rig.views.end());
   FrameSettings settings = squared;
-  settings.loss = 0.148f;  // about 40 dB
+  settings.tolerance = 0.148f;  // about 40 dB
   const double share = double(reused(model, settings, views)) / double(2 * model.scaffold->anchor_count());
   RecordProperty("share", std::to_string(share));
   EXPECT_GT(share, 0.0);

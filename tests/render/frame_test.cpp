@@ -40,15 +40,15 @@ TEST(Frame, TheComparisonWithBruteForceCatchesCutTails) {
   EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_OBB}), brute));
 }
 
-TEST(Frame, ThresholdsWithoutLossAreExactBitForBit) {
+TEST(Frame, ThresholdsWithoutToleranceAreExactBitForBit) {
   const Model model = test::random_model(43, 5000, 1);
   const shared::View view = make_view(test::front_camera(160, 96, 160));
   const Picture exact = draw(model, view);
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
-      EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .loss = 0}), exact))
+      EXPECT_TRUE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .tolerance = 0}), exact))
           << tiles << " " << th;
-      EXPECT_FALSE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .loss = 1}), exact))
+      EXPECT_FALSE(same_bits(draw(model, view, {.tiles = tiles, .th = th, .tolerance = 1}), exact))
           << tiles << " " << th;
     }
   }
@@ -114,12 +114,13 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
   const Model model = test::random_model(52, 2000, 1);
   const auto eyes = stereo::make_rig(test::front_camera(90, 70, 80), {.ipd = 0.1});
   const std::vector views(eyes.views.begin(), eyes.views.end());
-  for (const FrameSettings& way : {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.tiles = TILES_ELLIPSE},
-                                   FrameSettings{.tiles = TILES_ALL}, FrameSettings{.tiles = TILES_OBB},
-                                   FrameSettings{.tiles = TILES_SNUG, .th = TH_PERIPHERAL, .loss = 1.0f},
-                                   FrameSettings{.tiles = TILES_ELLIPSE, .th = TH_SQUARED, .loss = 0.05f}}) {
+  for (const FrameSettings& way :
+       {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.tiles = TILES_ELLIPSE},
+        FrameSettings{.tiles = TILES_ALL}, FrameSettings{.tiles = TILES_OBB},
+        FrameSettings{.tiles = TILES_SNUG, .th = TH_PERIPHERAL, .tolerance = 1.0f},
+        FrameSettings{.tiles = TILES_ELLIPSE, .th = TH_SQUARED, .tolerance = 0.05f}}) {
     const Picture expected = reference::render(
-        model, views[1], {.tiles = way.tiles, .th = way.th, .loss = static_cast<double>(way.loss)});
+        model, views[1], {.tiles = way.tiles, .th = way.th, .tolerance = static_cast<double>(way.tolerance)});
     EXPECT_GE(test::psnr(draw(model, views, way)[1], expected), 80.0) << tiles_choices[way.tiles].name;
     for (const Stage stage :
          {Stage::project, Stage::order, Stage::pairs, Stage::tile_sort, Stage::ranges, Stage::blend}) {

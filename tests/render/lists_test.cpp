@@ -96,12 +96,13 @@ TEST(Lists, OfSeveralTilesChangeNoPicture) {
   const Model model = test::random_model(52, 4000, 1);
   EXPECT_TRUE(same_frames(model, {}));
   EXPECT_TRUE(same_frames(model, {.tiles = TILES_AABB}));
-  EXPECT_TRUE(same_frames(model, {.th = TH_SQUARED, .loss = 0.5f}));
-  EXPECT_TRUE(same_frames(model, {.th = TH_PERIPHERAL, .loss = 5.0f}));
+  EXPECT_TRUE(same_frames(model, {.th = TH_SQUARED, .tolerance = 0.5f}));
+  EXPECT_TRUE(same_frames(model, {.th = TH_PERIPHERAL, .tolerance = 5.0f}));
   EXPECT_TRUE(same_frames(model, {.precision = PRECISION_HALF}));
   // Every frame measures what the next goes by.
   EXPECT_TRUE(same_frames(
-      model, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 1, .loss = 0.5f}, 3));
+      model, {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 1, .tolerance = 0.5f},
+      3));
 }
 
 TEST(Lists, OfSplatsOverThousandsOfThemAreWhole) {
@@ -143,7 +144,7 @@ TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
   // What the square of 3D-GS cuts, and what Th leaves out of a tile, is seen in the tiles beside.
   const Model model = test::random_model(52, 4000, 1);
   for (const FrameSettings& settings :
-       {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.th = TH_SQUARED, .loss = 0.5f}}) {
+       {FrameSettings{.tiles = TILES_AABB}, FrameSettings{.th = TH_SQUARED, .tolerance = 0.5f}}) {
     EXPECT_FALSE(same_pictures(draw_frames(model, settings, 1, 1), draw_frames(model, settings, 2, 1)));
   }
 }
@@ -152,7 +153,7 @@ TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
   const Model model = test::random_model(53, 4000, 1);
   const auto told = [&](int supertile_side) {
     render::Frame frame(test::gl_context(), model);
-    frame.draw(two_views(), {.th = TH_SQUARED, .loss = 0.5f}, {.supertile_side = supertile_side});
+    frame.draw(two_views(), {.th = TH_SQUARED, .tolerance = 0.5f}, {.supertile_side = supertile_side});
     std::vector<std::vector<float>> all;
     for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what)
       for (const Image& image : frame.read_shown(what)) all.push_back(image.data);

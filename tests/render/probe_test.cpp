@@ -76,7 +76,7 @@ std::vector<shared::View> eyes(int width, int height, double cant = 0.0) {
   return {rig.views.begin(), rig.views.end()};
 }
 
-// Settings without loss, in which a probe must find no error.
+// Settings without tolerance, in which a probe must find no error.
 void expect_no_error(const Model& model, const FrameSettings& settings, int supertile_side, double cant) {
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
   const auto views = eyes(width, height, cant);
@@ -89,7 +89,7 @@ void expect_no_error(const Model& model, const FrameSettings& settings, int supe
   }
 }
 
-TEST(Probe, WithoutLossFindsNoErrorWhereverItsTilesLie) {
+TEST(Probe, WithoutToleranceFindsNoErrorWhereverItsTilesLie) {
   const Model model = test::random_model(101, 1500, 1);
   for (const int tile_size : {8, 16, 32}) {
     for (const int supertile_side : {1, 2}) {
@@ -99,7 +99,7 @@ TEST(Probe, WithoutLossFindsNoErrorWhereverItsTilesLie) {
   }
 }
 
-TEST(Probe, WithoutLossFindsNoErrorByAnyTileTest) {
+TEST(Probe, WithoutToleranceFindsNoErrorByAnyTileTest) {
   const Model model = test::random_model(102, 1500, 0);
   for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL}) {
     for (const int supertile_side : {1, 2}) {
@@ -117,7 +117,7 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
     for (const double cant : {0.0, 4.0}) {
       const auto views = eyes(width, height, cant);
       const FrameSettings settings = {
-          .th = TH_SQUARED, .loss = 0.3f, .tile_size = side, .background = background};
+          .th = TH_SQUARED, .tolerance = 0.3f, .tile_size = side, .background = background};
       const auto exact = test::draw(model, views, {.tile_size = side, .background = background});
       int differing = 0;
       const std::uint32_t across = tiles_along(width, side);
@@ -149,16 +149,16 @@ TEST(Probe, TellsOfLongListsToo) {
   }
   const auto views = eyes(64, 48);
   const auto exact = test::draw(model, views, {.background = background});
-  for (const float loss : {0.0f, 0.02f}) {
-    const FrameSettings settings = {.th = TH_SQUARED, .loss = loss, .background = background};
+  for (const float tolerance : {0.0f, 0.02f}) {
+    const FrameSettings settings = {.th = TH_SQUARED, .tolerance = tolerance, .background = background};
     for (const Probe& probe : probes({1, 2}, 4, 3)) {
       const ProbeRun run(model, views, settings, 2, probe);
       if (probe.step == 1) {
         EXPECT_GT(run.run.frame.counters.read<shared::Counters>(1).front().long_lists, 0u);
       }
       const double expected = error_in(probe, run.picture(probe.view), exact[probe.view], 16);
-      EXPECT_NEAR(run.error, expected, 2e-3 * expected) << loss;
-      EXPECT_EQ(expected > 0.0, loss > 0.0f);
+      EXPECT_NEAR(run.error, expected, 2e-3 * expected) << tolerance;
+      EXPECT_EQ(expected > 0.0, tolerance > 0.0f);
     }
   }
 }
@@ -170,7 +170,7 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
        {FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST},
         FrameSettings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST}}) {
     FrameSettings lossy = settings;
-    lossy.loss = 0.05f;
+    lossy.tolerance = 0.05f;
     const ProbeRun without(model, views, lossy, 1, {});
     for (const Probe& probe : probes({2}, 6, 5)) {
       const ProbeRun with(model, views, lossy, 1, probe);
@@ -182,7 +182,7 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
   }
 }
 
-TEST(Quality, TheFrameIsThatOfTheLossItTells) {
+TEST(Quality, TheFrameIsThatOfTheToleranceItTells) {
   const Model model = test::random_model(99, 3000, 1);
   const auto views = eyes(96, 80);
   FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 4, .probe_every = 1};
@@ -191,7 +191,7 @@ TEST(Quality, TheFrameIsThatOfTheLossItTells) {
     const render::FrameReport report = steered.draw(views, settings);
     FrameSettings same = settings;
     same.quality = 0;
-    same.loss = report.loss;
+    same.tolerance = report.tolerance;
     const render::FrameReport other = given.draw(views, same);
     EXPECT_GT(report.pairs, other.pairs);  // the probe's
     EXPECT_EQ(other.attempts, 1);
@@ -213,7 +213,7 @@ TEST(Quality, IsToldFromTheFirstFrameOn) {
     EXPECT_NEAR(report.quality, db, n == 0 ? 0.01 : 0.3) << n;  // all tiles are probed
     EXPECT_GE(db, 33.9) << n;
     EXPECT_LE(db, 35.5) << n;
-    EXPECT_EQ(report.attempts == 1, n > 0) << n;  // the first loss is far from right here
+    EXPECT_EQ(report.attempts == 1, n > 0) << n;  // the first tolerance is far from right here
   }
 }
 

@@ -109,24 +109,25 @@ Draw steered(const Walk& walk) {
   };
 }
 
-// How frames were steered formerly: one strip of an eye a frame, sixteen an eye; the loss by a third up or
-// down a frame towards the mean of them; no frame drawn twice, and Th by what earlier frames had measured.
+// How frames were steered formerly: one strip of an eye a frame, sixteen an eye; the tolerance by a third up
+// or down a frame towards the mean of them; no frame drawn twice, and Th by what earlier frames had measured.
 class FormerControl {
  public:
   FormerControl(const Walk& walk, double focal)
-      : walk_(walk), loss_(0.1 * std::pow(std::min(1.0, focal / 700.0), 1.75)) {}
+      : walk_(walk), tolerance_(0.1 * std::pow(std::min(1.0, focal / 700.0), 1.75)) {}
 
   Told operator()(render::Frame& frame, std::size_t n) {
-    loss_ = std::clamp(std::pow(target / error_at_one(), 1.0 / power), 0.75 * loss_, loss_ / 0.75);
+    tolerance_ =
+        std::clamp(std::pow(target / error_at_one(), 1.0 / power), 0.75 * tolerance_, tolerance_ / 0.75);
     const FrameSettings settings = {
-        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = static_cast<float>(loss_)};
+        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = static_cast<float>(tolerance_)};
     frame.draw(walk_.frames[n], settings);
     const std::size_t eyes = walk_.frames[n].size(), eye = n % eyes, strip = n / eyes * 9 % strips;
     const double error = strip_error(shown(frame)[eye], walk_.exact[n][eye], strip);
     for (Sample& sample : samples_) sample.weight *= 0.95;
     samples_.front().weight *= 0.5 / 0.95;
-    samples_.at(1 + eye * strips + strip) = {error / std::pow(loss_, power), 1.0};
-    return {-10.0 * std::log10(error_at_one() * std::pow(loss_, power))};
+    samples_.at(1 + eye * strips + strip) = {error / std::pow(tolerance_, power), 1.0};
+    return {-10.0 * std::log10(error_at_one() * std::pow(tolerance_, power))};
   }
 
  private:
@@ -153,11 +154,11 @@ class FormerControl {
   }
 
   const Walk& walk_;
-  double loss_;
+  double tolerance_;
   // Before anything is measured, two strips at the target; then those of both eyes.
   std::vector<Sample> samples_ = [this] {
     std::vector<Sample> samples(1 + 2 * strips);
-    samples.front() = {target / std::pow(loss_, power), 2.0};
+    samples.front() = {target / std::pow(tolerance_, power), 2.0};
     return samples;
   }();
 };
@@ -217,7 +218,8 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
     for (const bool cuts : {false, true}) {
       const Walk walk = look_at(model, cuts, 6);
       const Kept kept = keep(model, walk, steered(walk));
-      // A loss between too much and too little need not be found in so few Gaussians: better is no fault.
+      // A tolerance between too much and too little need not be found in so few Gaussians: better is no
+      // fault.
       EXPECT_GE(kept.worst, asked - 1.0) << model.name << cuts;
       EXPECT_LE(kept.told_off_most, 1.5) << model.name << cuts;
       // Planted fault: the control that there was.

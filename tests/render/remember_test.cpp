@@ -34,7 +34,7 @@ Model wall() {
 shared::View front() { return make_view(test::front_camera(96, 80, 90)); }
 
 TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
-  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
+  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
   const Model other = test::random_model(83, 1500, 1);
   for (const std::size_t at_first : {std::size_t{400}, std::size_t{5000}}) {
     Model model = test::random_model(82, static_cast<int>(at_first), 1);
@@ -77,7 +77,7 @@ TEST(Remember, MeasuresWhatTheReferenceMeasures) {
 TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
   const Model model = wall();
   const FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 4, .loss = 0.05f};
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 4, .tolerance = 0.05f};
   FrameSettings every = settings;
   every.record_every = 1;
   render::Frame frame(test::gl_context(), model), measured(test::gl_context(), model);
@@ -97,7 +97,7 @@ TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
 TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
   const Model model = wall();
   const FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 6, .loss = 0.05f};
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 6, .tolerance = 0.05f};
   render::Frame frame(test::gl_context(), model);
   std::string recorded;
   for (int n = 0; n < 16; ++n) {
@@ -112,8 +112,8 @@ TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
 
 TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
   const Model model = wall();
-  const FrameSettings one = {.th = TH_SQUARED, .loss = 0.05f};
-  const FrameSettings last = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.05f};
+  const FrameSettings one = {.th = TH_SQUARED, .tolerance = 0.05f};
+  const FrameSettings last = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.05f};
   const Picture expected = test::draw(model, front(), one);
   render::Frame frame(test::gl_context(), model);
   frame.draw(std::vector{front()}, last);
@@ -131,7 +131,7 @@ TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
   const Picture exact = test::draw(model, front());
   for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
     const FrameSettings settings = {
-        .th = th, .transmittance = TRANSMITTANCE_LAST, .loss = th == TH_SQUARED ? 1e-3f : 0.3f};
+        .th = th, .transmittance = TRANSMITTANCE_LAST, .tolerance = th == TH_SQUARED ? 1e-3f : 0.3f};
     render::Frame frame(test::gl_context(), model);
     const auto first = frame.draw(std::vector{front()}, settings);
     auto report = first;
@@ -146,7 +146,7 @@ TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
   // The wall before the others is gone in the next frame: so are the measurements of what it hid, within a
   // few frames.
   const Model model = wall();
-  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.01f};
+  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.01f};
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 5; ++n) frame.draw(std::vector{front()}, settings);
   // Through the near plane instead of another model: what is nearer than 3 is not drawn.
@@ -168,7 +168,7 @@ TEST(Remember, EachEyeGoesByWhatItMeasured) {
     render::Frame frame(test::gl_context(), model);
     for (int n = 0; n < 3; ++n) {
       pairs[source] =
-          frame.draw(rig.views, {.th = TH_PERIPHERAL, .transmittance = source, .loss = 1.0f}).pairs;
+          frame.draw(rig.views, {.th = TH_PERIPHERAL, .transmittance = source, .tolerance = 1.0f}).pairs;
     }
   }
   EXPECT_LT(pairs[TRANSMITTANCE_LAST], pairs[TRANSMITTANCE_ONE]);
@@ -177,7 +177,7 @@ TEST(Remember, EachEyeGoesByWhatItMeasured) {
 TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
   const Model model = test::random_model(83, 4000, 1);
   const std::vector views = {make_view(test::front_camera(120, 90, 110))};
-  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.05f};
+  const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.05f};
   render::Frame ample(test::gl_context(), model);
   render::Frame tight(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) {
@@ -189,8 +189,8 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
 
 TEST(Remember, WhatMakesNoSenseIsNamed) {
   const Model model = test::random_model(84, 10, 0);
-  EXPECT_TRUE(
-      test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .loss = -1}); }, {"loss -1"}));
+  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .tolerance = -1}); },
+                                 {"tolerance -1"}));
 }
 
 TEST(Continuity, TellsAMomentFromACut) {

@@ -15,17 +15,17 @@
 namespace binosplat::render {
 namespace {
 
-// What is wrong with a row, by Th of a splat whose Th is above tau at the careful loss.
+// What is wrong with a row, by Th of a splat whose Th is above tau at the careful tolerance.
 std::string wrong_with(const ThresholdRule& rule, int th) {
   const reference::Splat splat = reference::make_splat({8, 8}, {5, 2, 4}, 1.0);
-  const auto threshold = [&](double loss, double bound = 1.0) {
-    return reference::threshold(th, loss, splat, bound);
+  const auto threshold = [&](double tolerance, double bound = 1.0) {
+    return reference::threshold(th, tolerance, splat, bound);
   };
-  if (threshold(0.0) != ALPHA_MIN) return "a loss of 0 costs something";
-  const double careful = rule.exact ? 1.0 : rule.careful_loss;
+  if (threshold(0.0) != ALPHA_MIN) return "a tolerance of 0 costs something";
+  const double careful = rule.exact ? 1.0 : rule.careful_tolerance;
   if ((threshold(careful) == ALPHA_MIN) != rule.exact) return "exact";
   if ((threshold(careful, 0.5) != threshold(careful)) != rule.uses_bound) return "bound";
-  if (rule.exact == (rule.careful_loss > 0.0)) return "careful loss";
+  if (rule.exact == (rule.careful_tolerance > 0.0)) return "careful tolerance";
   if (rule.exact == (rule.slope >= 1.0)) return "slope";
   return "";
 }
@@ -45,19 +45,19 @@ TEST(ThresholdRules, PlantedFaultsAreCaught) {
   EXPECT_EQ(wrong_with(threshold_rules[TH_TAU], TH_SQUARED), "exact");
   EXPECT_EQ(wrong_with(threshold_rules[TH_SQUARED], TH_TAU), "exact");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.uses_bound = false; }), "bound");
-  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.careful_loss = 0.0; }), "exact");
+  EXPECT_EQ(planted([](ThresholdRule& rule) { rule.careful_tolerance = 0.0; }), "exact");
   EXPECT_EQ(planted([](ThresholdRule& rule) { rule.slope = 0.0; }), "slope");
 }
 
 TEST(Settings, ThatContradictAreNamed) {
   const float nan = std::nanf(""), infinite = std::numeric_limits<float>::infinity();
   const std::vector<std::pair<FrameSettings, std::string>> wrong = {
-      {{.loss = 1.0f}, "--loss has no effect with --th tau, which is exact"},
+      {{.tolerance = 1.0f}, "--tolerance has no effect with --th tau, which is exact"},
       {{.quality = 40.0f}, "--quality has no effect with --th tau, which is exact"},
-      {{.th = TH_SQUARED, .loss = 1.0f, .quality = 40.0f}, "--loss with --quality"},
-      {{.th = TH_SQUARED, .loss = -1.0f}, "--loss -1"},
-      {{.th = TH_SQUARED, .loss = nan}, "--loss nan"},
-      {{.th = TH_SQUARED, .loss = infinite}, "--loss inf"},
+      {{.th = TH_SQUARED, .tolerance = 1.0f, .quality = 40.0f}, "--tolerance with --quality"},
+      {{.th = TH_SQUARED, .tolerance = -1.0f}, "--tolerance -1"},
+      {{.th = TH_SQUARED, .tolerance = nan}, "--tolerance nan"},
+      {{.th = TH_SQUARED, .tolerance = infinite}, "--tolerance inf"},
       {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
       {{.transmittance = TRANSMITTANCE_LAST, .weigh = true},
        "--transmittance last: not in a frame that weighs"},
@@ -73,7 +73,7 @@ TEST(Settings, ThatContradictAreNamed) {
 
 TEST(Workings, ThatContradictAreNamed) {
   const render::Workings blended{.stand_in = render::StandIn{render::Stage::blend, {}}};
-  check(blended, {.th = TH_SQUARED, .loss = 1.0f}, "--");
+  check(blended, {.th = TH_SQUARED, .tolerance = 1.0f}, "--");
   for (const FrameSettings& settings :
        {FrameSettings{.th = TH_SQUARED, .quality = 40.0f},
         FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST}}) {
@@ -87,7 +87,7 @@ TEST(Settings, ThatGoTogetherDo) {
   for (int th = 0; th < std::ssize(th_choices); ++th) {
     for (int source = 0; source < std::ssize(transmittance_choices); ++source) {
       FrameSettings settings{.th = th, .transmittance = source};
-      settings.loss = static_cast<float>(threshold_rules[th].careful_loss);
+      settings.tolerance = static_cast<float>(threshold_rules[th].careful_tolerance);
       check(settings);  // any rule may measure
       if (takes(th, source)) {
         check_choice(settings);
@@ -99,7 +99,7 @@ TEST(Settings, ThatGoTogetherDo) {
   }
   EXPECT_FALSE(takes(TH_TAU, TRANSMITTANCE_LAST));
   EXPECT_TRUE(takes(TH_SQUARED, TRANSMITTANCE_DEPTH));
-  check({.th = TH_SQUARED});  // exact, at a loss of 0
+  check({.th = TH_SQUARED});  // exact, at a tolerance of 0
   check({.th = TH_SQUARED, .quality = 40.0f});
 }
 

@@ -67,7 +67,7 @@ TEST(ScaffoldFrame, IsDecodedIntoHalfPrecision) {
 
 TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
   const Model model = test::scaffold_model(21, four_hundred);
-  FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
+  FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 2; ++n) frame.draw(eyes(), settings);
   settings.precision = PRECISION_HALF;
@@ -91,7 +91,7 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
   const Model model = test::scaffold_model(23, four_hundred);
   for (const double cant : {0.0, 5.0}) {
     const std::vector<shared::View> views = eyes({.ipd = 0.2, .cant_degrees = cant});
-    for (const FrameSettings& way : {FrameSettings{}, FrameSettings{.th = TH_SQUARED, .loss = 0.05f}}) {
+    for (const FrameSettings& way : {FrameSettings{}, FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f}}) {
       const std::vector<Picture> both = draw(model, views, way);
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(both[v], draw(model, views[v], way))) << v;
     }
@@ -157,7 +157,7 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
   const Model model = test::scaffold_model(28, {.anchors = 1500});
   std::vector<shared::View> views = eyes();
   const std::vector<Picture> exact = draw(model, views);
-  const FrameSettings settings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.01f};
+  const FrameSettings settings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.01f};
   render::Frame frame(test::gl_context(), model);
   const std::uint64_t first = frame.draw(views, settings).pairs;
   std::uint64_t pairs = first;
@@ -172,11 +172,11 @@ TEST(ScaffoldFrame, AThresholdTakesEachEyesOwn) {
   const std::vector<Picture> exact = draw(model, views);
   const std::vector<Picture> drawn = draw(model, views, {.th = TH_SQUARED});
   for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(drawn[v], exact[v])) << v;
-  EXPECT_FALSE(same_bits(draw(model, views, {.th = TH_SQUARED, .loss = 0.05f})[0], exact[0]));
+  EXPECT_FALSE(same_bits(draw(model, views, {.th = TH_SQUARED, .tolerance = 0.05f})[0], exact[0]));
 }
 
 TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
-  // Without loss a strip beside the picture differs from it by nothing, though the strip alone would see
+  // Without tolerance a strip beside the picture differs from it by nothing, though the strip alone would see
   // other anchors.
   const Model model = test::scaffold_model(30, four_hundred);
   const std::vector<shared::View> views = eyes();

@@ -72,7 +72,7 @@ TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
 TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
   const std::vector views = {view};
   const render::FrameSettings settings = {
-      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.1f};
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.1f};
   render::Frame other(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) {
     frame.draw(views, settings);

@@ -12,7 +12,7 @@ namespace {
 
 using render::FrameSettings;
 
-constexpr double loss = 0.6;
+constexpr double tolerance = 0.6;
 
 stereo::EyePair rig() { return stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3}); }
 
@@ -22,7 +22,7 @@ std::vector<double> thresholds(const Model& model, const shared::View& view, int
   std::vector<double> result(model.count());
   for (std::size_t i = 0; i < result.size(); ++i) {
     const reference::Splat splat = reference::project(model, i, view);
-    if (splat.drawn) result[i] = reference::threshold(th, loss, splat, bounds.empty() ? 1.0 : bounds[i]);
+    if (splat.drawn) result[i] = reference::threshold(th, tolerance, splat, bounds.empty() ? 1.0 : bounds[i]);
   }
   return result;
 }
@@ -52,7 +52,7 @@ TEST(ThEyes, EachEyeGoesByItsOwn) {
   const auto eyes = rig().views;
   for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
     const std::vector<double> expected[2] = {thresholds(model, eyes[0], th), thresholds(model, eyes[1], th)};
-    test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .loss = static_cast<float>(loss)});
+    test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .tolerance = static_cast<float>(tolerance)});
     run.run_until(render::Stage::project);
     for (std::uint32_t eye = 0; eye < 2; ++eye) {
       const Compared c = compare(run, eye, model, expected[eye]);
@@ -67,7 +67,8 @@ TEST(ThEyes, EachEyeGoesByItsOwn) {
 TEST(ThEyes, CantedEyesGoByTheirOwn) {
   const Model model = test::random_model(92, 3000, 0);
   const auto eyes = stereo::make_rig(test::front_camera(120, 90, 110), {.ipd = 0.3, .cant_degrees = 5}).views;
-  test::StageRun run(model, {eyes[0], eyes[1]}, {.th = TH_SQUARED, .loss = static_cast<float>(loss)});
+  test::StageRun run(model, {eyes[0], eyes[1]},
+                     {.th = TH_SQUARED, .tolerance = static_cast<float>(tolerance)});
   run.run_until(render::Stage::project);
   // The stage runs once an order group, and the last one's splats are in the order of its own indices.
   const Compared c = compare(run, 1, model, thresholds(model, eyes[1], TH_SQUARED));
@@ -75,7 +76,7 @@ TEST(ThEyes, CantedEyesGoByTheirOwn) {
   EXPECT_GT(c.all, 300);
 }
 
-TEST(ThEyes, LossOfZeroIsExactBitForBit) {
+TEST(ThEyes, ToleranceOfZeroIsExactBitForBit) {
   const Model model = test::random_model(93, 3000, 1);
   const auto eyes = rig().views;
   const std::vector views(eyes.begin(), eyes.end());
@@ -101,7 +102,7 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
   const FrameSettings settings = {.th = TH_PERIPHERAL,
                                   .transmittance = TRANSMITTANCE_DEPTH,
                                   .depth_table = table,
-                                  .loss = static_cast<float>(loss)};
+                                  .tolerance = static_cast<float>(tolerance)};
   test::StageRun run(model, {view}, settings);
   run.run_until(render::Stage::project);
   const Compared c = compare(run, 0, model, thresholds(model, view, TH_PERIPHERAL, bounds));
@@ -109,7 +110,7 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
   EXPECT_GT(c.all, 300);
   EXPECT_GT(compare(run, 0, model, thresholds(model, view, TH_PERIPHERAL, shifted)).wrong, c.all / 5);
 
-  reference::Settings judged = {.th = TH_PERIPHERAL, .loss = loss, .bounds = bounds};
+  reference::Settings judged = {.th = TH_PERIPHERAL, .tolerance = tolerance, .bounds = bounds};
   EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
   judged.bounds = shifted;
   EXPECT_LT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);
@@ -122,7 +123,7 @@ TEST(DepthTable, OneThatMakesNoSenseIsNamed) {
        {render::DepthTable{}, render::DepthTable{0.0f, {1.0f}}, render::DepthTable{5.0f, {0.5f, 1.5f}},
         render::DepthTable{5.0f, {std::nanf("")}}}) {
     const FrameSettings settings = {
-        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .loss = 1};
+        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_DEPTH, .depth_table = table, .tolerance = 1};
     EXPECT_TRUE(test::fails_saying([&] { test::draw(model, view, settings); }, {"transmittance depth"}));
   }
 }

@@ -20,7 +20,7 @@ constexpr int width = 64, height = 40;
 struct ShowTest : testing::Test {
   const Model model = test::random_model(9, 400, 0, 0.6);
   const EyePair pair = make_rig(test::front_camera(width, height, 55.0), {.ipd = 0.2, .convergence = 2.0});
-  const render::FrameSettings coarse = {.th = TH_SQUARED, .loss = 3.0f};
+  const render::FrameSettings coarse = {.th = TH_SQUARED, .tolerance = 3.0f};
   render::Frame frame{test::gl_context(), model};
   Show show{frame.model()};
   std::vector<Picture> pictures, exact;
@@ -62,7 +62,7 @@ TEST_F(ShowTest, ThePictureItself) {
 TEST_F(ShowTest, ASplitIsAsDrawnOnTheLeftAndExactOnTheRight) {
   EXPECT_TRUE(same_bits(made(SHOW_SPLIT, 1.0).pictures, pictures));
   EXPECT_TRUE(same_bits(made(SHOW_SPLIT, 0.0).pictures, exact));
-  EXPECT_FALSE(same_bits(pictures, exact)) << "this loss changes nothing";
+  EXPECT_FALSE(same_bits(pictures, exact)) << "this tolerance changes nothing";
   const std::vector<Picture> middle = made(SHOW_SPLIT, 0.25).pictures;
   for (std::size_t v = 0; v < 2; ++v) {
     for (int y = 0; y < height; ++y) {
@@ -147,7 +147,8 @@ TEST_F(ShowTest, TheRangeIsARoundNumber) {
 }
 
 TEST_F(ShowTest, WhatTheFrameRemembersStays) {
-  const render::FrameSettings last = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.2f};
+  const render::FrameSettings last = {
+      .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.2f};
   render::Frame other(test::gl_context(), model);
   render::FrameReport report;
   for (int n = 0; n < 3; ++n) {

@@ -85,7 +85,7 @@ TEST(Contributions, SkippingCostsWhatTheWallsContribute) {
   EXPECT_GT(std::abs(db(rest({0, 1})) - db(rest({1, 3}))), 1.0) << "the rules could be mistaken";
 }
 
-/// Spots, each alone in a tile: what a loss leaves out and what that costs follows from their sizes.
+/// Spots, each alone in a tile: what a tolerance leaves out and what that costs follows from their sizes.
 struct Spots : testing::Test {
   static constexpr int columns = 6, rows = 2, tile = 16;
   static constexpr double focal = 100.0, depth = 10.0;
@@ -142,7 +142,7 @@ struct Spots : testing::Test {
   }
 };
 
-TEST_F(Spots, LossesCostWhatTheSpotsAreWorth) {
+TEST_F(Spots, TolerancesCostWhatTheSpotsAreWorth) {
   const std::vector<double> targets = {30.0, 23.0};
   AnalysisSettings settings{.scene = "spots", .kind = CalibrationTarget::Kind::quality, .targets = targets};
   settings.frames = 1;
@@ -153,7 +153,7 @@ TEST_F(Spots, LossesCostWhatTheSpotsAreWorth) {
                                       told[what] = done;
                                     });
   EXPECT_EQ(analysis.test_views, std::vector<std::string>{"left"});
-  EXPECT_EQ(told["losses"], 2 * calibrated_settings().size());
+  EXPECT_EQ(told["tolerances"], 2 * calibrated_settings().size());
 
   const auto ordered = [&](auto worth) {
     std::vector<Spot> order = spots;
@@ -234,7 +234,8 @@ Analysis sample() {
   a.systems = {system("3D-GS", {.tiles = TILES_AABB}, 0.0, 0.0),
                system("FlashGS, AdR-Gaussian", {}, 0.0, 0.0)};
   for (const double target : {0.1, 0.2}) {
-    const render::FrameSettings settings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
+    const render::FrameSettings settings{
+        .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
     a.targets.push_back(system("squared, last", settings, target + 0.03125, 2 * target));
     a.targets.back().target_db = a.targets.back().reached_db = target;
   }
@@ -249,7 +250,7 @@ TEST(AnalysisPage, JsonHasWhatIsKnown) {
   EXPECT_EQ(json["contributions"]["skipping"][3]["points"][0]["drop_db"], 0.01);
   EXPECT_FALSE(json["systems"][0].contains("target_db"));
   EXPECT_EQ(json["targets"][1]["target_db"], 0.2);
-  EXPECT_EQ(json["targets"][1]["settings"]["loss"], 0.5);
+  EXPECT_EQ(json["targets"][1]["settings"]["tolerance"], 0.5);
   EXPECT_EQ(json["targets"][1]["stages_ms"]["project"], 1.0);
 }
 

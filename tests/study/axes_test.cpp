@@ -15,7 +15,7 @@ TEST(Axes, AreEveryCombination) {
   const Axes axes = parse_axes("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
     "sizes": ["own", "64x48"], "settings": [
       {"tiles": ["aabb", "ellipse"], "tile": [8, 16]},
-      {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "loss": [0.5, 2]},
+      {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
       {"tiles": "ellipse"}]})");
   EXPECT_EQ(axes.views, 3);
   EXPECT_EQ(axes.frames, 7);
@@ -30,7 +30,16 @@ TEST(Axes, AreEveryCombination) {
                                              "peripheral, last, 2", "squared, 0.5", "squared, 2",
                                              "squared, last, 0.5", "squared, last, 2"}));
   EXPECT_EQ(to_json(axes.settings.back()).dump(),
-            R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","loss":2.0})");
+            R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","tolerance":2.0})");
+}
+
+TEST(Axes, ATolerancesFormerNameIsRead) {
+  const Axes axes = parse_axes("a", R"({"settings": [{"th": "squared", "loss": [0.5, 2]}]})");
+  ASSERT_EQ(axes.settings.size(), 2);
+  EXPECT_EQ(axes.settings[1].tolerance, 2.0f);
+  EXPECT_TRUE(test::fails_saying(
+      [] { parse_axes("a", R"({"settings": [{"th": "squared", "loss": 2, "tolerance": 1}]})"); },
+      {"'loss'"}));
 }
 
 TEST(Axes, HalfPrecisionIsOneAndNotExact) {
@@ -74,14 +83,16 @@ TEST(Axes, ErrorsNameThePlace) {
       {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
       {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
       {R"({"settings": [{"th": 3}]})", "'th': '3' is not one of tau"},
-      {R"({"settings": [{"th": "squared"}]})", "th needs a loss above 0"},
-      {R"({"settings": [{"loss": 1}]})", "loss has no effect with th tau"},
+      {R"({"settings": [{"th": "squared"}]})", "th needs a tolerance above 0"},
+      {R"({"settings": [{"tolerance": 1}]})", "tolerance has no effect with th tau"},
       {R"({"settings": [{"transmittance": "last"}]})", "transmittance has no effect with th tau"},
-      {R"({"settings": [{"th": "squared", "loss": 1, "contrast": "final"}]})", "there is no key 'contrast'"},
-      {R"({"settings": [{"th": "squared", "loss": 1, "transmittance": "both"}]})",
+      {R"({"settings": [{"th": "squared", "tolerance": 1, "contrast": "final"}]})",
+       "there is no key 'contrast'"},
+      {R"({"settings": [{"th": "squared", "tolerance": 1, "transmittance": "both"}]})",
        "'transmittance': 'both' is not one of one, depth, last"},
-      {R"({"settings": [{"th": "squared", "loss": -1}]})", "'loss' -1: expected a number of 0 or more"},
-      {R"({"settings": [{"th": "squared", "loss": 1e99}]})", "'loss' 1e+99: expected"},
+      {R"({"settings": [{"th": "squared", "tolerance": -1}]})",
+       "'tolerance' -1: expected a number of 0 or more"},
+      {R"({"settings": [{"th": "squared", "tolerance": 1e99}]})", "'tolerance' 1e+99: expected"},
       {R"({"settings": [{}], "frames": 0})", "'frames' 0: expected a whole number from 1"},
       {R"({"settings": [{}], "frames": 1.5})", "'frames' 1.5: expected a whole number"},
       {R"({"settings": [{}], "eyes": 3})", "'eyes' 3: expected a whole number from 1 to 2"},
@@ -100,7 +111,7 @@ TEST(Axes, ErrorsNameThePlace) {
   EXPECT_THROW(load_axes("no-such-preset"), Error);
   // Lists whose combinations no memory would hold.
   const nlohmann::json block = {
-      {"th", "squared"}, {"loss", nlohmann::json(500, 0.5)}, {"tile", nlohmann::json(50, 8)}};
+      {"th", "squared"}, {"tolerance", nlohmann::json(500, 0.5)}, {"tile", nlohmann::json(50, 8)}};
   const std::string many = nlohmann::json{{"settings", {block}}}.dump();
   EXPECT_TRUE(
       test::fails_saying([&] { parse_axes("a.json", many); }, {"block 1", "more than 10000 combinations"}));

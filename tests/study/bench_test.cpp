@@ -47,7 +47,7 @@ TEST_F(BenchPoint, ExactIsEqualAndALossIsNot) {
   for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_DEPTH, TRANSMITTANCE_LAST}) {
     render::FrameSettings settings;
     settings.th = TH_SQUARED;
-    settings.loss = 4.0f;
+    settings.tolerance = 4.0f;
     settings.transmittance = transmittance;
     const BenchNumbers point = both.measure(settings);
     EXPECT_LT(point.exact.psnr_db, 60.0);
@@ -67,7 +67,7 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   context->set_shader_folder(folder.path());
   render::FrameSettings lossy;
   lossy.th = TH_SQUARED;
-  lossy.loss = 0.05f;
+  lossy.tolerance = 0.05f;
   for (const auto& settings : {render::FrameSettings{}, lossy})
     EXPECT_EQ(bench(*context, 1).measure(settings).problem, "") << "without a fault it is timed";
 
@@ -81,7 +81,7 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   const BenchNumbers point = bench(*faulty, 1).measure({});
   EXPECT_FALSE(point.measured());
   EXPECT_NE(point.problem.find("differ from the float64 reference"), std::string::npos) << point.problem;
-  EXPECT_FALSE(bench(*faulty, 1).measure(lossy).measured()) << "a loss is no excuse";
+  EXPECT_FALSE(bench(*faulty, 1).measure(lossy).measured()) << "a tolerance is no excuse";
   // Nothing in view.
   model.opacity.assign(model.count(), 0.0f);
   EXPECT_NE(bench(*faulty, 1).measure({}).problem.find("is empty"), std::string::npos);

@@ -65,8 +65,8 @@ TEST(Calibration, ErrorsNameTheKey) {
       {"/target", ordered_json::object(), "'psnr_db' is missing"},
       {"/views/1/position", {1, 2}, "view 2: 'position' [1,2]: expected three numbers"},
       {"/entries/0/th", "none", "entry 1, 'th': 'none' is not one of tau"},
-      {"/entries/1/loss", -1, "entry 2: 'loss' -1: expected a number of 0 or more"},
-      {"/entries/1/loss", 1e300, "'loss' is too large"},
+      {"/entries/1/tolerance", -1, "entry 2: 'tolerance' -1: expected a number of 0 or more"},
+      {"/entries/1/tolerance", 1e300, "'tolerance' is too large"},
       {"/entries/1/contrast", "final", "entry 2: 'contrast' 'final': there is no such rule any more: make"},
       {"/entries/0/transmittance", "both", "entry 1: 'transmittance' 'both': there is no such rule any more"},
       {"/entries", "many", "'entries': expected a list"},
@@ -92,26 +92,30 @@ TEST(Calibration, ErrorsNameTheKey) {
   EXPECT_THROW(parse_calibration("c", json.dump()), Error);
 }
 
-TEST(Calibration, GivesTheLossOfItsEntry) {
+TEST(Calibration, GivesTheToleranceOfItsEntry) {
   render::FrameSettings settings;
   settings.th = TH_PERIPHERAL;
   auto found = calibrated(sample(), settings, 100.0);
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->loss, 2.0f);
+  EXPECT_EQ(found->tolerance, 2.0f);
   EXPECT_EQ(found->depth_table.bounds, sample().depth_table.bounds);
-  EXPECT_FLOAT_EQ(calibrated(sample(), settings, 200.0)->loss, 2.0f * std::pow(2.0f, 1.25f));
+  EXPECT_FLOAT_EQ(calibrated(sample(), settings, 200.0)->tolerance, 2.0f * std::pow(2.0f, 1.25f));
   settings.transmittance = TRANSMITTANCE_DEPTH;
   EXPECT_FALSE(calibrated(sample(), settings, 100.0)) << "no entry of this source";
   settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
   found = calibrated(sample(), settings, 100.0);
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->loss, 0.01f);
+  EXPECT_EQ(found->tolerance, 0.01f);
   EXPECT_EQ(found->transmittance, TRANSMITTANCE_LAST);
 }
 
 TEST(Calibration, OfAnEarlierVersionIsReadWhereItsRulesAreStillThere) {
   ordered_json json = to_json(sample());
-  for (ordered_json& entry : json["entries"]) entry["contrast"] = "off";
+  for (ordered_json& entry : json["entries"]) {
+    entry["contrast"] = "off";
+    entry["loss"] = entry["tolerance"];
+    entry.erase("tolerance");
+  }
   EXPECT_EQ(to_json(parse_calibration("c", json.dump())), to_json(sample()));
 }
 
@@ -171,7 +175,7 @@ TEST_F(Calibrating, CostsAreThoseOfThePictures) {
   EXPECT_EQ(by_quality.cost(settings).mean_db, 100.0) << "exact pictures are equal";
   EXPECT_EQ(by_drop.cost(settings).mean_db, 0.0);
   settings.th = TH_SQUARED;
-  settings.loss = 0.5f;
+  settings.tolerance = 0.5f;
   double quality = 0.0, drop = 0.0, worst = 100.0;
   for (std::size_t i = 0; i < views.size(); ++i) {
     const shared::View v = make_view(views[i].camera);
@@ -190,18 +194,19 @@ TEST_F(Calibrating, CostsAreThoseOfThePictures) {
   EXPECT_NEAR(cost.worst_db, worst, 1e-3);
   EXPECT_GT(cost.pairs_removed, 0.02);
   EXPECT_NEAR(by_drop.cost(settings).mean_db, drop, 1e-3);
-  settings.loss = 0.6f;
-  EXPECT_GT(std::abs(by_quality.cost(settings).mean_db - quality), 1e-3) << "another loss goes unnoticed";
+  settings.tolerance = 0.6f;
+  EXPECT_GT(std::abs(by_quality.cost(settings).mean_db - quality), 1e-3)
+      << "another tolerance goes unnoticed";
 }
 
 TEST_F(Calibrating, ReachesItsTarget) {
   Calibrator calibrator(test::gl_context(), model, views, near_default, CalibrationTarget::Kind::quality);
-  const CalibrationEntry entry = calibrator.find({.th = TH_SQUARED, .loss = 0.1f}, 42.0);
+  const CalibrationEntry entry = calibrator.find({.th = TH_SQUARED, .tolerance = 0.1f}, 42.0);
   EXPECT_GE(entry.reached_db, 42.0);
   EXPECT_LT(entry.reached_db, 42.5);
   EXPECT_LE(entry.worst_db, entry.reached_db);
-  // A larger loss does not hold, and nothing that other views measured is left in what one costs.
-  render::FrameSettings settings{.th = TH_SQUARED, .loss = static_cast<float>(1.1 * entry.loss)};
+  // A larger tolerance does not hold, and nothing that other views measured is left in what one costs.
+  render::FrameSettings settings{.th = TH_SQUARED, .tolerance = static_cast<float>(1.1 * entry.tolerance)};
   EXPECT_LT(calibrator.cost(settings).mean_db, 42.0);
   settings.transmittance = TRANSMITTANCE_LAST;
   const double once = calibrator.cost(settings).mean_db;
@@ -220,7 +225,7 @@ TEST_F(Calibrating, TheWholeFile) {
   EXPECT_TRUE(is_of(c, model));
   for (const CalibrationEntry& e : c.entries) {
     EXPECT_GE(e.reached_db, 40.0);
-    EXPECT_GT(e.loss, 0.0);
+    EXPECT_GT(e.tolerance, 0.0);
   }
   EXPECT_EQ(to_json(parse_calibration("c", to_json(c).dump())), to_json(c));
 }

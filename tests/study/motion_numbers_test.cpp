@@ -19,7 +19,7 @@ MovedFrame frame(double left, double right, double told, double pairs = 50.0) {
           .told_db = told,
           .pairs = pairs,
           .exact_pairs = 100.0,
-          .loss = 0.1,
+          .tolerance = 0.1,
           .ms = 2.0};
 }
 

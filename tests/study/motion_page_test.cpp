@@ -17,7 +17,7 @@ MovedPass pass(float request, double db, double pairs, double ms, bool stops = t
                         .told_db = 40.0,
                         .pairs = pairs,
                         .exact_pairs = 4e6,
-                        .loss = 0.1,
+                        .tolerance = 0.1,
                         .ms = ms});
     }
   }
@@ -90,9 +90,9 @@ TEST(MotionPage, SaysWhoKeepsTheirWordAndWhatThatTakes) {
 TEST(MotionPage, DrawsEveryFrame) {
   const Page page = motion_page(results());
   EXPECT_EQ(page.sections[5].id, "asked-walk");
-  EXPECT_NE(
-      page.sections[5].sentence.find("2 stretches of 2 frames, after 1 to find a loss, then a stop of 1"),
-      std::string::npos)
+  EXPECT_NE(page.sections[5].sentence.find(
+                "2 stretches of 2 frames, after 1 to find a tolerance, then a stop of 1"),
+            std::string::npos)
       << page.sections[5].sentence;
   const Plot& quality = *page.sections[5].plot;
   ASSERT_EQ(quality.series.size(), 4u);

@@ -80,7 +80,7 @@ TEST_F(Motions, EachViewHasItsOwnErrorAndNoGroupIsOfTwo) {
   bytes.keep(frame, views, kept);
   EXPECT_EQ(bytes.errors(frame, views, kept), std::vector<double>(3, 0.0));
   // A probe's pixels come after the views' and count for none.
-  for (const render::FrameSettings& way : {render::FrameSettings{.th = TH_SQUARED, .loss = 2.0f},
+  for (const render::FrameSettings& way : {render::FrameSettings{.th = TH_SQUARED, .tolerance = 2.0f},
                                            render::FrameSettings{.th = TH_SQUARED, .quality = 35.0f}}) {
     frame.draw(views, way);
     const auto errors = bytes.errors(frame, views, kept);
@@ -117,7 +117,7 @@ TEST_F(Motions, SeriesAreWhatASecondLookFinds) {
       EXPECT_EQ(told.told_db, report.quality);
       EXPECT_EQ(told.pairs, static_cast<double>(report.pairs));
       EXPECT_EQ(told.exact_pairs, exact_pairs);
-      EXPECT_EQ(told.loss, report.loss);
+      EXPECT_EQ(told.tolerance, report.tolerance);
       EXPECT_GT(told.ms, 0.0);
       // The fault that this must see: the frame before is what it is compared with.
       const bool moves = n > 0 && n < path.segments[s].frames.size() - path.segments[s].stop;
@@ -145,7 +145,7 @@ TEST_F(Motions, WhatHasNoRoomIsDrawnAgain) {
   EXPECT_EQ(all.left_out(), 0u);
   EXPECT_EQ(some.left_out(), 12u - 3) << "a stop is of one pose";
   for (std::size_t n = 0; n < 8; ++n) {
-    frame.draw(path.segments[1].frames[n], {.th = TH_SQUARED, .loss = 1.0f});
+    frame.draw(path.segments[1].frames[n], {.th = TH_SQUARED, .tolerance = 1.0f});
     EXPECT_EQ(all.psnr(frame, 1, n), some.psnr(frame, 1, n)) << n;
     EXPECT_EQ(all.pairs(1, n), some.pairs(1, n));
   }
@@ -166,8 +166,8 @@ TEST_F(Motions, RulesComeToOneTrueQuality) {
     SCOPED_TRACE(rule.variant.name());
     EXPECT_EQ(rule.problem, "");
     ASSERT_TRUE(rule.equal);
-    EXPECT_NEAR(rule.equal->moving.true_db, 37.0, settings.equal_tolerance);
-    EXPECT_GT(std::abs(rule.asked.moving.true_db - 37.0), settings.equal_tolerance);
+    EXPECT_NEAR(rule.equal->moving.true_db, 37.0, settings.equal_within);
+    EXPECT_GT(std::abs(rule.asked.moving.true_db - 37.0), settings.equal_within);
     EXPECT_LT(rule.equal->request, 44.0f);
     EXPECT_EQ(rule.equal->moving.frames, 8u);
     EXPECT_EQ(rule.equal->stop.frames, 0u);
@@ -183,7 +183,7 @@ TEST_F(Motions, RulesComeToOneTrueQuality) {
   EXPECT_EQ(second["ms_of_exact"], result.rules[1].equal->moving.ms / result.exact.moving.ms);
   EXPECT_EQ(second["segments"][0]["true_db"].size(), 6u);
   EXPECT_EQ(json["rules"][1]["asked"]["segments"][1]["view_db"][7].size(), 2u);
-  EXPECT_FALSE(json["rules"][1]["settings"].contains("loss"));
+  EXPECT_FALSE(json["rules"][1]["settings"].contains("tolerance"));
 }
 
 TEST_F(Motions, ATargetThatNothingReachesSaysSo) {

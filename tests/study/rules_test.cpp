@@ -19,19 +19,19 @@ struct Rules : testing::Test {
   const Model model = test::random_model(71, 2500, 0);
   const std::array<shared::View, 2> eyes =
       stereo::make_rig(test::front_camera(64, 48, 60), {.ipd = 0.05}).views;
-  Still still{test::gl_context(), model, {eyes.begin(), eyes.end()}};
+  FixedCamera camera{test::gl_context(), model, {eyes.begin(), eyes.end()}};
 
   /// The dB of a rule's frames 9 to 20, drawn anew and judged with a read-back.
   double fresh_db(const Variant& rule) {
     render::Frame frame(test::gl_context(), model);
     render::FrameSettings settings = rule.settings();
-    settings.depth_table = still.depth_table();
+    settings.depth_table = camera.depth_table();
     settings.record_every = 1;
     double sum = 0.0;
     for (int n = 0; n < 20; ++n) {
       frame.draw(eyes, settings);
       if (n < 8) continue;
-      const double db = judge(eyes, still.exact(), frame.read_pictures(), settings.tile_size).psnr;
+      const double db = judge(eyes, camera.exact(), frame.read_pictures(), settings.tile_size).psnr;
       sum += std::pow(10.0, -0.1 * db) / 12.0;
     }
     return -10.0 * std::log10(sum);
@@ -40,10 +40,10 @@ struct Rules : testing::Test {
 
 TEST_F(Rules, ComeToTheTargetAndAreTimed) {
   std::vector<Variant> rules = all_variants();
-  find_losses(still, rules, target, [] {});
+  find_tolerances(camera, rules, target, [] {});
   constexpr int frames = 96;  // in which what ages and is measured again goes round once
   int done = 0;
-  const auto results = measure_rules(still, rules, target, frames, [&] { ++done; });
+  const auto results = measure_rules(camera, rules, target, frames, [&] { ++done; });
   EXPECT_EQ(done, rule_rounds * static_cast<int>(rules.size()));
   ASSERT_EQ(results.size(), rules.size());
   const RuleResult& tau = results.front();
@@ -74,20 +74,20 @@ TEST_F(Rules, ComeToTheTargetAndAreTimed) {
   EXPECT_EQ(results[2].of_one, results[2].frame_ms / results[1].frame_ms);
 }
 
-TEST_F(Rules, AWrongLossIsCaught) {
+TEST_F(Rules, AWrongToleranceIsCaught) {
   std::vector<Variant> rules = {{.th = TH_TAU}, {.transmittance = TRANSMITTANCE_LAST}};
-  find_losses(still, rules, target, [] {});
-  EXPECT_EQ(measure_rules(still, rules, target, 1, [] {})[1].problem, "");
-  rules[1].loss *= 1.5f;
-  EXPECT_NE(measure_rules(still, rules, target, 1, [] {})[1].problem.find("not within 0.3 dB of 40 dB"),
+  find_tolerances(camera, rules, target, [] {});
+  EXPECT_EQ(measure_rules(camera, rules, target, 1, [] {})[1].problem, "");
+  rules[1].tolerance *= 1.5f;
+  EXPECT_NE(measure_rules(camera, rules, target, 1, [] {})[1].problem.find("not within 0.3 dB of 40 dB"),
             std::string::npos);
 }
 
 TEST_F(Rules, ATargetThatNothingReachesIsReported) {
   for (const double beyond : {1.0, 300.0}) {
     std::vector<Variant> rules = {{.th = TH_TAU}, {.th = TH_PERIPHERAL}, {}};
-    find_losses(still, rules, beyond, [] {});
-    const auto results = measure_rules(still, rules, beyond, 1, [] {});
+    find_tolerances(camera, rules, beyond, [] {});
+    const auto results = measure_rules(camera, rules, beyond, 1, [] {});
     EXPECT_EQ(results[0].problem, "");
     for (std::size_t k = 1; k < 3; ++k)
       EXPECT_NE(results[k].problem.find("not within"), std::string::npos) << beyond << results[k].db;
@@ -95,7 +95,7 @@ TEST_F(Rules, ATargetThatNothingReachesIsReported) {
 }
 
 TEST_F(Rules, OneEyeHasNoDisagreement) {
-  Still one(test::gl_context(), model, {eyes[0]});
+  FixedCamera one(test::gl_context(), model, {eyes[0]});
   const auto results = measure_rules(one, {{.th = TH_TAU}}, target, 1, [] {});
   EXPECT_TRUE(std::isnan(results[0].disagreement_db));
   EXPECT_TRUE(std::isinf(results[0].db));

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "render/frame.h"
-#include "study/carried.h"
-#include "study/still.h"
+#include "study/along_path.h"
+#include "study/fixed_camera.h"
 #include "support/gl.h"
 #include "support/models.h"
 
@@ -27,7 +27,7 @@ StabilityCase small_case(std::size_t frames) {
 }
 
 // The first pair of a case.
-Still still_of(const StabilityCase& one) {
+FixedCamera fixed_camera(const StabilityCase& one) {
   return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
@@ -55,7 +55,7 @@ TEST(Stability, ExactFramesHoldWhateverTheBounds) {
 
 TEST(Stability, VerdictsFollowFromTheirBounds) {
   const StabilityCase one = small_case(6);
-  const Variant rough{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 2.0f};
+  const Variant rough{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 2.0f};
   const StabilityResult r = run_one(one, rough);
   EXPECT_GT(r.removed, 0.1);
   EXPECT_LT(r.signed_mean, 0.0);
@@ -89,7 +89,7 @@ TEST(Stability, AJumpIsWhereSettlingIsCountedFrom) {
         }(),
         {.ipd = 0.05});
   one.event = 3;
-  const Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .loss = 0.5f};
+  const Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
   const StabilityResult r = run_one(one, variant);
   EXPECT_LE(r.settling, 5u);
   EXPECT_NEAR(r.drift_db, 0.0, 1.5);
@@ -111,16 +111,16 @@ TEST(Stability, TheCasesShowSomething) {
   EXPECT_EQ(names.size(), 8u);
 }
 
-TEST(Stability, TheLossComesToItsTarget) {
+TEST(Stability, TheToleranceComesToItsTarget) {
   const StabilityCase one = small_case(3);
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.loss = still_of(one).loss_at(variant, 38.0);
-  Still still = still_of(one);
-  still.settle(variant);
-  const double db = judge(still.views(), still.exact(), still.pictures(), TILE_SIZE_DEFAULT).psnr;
+  variant.tolerance = fixed_camera(one).tolerance_at(variant, 38.0);
+  FixedCamera camera = fixed_camera(one);
+  camera.settle(variant);
+  const double db = judge(camera.views(), camera.exact(), camera.pictures(), TILE_SIZE_DEFAULT).psnr;
   EXPECT_GE(db, 38.0);
   EXPECT_LT(db, 38.5);
-  EXPECT_EQ(still_of(one).loss_at({.th = TH_TAU}, 38.0), 0.0f);
+  EXPECT_EQ(fixed_camera(one).tolerance_at({.th = TH_TAU}, 38.0), 0.0f);
 }
 
 std::vector<std::vector<shared::View>> path() {
@@ -137,8 +137,8 @@ TEST(Carried, FallsBackToOneAndMakesAsManyPairs) {
   const Model model = test::random_model(72, 2500, 0);
   const auto frames = path();
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.loss = carried_loss(test::gl_context(), model, frames, variant, 38.0);
-  const auto results = run_carried(test::gl_context(), model, frames, variant, 0.0f, [] {});
+  variant.tolerance = tolerance_along_path(test::gl_context(), model, frames, variant, 38.0);
+  const auto results = draw_along_path(test::gl_context(), model, frames, variant, 0.0f, [] {});
   ASSERT_EQ(results.size(), 8u);
   for (std::size_t n = 0; n < results.size(); ++n) {
     EXPECT_EQ(results[n].fell_back, n == 0 || n == 4) << n;
@@ -150,9 +150,9 @@ TEST(Carried, FallsBackToOneAndMakesAsManyPairs) {
 
 TEST(Carried, AQualityIsKept) {
   const Model model = test::random_model(73, 2500, 0);
-  std::vector<std::vector<shared::View>> frames(90, path()[0]);  // the loss starts far too small
+  std::vector<std::vector<shared::View>> frames(90, path()[0]);  // the tolerance starts far too small
   const Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  const auto results = run_carried(test::gl_context(), model, frames, variant, 38.0f, [] {});
+  const auto results = draw_along_path(test::gl_context(), model, frames, variant, 38.0f, [] {});
   EXPECT_NEAR(results.back().db, 38.0, 1.0);
 }
 

@@ -8,7 +8,7 @@
 
 #include "base/statistics.h"
 #include "render/frame.h"
-#include "study/still.h"
+#include "study/fixed_camera.h"
 #include "support/gl.h"
 
 namespace binosplat::study {
@@ -22,7 +22,7 @@ StabilityCase case_named(const std::string& name) {
 }
 
 // The first pair of a case.
-Still still_of(const StabilityCase& one) {
+FixedCamera fixed_camera(const StabilityCase& one) {
   return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
@@ -51,14 +51,14 @@ double median(const std::vector<Shown>& shown, double Shown::*what, std::size_t 
 }
 
 TEST(Traps, AFarWallOfTinyGaussiansGoesAtALossThatIsFineElsewhere) {
-  // Trap 1. A loss that is chosen on something else takes the wall away by and by; --quality sees it.
+  // Trap 1. A tolerance that is chosen on something else takes the wall away by and by; --quality sees it.
   const StabilityCase wall = case_named("far-wall"), clutter = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.loss = still_of(clutter).loss_at(variant, 34.0);
+  variant.tolerance = fixed_camera(clutter).tolerance_at(variant, 34.0);
   const auto open = frames_of(wall, variant.settings(), 8);
   EXPECT_LT(median(open, &Shown::db, 4, 8), 30.0);
   render::FrameSettings steered = variant.settings();
-  steered.loss = 0;
+  steered.tolerance = 0;
   steered.quality = 40;
   for (const Shown& frame : frames_of(wall, steered, 24)) EXPECT_GT(frame.db, 37.0);
 }
@@ -67,7 +67,7 @@ TEST(Traps, AStillCameraSettlesAndDoesNotDrift) {
   // Trap 3: what pruned frames measure of themselves, round and round.
   const StabilityCase still = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.loss = still_of(still).loss_at(variant, 40.0);
+  variant.tolerance = fixed_camera(still).tolerance_at(variant, 40.0);
   render::FrameSettings settings = variant.settings();
   settings.record_every = 1;  // frames that do not measure show what the next one shows
   const auto shown = frames_of(still, settings, 90);

@@ -18,7 +18,7 @@ namespace binosplat::test {
 constexpr ModelFormat formats[] = {ModelFormat::ply, ModelFormat::compressed_ply, ModelFormat::splat,
                                    ModelFormat::spz, ModelFormat::sog};
 
-inline std::string name_of(ModelFormat format) { return model_format_names[static_cast<int>(format)]; }
+inline std::string name_of(ModelFormat format) { return written_format(format).name; }
 
 struct Written {
   Model model;

@@ -1,6 +1,7 @@
-// --quality: the loss that keeps frames at a wanted error, on scenes that are no more than a law of error.
+// --quality: the tolerance that keeps frames at a wanted error, on scenes that are no more than a law of
+// error.
 
-#include "render/loss_control.h"
+#include "render/tolerance_control.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace binosplat {
 namespace {
 
 using render::FrameSettings;
-using render::LossControl;
+using render::ToleranceControl;
 
 const FrameSettings squared = {.th = TH_SQUARED, .quality = 40, .probe_tiles = 64};
 constexpr int width = 640, height = 480, across = width / 16, down = height / 16;
@@ -20,8 +21,8 @@ constexpr int attempts_most = 8;
 
 double db(double squared_error) { return -10 * std::log10(squared_error); }
 
-// Views whose squared error is at_one * loss^power, unevenly by tile: each tile errs exp(uneven * g) as much,
-// g of about unit variance.
+// Views whose squared error is at_one * tolerance^power, unevenly by tile: each tile errs exp(uneven * g) as
+// much, g of about unit variance.
 class SimulatedScene {
  public:
   SimulatedScene(double power, std::vector<double> at_one, double uneven = 0.0)
@@ -46,8 +47,10 @@ class SimulatedScene {
     for (double& error : at_one_) error *= factor;
   }
   // Of a view, or of the tiles that a probe has of it.
-  double error(std::size_t view, double loss) const { return at_one_.at(view) * std::pow(loss, power_); }
-  render::Probed probed(const render::Probe& probe, double loss) const {
+  double error(std::size_t view, double tolerance) const {
+    return at_one_.at(view) * std::pow(tolerance, power_);
+  }
+  render::Probed probed(const render::Probe& probe, double tolerance) const {
     double sum = 0, squares = 0;
     int count = 0;
     for (std::size_t y = probe.row; y < down; y += probe.step) {
@@ -57,11 +60,11 @@ class SimulatedScene {
         squares += tile * tile;
       }
     }
-    return {error(probe.view, loss) * sum / count, std::max(0.0, count * squares / (sum * sum) - 1.0)};
+    return {error(probe.view, tolerance) * sum / count, std::max(0.0, count * squares / (sum * sum) - 1.0)};
   }
-  double worse_db(double loss) const {
+  double worse_db(double tolerance) const {
     double most = 0;
-    for (std::size_t view = 0; view < views.size(); ++view) most = std::max(most, error(view, loss));
+    for (std::size_t view = 0; view < views.size(); ++view) most = std::max(most, error(view, tolerance));
     return most > 0.0 ? db(most) : std::numeric_limits<double>::infinity();
   }
 
@@ -75,22 +78,22 @@ class SimulatedScene {
 
 struct Drawn {
   double true_db = 0.0, told_db = 0.0;
-  float loss = 0.0f;
+  float tolerance = 0.0f;
   int attempts = 0;
   render::Probe probe;  // of the last attempt
 };
 
 // As Frame::draw does. A control that never redraws is the planted fault.
-Drawn draw_frame(LossControl& control, const SimulatedScene& scene, bool redraws = true,
+Drawn draw_frame(ToleranceControl& control, const SimulatedScene& scene, bool redraws = true,
                  const FrameSettings& settings = squared) {
   Drawn drawn;
   do {
     drawn.probe = control.next_probe(scene.views, settings);
-    drawn.loss = control.next_loss();
-    control.measured(scene.probed(drawn.probe, drawn.loss), true);
+    drawn.tolerance = control.next_tolerance();
+    control.measured(scene.probed(drawn.probe, drawn.tolerance), true);
     ++drawn.attempts;
   } while (redraws && !control.holds());
-  drawn.true_db = scene.worse_db(drawn.loss);
+  drawn.true_db = scene.worse_db(drawn.tolerance);
   drawn.told_db = control.quality();
   return drawn;
 }
@@ -100,7 +103,7 @@ testing::AssertionResult keeps(const Drawn& drawn, double least, double most, do
   const bool good = drawn.true_db >= least && drawn.true_db <= most &&
                     std::abs(drawn.told_db - drawn.true_db) <= told_off && drawn.attempts <= attempts_most;
   return (good ? testing::AssertionSuccess() : testing::AssertionFailure())
-         << drawn.true_db << " dB, told " << drawn.told_db << ", loss " << drawn.loss << ", drawn "
+         << drawn.true_db << " dB, told " << drawn.told_db << ", tolerance " << drawn.tolerance << ", drawn "
          << drawn.attempts << " times";
 }
 
@@ -119,7 +122,7 @@ void add(const Drawn& drawn, Course& course) {
 }
 
 // A frame, then the scene at so many times the error, and so on.
-Course follow(LossControl& control, SimulatedScene& scene, int frames, double drift = 1.0,
+Course follow(ToleranceControl& control, SimulatedScene& scene, int frames, double drift = 1.0,
               bool redraws = true) {
   Course course;
   for (int n = 0; n < frames; ++n) {
@@ -129,53 +132,54 @@ Course follow(LossControl& control, SimulatedScene& scene, int frames, double dr
   return course;
 }
 
-// Scenes for which `loss` is right in a view that errs 1; others err so much more or less.
-SimulatedScene scene_for(double power, double loss, std::vector<double> views = {1.0}) {
-  for (double& view : views) view *= 1e-4 / std::pow(loss, power);
+// Scenes for which `tolerance` is right in a view that errs 1; others err so much more or less.
+SimulatedScene scene_for(double power, double tolerance, std::vector<double> views = {1.0}) {
+  for (double& view : views) view *= 1e-4 / std::pow(tolerance, power);
   return {power, views, 0.5};
 }
 
-TEST(LossControl, FindsTheLossForTheFirstFrameWhateverTheSceneIsLike) {
+TEST(ToleranceControl, FindsTheToleranceForTheFirstFrameWhateverTheSceneIsLike) {
   for (const double power : {1.0, 1.3, 2.0, 6.0, 10.0}) {
-    for (double loss = 1e-5; loss < 2e4; loss *= 10) {
-      SimulatedScene scene = scene_for(power, loss);
-      LossControl control;
-      EXPECT_TRUE(keeps(draw_frame(control, scene), 39.99, 41.31, 0.01)) << loss << " ^ " << power;
+    for (double tolerance = 1e-5; tolerance < 2e4; tolerance *= 10) {
+      SimulatedScene scene = scene_for(power, tolerance);
+      ToleranceControl control;
+      EXPECT_TRUE(keeps(draw_frame(control, scene), 39.99, 41.31, 0.01)) << tolerance << " ^ " << power;
       const Course course = follow(control, scene, 60);
-      EXPECT_GT(course.least, 40.0) << loss << " ^ " << power;
-      EXPECT_LT(course.most, 40.6) << loss << " ^ " << power;
-      EXPECT_LT(course.told_off, 0.25) << loss << " ^ " << power;  // half of it is one sample
-      EXPECT_EQ(course.attempts, 60) << loss << " ^ " << power;
-      // Planted fault: the first loss that comes to mind, kept whatever it costs.
-      if (std::abs(std::log10(loss / 0.1)) < 0.5) continue;  // for which it is right
-      LossControl careless;
-      EXPECT_FALSE(keeps(draw_frame(careless, scene, false), 39.99, 41.31, 0.01)) << loss << " ^ " << power;
+      EXPECT_GT(course.least, 40.0) << tolerance << " ^ " << power;
+      EXPECT_LT(course.most, 40.6) << tolerance << " ^ " << power;
+      EXPECT_LT(course.told_off, 0.25) << tolerance << " ^ " << power;  // half of it is one sample
+      EXPECT_EQ(course.attempts, 60) << tolerance << " ^ " << power;
+      // Planted fault: the first tolerance that comes to mind, kept whatever it costs.
+      if (std::abs(std::log10(tolerance / 0.1)) < 0.5) continue;  // for which it is right
+      ToleranceControl careless;
+      EXPECT_FALSE(keeps(draw_frame(careless, scene, false), 39.99, 41.31, 0.01))
+          << tolerance << " ^ " << power;
     }
   }
 }
 
-TEST(LossControl, FollowsASceneThatChanges) {
+TEST(ToleranceControl, FollowsASceneThatChanges) {
   for (const double power : {1.3, 2.0, 6.0, 10.0}) {
     for (const double drift : {1.01, 1 / 1.01}) {  // 40 dB in a thousand frames
       SimulatedScene scene = scene_for(power, 0.05, {1.0, 0.8});
-      LossControl control;
+      ToleranceControl control;
       const Course course = follow(control, scene, 300, drift);
       EXPECT_GT(course.least, 39.25) << drift << " ^ " << power;  // below that a frame is drawn again
       EXPECT_LT(course.most, 41.3) << drift << " ^ " << power;
       EXPECT_NEAR(course.mean, 40.3, 0.5) << drift << " ^ " << power;
       EXPECT_LT(course.told_off, 0.6) << drift << " ^ " << power;
       EXPECT_LT(course.attempts, 320) << drift << " ^ " << power;
-      // Planted fault: the same with the loss of the first frame ends elsewhere.
+      // Planted fault: the same with the tolerance of the first frame ends elsewhere.
       EXPECT_GT(std::abs(scene.worse_db(0.05) - 40.0), 5.0);
     }
   }
 }
 
-TEST(LossControl, AJumpIsDrawnAgain) {
+TEST(ToleranceControl, AJumpIsDrawnAgain) {
   for (const double power : {1.3, 2.0, 6.0, 10.0}) {
     SimulatedScene scene = scene_for(power, 0.05, {1.0, 0.9});
     for (const bool redraws : {true, false}) {
-      LossControl control;
+      ToleranceControl control;
       follow(control, scene, 30);
       scene.scale(10);
       const Drawn after = draw_frame(control, scene, redraws);
@@ -190,9 +194,9 @@ TEST(LossControl, AJumpIsDrawnAgain) {
   }
 }
 
-TEST(LossControl, AJumpToLessErrorIsNoReasonToDrawAgain) {
+TEST(ToleranceControl, AJumpToLessErrorIsNoReasonToDrawAgain) {
   SimulatedScene scene = scene_for(2, 0.05, {1.0, 0.9});
-  LossControl control;
+  ToleranceControl control;
   follow(control, scene, 30);
   scene.scale(0.1);
   draw_frame(control, scene);  // a sample that is better may be chance: the next one is larger
@@ -203,16 +207,16 @@ TEST(LossControl, AJumpToLessErrorIsNoReasonToDrawAgain) {
   EXPECT_NEAR(draw_frame(control, scene).true_db, 40.3, 0.2);
 }
 
-TEST(LossControl, TheWorseViewDecides) {
+TEST(ToleranceControl, TheWorseViewDecides) {
   for (const double ratio : {1.5, 2.0, 3.0, 10.0, 100.0}) {
     for (const std::vector<double>& views : {std::vector{1.0, ratio}, {ratio, 1.0}}) {
       SimulatedScene scene = scene_for(1.5, 0.05, views);
-      LossControl control;
+      ToleranceControl control;
       EXPECT_TRUE(keeps(draw_frame(control, scene), 39.99, 41.31, 0.01)) << views[0] << " " << views[1];
       SimulatedScene blind_scene = scene_for(1.5, 0.05, {views[0]});
-      LossControl blind;  // planted fault: only the first view is looked at
-      const float blind_loss = draw_frame(blind, blind_scene).loss;
-      EXPECT_TRUE(views[1] < views[0] || scene.worse_db(blind_loss) < 39.6) << ratio;
+      ToleranceControl blind;  // planted fault: only the first view is looked at
+      const float blind_tolerance = draw_frame(blind, blind_scene).tolerance;
+      EXPECT_TRUE(views[1] < views[0] || scene.worse_db(blind_tolerance) < 39.6) << ratio;
       control.forget();  // the other view comes first
       EXPECT_TRUE(keeps(draw_frame(control, scene), 39.99, 41.31, 0.01)) << views[0] << " " << views[1];
       const Course course = follow(control, scene, 60);
@@ -224,15 +228,15 @@ TEST(LossControl, TheWorseViewDecides) {
   }
 }
 
-TEST(LossControl, ACutSearchesAnewFromTheLastLoss) {
+TEST(ToleranceControl, ACutSearchesAnewFromTheLastTolerance) {
   SimulatedScene scene = scene_for(1.3, 3.0);
-  LossControl control;
+  ToleranceControl control;
   const Course first = follow(control, scene, 1);
   EXPECT_GT(first.attempts, 1);
-  const float before = draw_frame(control, scene).loss;
+  const float before = draw_frame(control, scene).tolerance;
   control.forget();
   const Drawn same = draw_frame(control, scene);
-  EXPECT_FLOAT_EQ(same.loss, before);
+  EXPECT_FLOAT_EQ(same.tolerance, before);
   EXPECT_EQ(same.attempts, 1);
   EXPECT_EQ(same.probe.step, 1u);
   SimulatedScene other = scene_for(2, 0.02);
@@ -240,18 +244,18 @@ TEST(LossControl, ACutSearchesAnewFromTheLastLoss) {
   const Drawn found = draw_frame(control, other);
   EXPECT_TRUE(keeps(found, 39.99, 41.31, 0.01));
   EXPECT_GT(found.attempts, 1);
-  // Another quality is a search, too, and begins with another loss.
+  // Another quality is a search, too, and begins with another tolerance.
   FrameSettings better = squared;
   better.quality = 50;
   EXPECT_TRUE(keeps(draw_frame(control, other, true, better), 49.99, 51.31, 0.01));
 }
 
-TEST(LossControl, ProbesEveryTileOfEveryViewInTurn) {
+TEST(ToleranceControl, ProbesEveryTileOfEveryViewInTurn) {
   for (const int probe_tiles : {10, 64, 300}) {
     FrameSettings settings = squared;
     settings.probe_tiles = probe_tiles;
     const SimulatedScene scene(1.5, {1.0, 1.0});
-    LossControl control;
+    ToleranceControl control;
     EXPECT_EQ(draw_frame(control, scene, true, settings).probe.step, 1u);
     const render::Probe second = draw_frame(control, scene, true, settings).probe;
     const auto step = second.step;
@@ -269,22 +273,22 @@ TEST(LossControl, ProbesEveryTileOfEveryViewInTurn) {
   }
 }
 
-TEST(LossControl, ASmallPictureIsProbedAsAWhole) {
+TEST(ToleranceControl, ASmallPictureIsProbedAsAWhole) {
   const std::vector views = {make_view(test::front_camera(100, 83, 100))};  // 7 x 6 tiles
-  LossControl control;
+  ToleranceControl control;
   for (int n = 0; n < 10; ++n) {
     const render::Probe probe = control.next_probe(views, squared);
     EXPECT_EQ(probe.step, 1u);
     EXPECT_EQ(probe.column + probe.row, 0u);
-    control.next_loss();
+    control.next_tolerance();
     control.measured({1e-4}, true);
   }
 }
 
-TEST(LossControl, UnevenScenesGetLargerProbes) {
+TEST(ToleranceControl, UnevenScenesGetLargerProbes) {
   const auto step_after = [](double uneven) {
     const SimulatedScene scene(1.5, {1e-2}, uneven);
-    LossControl control;
+    ToleranceControl control;
     Drawn last;
     for (int n = 0; n < 40; ++n) last = draw_frame(control, scene);
     EXPECT_TRUE(keeps(last, 39.5, 41.5, 0.8)) << uneven;
@@ -294,14 +298,14 @@ TEST(LossControl, UnevenScenesGetLargerProbes) {
   EXPECT_LT(step_after(2.0), 4u);
 }
 
-TEST(LossControl, ASampleThatShowsNothingIsNotTheView) {
+TEST(ToleranceControl, ASampleThatShowsNothingIsNotTheView) {
   // An empty sky above all that errs.
   const SimulatedScene scene(1.5, {1e-2});
-  LossControl control;
+  ToleranceControl control;
   const Drawn first = draw_frame(control, scene);
   EXPECT_EQ(first.probe.step, 1u);
   control.next_probe(scene.views, squared);
-  control.next_loss();
+  control.next_tolerance();
   control.measured({}, true);
   EXPECT_TRUE(control.holds());
   EXPECT_NEAR(control.quality(), 40.3, 0.6);
@@ -309,27 +313,27 @@ TEST(LossControl, ASampleThatShowsNothingIsNotTheView) {
   // Planted fault: of the whole view it is the truth.
   control.forget();
   control.next_probe(scene.views, squared);
-  control.next_loss();
+  control.next_tolerance();
   control.measured({}, true);
   EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
 }
 
-// A frame of views whose error no loss changes.
-int attempts_at(LossControl& control, const std::vector<shared::View>& views, double error,
+// A frame of views whose error no tolerance changes.
+int attempts_at(ToleranceControl& control, const std::vector<shared::View>& views, double error,
                 bool settled = true) {
   int attempts = 0;
   do {
     control.next_probe(views, squared);
-    const float loss = control.next_loss();
-    control.measured({loss > 0.0f ? error : 0.0}, settled);
+    const float tolerance = control.next_tolerance();
+    control.measured({tolerance > 0.0f ? error : 0.0}, settled);
   } while (++attempts < 100 && !control.holds());
   return attempts;
 }
 
-TEST(LossControl, WhereNothingHoldsTheFrameIsExactAndTheNextRecovers) {
+TEST(ToleranceControl, WhereNothingHoldsTheFrameIsExactAndTheNextRecovers) {
   SimulatedScene scene = scene_for(1.3, 0.05);
   for (const bool settled : {true, false}) {  // and where no frame has what it is to go by
-    LossControl control;
+    ToleranceControl control;
     EXPECT_EQ(attempts_at(control, scene.views, settled ? 1.0 : 1e-4, settled), attempts_most);
     EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
     if (!settled) continue;
@@ -341,14 +345,14 @@ TEST(LossControl, WhereNothingHoldsTheFrameIsExactAndTheNextRecovers) {
   }
 }
 
-TEST(LossControl, WhereNoLossErrsItRisesAndEnds) {
+TEST(ToleranceControl, WhereNoToleranceErrsItRisesAndEnds) {
   const SimulatedScene scene(1.5, {1.0});
-  LossControl control;
+  ToleranceControl control;
   EXPECT_LE(attempts_at(control, scene.views, 0.0), attempts_most);
   for (int n = 0; n < 1000; ++n) EXPECT_EQ(attempts_at(control, scene.views, 0.0), 1);
   EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
   control.next_probe(scene.views, squared);
-  EXPECT_LE(control.next_loss(), 1e9f);
+  EXPECT_LE(control.next_tolerance(), 1e9f);
 }
 
 }  // namespace

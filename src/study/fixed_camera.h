@@ -9,10 +9,10 @@
 
 namespace binosplat::study {
 
-class Still {
+class FixedCamera {
  public:
   /// Draws the exact pictures. Context and model must outlive it.
-  Still(gl::Context& context, const Model& model, std::vector<shared::View> views);
+  FixedCamera(gl::Context& context, const Model& model, std::vector<shared::View> views);
 
   const gl::Context& context() const { return frame_.model()->context(); }
   const std::vector<shared::View>& views() const { return views_; }
@@ -32,9 +32,9 @@ class Still {
   double psnr() { return error_.psnr(frame_.colours()); }
   std::vector<Picture> pictures() { return frame_.read_pictures(); }
 
-  /// The loss at which settle() comes to `target` dB, at most 0.1 dB above; 0 for --th tau, and where none
-  /// does.
-  float loss_at(Variant variant, double target);
+  /// The tolerance at which settle() comes to `target` dB, at most 0.1 dB above; 0 for --th tau, and where
+  /// none does.
+  float tolerance_at(Variant variant, double target);
 
  private:
   render::Frame frame_;

@@ -1,4 +1,4 @@
-#include "render/loss_control.h"
+#include "render/tolerance_control.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,15 +28,15 @@ constexpr double deviation = 0.12;
 constexpr double share_max = 64.0;
 // Attempts at a frame: the last is exact; those before it may be better than need be.
 constexpr int attempts_max = 8;
-// Of the loss: the most it changes by from one frame to the next and between attempts.
+// Of the tolerance: the most it changes by from one frame to the next and between attempts.
 constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
-constexpr double loss_min = 1e-9, loss_max = 1e9;
+constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 
-// In smaller pictures than the careful loss is for Gaussians are smaller, too, and fox asked for 0.027
+// In smaller pictures than the careful tolerance is for Gaussians are smaller, too, and fox asked for 0.027
 // (squared, last) at 160 px: less than in proportion.
-double careful_loss_at_40_db(const FrameSettings& s, double focal) {
-  return threshold_rules[s.th].careful_loss * std::pow(std::min(1.0, focal / 700.0), 1.75);
+double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
+  return threshold_rules[s.th].careful_tolerance * std::pow(std::min(1.0, focal / 700.0), 1.75);
 }
 
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
@@ -45,26 +45,27 @@ bool same_rule(const FrameSettings& a, const FrameSettings& b) {
 
 }  // namespace
 
-void LossControl::forget() {
+void ToleranceControl::forget() {
   for (Estimate& view : views_) view.weight = 0.0;
   fresh_ = cut_ = holds_ = true;
 }
 
-bool LossControl::knows(const FrameSettings& settings) const {
+bool ToleranceControl::knows(const FrameSettings& settings) const {
   const bool saw_all =
       std::all_of(views_.begin(), views_.end(), [](const Estimate& v) { return v.weight > 0.0; });
   return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_);
 }
 
-void LossControl::begin(const FrameSettings& settings, double focal) {
+void ToleranceControl::begin(const FrameSettings& settings, double focal) {
   forget();
   settings_ = settings;
   slope_ = threshold_rules[settings.th].slope;
   unevenness_ = 0.0;
-  loss_ = careful_loss_at_40_db(settings, focal) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
+  tolerance_ =
+      careful_tolerance_at_40_db(settings, focal) * std::pow(10.0, -0.1 * (settings.quality - 40.0) / slope_);
 }
 
-Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
+Probe ToleranceControl::next_probe(std::span<const shared::View> views, const FrameSettings& settings) {
   if (views_.size() != views.size()) {
     views_.assign(views.size(), {});
     fresh_ = cut_ = true;
@@ -92,7 +93,7 @@ Probe LossControl::next_probe(std::span<const shared::View> views, const FrameSe
   return probe_;
 }
 
-float LossControl::next_loss() {
+float ToleranceControl::next_tolerance() {
   if (holds_) {
     attempts_ = 0;
     bracket_ = {};
@@ -100,23 +101,23 @@ float LossControl::next_loss() {
   exact_ = ++attempts_ == attempts_max;
   if (exact_) return 0.0f;
   if (attempts_ > 1) {
-    loss_ = std::clamp(searched_loss(target()), loss_min, loss_max);
+    tolerance_ = std::clamp(searched_tolerance(target()), tolerance_min, tolerance_max);
   } else if (!fresh_) {
-    loss_ = std::clamp(followed_loss(target()), loss_min, loss_max);
+    tolerance_ = std::clamp(followed_tolerance(target()), tolerance_min, tolerance_max);
   }
-  return static_cast<float>(loss_);
+  return static_cast<float>(tolerance_);
 }
 
 // From one frame to the next.
-double LossControl::followed_loss(double target) const {
+double ToleranceControl::followed_tolerance(double target) const {
   const double error = worst();
-  if (error <= 0.0) return loss_ * step_up;
+  if (error <= 0.0) return tolerance_ * step_up;
   const double slope = error > target ? slope_ : std::max(slope_, slope_up_min);
-  return loss_ * std::clamp(std::pow(target / error, 1.0 / slope), 1.0 / step_down, step_up);
+  return tolerance_ * std::clamp(std::pow(target / error, 1.0 / slope), 1.0 / step_down, step_up);
 }
 
 // Between attempts at a frame.
-double LossControl::searched_loss(double target) const {
+double ToleranceControl::searched_tolerance(double target) const {
   const Bracket& b = bracket_;
   if (b.held > 0.0 && b.missed > 0.0) {
     if (attempts_ > attempts_max - 2) return b.held;
@@ -125,11 +126,12 @@ double LossControl::searched_loss(double target) const {
     return b.held * std::pow(b.missed / b.held, std::clamp(share, 0.1, 0.9));
   }
   const double error = worst();
-  if (error <= 0.0) return loss_ * step_searching;
-  return loss_ * std::clamp(std::pow(target / error, 1.0 / slope_), 1.0 / step_searching, step_searching);
+  if (error <= 0.0) return tolerance_ * step_searching;
+  return tolerance_ *
+         std::clamp(std::pow(target / error, 1.0 / slope_), 1.0 / step_searching, step_searching);
 }
 
-void LossControl::take(const Probed& probed) {
+void ToleranceControl::take(const Probed& probed) {
   Estimate& view = views_[probe_.view];
   const double expected = error_now(view);
   const double error = probed.squared_error;
@@ -149,36 +151,37 @@ void LossControl::take(const Probed& probed) {
   if (!doubtful) view.weight = std::min(view.weight, carried_max * probe_tiles_);
   const double together = view.weight + probe_tiles_;
   view.error = view.weight > 0.0 ? (view.weight * expected + probe_tiles_ * error) / together : error;
-  // What changes in one view changes in the others, mostly; what another loss changes, always.
+  // What changes in one view changes in the others, mostly; what another tolerance changes, always.
   if (follows && view.error > 0.0) {
     const double trend = std::pow(view.error / expected, attempts_ > 1 ? 1.0 : 0.5);
     for (Estimate& any : views_) {
       if (&any == &view) continue;
       any.error = trend * error_now(any);
-      any.loss = loss_;
+      any.tolerance = tolerance_;
     }
   }
   view.weight += probe_tiles_;
-  view.loss = loss_;
+  view.tolerance = tolerance_;
 }
 
 // What two attempts at a frame say of the error's law about here.
-void LossControl::learn(double target) {
+void ToleranceControl::learn(double target) {
   Bracket& b = bracket_;
-  const double error = worst(), before_loss = b.held > 0.0 ? b.held : b.missed,
+  const double error = worst(), before_tolerance = b.held > 0.0 ? b.held : b.missed,
                before = b.held > 0.0 ? b.held_error : b.missed_error;
-  if (before > 0.0 && error > 0.0 && std::abs(std::log(loss_ / before_loss)) > 0.02)
-    slope_ = std::clamp(std::log(error / before) / std::log(loss_ / before_loss), slope_min, slope_max);
-  if (error > target && (b.missed == 0.0 || loss_ < b.missed)) {
-    b.missed = loss_;
+  if (before > 0.0 && error > 0.0 && std::abs(std::log(tolerance_ / before_tolerance)) > 0.02)
+    slope_ =
+        std::clamp(std::log(error / before) / std::log(tolerance_ / before_tolerance), slope_min, slope_max);
+  if (error > target && (b.missed == 0.0 || tolerance_ < b.missed)) {
+    b.missed = tolerance_;
     b.missed_error = error;
-  } else if (error <= target && loss_ > b.held) {
-    b.held = loss_;
+  } else if (error <= target && tolerance_ > b.held) {
+    b.held = tolerance_;
     b.held_error = error;
   }
 }
 
-void LossControl::measured(const Probed& probed, bool settled) {
+void ToleranceControl::measured(const Probed& probed, bool settled) {
   holds_ = exact_;
   if (!exact_) {
     take(probed);
@@ -188,7 +191,7 @@ void LossControl::measured(const Probed& probed, bool settled) {
       const bool too_good = above > fresh_above && found_ == 0 && attempts_ <= attempts_max - 3;
       holds_ = settled && above >= -fresh_below && !too_good;
       if (settled) learn(target());
-      if (holds_ && cut_ && ++found_ < views_.size()) {  // others may err more at this loss
+      if (holds_ && cut_ && ++found_ < views_.size()) {  // others may err more at this tolerance
         holds_ = false;
         attempts_ = 0;
         bracket_ = {};
@@ -206,19 +209,19 @@ void LossControl::measured(const Probed& probed, bool settled) {
   }
 }
 
-double LossControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }
+double ToleranceControl::target() const { return std::pow(10.0, -0.1 * (settings_.quality + margin)); }
 
-double LossControl::error_now(const Estimate& view) const {
-  return view.error > 0.0 ? view.error * std::pow(loss_ / view.loss, slope_) : 0.0;
+double ToleranceControl::error_now(const Estimate& view) const {
+  return view.error > 0.0 ? view.error * std::pow(tolerance_ / view.tolerance, slope_) : 0.0;
 }
 
-double LossControl::worst() const {
+double ToleranceControl::worst() const {
   double most = 0.0;
   for (const Estimate& view : views_) most = view.weight > 0.0 ? std::max(most, error_now(view)) : most;
   return most;
 }
 
-double LossControl::quality() const {
+double ToleranceControl::quality() const {
   const double error = exact_ ? 0.0 : worst();
   return error > 0.0 ? -10.0 * std::log10(error) : std::numeric_limits<double>::infinity();
 }
