@@ -2,10 +2,10 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 3, pairs: (supertile, splat) for every supertile of a tile that a splat touches, in depth order. A work group makes SCAN_BLOCK
-// pairs. Its invocations take a splat each; of those in few supertiles they write the pairs at once, and share what leads to the
-// others: a splat each counts its rows of supertiles, then a row finds its tiles, then pairs. However many rows and tiles a Gaussian
-// covers, the work is spread evenly.
+// Stage 3, pairs: (supertile, splat) for every supertile of a tile that a splat touches, in depth order. A work group makes
+// SCAN_BLOCK pairs. Its invocations take a splat each; of those in few supertiles they write the pairs at once, and share what leads to the
+// others: a splat each counts its rows of supertiles, then a row finds its tiles, then pairs. However many rows and tiles
+// a Gaussian covers, the work is spread evenly.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
@@ -26,7 +26,7 @@ layout(std430, binding = 1) readonly buffer PairArguments { DispatchArguments pa
 layout(std430, binding = 2) readonly buffer Views { View views[]; };
 layout(std430, binding = 3) readonly buffer Order { uint order[]; };
 layout(std430, binding = 4) readonly buffer PairOffsets { uint pair_offsets[]; };  // scanned
-layout(std430, binding = 5) readonly buffer CoverageInOrder { uint coverage_in_order[]; };  // (rank, view of the group): supertiles.glsl
+layout(std430, binding = 5) readonly buffer CoverageInOrder { uint coverage_in_order[]; };  // (rank, view of the group)
 layout(std430, binding = 7) writeonly buffer Keys { uint keys[]; };      // supertile, counted over all views
 layout(std430, binding = 8) writeonly buffer Values { uint values[]; };  // supertiles.glsl
 uniform uint view_begin;

@@ -27,7 +27,8 @@ float squared_error(uint nth) {
   uvec2 kept = tile * side + in_tile;
   uvec2 at = tile * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + in_tile;
   if (tile.y >= exact.tiles_y || at.x >= exact.width || at.y >= exact.height) return 0.0;
-  vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) - shown(views[frame.probed].pixel_offset + at.y * exact.width + at.x);
+  vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) -
+           shown(views[frame.probed].pixel_offset + at.y * exact.width + at.x);
   return dot(d, d);
 }
 

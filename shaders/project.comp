@@ -2,8 +2,8 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #endif
-// Stage 1, project, last part: the splats of the Gaussians that project_cull.comp found, side by side in index order. One invocation
-// a Gaussian, for all views of the order group.
+// Stage 1, project, last part: the splats of the Gaussians that project_cull.comp found, side by side in index order. One
+// invocation a Gaussian, for all views of the order group.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

@@ -56,7 +56,8 @@ uint key_of(uint i) {
     remember(page_first + i, v, projected, drawn, splat);
 #endif
 #if PROBED
-    if (projected && !drawn && v == frame.probed && views[v].order_group == views[frame.asked].order_group) {  // all of it that leaves a mark
+    // All of it that leaves a mark, where the probe is of this group.
+    if (projected && !drawn && v == frame.probed && views[v].order_group == views[frame.asked].order_group) {
       splat.colour.w = visible_level(splat.opacity);
       drawn = touches_a_tile(splat, views[frame.asked]);
     }

@@ -10,9 +10,9 @@
 #endif
 #define SUPERTILE_TILES (SUPERTILE_SIDE * SUPERTILE_SIDE)
 
-// The tile coverage of a splat in a view, which `project` leaves for `pairs`: how many pairs it makes or, where these are in at most 2 x 2
-// supertiles of 2 x 2 tiles, IN_FEW_SUPERTILES with the first of these, counted in the view, at FEW_SHIFT, and below a bit for each tile,
-// four for each supertile, row by row; so that of a small splat `pairs` need ask nothing again.
+// The tile coverage of a splat in a view, which `project` leaves for `pairs`: how many pairs it makes or, where these are in at
+// most 2 x 2 supertiles of 2 x 2 tiles, IN_FEW_SUPERTILES with the first of these, counted in the view, at FEW_SHIFT, and below a
+// bit for each tile, four for each supertile, row by row; so that of a small splat `pairs` need ask nothing again.
 #define IN_FEW_SUPERTILES 0x80000000u
 #define FEW_SHIFT 16
 #define FEW_END 0x8000u  // what is in a supertile beyond is only counted

@@ -29,9 +29,9 @@ struct View {
   uint height;  // px
   uint tiles_x;
   uint tiles_y;
-  uint supertile_offset;   // this view's first supertile in the frame
-  uint pixel_offset;  // this view's first pixel in the frame's pixel buffers
-  uint order_group;   // views of equal number share one depth order
+  uint supertile_offset;  // this view's first supertile in the frame
+  uint pixel_offset;      // this view's first pixel in the frame's pixel buffers
+  uint order_group;       // views of equal number share one depth order
   uint pitch;  // px from one of its tiles to the next: a tile's side, more in a probe, whose tiles lie apart
   uint shift_x;  // px, where its first tile begins
   uint shift_y;
@@ -39,7 +39,8 @@ struct View {
   uint unused;
 };
 
-// What holds for all of a frame. It lies in a uniform block, whose std140 agrees with std430 where there are no arrays.
+// What holds for all of a frame. It lies in a uniform block, whose std140 agrees with std430 where there are
+// no arrays.
 struct FrameParameters {
   vec4 background;      // rgb, display-referred; w: unused
   float tolerance;      // of the threshold rule: K or kappa
@@ -110,9 +111,9 @@ struct Counters {
 #define COUNT_MAX 0xFFFFFFFFu
 #define PROBE_SCALE 4194304.0       // 2^22: a work group's sum of at most 3 * THREADS stays below 2^32
 #define DEPTH_KEY_NONE 0xFFFFFFFFu  // of a Gaussian that no view of the order group draws
-#define ARGUMENTS_ORDER 0u             // what a total counts: the Gaussians of one order group
-#define ARGUMENTS_PAIRS 1u             // the pairs of one order group, after those of the groups before it
-#define ARGUMENTS_ALL_PAIRS 2u         // the pairs of all groups
+#define ARGUMENTS_ORDER 0u          // what a total counts: the Gaussians of one order group
+#define ARGUMENTS_PAIRS 1u          // the pairs of one order group, after those of the groups before it
+#define ARGUMENTS_ALL_PAIRS 2u      // the pairs of all groups
 #define OVERFLOW_ORDER 1u
 #define OVERFLOW_PAIRS 2u
 #define OVERFLOW_TILE_PAIRS 4u
@@ -135,7 +136,8 @@ static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
 static_assert(sizeof(Counters) == 76 && offsetof(Counters, long_x) == 44 && offsetof(Counters, tall_x) == 60);
-static_assert(sizeof(DispatchArguments) == 48 && offsetof(DispatchArguments, threads_x) == 8 && offsetof(DispatchArguments, sort_x) == 32);
+static_assert(sizeof(DispatchArguments) == 48 && offsetof(DispatchArguments, threads_x) == 8 &&
+              offsetof(DispatchArguments, sort_x) == 32);
 }  // namespace binosplat::shared
 #endif
 

@@ -8,7 +8,7 @@
 
 #include "app/bench_plan.h"
 #include "app/command.h"
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 #include "app/output_options.h"
 #include "app/photos.h"
 #include "base/log.h"

@@ -7,7 +7,7 @@
 
 #include "app/command.h"
 #include "app/content_key.h"
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 #include "app/report.h"
 #include "base/error.h"
 #include "base/mapped_file.h"

@@ -33,7 +33,7 @@ void print(const study::Calibration& c, const CalibrateOptions& o) {
                   : fmt::format("target: {} dB against the exact pictures", c.target.db));
   fmt::print("light by depth: {} bins over [0, {:.4g}], {:.2f} s\n\n", c.depth_table.bounds.size(),
              c.depth_table.far, c.depth_table_seconds);
-  fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "T from", "tolerance",
+  fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "source", "tolerance",
              drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
   for (const study::CalibrationEntry& e : c.entries) {
     fmt::print("{:<12}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n", th_choices[e.th].name,

@@ -9,9 +9,9 @@
 #include <memory>
 
 #include "app/command.h"
+#include "app/load_scene.h"
 #include "app/measured_options.h"
 #include "app/model_files.h"
-#include "app/open_scene.h"
 #include "app/option_checks.h"
 #include "app/shots.h"
 #include "base/log.h"

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "app/detail.h"
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 #include "base/clock.h"
 #include "formats/model_file.h"
 #include "measure/metrics.h"

@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "app/command.h"
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "scene/scaffold.h"

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <set>
 
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"

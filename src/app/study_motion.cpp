@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command.h"
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 #include "app/option_checks.h"
 #include "app/parts.h"
 #include "app/study_parts.h"

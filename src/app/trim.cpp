@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "app/command.h"
+#include "app/load_scene.h"
 #include "app/model_files.h"
-#include "app/open_scene.h"
 #include "app/option_checks.h"
 #include "app/output_options.h"
 #include "app/photos.h"
@@ -105,7 +105,9 @@ std::optional<fs::path> same_format(const TrimOptions& o, const std::string& for
                                     ModelFormat format) {
   const fs::path file = model_file(o.scene.name);
   const std::string_view name = written_format(format).read_as;
-  const bool same = format_read == name || format_read.starts_with(fmt::format("{} ", name));
+  // A SOG may be read from a meta.json beside its pictures, and is written as an archive.
+  const bool same = (format_read == name || format_read.starts_with(fmt::format("{} ", name))) &&
+                    (format != ModelFormat::sog || model_format_of(file) == format);
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
 }
 

@@ -10,8 +10,8 @@
 
 namespace binosplat::gl {
 
-/// A shader storage buffer with a name for debuggers and error texts. Empty until reserved; contents are
-/// undefined until written.
+/// A buffer for storage or uniform blocks with a name for debuggers and error texts. Empty until reserved;
+/// contents are undefined until written.
 class Buffer {
  public:
   Buffer(Context& context, std::string label);

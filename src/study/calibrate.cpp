@@ -70,7 +70,7 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
 Calibrator::Cost Calibrator::cost(const Model& other, int drawings) {
   render::Frame frame(context_, other);
   // It slept while the model was made.
-  if (drawings > 1) wake(context_, [&] { frame.draw(std::span(&views_.front(), 1)); });
+  if (drawings > 1) wake(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
   return cost(frame, {}, drawings);
 }
 

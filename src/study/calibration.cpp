@@ -114,8 +114,9 @@ CalibrationEntry parse_entry(const Reader& entry) {
   CalibrationEntry e;
   e.th = entry.choice("th", th_choices);
   e.transmittance = entry.choice("transmittance", transmittance_choices);
-  e.tolerance = entry.number(entry.has("loss") ? "loss" : "tolerance", 0.0);  // with_present_names()
-  if (!std::isfinite(static_cast<float>(e.tolerance))) fail("{}: 'tolerance' is too large", entry.place());
+  const char* key = entry.has("tolerance") ? "tolerance" : "loss";  // its name until 2026-11-22
+  e.tolerance = entry.number(key, 0.0);
+  if (!std::isfinite(static_cast<float>(e.tolerance))) fail("{}: '{}' is too large", entry.place(), key);
   e.reached_db = entry.number("reached_db");
   e.worst_db = entry.number("worst_db");
   e.worst_view = entry.text("worst_view");

@@ -170,7 +170,7 @@ void Drive::time(MotionResult& result) {
     for (const MotionSegment& segment : timed.path->segments) timed.ms.emplace_back(segment.frames.size());
   }
   // It slept while sums were read.
-  wake(frame_.model()->context(), [&] { frame_.draw(result.path.segments.front().frames.front()); });
+  wake(frame_.model()->context(), 1000.0, [&] { frame_.draw(result.path.segments.front().frames.front()); });
   std::size_t done = 0;
   for (int round = 0; round < settings_.rounds; ++round) {
     for (std::size_t s = 0; s < segments; ++s) {

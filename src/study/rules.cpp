@@ -112,7 +112,7 @@ std::vector<RuleResult> measure_rules(FixedCamera& camera, const std::vector<Var
     result.disagreement_db = disagreement_of(camera);
     result.problem = problem_of(result, target);
   }
-  wake(camera.context(), [&] { camera.draw(rules.front()); });  // it slept while pictures were read
+  wake(camera.context(), 1000.0, [&] { camera.draw(rules.front()); });  // it slept while pictures were read
   std::vector<Times> times(rules.size());
   for (int round = 0; round < rule_rounds; ++round) {
     for (std::size_t k = 0; k < rules.size(); ++k) {

@@ -6,12 +6,13 @@
 
 namespace binosplat::study {
 
-/// Draws for a second, after which a GPU's clock is up again. A software renderer has none to wait for.
+/// Draws for so long, a second or a little less, after which a GPU's clock is up again. A software renderer
+/// has none to wait for.
 template <typename Draw>
-void wake(const gl::Context& context, const Draw& draw) {
+void wake(const gl::Context& context, double ms, const Draw& draw) {
   if (context.software()) return;
   const auto start = Clock::now();
-  while (ms_since(start) < 1000.0) draw();
+  while (ms_since(start) < ms) draw();
 }
 
 }  // namespace binosplat::study

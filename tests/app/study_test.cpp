@@ -165,6 +165,7 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--rules", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--th", "squared"}, "--rules"},
       {{"--rules", "--tolerance", "0.1"}, "--tolerance"},
+      {{"--rules", "--loss", "0.1"}, "--tolerance"},
       {{"--stability", "--frames", "5"}, "--rules"},
       {{"--path", "no_such.json"}, "no_such.json"},
       {{"--stability", "--json", folder / "file/s.json"}, "file"},

@@ -25,7 +25,7 @@ nlohmann::json pairs_of(const test::TempFolder& folder, std::vector<std::string>
   return nlohmann::json::parse(test::read_text(folder / "run.json"));
 }
 
-TEST(Threshold, ALossMakesFewerPairs) {
+TEST(Threshold, AToleranceMakesFewerPairs) {
   const test::TempFolder folder;
   const auto exact = pairs_of(folder, {});
   const auto lossy = pairs_of(folder, {"--tolerance", "0.1"});
@@ -34,6 +34,7 @@ TEST(Threshold, ALossMakesFewerPairs) {
   EXPECT_EQ(lossy.at("settings").at("th"), "squared");
   EXPECT_LT(lossy.at("views")[0].at("pairs"), exact.at("views")[0].at("pairs"));
   EXPECT_LT(paper.at("views")[0].at("pairs"), exact.at("views")[0].at("pairs"));
+  EXPECT_EQ(pairs_of(folder, {"--loss", "0.1"}), lossy) << "its former name";
   const auto repeated = pairs_of(folder, {"--tolerance", "0.1", "--transmittance", "last", "--frames", "3"});
   EXPECT_LT(repeated.at("views")[0].at("pairs"), lossy.at("views")[0].at("pairs"));
 }
@@ -58,7 +59,7 @@ TEST(Threshold, OptionsThatCannotHaveAnEffectAreRefused) {
   }
 }
 
-TEST(Threshold, AQualityIsComeToWithoutALoss) {
+TEST(Threshold, AQualityIsComeToWithoutATolerance) {
   const test::TempFolder folder;
   const auto draw = [&](const std::string& name, std::vector<std::string> more) {
     // Not smaller: where dozens of Gaussians share a pixel the error is a step of the tolerance.

@@ -91,7 +91,7 @@ void expect_pairs(const TileLists& lists, std::size_t wanted) {
   EXPECT_NEAR(double(lists.pairs()), double(wanted), 2e-5 * double(wanted));
 }
 
-TEST_P(ReferenceOnScenes, CountsAndToleranceOfTiles) {
+TEST_P(ReferenceOnScenes, CountsAndLossOfTiles) {
   REQUIRE_CASE(folder);
   const Case& c = GetParam();
   if (c.pairs.aabb == 0) GTEST_SKIP() << "docs/method.md has no figures for this view";

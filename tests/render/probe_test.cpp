@@ -83,7 +83,7 @@ void expect_no_error(const Model& model, const FrameSettings& settings, int supe
   const int side = settings.tile_size;
   for (const Probe& probe : probes({1, 3}, tiles_along(width, side), tiles_along(height, side))) {
     EXPECT_EQ(ProbeRun(model, views, settings, supertile_side, probe).error, 0.0)
-        << tiles_choices[settings.tiles].name << ", tile " << side << ", lists of " << supertile_side
+        << tiles_choices[settings.tiles].name << ", tile " << side << ", supertiles of " << supertile_side
         << ", cant " << cant << ", view " << probe.view << ", step " << probe.step << " from ("
         << probe.column << ", " << probe.row << ")";
   }

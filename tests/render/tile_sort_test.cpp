@@ -1,4 +1,4 @@
-// The stage tile_sort against std::stable_sort: pairs by list, and within a list in depth order, as they
+// The stage tile_sort against std::stable_sort: pairs by supertile, and within it in depth order, as they
 // came.
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace binosplat {
 namespace {
 
 using render::Stage;
-using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // list, splat
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // supertile, splat
 
 Pairs read_pairs(test::StageRun& run) {
   const std::uint32_t count = run.frame.counters.read<shared::Counters>(1).front().pairs;

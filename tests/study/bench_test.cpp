@@ -37,7 +37,7 @@ struct BenchPoint : testing::Test {
   }
 };
 
-TEST_F(BenchPoint, ExactIsEqualAndALossIsNot) {
+TEST_F(BenchPoint, ExactIsEqualAndAToleranceIsNot) {
   Bench both = bench(test::gl_context(), 2);
   const BenchNumbers exact = both.measure({});
   EXPECT_TRUE(std::isinf(exact.exact.psnr_db));

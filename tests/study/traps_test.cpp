@@ -50,7 +50,7 @@ double median(const std::vector<Shown>& shown, double Shown::*what, std::size_t 
   return quantile(std::move(values), 0.5);
 }
 
-TEST(Traps, AFarWallOfTinyGaussiansGoesAtALossThatIsFineElsewhere) {
+TEST(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
   // Trap 1. A tolerance that is chosen on something else takes the wall away by and by; --quality sees it.
   const StabilityCase wall = case_named("far-wall"), clutter = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};

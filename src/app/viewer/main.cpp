@@ -10,7 +10,7 @@
 #include "app/command.h"
 #include "app/command_line.h"
 #include "app/followed.h"
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/shots.h"

@@ -1,4 +1,4 @@
-#include "app/open_scene.h"
+#include "app/load_scene.h"
 
 #include <utility>
 
