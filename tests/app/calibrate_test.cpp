@@ -62,10 +62,10 @@ TEST_F(CalibrateTest, RenderGoesByIt) {
   EXPECT_NE(small.err.find("the tolerance is scaled"), std::string::npos) << small.err;
 }
 
-TEST(CalibrateFox, AtAQuarterOfItsSize) {
+TEST(CalibrateFox, PrunedAndAtAQuarterOfItsSize) {
   REQUIRE_SCENE("fox", fox);
   const test::TempFolder folder;
-  const Outcome outcome = test::run_program({"calibrate", fox / "fox.ply", "--view", "0003", "--size",
+  const Outcome outcome = test::run_program({"calibrate", fox / "fox_pruned.ply", "--view", "0003", "--size",
                                              "129x236", "--quality", "40", "-o", folder / "fox.json"});
   ASSERT_TRUE(good(outcome));
   const ordered_json found = ordered_json::parse(read_text(folder / "fox.json"));
