@@ -34,7 +34,7 @@ std::filesystem::path default_folder(const std::string& scene);
 
 /// From -o, --layout, --exr, --bits and --fps. Throws Error, before any long work, for what cannot be
 /// written.
-OutputPlan plan_outputs(const RenderOptions& options);
+OutputPlan plan_outputs(const RenderOptions& render);
 
 /// Throws Error for shots whose eyes cannot be laid out as planned, for many in one picture, and for videos
 /// whose frames differ in size.

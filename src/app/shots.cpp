@@ -175,9 +175,10 @@ std::optional<SavedPose> find_saved(const SceneOptions& scene) {
   return saved;
 }
 
-std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& o,
+std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& camera,
                                        const std::optional<SavedPose>& saved) {
-  const bool chosen = !o.file.empty() || !o.views.empty() || o.along_path() || o.made_up() || o.up || o.fov;
+  const bool chosen = !camera.file.empty() || !camera.views.empty() || camera.along_path() ||
+                      camera.made_up() || camera.up || camera.fov;
   if (!saved || chosen) return std::nullopt;
   return CameraList{.source = pose_path(scene.name).string(),
                     .cameras = {saved->camera},
