@@ -44,25 +44,26 @@ void check_eyes(const RigOptions& rig, const DrawingOptions& drawing, const Outp
     fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
 }
 
-}  // namespace
-
-void add_options(CLI::App& sub, RenderOptions& o) {
+// All but what is done with the pictures.
+void add_picture_options(CLI::App& sub, RenderOptions& o) {
   add_scene_options(sub, o.scene);
   add_camera_options(sub, o.camera);
-  add_tour_options(sub, o.camera);
   add_rig_options(sub, o.rig);
   add_drawing_options(sub, o.drawing);
   add_context_options(sub, o.context);
+}
+
+}  // namespace
+
+void add_options(CLI::App& sub, RenderOptions& o) {
+  add_picture_options(sub, o);
+  add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
   sub.option_defaults()->group("Options");
 }
 
 void add_view_options(CLI::App& sub, RenderOptions& o) {
-  add_scene_options(sub, o.scene);
-  add_camera_options(sub, o.camera);
-  add_rig_options(sub, o.rig);
-  add_drawing_options(sub, o.drawing);
-  add_context_options(sub, o.context);
+  add_picture_options(sub, o);
   add_look_options(sub, o.output);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");

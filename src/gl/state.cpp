@@ -16,13 +16,17 @@ KeptState::KeptState(const Context& context) : gl_(context.gl()) {
   scissors_ = gl_.IsEnabledi(GL_SCISSOR_TEST, 0);
   encodes_ = gl_.IsEnabled(GL_FRAMEBUFFER_SRGB);
   discards_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
-  gl_.GetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, 0, &uniforms_.buffer);
-  gl_.GetInteger64i_v(GL_UNIFORM_BUFFER_START, 0, &uniforms_.offset);
-  gl_.GetInteger64i_v(GL_UNIFORM_BUFFER_SIZE, 0, &uniforms_.size);
+  const auto bound = [this](GLenum buffer, GLenum start, GLenum size, GLuint i) {
+    Range range;
+    gl_.GetIntegeri_v(buffer, i, &range.buffer);
+    gl_.GetInteger64i_v(start, i, &range.offset);
+    gl_.GetInteger64i_v(size, i, &range.size);
+    return range;
+  };
+  uniforms_ = bound(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, 0);
   for (GLuint i = 0; i < storage_bindings_needed; ++i) {
-    gl_.GetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, i, &storages_[i].buffer);
-    gl_.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_START, i, &storages_[i].offset);
-    gl_.GetInteger64i_v(GL_SHADER_STORAGE_BUFFER_SIZE, i, &storages_[i].size);
+    storages_[i] = bound(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START,
+                         GL_SHADER_STORAGE_BUFFER_SIZE, i);
   }
 }
 
