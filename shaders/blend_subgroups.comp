@@ -27,6 +27,10 @@ uint value_at(uint at) { return at < end ? values[at] : 0u; }
 uint blocks_reached(Splat splat, vec2 mean) {
   if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
   float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;
+#if PROJECTION == PROJECTION_TANGENT
+  if (is_wide(splat)) return (1u << BLOCKS_ACROSS * BLOCKS_DOWN) - 1u;
+  rho *= farthest;
+#endif
   float tallest = splat.conic.w * sqrt(rho * splat.conic.x);                // half the ellipse's height,
   float widest = sqrt(rho / splat.conic.x);                                 // half its widest row,
   float lean = -splat.conic.y / splat.conic.x;                              // of the line through its rows' middles,

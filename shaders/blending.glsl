@@ -7,6 +7,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "projection.glsl"
 #include "supertiles.glsl"
 #include "tiles/places.glsl"
 #include "splats.glsl"  // binding 12
@@ -41,17 +42,27 @@ shared float batch_light[BATCH];
 #endif
 #include "frame.glsl"
 
-// -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage().
+// -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the tangent
+// projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
+#if PROJECTION == PROJECTION_TANGENT
+shared vec4 batch_down[BATCH];    // v, c, -log2(sigma), and 0
+#else
 shared vec2 batch_down[BATCH];    // v, c
+#endif
 shared vec4 batch_colour[BATCH];  // rgb, depth
 
+uint view_index = 0u;
 uvec2 first_pixel;  // of the column
 vec2 pixel;         // the same, from the middle of the cell
 vec2 middle;        // of the cell
 uint size;          // splats of the batch
 vec3 colour[COLUMN];
 float z_sum[COLUMN];
+#if PROJECTION == PROJECTION_TANGENT
+float nearness[COLUMN];  // 1 / |d|^2
+float farthest;          // the largest |d|^2 of the tile
+#endif
 float transmittance[COLUMN];  // 0 once the pixel is done,
 float least[COLUMN];          // and this -T; until then the T that the blend stops at
 
@@ -89,13 +100,20 @@ void blend(uint at[AHEAD]) {
   float alpha[AHEAD][COLUMN];
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
+#if PROJECTION == PROJECTION_TANGENT
+    vec4 down = batch_down[at[k]];
+#else
     vec2 down = batch_down[at[k]];
+#endif
     precise float t = fma(across.x, pixel.x, across.y);
     precise float level = fma(t, t, across.w);
     precise float slope = fma(t, across.z, down.x);
     for (uint p = 0u; p < COLUMN; ++p) {
       precise float y = pixel.y + float(p);
       precise float exponent = fma(y, fma(y, down.y, slope), level);
+#if PROJECTION == PROJECTION_TANGENT
+      exponent = fma(nearness[p], exponent, down.z);
+#endif
       precise float a = exp2(-exponent);
       alpha[k][p] = a >= float(ALPHA_MIN) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
     }
@@ -162,32 +180,69 @@ void blend_from(uint first) {
 // alpha = sigma 2^-|L^T d|^2, d = pixel - mean, L the lower Cholesky factor of Q log2(e) / 2, as a polynomial of the pixel's
 // place from the middle of its cell. No splat is thinner than the low-pass, and where alpha can be seen the mean is no further
 // than a few of its widths: no term is large there, and their sum exact to 1e-4. Cells do not depend on the tiles' size.
-void stage(uint at, Splat splat) {
-  const float scale = 0.72134752044448170;  // log2(e) / 2
-  precise vec2 mean = splat.mean - middle;
-  precise float xx = sqrt(scale * splat.conic.x);
-  precise float yx = scale * splat.conic.y / xx;
-  precise float yy = scale / (splat.conic.w * xx);
-  precise float u = -fma(xx, mean.x, yx * mean.y);
-  precise float v = -yy * mean.y;
-  precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;
-  precise float level = fma(v, v, -bits);
-  precise float slope = 2.0 * v * yy;
-  precise float bend = fma(yx, yx, yy * yy);
-  batch_across[at] = vec4(xx, u, 2.0 * yx, level);
-  batch_down[at] = vec2(slope, bend);
-  batch_colour[at] = vec4(splat.colour.rgb, splat.depth);
-}
+const float level_scale = 0.72134752044448170;  // log2(e) / 2
 
 void stage_nothing(uint at) {
   batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
-  batch_down[at] = vec2(0.0);
   batch_colour[at] = vec4(0.0);
+#if PROJECTION == PROJECTION_TANGENT
+  batch_down[at] = vec4(0.0);
+#else
+  batch_down[at] = vec2(0.0);
+#endif
+}
+
+#if PROJECTION == PROJECTION_TANGENT
+// A wide splat: t and what s is the square of as they are at the middle of the cell, and by the pixel.
+void stage_wide(uint at, Splat splat, float bits) {
+  vec4 lens = views[view_index].lens;
+  vec3 direction = direction_of(splat), across, down;
+  tangent_axes(direction, across, down);
+  vec3 d = vec3(slope_at(views[view_index], middle), 1.0);
+  if (dot(direction, d) <= 0.0) {  // it has faded long before it comes to lie behind
+    stage_nothing(at);
+    return;
+  }
+  float focal = sqrt(level_scale * lens.x * lens.y);
+  float root = sqrt(splat.conic.x);
+  vec3 first = focal * (root * across + splat.conic.y / root * down);
+  vec3 second = focal / (splat.conic.w * root) * down;
+  vec2 gain = first.xy / lens.xy;
+  float v = dot(second, d), bend = second.y / lens.y;
+  batch_across[at] = vec4(gain.x, dot(first, d), 2.0 * gain.y, v * v);
+  batch_down[at] = vec4(2.0 * v * bend, gain.y * gain.y + bend * bend, -bits, 0.0);
+}
+#endif
+
+void stage(uint at, Splat splat) {
+  batch_colour[at] = vec4(splat.colour.rgb, abs(splat.depth));
+  precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;
+#if PROJECTION == PROJECTION_TANGENT
+  if (is_wide(splat)) {
+    stage_wide(at, splat, bits);
+    return;
+  }
+#endif
+  precise vec2 mean = splat.mean - middle;
+  precise float xx = sqrt(level_scale * splat.conic.x);
+  precise float yx = level_scale * splat.conic.y / xx;
+  precise float yy = level_scale / (splat.conic.w * xx);
+  precise float u = -fma(xx, mean.x, yx * mean.y);
+  precise float v = -yy * mean.y;
+  precise float slope = 2.0 * v * yy;
+  precise float bend = fma(yx, yx, yy * yy);
+#if PROJECTION == PROJECTION_TANGENT
+  batch_across[at] = vec4(xx, u, 2.0 * yx, v * v);
+  batch_down[at] = vec4(slope, bend, -bits, 0.0);
+#else
+  precise float level = fma(v, v, -bits);
+  batch_across[at] = vec4(xx, u, 2.0 * yx, level);
+  batch_down[at] = vec2(slope, bend);
+#endif
 }
 
 // What the work group draws.
 uint tile = 0u;
-uint view_index = 0u;
 uint begin = 0u, end = 0u;  // its list
 
 // Whether there is anything for this work group to draw; else it must end.
@@ -227,11 +282,20 @@ void begin_pixels(uvec2 in_tile) {
   middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
   first_pixel = corner + in_tile;
   pixel = vec2(first_pixel) - middle;
+#if PROJECTION == PROJECTION_TANGENT
+  vec2 nearest_edge = slope_at(view, vec2(corner)), other_edge = slope_at(view, vec2(corner + uint(TILE_SIZE - 1)));
+  vec2 most = max(abs(nearest_edge), abs(other_edge));
+  farthest = 1.0 + dot(most, most);
+#endif
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x < view.width && first_pixel.y + p < view.height;
     colour[p] = vec3(0.0);
     z_sum[p] = 0.0;
     transmittance[p] = inside ? 1.0 : 0.0;
+#if PROJECTION == PROJECTION_TANGENT
+    vec2 ray = slope_at(view, vec2(first_pixel + uvec2(0u, p)));
+    nearness[p] = 1.0 / (1.0 + dot(ray, ray));
+#endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
 #if SHOW != SHOW_PICTURE
     told[p] = 0.0;
@@ -254,6 +318,9 @@ void write_pixels() {
     shown[to] = told[p];
 #else
     colours[to] = vec4(colour[p], left);
+#if PROJECTION == PROJECTION_TANGENT
+    z_sum[p] *= sqrt(nearness[p]);  // of distances
+#endif
     z_sums[to] = z_sum[p];
 #endif
   }

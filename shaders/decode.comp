@@ -56,7 +56,7 @@ bool is_hidden(uint v, Anchor anchor, uint n, uint bits) {
     Splat splat;
     if (!project(views[v], g, scaled_axes(g), splat)) return false;
     float bound = bound_of(page_first + n * uint(OFFSETS) + k, v, splat.depth);
-    if (!(threshold_of(splat, bound) > 1.0)) return false;
+    if (!(threshold_of(v, splat, bound) > 1.0)) return false;
   }
   return bits != 0u;
 }

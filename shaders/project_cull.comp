@@ -62,7 +62,7 @@ uint key_of(uint i) {
       drawn = touches_a_tile(splat, views[frame.asked]);
     }
 #endif
-    if (drawn) key = floatBitsToUint(splat.depth);
+    if (drawn) key = floatBitsToUint(order_depth(views[v], g));
 #if !RECORDS
     if (drawn) break;  // no need to ask the other eye
 #endif

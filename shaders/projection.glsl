@@ -1,5 +1,8 @@
 // A Gaussian as a view sees it (docs/method.md 2), all but its colour. `precise` because several programs compute it and
 // must get the same bits.
+//   ORDER        ORDER_ of shared/axes.h
+//   PROJECTION   PROJECTION_ of shared/axes.h; its file is projection/NAME.glsl
+#include "shared/axes.h"
 // Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of docs/method.md 2.
 mat3 scaled_axes(Gaussian g) {
   precise float w = g.rotation.x;
@@ -25,27 +28,23 @@ vec3 to_eye(View view, vec3 d) {
   return vec3(x, y, z);
 }
 
-// Rows of J R^T M: the scaled axes as they fall on the picture, px. J is taken at v with its slopes clamped, because the
-// linearisation blows up far outside the picture.
-void axes_on_picture(View view, vec3 v, mat3 axes, out vec3 across, out vec3 down) {
-  vec2 focal = view.lens.xy;
-  precise vec2 slope = clamp(v.xy / v.z, view.slopes.xy, view.slopes.zw);
-  precise vec2 gain = focal / v.z;
-  precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
-  precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
-  across = vec3(dot_precise(jx, axes[0]), dot_precise(jx, axes[1]), dot_precise(jx, axes[2]));
-  down = vec3(dot_precise(jy, axes[0]), dot_precise(jy, axes[1]), dot_precise(jy, axes[2]));
-}
+// The low-pass: a variance of KERNEL_PX2 across and down, as it falls on a picture that leans against the ray by `slope` and
+// is `stretch` times as wide across, and inversely down.
+struct LowPass {
+  vec2 slope;
+  float stretch;
+};
 
 // (Q.xx, Q.xy, Q.yy, sqrt(det C2)), and the share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P
-// being C2 without it (Mip-Splatting, Yu 2024). With s the low-pass, det P = |across x down|^2 and
-// det C2 = det P + s (|across|^2 + |down|^2) + s^2: all are positive, so that what is long and thin keeps
-// its width, which xx yy - xy^2 would lose. What is not drawn is told by w = 0.
-vec4 conic_of(vec3 across, vec3 down, out float kept) {
+// being C2 without it (Mip-Splatting, Yu 2024). With s L the low-pass, det P = |across x down|^2 and
+// det C2 = det P + s (L.yy |across|^2 - 2 L.xy across . down + L.xx |down|^2) + s^2 det L, where what is in brackets is a sum of
+// squares, too: all are positive, so that what is long and thin keeps its width, which xx yy - xy^2 would lose. What is not
+// drawn is told by w = 0.
+vec4 conic_of(vec3 across, vec3 down, LowPass low, out float kept) {
   const float s = float(KERNEL_PX2);
-  precise float xx = dot_precise(across, across) + s;
-  precise float xy = dot_precise(across, down);
-  precise float yy = dot_precise(down, down) + s;
+  precise float xx = dot_precise(across, across) + s * (low.stretch * (1.0 + low.slope.x * low.slope.x));
+  precise float xy = dot_precise(across, down) + s * (low.slope.x * low.slope.y);
+  precise float yy = dot_precise(down, down) + s / low.stretch * (1.0 + low.slope.y * low.slope.y);
   kept = 0.0;
   // A power of two takes the size out, so that no product overflows.
   int exponent = int(floatBitsToUint(max(xx, yy)) >> 23);
@@ -57,7 +56,9 @@ vec4 conic_of(vec3 across, vec3 down, out float kept) {
   precise float low_pass = unit * s * unit;
   precise vec3 n = vec3(a.y * d.z - a.z * d.y, a.z * d.x - a.x * d.z, a.x * d.y - a.y * d.x);
   precise float det_p = dot_precise(n, n);
-  precise float det = det_p + low_pass * (dot_precise(a, a) + dot_precise(d, d) + low_pass);
+  precise vec3 lean = sqrt(low.stretch) * low.slope.x * d - low.slope.y / sqrt(low.stretch) * a;
+  precise float det = det_p + low_pass * (dot_precise(a, a) / low.stretch + low.stretch * dot_precise(d, d) +
+                                          dot_precise(lean, lean) + low_pass * (1.0 + dot(low.slope, low.slope)));
   if (!(det > 0.0)) return vec4(0.0);
   precise vec3 q = unit * vec3(yy, -xy, xx) * unit / det * unit * unit;
   precise float root = sqrt(det);
@@ -67,24 +68,17 @@ vec4 conic_of(vec3 across, vec3 down, out float kept) {
   return vec4(q, root_det);
 }
 
-// Everything but the colour and the level of Th. False where this view does not draw it.
-bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
+// What the order goes by, above 0 for what is drawn. Distances are taken in the world, so that no turn of the head rounds them
+// otherwise.
+float order_depth(View view, Gaussian g) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
-  vec3 v = to_eye(view, d);
-  if (!(v.z > view.anchor.w)) return false;
-  vec3 across;
-  vec3 down;
-  axes_on_picture(view, v, axes, across, down);
-  float kept;
-  splat.conic = conic_of(across, down, kept);
-  if (splat.conic.w == 0.0) return false;
-  precise vec2 mean = view.lens.xy * (v.xy / v.z) + view.lens.zw - 0.5;
-  splat.mean = mean;
-  splat.depth = v.z;
-  splat.opacity = g.position.w;
-#if ANTIALIASED
-  splat.opacity *= kept;
+#if ORDER == ORDER_DISTANCE
+  precise vec3 away = d - view.centre.xyz;
+  precise float distance = sqrt(dot_precise(away, away));
+  return distance;
+#else
+  return to_eye(view, d).z;
 #endif
-  splat.colour = vec4(0.0);
-  return true;
 }
+
+#include "projection/{PROJECTION_NAME}.glsl"

@@ -56,6 +56,12 @@ shared::View shifted_view(const Camera& eye, const Camera& head, double offset, 
   return view;
 }
 
+/// Both eyes sort by the distance from one point, so that a head that turns about it changes nothing.
+void share_centre(EyePair& pair, const glm::dvec3& centre, const glm::vec3& anchor) {
+  for (shared::View& view : pair.views)
+    view.centre = glm::vec4(glm::vec3(centre - glm::dvec3(anchor)), view.centre.w);
+}
+
 }  // namespace
 
 EyePair make_rig(const Camera& head, const RigSettings& settings) {
@@ -83,15 +89,18 @@ EyePair make_rig(const Camera& head, const RigSettings& settings) {
       pair.views[k] = make_view(eye, anchor, settings.near_plane);
     }
   }
+  share_centre(pair, head.position, anchor);
   return pair;
 }
 
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane) {
   check_near(near_plane);
-  const glm::vec3 anchor(0.5 * (left.position + right.position));
+  const glm::dvec3 middle = 0.5 * (left.position + right.position);
+  const glm::vec3 anchor(middle);
   EyePair pair;
   pair.cameras = {left, right};
   for (std::size_t k = 0; k < 2; ++k) pair.views[k] = make_view(pair.cameras[k], anchor, near_plane);
+  share_centre(pair, middle, anchor);
 
   double turned = 0.0;
   for (int i = 0; i < 3; ++i) {

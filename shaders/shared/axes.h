@@ -24,6 +24,14 @@
 #define DECODE_EYES 0
 #define DECODE_CYCLOPEAN 1
 
+// --order: what Gaussians are sorted by, front to back (docs/method.md 2).
+#define ORDER_DEPTH 0
+#define ORDER_DISTANCE 1
+
+// --projection: what a ray sees of a Gaussian (docs/method.md 2).
+#define PROJECTION_AFFINE 0
+#define PROJECTION_TANGENT 1
+
 // --precision: of what a frame keeps of Gaussians and splats.
 #define PRECISION_FULL 0
 #define PRECISION_HALF 1
@@ -90,6 +98,16 @@ inline constexpr Choice transmittance_choices[] = {
 inline constexpr Choice decode_choices[] = {
     {"eyes", "each eye its own: exact"},
     {"cyclopean", "both eyes of a pair share those of an eye between them"},
+};
+
+inline constexpr Choice order_choices[] = {
+    {"depth", "along the view's axis, as 3D-GS is trained; turns with the head"},
+    {"distance", "from the eye, of a pair from between the eyes"},
+};
+
+inline constexpr Choice projection_choices[] = {
+    {"affine", "3D-GS's, which stretches what is off the view's axis"},
+    {"tangent", "onto the plane that touches the unit sphere: the same however the head is turned"},
 };
 
 inline constexpr Choice precision_choices[] = {

@@ -8,12 +8,14 @@
 #include "threshold/bound.glsl"
 #include "threshold/{TH_NAME}.glsl"
 
-float threshold_of(Splat splat, float bound) { return threshold(splat.conic.w, bound, frame.tolerance); }
+float threshold_of(uint v, Splat splat, float bound) {
+  return threshold(size_of(views[v], splat), bound, frame.tolerance);
+}
 
 // Th of a Gaussian in view v, where it is `splat`.
 float threshold_in(uint v, uint gaussian, Splat splat) {
   if (v >= frame.asked) return float(ALPHA_MIN);
-  return threshold_of(splat, bound_of(gaussian, v, splat.depth));
+  return threshold_of(v, splat, bound_of(gaussian, v, abs(splat.depth)));
 }
 
 // The same for what leaves a mark at all.

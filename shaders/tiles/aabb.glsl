@@ -1,17 +1,17 @@
 // The square of 3D-GS (Kerbl 2023): three standard deviations of the longer axis, whatever the opacity, its tiles found by
-// C's truncation. Opacities below tau are not left out, as there. It cuts tails that can be seen: alpha is still 0.011 there for an opaque splat.
+// C's truncation. Opacities below tau are not left out, as there. It cuts tails that can be seen: alpha is still 0.011 there for an opaque outline.
 
-uvec4 tile_box(Splat splat, View view) {
+uvec4 tile_box(Outline outline, View view) {
 #if TH != TH_TAU
-  if (splat.colour.w < RHO_NONE) return uvec4(0u);
+  if (outline.level < RHO_NONE) return uvec4(0u);
 #endif
   // The covariance back from the conic; the half trace m and det of INRIA's lambda.
-  precise float det = splat.conic.w * splat.conic.w;
-  precise float m = 0.5 * (splat.conic.x + splat.conic.z) * det;
+  precise float det = outline.conic.w * outline.conic.w;
+  precise float m = 0.5 * (outline.conic.x + outline.conic.z) * det;
   precise float lambda = m + sqrt(max(0.1, m * m - det));
   precise float radius = ceil(3.0 * sqrt(lambda));
-  precise vec2 low = (splat.mean - radius) / float(TILE_SIZE);
-  precise vec2 high = (splat.mean + radius + float(TILE_SIZE - 1)) / float(TILE_SIZE);
+  precise vec2 low = (outline.mean - radius) / float(TILE_SIZE);
+  precise vec2 high = (outline.mean + radius + float(TILE_SIZE - 1)) / float(TILE_SIZE);
   // Of a probe those of its tiles that are among them.
   vec2 step = vec2(tile_pitch(view) / uint(TILE_SIZE)), shift = vec2(tile_shift(view) / uint(TILE_SIZE));
   vec2 grid = vec2(view.tiles_x, view.tiles_y);
@@ -20,6 +20,6 @@ uvec4 tile_box(Splat splat, View view) {
   return uvec4(first, max(first, last));
 }
 
-uint likely_row(Splat splat, View view, uvec4 box) { return box.y; }
+uint likely_row(Outline outline, View view, uvec4 box) { return box.y; }
 
-uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }
+uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) { return box.xz; }

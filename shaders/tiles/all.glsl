@@ -1,8 +1,8 @@
 // The oracle for the tests of tiles: every splat is offered to every tile. One pair a view, whose tiles share one list of
 // all its splats (pairs.comp, blend.comp).
 
-uvec4 tile_box(Splat splat, View view) { return uvec4(0u, 0u, 1u, 1u); }
+uvec4 tile_box(Outline outline, View view) { return uvec4(0u, 0u, 1u, 1u); }
 
-uint likely_row(Splat splat, View view, uvec4 box) { return box.y; }
+uint likely_row(Outline outline, View view, uvec4 box) { return box.y; }
 
-uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return box.xz; }
+uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) { return box.xz; }

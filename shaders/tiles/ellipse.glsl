@@ -3,13 +3,13 @@
 // show, so the test has a margin (docs/method.md 4).
 
 // The test itself.
-bool ellipse_touches(Splat splat, float rho, vec2 low, vec2 high) {
+bool ellipse_touches(Outline outline, float rho, vec2 low, vec2 high) {
   vec2 at;
-  return lowest_level(splat, low, high, at) <= rho;
+  return lowest_level(outline, low, high, at) <= rho;
 }
 
-float lowest_level(Splat splat, View view, out vec2 at) {
-  return lowest_level(splat, vec2(0.0), vec2(view.width - 1u, view.height - 1u), at);
+float lowest_level(Outline outline, View view, out vec2 at) {
+  return lowest_level(outline, vec2(0.0), vec2(view.width - 1u, view.height - 1u), at);
 }
 
 // What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.
@@ -18,42 +18,42 @@ float ellipse_outer_rho(float rho) { return 1.001 * max(rho, 0.0) + 1e-3; }
 // And this a little too small, by far more than the test's rounding.
 float ellipse_inner_rho(float rho) { return 0.999 * rho - 1e-3; }
 
-uvec4 tile_box(Splat splat, View view) {
-  float rho = splat.colour.w;
-  if (!holds_a_centre(splat, view, level_extent(splat))) return uvec4(0u);
-  vec3 c = covariance(splat);
+uvec4 tile_box(Outline outline, View view) {
+  float rho = outline.level;
+  if (!holds_a_centre(outline, view, level_extent(outline))) return uvec4(0u);
+  vec3 c = covariance(outline);
   precise vec2 extent = sqrt(ellipse_outer_rho(rho) * c.xz) * 1.0001 + 0.01;
-  uvec2 columns = tile_columns(splat.mean.x - extent.x, splat.mean.x + extent.x, view);
-  uvec2 rows = tile_rows(splat.mean.y - extent.y, splat.mean.y + extent.y, view);
+  uvec2 columns = tile_columns(outline.mean.x - extent.x, outline.mean.x + extent.x, view);
+  uvec2 rows = tile_rows(outline.mean.y - extent.y, outline.mean.y + extent.y, view);
   // Of tall ones beside the picture no row need be asked.
   vec2 at;
-  if (rows.y - rows.x > TALL_ROWS && lowest_level(splat, view, at) > ellipse_outer_rho(rho)) return uvec4(0u);
+  if (rows.y - rows.x > TALL_ROWS && lowest_level(outline, view, at) > ellipse_outer_rho(rho)) return uvec4(0u);
   return uvec4(columns.x, rows.x, columns.y, rows.y);
 }
 
-uint likely_row(Splat splat, View view, uvec4 box) {
+uint likely_row(Outline outline, View view, uvec4 box) {
   if (box.w - box.y <= TALL_ROWS) return box.y;
   vec2 at;
-  lowest_level(splat, view, at);
-  return clamp(tile_rows(splat.mean.y + at.y, splat.mean.y + at.y, view).x, box.y, box.w - 1u);
+  lowest_level(outline, view, at);
+  return clamp(tile_rows(outline.mean.y + at.y, outline.mean.y + at.y, view).x, box.y, box.w - 1u);
 }
 
-uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
-  float rho = splat.colour.w;
+uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
+  float rho = outline.level;
   precise float outer = ellipse_outer_rho(rho);
-  vec3 c = covariance(splat);
-  float low = tile_low(uvec2(0u, row), view).y - splat.mean.y;
-  float high = tile_high(uvec2(0u, row), view).y - splat.mean.y;
+  vec3 c = covariance(outline);
+  float low = tile_low(uvec2(0u, row), view).y - outline.mean.y;
+  float high = tile_high(uvec2(0u, row), view).y - outline.mean.y;
   // Where the ellipse reaches furthest to the right and, mirrored, to the left; then the nearest heights in this row.
   precise float apex = c.y * sqrt(outer / c.x);
   precise float right_y = clamp(apex, low, high);
   precise float left_y = clamp(-apex, low, high);
   precise float lean = c.y / c.z;                             // of the line through the middles of its rows
-  precise float width = splat.conic.w * splat.conic.w / c.z;  // det / C2.yy: the variance within a row
+  precise float width = outline.conic.w * outline.conic.w / c.z;  // det / C2.yy: the variance within a row
   precise float left = lean * left_y - sqrt(max(0.0, (outer - left_y * left_y / c.z) * width));
   precise float right = lean * right_y + sqrt(max(0.0, (outer - right_y * right_y / c.z) * width));
   precise float slack = 0.01 + 1e-5 * (abs(left) + abs(right));
-  uvec2 columns = tile_columns(splat.mean.x + left - slack, splat.mean.x + right + slack, view);
+  uvec2 columns = tile_columns(outline.mean.x + left - slack, outline.mean.x + right + slack, view);
   columns = clamp(columns, box.xx, box.zz);
   // Where a slightly smaller ellipse reaches, too, the test would say yes.
   precise float inner = ellipse_inner_rho(rho);
@@ -63,14 +63,14 @@ uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   if (min(room.x, room.y) > 0.0) {
     precise float first = lean * left_y - sqrt(room.x * width) + slack;
     precise float last = lean * right_y + sqrt(room.y * width) - slack;
-    if (splat.mean.x + first <= float(view.width - 1u)) sure = tile_columns(splat.mean.x + first, splat.mean.x + last, view);
+    if (outline.mean.x + first <= float(view.width - 1u)) sure = tile_columns(outline.mean.x + first, outline.mean.x + last, view);
   }
   while (columns.x < columns.y && !(columns.x >= sure.x && columns.x < sure.y) &&
-         !ellipse_touches(splat, rho, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {
+         !ellipse_touches(outline, rho, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {
     ++columns.x;
   }
   while (columns.x < columns.y && !(columns.y > sure.x && columns.y <= sure.y) &&
-         !ellipse_touches(splat, rho, tile_low(uvec2(columns.y - 1u, row), view), tile_high(uvec2(columns.y - 1u, row), view))) {
+         !ellipse_touches(outline, rho, tile_low(uvec2(columns.y - 1u, row), view), tile_high(uvec2(columns.y - 1u, row), view))) {
     --columns.y;
   }
   return columns;

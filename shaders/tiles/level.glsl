@@ -1,18 +1,32 @@
-// How near a rectangle comes to the middle of a splat's ellipse: q(d) = d^T Q d.
+// The ellipse by which a splat's tiles are found, and how near a rectangle comes to its middle: q(d) = d^T Q d.
+
+struct Outline {
+  vec2 mean;    // px
+  vec2 aside;   // what rounding left of it
+  vec4 conic;   // Q, and sqrt(det Q^-1)
+  float level;  // rho = 2 ln(sigma / Th): alpha reaches Th where q comes to no more
+};
+
+// From the middle to a pixel's centre.
+vec2 from_middle(Outline outline, vec2 pixel) {
+  precise vec2 d = pixel - outline.mean - outline.aside;
+  return d;
+}
+
 
 // rho below this: alpha cannot reach the threshold. What fp32's log2 and exp2 may err by lies above it.
 #define RHO_NONE (-4e-6)
 
 // The smallest q over the pixel centres from `low` to `high`, less its rounding, and where that is, seen from the mean.
-float lowest_level(Splat splat, vec2 low, vec2 high, out vec2 at) {
-  precise vec2 a = low - splat.mean;
-  precise vec2 b = high - splat.mean;
+float lowest_level(Outline outline, vec2 low, vec2 high, out vec2 at) {
+  precise vec2 a = from_middle(outline, low);
+  precise vec2 b = from_middle(outline, high);
   precise vec2 nearest = clamp(vec2(0.0), a, b);
   at = nearest;
   if (nearest == vec2(0.0)) return RHO_NONE;
-  precise float xx = splat.conic.x;
-  precise float xy = splat.conic.y;
-  precise float yy = splat.conic.z;
+  precise float xx = outline.conic.x;
+  precise float xy = outline.conic.y;
+  precise float yy = outline.conic.z;
   // q is convex: its smallest value lies on an edge that faces the mean, one or two of the four.
   precise float best = 3.4e38;
   if (nearest.x != 0.0) {

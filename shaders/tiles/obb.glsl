@@ -6,12 +6,12 @@ struct OrientedBox {
   vec2 extent;  // half lengths along the two, px
 };
 
-OrientedBox oriented_box(Splat splat) {
-  vec3 c = covariance(splat);
+OrientedBox oriented_box(Outline outline) {
+  vec3 c = covariance(outline);
   precise float half_difference = 0.5 * (c.x - c.z);
   precise float root = sqrt(half_difference * half_difference + c.y * c.y);
   precise float longer = 0.5 * (c.x + c.z) + root;
-  precise float shorter = splat.conic.w / longer * splat.conic.w;  // the product of both is det
+  precise float shorter = outline.conic.w / longer * outline.conic.w;  // the product of both is det
   OrientedBox box;
   box.extent = 3.0 * sqrt(vec2(longer, shorter));
   // The eigenvector from the row that does not cancel.
@@ -21,8 +21,8 @@ OrientedBox oriented_box(Splat splat) {
 }
 
 // Whether no axis separates the box from the pixel centres [low, high].
-bool box_touches(Splat splat, OrientedBox box, vec2 low, vec2 high) {
-  precise vec2 d = 0.5 * (low + high) - splat.mean;
+bool box_touches(Outline outline, OrientedBox box, vec2 low, vec2 high) {
+  precise vec2 d = 0.5 * (low + high) - outline.mean;
   precise vec2 half_size = 0.5 * (high - low);
   precise vec2 a = abs(box.axis);
   precise vec2 reach = vec2(box.extent.x * a.x + box.extent.y * a.y, box.extent.x * a.y + box.extent.y * a.x);
@@ -34,13 +34,13 @@ bool box_touches(Splat splat, OrientedBox box, vec2 low, vec2 high) {
   return abs(along) <= box.extent.x + size_along && abs(across) <= box.extent.y + size_across;
 }
 
-uvec4 tile_box(Splat splat, View view) {
-  if (splat.colour.w < RHO_NONE) return uvec4(0u);
-  OrientedBox box = oriented_box(splat);
+uvec4 tile_box(Outline outline, View view) {
+  if (outline.level < RHO_NONE) return uvec4(0u);
+  OrientedBox box = oriented_box(outline);
   vec2 a = abs(box.axis);
   precise vec2 outer = 1.001 * vec2(box.extent.x * a.x + box.extent.y * a.y, box.extent.x * a.y + box.extent.y * a.x) + 0.01;
-  uvec2 columns = tile_columns(splat.mean.x - outer.x, splat.mean.x + outer.x, view);
-  uvec2 rows = tile_rows(splat.mean.y - outer.y, splat.mean.y + outer.y, view);
+  uvec2 columns = tile_columns(outline.mean.x - outer.x, outline.mean.x + outer.x, view);
+  uvec2 rows = tile_rows(outline.mean.y - outer.y, outline.mean.y + outer.y, view);
   return uvec4(columns.x, rows.x, columns.y, rows.y);
 }
 
@@ -51,12 +51,12 @@ vec2 strip(vec2 axis, float y, float limit) {
   return vec2(min(ends.x, ends.y), max(ends.x, ends.y));
 }
 
-uint likely_row(Splat splat, View view, uvec4 box) { return box.y; }
+uint likely_row(Outline outline, View view, uvec4 box) { return box.y; }
 
-uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
-  OrientedBox oriented = oriented_box(splat);
+uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
+  OrientedBox oriented = oriented_box(outline);
   // Where the box's strips leave room for a tile's middle, a little too wide; then the test itself from both ends.
-  float y = 0.5 * (tile_low(uvec2(0u, row), view).y + tile_high(uvec2(0u, row), view).y) - splat.mean.y;
+  float y = 0.5 * (tile_low(uvec2(0u, row), view).y + tile_high(uvec2(0u, row), view).y) - outline.mean.y;
   float tile = float(TILE_SIZE);
   vec2 a = abs(oriented.axis);
   float size = tile * (a.x + a.y);
@@ -64,13 +64,13 @@ uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) {
   vec2 across = strip(vec2(-oriented.axis.y, oriented.axis.x), y, oriented.extent.y + size);
   vec2 room = vec2(max(along.x, across.x), min(along.y, across.y));
   float slack = tile + 1e-4 * (abs(room.x) + abs(room.y));
-  uvec2 columns = tile_columns(splat.mean.x + room.x - slack, splat.mean.x + room.y + slack, view);
+  uvec2 columns = tile_columns(outline.mean.x + room.x - slack, outline.mean.x + room.y + slack, view);
   columns = clamp(columns, box.xx, box.zz);
   while (columns.x < columns.y &&
-         !box_touches(splat, oriented, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {
+         !box_touches(outline, oriented, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {
     ++columns.x;
   }
-  while (columns.x < columns.y && !box_touches(splat, oriented, tile_low(uvec2(columns.y - 1u, row), view),
+  while (columns.x < columns.y && !box_touches(outline, oriented, tile_low(uvec2(columns.y - 1u, row), view),
                                                tile_high(uvec2(columns.y - 1u, row), view))) {
     --columns.y;
   }

@@ -1,12 +1,13 @@
 // Which tiles of a view a splat is offered to (docs/method.md 4). A shape is a file beside this one with three functions:
-//   uvec4 tile_box(Splat, View)                      columns [x, z) and rows [y, w) that it can touch, inside the grid
-//   uint likely_row(Splat, View, uvec4 box)          the row most likely to have such a tile; one of the box, if it has any
-//   uvec2 tile_row(Splat, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
+//   uvec4 tile_box(Outline, View)                      columns [x, z) and rows [y, w) that it can touch, inside the grid
+//   uint likely_row(Outline, View, uvec4 box)          the row most likely to have such a tile; one of the box, if it has any
+//   uvec2 tile_row(Outline, View, uvec4 box, uint row) columns [x, y) that it does touch in one of those rows
 // Counting and emission call the same code and must agree to the bit, so everything that decides is `precise`.
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
 
+#include "projection.glsl"
 #include "supertiles.glsl"
 #include "tiles/places.glsl"
 #include "tiles/level.glsl"
@@ -37,32 +38,33 @@ vec2 tile_high(uvec2 tile, View view) {
 }
 
 // C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
-vec3 covariance(Splat splat) {
-  precise float s = splat.conic.w;
-  precise vec3 c = vec3(splat.conic.z * s * s, -splat.conic.y * s * s, splat.conic.x * s * s);
+vec3 covariance(Outline outline) {
+  precise float s = outline.conic.w;
+  precise vec3 c = vec3(outline.conic.z * s * s, -outline.conic.y * s * s, outline.conic.x * s * s);
   return c;
 }
 
 // Half the box around {alpha >= Th}, px. rho is taken a little larger than it is, or the rounding of fp32 would drop pairs
 // (docs/method.md 4).
-vec2 level_extent(Splat splat) {
-  vec3 c = covariance(splat);
+vec2 level_extent(Outline outline) {
+  vec3 c = covariance(outline);
   // C2.xx C2.yy / det, at least 1: how far the rounding of a long leaning ellipse is magnified.
-  precise float stretch = c.x * splat.conic.x;
-  precise float rho = max(0.0, splat.colour.w) * (1.0 + 8e-6 * stretch) + 4e-6;
+  precise float stretch = c.x * outline.conic.x;
+  precise float rho = max(0.0, outline.level) * (1.0 + 8e-6 * stretch) + 4e-6;
   precise vec2 extent = sqrt(rho * c.xz);
   return extent;
 }
 
 // Whether that box holds the centre of a pixel of the picture: a splat between centres is seen by none.
-bool holds_a_centre(Splat splat, View view, vec2 extent) {
-  if (splat.colour.w < RHO_NONE) return false;
-  precise vec2 nearest = clamp(round(splat.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u));
-  precise vec2 d = abs(nearest - splat.mean);
+bool holds_a_centre(Outline outline, View view, vec2 extent) {
+  if (outline.level < RHO_NONE) return false;
+  precise vec2 nearest = clamp(round(outline.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u));
+  precise vec2 d = abs(from_middle(outline, nearest));
   return d.x <= extent.x && d.y <= extent.y;
 }
 
 #include "tiles/{TILES_NAME}.glsl"
+#include "tiles/outline_{PROJECTION_NAME}.glsl"
 
 // The rows of supertiles of a box of tiles: [x, y).
 uvec2 supertile_rows(uvec4 box) {
@@ -146,10 +148,10 @@ uint coverage_of(Splat splat, View view, uvec4 box) {
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
   // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose
-  // tiles may not hold it.
+  // tiles may not hold it. (With the tangent projection q is smaller by |d|^2, which is at least 1.)
   vec2 d = clamp(round(splat.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u)) - splat.mean;
   float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
-  if (!is_probe(view) && q <= ellipse_inner_rho(splat.colour.w)) return true;
+  if (!is_wide(splat) && !is_probe(view) && q <= ellipse_inner_rho(splat.colour.w)) return true;
 #endif
   uvec4 box = tile_box(splat, view);
   uint likely = likely_row(splat, view, box);

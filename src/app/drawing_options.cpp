@@ -27,6 +27,10 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
                    "The light that reaches a Gaussian, for --th (one)", transmittance_choices);
   choose_explained(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
                    decode_choices);
+  choose_explained(sub, "--order", o.order, "What Gaussians are sorted by (as the model was trained: depth)",
+                   order_choices);
+  choose_explained(sub, "--projection", o.projection,
+                   "What a ray sees of a Gaussian (as the model was trained: affine)", projection_choices);
   choose<std::optional<int>>(sub, "--tile", o.tile, "Side of a tile in px (auto: 16)",
                              {{"auto", std::nullopt}, {"8", 8}, {"16", 16}, {"32", 32}});
   choose_explained(sub, "--precision", o.precision, "What is kept of the model and of a frame (full)",
@@ -75,6 +79,8 @@ render::FrameSettings settings_of(const DrawingOptions& o) {
   settings.transmittance = o.transmittance;
   settings.quality = o.quality.value_or(0.0f);
   settings.decode = o.decode.value_or(DECODE_EYES);
+  settings.order = o.order;
+  settings.projection = o.projection;
   settings.tile_size = o.tile.value_or(TILE_SIZE_DEFAULT);
   settings.precision = o.precision;
   return settings;

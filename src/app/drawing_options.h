@@ -19,7 +19,9 @@ struct DrawingOptions {
   std::optional<float> quality;  // dB
   std::string calibration;       // a file of binosplat calibrate
   std::optional<int> decode;     // of a Scaffold-GS model; none: eyes
-  std::optional<int> tile;       // px; none: chosen
+  std::optional<int> order;      // none: what the model was trained with
+  std::optional<int> projection;
+  std::optional<int> tile;  // px; none: chosen
   int precision = PRECISION_FULL;
   std::optional<render::Stage> reference_until;
   int frames = 1;  // of each view

@@ -81,7 +81,7 @@ int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod
 }
 
 /// What is taken of each file, and what to call it.
-struct Choice {
+struct Selection {
   std::vector<Taken> taken;
   std::string name;
 };
@@ -96,7 +96,7 @@ void check_leaves(const fs::path& path, const std::vector<DetailPart>& leaves) {
 }
 
 /// A level for each leaf, so that they fit.
-Choice choose(const fs::path& path, const SogLevels& levels, const DetailBudget& budget) {
+Selection choose(const fs::path& path, const SogLevels& levels, const DetailBudget& budget) {
   const std::vector<DetailPart> leaves = levels.leaves();
   check_leaves(path, leaves);
   std::size_t file = 0;
@@ -128,7 +128,7 @@ Choice choose(const fs::path& path, const SogLevels& levels, const DetailBudget&
 }
 
 /// One level for all.
-Choice choose_one(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
+Selection choose_one(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
   const int level = choose(path, levels, lod);
   log_info("{}: level of detail {} of {}", path.string(), level, levels.count());
   return {levels.taken(level), fmt::format("streamed SOG, level {} of {}", level, levels.count())};
@@ -201,7 +201,7 @@ bool is_streamed_sog(const fs::path& path) { return parse_lod_meta(lod_meta_of(p
 Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod,
                         const std::optional<DetailBudget>& budget) {
   const SogLevels levels(lod_meta, root);
-  const Choice choice = budget ? choose(lod_meta, levels, *budget) : choose_one(lod_meta, levels, lod);
+  const Selection choice = budget ? choose(lod_meta, levels, *budget) : choose_one(lod_meta, levels, lod);
   std::vector<Part> parts = open_parts(lod_meta, levels, choice.taken);
   Model model;
   model.name = lod_meta.filename().string();

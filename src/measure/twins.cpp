@@ -24,12 +24,35 @@ using render::ModelBuffers;
 using render::OrderGroup;
 using render::Stage;
 
-shared::Splat to_shared(const reference::Splat& s) {
+// A cone as shaders/projection/tangent.glsl keeps it.
+void keep_cone(const reference::Splat& s, const shared::View& view, shared::Splat& out) {
+  const reference::Cone& cone = *s.cone;
+  const auto with_root = [](const glm::dmat2& q) {
+    return glm::vec4(glm::dvec4(q[0][0], q[0][1], q[1][1], 1 / std::sqrt(glm::determinant(q))));
+  };
+  if (!reference::is_wide(cone)) {
+    out.conic = with_root(glm::dmat2(cone.form));
+    return;
+  }
+  const glm::dvec4 lens = view.lens;
+  const glm::dmat3 to_pixel(lens[0], 0, 0, 0, lens[1], 0, lens[2] - 0.5, lens[3] - 0.5, 1);
+  const glm::dvec3 n = glm::normalize(glm::transpose(to_pixel) * cone.facing);
+  const double size = std::hypot(n.y, n.z);
+  const glm::dvec3 second = size > 0.0 ? glm::dvec3(0, n.z, -n.y) / size : glm::dvec3(0, 1, 0);
+  const glm::dmat2x3 axes(glm::cross(second, n), second);
+  const glm::dmat3 form = glm::transpose(to_pixel) * cone.form * to_pixel;
+  out.conic = with_root(glm::transpose(axes) * form * axes / (lens[0] * lens[1]));
+  out.mean = glm::vec2(glm::dvec2(n) / (1 + n.z));
+  out.depth = -out.depth;
+}
+
+shared::Splat to_shared(const reference::Splat& s, const shared::View& view) {
   shared::Splat out{};
   out.mean = glm::vec2(s.mean);
   out.depth = static_cast<float>(s.depth);
   out.opacity = static_cast<float>(s.opacity);
   out.conic = glm::vec4(glm::dvec4(s.conic, std::sqrt(s.det)));
+  if (s.cone) keep_cone(s, view, out);
   out.colour = glm::vec4(glm::dvec4(s.colour, 2.0 * std::log(s.opacity / s.threshold)));
   return out;
 }
@@ -47,7 +70,8 @@ reference::Settings reference_settings(const FrameShape& shape, std::uint32_t v)
           .tile_size = s.tile_size,
           .th = s.th,
           .tolerance = s.tolerance,
-          .decoding = decoding_for(shape, v)};
+          .decoding = decoding_for(shape, v),
+          .perspective = shape.perspective};
 }
 
 // Into a buffer of Gaussians or splats, in the precision that the shaders expect there.
@@ -119,7 +143,7 @@ ViewResult reference_view(const Model& model, const FrameShape& shape, std::uint
   const shared::View& view = shape.views[v];
   const FrameSettings& settings = shape.settings;
   ViewResult result;
-  result.splats = reference::project_all(model, view, decoding_for(shape, v));
+  result.splats = reference::project_all(model, view, decoding_for(shape, v), shape.perspective);
   reference::set_thresholds(result.splats, settings.th, settings.tolerance);
   const std::vector<std::uint32_t> order = reference::depth_order(result.splats);
   if (settings.tiles == TILES_ALL) {
@@ -208,7 +232,7 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
     const std::vector<std::uint32_t>& indices = slots[shape.views[v].order_group].indices;
     for (std::size_t slot = 0; slot < indices.size(); ++slot) {
-      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]]);
+      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]], shape.views[v]);
       pair_counts[slot * shape.view_count() + v] = results[v].pair_counts[indices[slot]];
     }
   }
@@ -225,7 +249,7 @@ void upload_order(const OrderGroup& group, const Slots& slots, const std::vector
   const auto depth = [&](std::uint32_t slot) {
     const std::uint32_t i = slots.indices[slot];
     const auto draws = [&](const ViewResult& result) { return result.splats[i].drawn; };
-    return std::find_if(results.begin(), results.end(), draws)->splats[i].depth;
+    return std::find_if(results.begin(), results.end(), draws)->splats[i].order;
   };
   if (sorted) {
     std::stable_sort(values.begin(), values.end(),

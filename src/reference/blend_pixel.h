@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "reference/blend.h"
+#include "reference/tiles.h"
 #include "shared/limits.h"
 
 namespace binosplat::reference {
@@ -25,16 +26,21 @@ enum class Verdict { skipped, blended, stopped };
 /// exponential: where q is negative, and where q is so large (beyond 2 ln 255 = 11.08) that even a sigma of 1
 /// leaves less than tau.
 inline double alpha_at(const Splat& splat, int x, int y) {
-  const glm::dvec2 d = glm::dvec2(x, y) - splat.mean;
-  const double q = splat.conic.x * d.x * d.x + 2 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
+  const double q = squared_distance(splat, {x, y});
   if (q < 0.0 || q > 11.1) return 0.0;
   return std::min(ALPHA_MAX, splat.opacity * std::exp(-0.5 * q));
 }
 
-/// Blends one splat behind what there is.
-inline void add(PixelSum& sum, const Splat& splat, double alpha) {
+/// View z of what pixel (x, y) sees of a splat.
+inline double depth_at(const Splat& splat, int x, int y) {
+  const glm::dvec3 p(x, y, 1);
+  return splat.cone ? splat.depth / std::sqrt(glm::dot(p, splat.cone->ray * p)) : splat.depth;
+}
+
+/// Blends one splat at depth z behind what there is.
+inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
   sum.colour += alpha * sum.transmittance * splat.colour;
-  sum.z_sum += alpha * sum.transmittance * splat.depth;
+  sum.z_sum += alpha * sum.transmittance * z;
   sum.transmittance *= 1 - alpha;
 }
 
@@ -54,7 +60,7 @@ PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint
     const bool stop = sum.transmittance * (1 - alpha) < TRANSMITTANCE_MIN;
     visit(i, alpha, sum, stop ? Verdict::stopped : Verdict::blended);
     if (stop && !faults.stop_late) break;
-    add(sum, splat, alpha);
+    add(sum, splat, depth_at(splat, x, y), alpha);
     if (stop) break;
   }
   return sum;

@@ -109,7 +109,7 @@ std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, cons
 
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view) {
   const Splat splat =
-      project({scaffold.position[n], scaffold.offset_scale[n], scaffold.rotation[n], 1.0}, view);
+      project({scaffold.position[n], scaffold.offset_scale[n], scaffold.rotation[n], 1.0}, view);  // as trained
   return splat.drawn && touches_any(splat, TILES_AABB, ANCHOR_TILE, view);
 }
 
@@ -127,14 +127,19 @@ std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::Vi
   return all;
 }
 
-std::vector<Splat> project_all(const Model& model, const shared::View& view, const Decoding& decoding) {
-  if (!model.scaffold) return project_all(model, view);
+std::vector<Splat> project_all(const Model& model, const shared::View& view, const Decoding& decoding,
+                               const Perspective& perspective) {
+  std::vector<Splat> splats(model.count());
+  if (!model.scaffold) {
+    parallel_for(splats.size(), [&](std::size_t i) { splats[i] = project(model, i, view, perspective); });
+    return splats;
+  }
   const std::span<const shared::View> views =
       decoding.views.empty() ? std::span(&view, 1) : std::span(decoding.views);
   const std::vector<Decoded> decoded = decode(*model.scaffold, views, decoding.anchor_cull);
-  std::vector<Splat> splats(model.count());
   parallel_for(decoded.size(), [&](std::size_t i) {
-    Splat splat = project(decoded[i].gaussian, view, {model.kernel_px2, model.antialiased});
+    Splat splat =
+        project(decoded[i].gaussian, view, {model.kernel_px2, model.antialiased}, perspective);
     splat.colour = decoded[i].colour;
     splats[decoded[i].id] = splat;
   });

@@ -36,6 +36,7 @@ std::vector<Decoded> decode(const Scaffold& scaffold, std::span<const shared::Vi
                             bool anchor_cull = true);
 
 /// All Gaussians of a model of either kind in a view, by index; what is not decoded is not drawn.
-std::vector<Splat> project_all(const Model& model, const shared::View& view, const Decoding& decoding);
+std::vector<Splat> project_all(const Model& model, const shared::View& view, const Decoding& decoding,
+                               const Perspective& perspective);
 
 }  // namespace binosplat::reference

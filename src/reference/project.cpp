@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "reference/decode.h"
@@ -23,6 +24,12 @@ glm::dmat3 covariance_in_world(const Gaussian& gaussian) {
   const glm::dvec3& s = gaussian.scale;
   const glm::dmat3 m(rotation[0] * s.x, rotation[1] * s.y, rotation[2] * s.z);
   return m * glm::transpose(m);
+}
+
+/// World to eye.
+glm::dmat3 axes_of(const shared::View& view) {
+  return glm::transpose(
+      glm::dmat3(glm::dvec3(view.row_x), glm::dvec3(view.row_y), glm::dvec3(view.row_z)));
 }
 
 /// J: how a small step around v moves the projected point. Far outside the picture the perspective is
@@ -75,37 +82,86 @@ glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& d
   return glm::max(colour, 0.0);
 }
 
-Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass) {
-  const glm::dvec4 row_x = view.row_x, row_y = view.row_y, row_z = view.row_z, lens = view.lens;
-  const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
-  const glm::dvec3 v(glm::dot(glm::dvec3(row_x), p) + row_x.w, glm::dot(glm::dvec3(row_y), p) + row_y.w,
-                     glm::dot(glm::dvec3(row_z), p) + row_z.w);
-  Splat splat;
-  if (v.z <= view.anchor.w) return splat;
+namespace {
 
-  const glm::dmat3 to_eye =
-      glm::transpose(glm::dmat3(glm::dvec3(row_x), glm::dvec3(row_y), glm::dvec3(row_z)));
-  const glm::dmat3x2 projection = perspective_jacobian(v, view) * to_eye;
+/// Affine: J takes the Gaussian at v to the picture.
+void project_affine(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
+                    const LowPass& low_pass, Splat& splat) {
+  const glm::dvec4 lens = view.lens;
+  const glm::dmat3x2 projection = perspective_jacobian(v, view) * axes_of(view);
   const glm::dmat2 c2 = projection * covariance_in_world(gaussian) * glm::transpose(projection);
   const double kernel = low_pass.kernel_px2;
-  const glm::dvec3 covariance(c2[0][0] + kernel, c2[0][1], c2[1][1] + kernel);
-  const double det = covariance.x * covariance.z - covariance.y * covariance.y;
-  if (!(det > 0.0)) return splat;
-
+  splat.covariance = glm::dvec3(c2[0][0] + kernel, c2[0][1], c2[1][1] + kernel);
+  splat.det = splat.covariance.x * splat.covariance.z - splat.covariance.y * splat.covariance.y;
+  splat.drawn = splat.det > 0.0;
   splat.mean = glm::dvec2(lens[0] * v.x / v.z + lens[2] - 0.5, lens[1] * v.y / v.z + lens[3] - 0.5);
   splat.depth = v.z;
+  splat.conic = glm::dvec3(splat.covariance.z, -splat.covariance.y, splat.covariance.x) / splat.det;
+  if (low_pass.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / splat.det);
+}
+
+/// Any two directions that make a right-handed frame with the unit vector n.
+std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
+  const glm::dvec3 least = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 first = glm::normalize(glm::cross(least, n));
+  return {first, glm::cross(n, first)};
+}
+
+/// Tangent: what is seen along a unit ray d goes by where d, dropped at a right angle onto the plane that touches
+/// the unit sphere in the Gaussian's direction, comes to lie there.
+void project_tangent(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
+                     const LowPass& low_pass, Splat& splat) {
+  const glm::dvec4 lens = view.lens;
+  const double focal2 = lens[0] * lens[1], distance = glm::length(v);
+  const glm::dvec3 n = v / distance;
+  const auto [e1, e2] = across(n);
+  const glm::dmat3 in_eye = axes_of(view) * covariance_in_world(gaussian) * glm::transpose(axes_of(view));
+  const glm::dmat3x2 onto = glm::transpose(glm::dmat2x3(e1, e2));
+  const glm::dmat2 shape = onto * in_eye * glm::transpose(onto) / (distance * distance);
+  const glm::dmat2 widened = shape + glm::dmat2(low_pass.kernel_px2 / focal2);
+  splat.drawn = glm::determinant(widened) > 0.0;
+  splat.depth = distance;
+  splat.mean = v.z > 0.0 ? glm::dvec2(lens[0] * v.x / v.z + lens[2] - 0.5, lens[1] * v.y / v.z + lens[3] - 0.5)
+                         : glm::dvec2(std::numeric_limits<double>::quiet_NaN());
+  if (low_pass.antialiased) {
+    splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(shape)) / glm::determinant(widened));
+  }
+  glm::dmat2 q = glm::inverse(widened);
+  const double mean = 0.5 * (q[0][0] + q[1][1]);
+  const double least = glm::determinant(q) / (mean + std::hypot(0.5 * (q[0][0] - q[1][1]), q[0][1]));
+  q += glm::dmat2(std::max(0.0, 1.0 / (WIDEST_TANGENT * WIDEST_TANGENT) - least));
+
+  splat.det = focal2 * focal2 / glm::determinant(q);
+
+  // The ray of a pixel is to_ray * (x, y, 1).
+  const glm::dmat3 to_ray(1 / lens[0], 0, 0, 0, 1 / lens[1], 0, (0.5 - lens[2]) / lens[0],
+                          (0.5 - lens[3]) / lens[1], 1);
+  const glm::dmat3x2 seen = onto * to_ray;
+  splat.cone = Cone{glm::transpose(seen) * q * seen, glm::transpose(to_ray) * to_ray,
+                    glm::transpose(to_ray) * n};
+}
+
+}  // namespace
+
+Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass,
+              const Perspective& perspective) {
+  const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
+  const glm::dvec3 translation(view.row_x.w, view.row_y.w, view.row_z.w);
+  const glm::dvec3 v = axes_of(view) * p + translation;
+  const bool by_distance = perspective.order == ORDER_DISTANCE;
+  const bool is_tangent = perspective.projection == PROJECTION_TANGENT;
+  Splat splat;
+  if ((by_distance && is_tangent ? glm::length(v) : v.z) <= view.anchor.w) return splat;
   splat.opacity = gaussian.opacity;
-  if (low_pass.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / det);
-  splat.covariance = covariance;
-  splat.conic = glm::dvec3(covariance.z, -covariance.y, covariance.x) / det;
-  splat.det = det;
-  splat.drawn = true;
+  splat.order = by_distance ? glm::length(p - glm::dvec3(view.centre)) : v.z;
+  (is_tangent ? project_tangent : project_affine)(gaussian, view, v, low_pass, splat);
   return splat;
 }
 
-Splat project(const Model& model, std::size_t i, const shared::View& view) {
+Splat project(const Model& model, std::size_t i, const shared::View& view,
+              const std::optional<Perspective>& perspective) {
   const Gaussian gaussian{model.position[i], model.scale[i], model.rotation[i], model.opacity[i]};
-  Splat splat = project(gaussian, view, {model.kernel_px2, model.antialiased});
+  Splat splat = project(gaussian, view, {model.kernel_px2, model.antialiased}, perspective.value_or(model.perspective));
   if (!splat.drawn) return splat;
   const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
   splat.colour = colour_towards(model, i, glm::normalize(p - glm::dvec3(view.eye)));
@@ -113,10 +169,7 @@ Splat project(const Model& model, std::size_t i, const shared::View& view) {
 }
 
 std::vector<Splat> project_all(const Model& model, const shared::View& view) {
-  if (model.scaffold) return project_all(model, view, Decoding{});
-  std::vector<Splat> splats(model.count());
-  parallel_for(splats.size(), [&](std::size_t i) { splats[i] = project(model, i, view); });
-  return splats;
+  return project_all(model, view, Decoding{}, model.perspective);
 }
 
 }  // namespace binosplat::reference

@@ -2,6 +2,8 @@
 // The float64 judge: one view from model to picture on the CPU, as docs/method.md defines it. The stages by
 // themselves are in project.h, threshold.h, tiles.h and blend.h.
 
+#include <optional>
+
 #include "base/image.h"
 #include "reference/blend.h"
 #include "reference/decode.h"
@@ -20,6 +22,7 @@ struct Settings {
   double tolerance = 0.0;      // of threshold()
   std::vector<double> bounds;  // T_upper or W by Gaussian; empty: 1 for all
   Decoding decoding;           // of a Scaffold-GS model
+  std::optional<Perspective> perspective;  // none: what the model was trained with
 };
 
 /// The picture of a model in a view. The view's members for the frame (tiles_x to th_group) are not looked

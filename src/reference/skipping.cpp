@@ -82,10 +82,13 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
                        Picture(static_cast<int>(view.width), static_cast<int>(view.height))});
   }
   for_each_pixel(splats, lists, view, bounds, [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
+    const auto x = static_cast<int>(pixel % view.width), y = static_cast<int>(pixel / view.width);
     for (std::size_t k = 0; k < results.size(); ++k) {
       PixelSum sum;
       for (const Fragment& fragment : fragments) {
-        if (fragment.bin >= kept_from[k]) add(sum, splats[fragment.gaussian], fragment.alpha);
+        if (fragment.bin < kept_from[k]) continue;
+        const Splat& splat = splats[fragment.gaussian];
+        add(sum, splat, depth_at(splat, x, y), fragment.alpha);
       }
       results[k].picture.colour[pixel] = glm::vec4(glm::dvec4(sum.colour, sum.transmittance));
       results[k].picture.z_sum[pixel] = static_cast<float>(sum.z_sum);

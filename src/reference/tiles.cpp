@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "base/error.h"
@@ -112,8 +113,63 @@ bool ellipse_meets(const Splat& splat, const glm::dvec2& low, const glm::dvec2& 
          within_reach(std::clamp(-c.y * nearest.y / c.x, low.x, high.x), nearest.y);
 }
 
+/// The level at which aabb and obb cut: three standard deviations.
+constexpr double three_sigma = 9.0;
+
+double level_of(const Splat& splat, int tiles) {
+  return tiles == TILES_AABB || tiles == TILES_OBB ? three_sigma : reach(splat);
+}
+
+/// A splat whose ellipse at `level` is what a cone that is not wide cuts out of the picture at that level.
+Splat section_of(const Splat& splat, double level) {
+  const glm::dmat3 g = splat.cone->form - level * splat.cone->ray;  // below 0 inside
+  const glm::dmat2 inverse = glm::inverse(glm::dmat2(g));
+  const glm::dvec2 linear(g[2][0], g[2][1]);
+  Splat section = splat;
+  section.mean = -(inverse * linear);
+  const double scale = -(g[2][2] + glm::dot(linear, section.mean)) / level;
+  const glm::dmat2 c = inverse * scale;
+  section.covariance = {c[0][0], c[0][1], c[1][1]};
+  section.det = glm::determinant(inverse) * scale * scale;
+  section.conic = glm::dvec3(c[1][1], -c[0][1], c[0][0]) / section.det;
+  section.cone.reset();
+  // The other half of the double cone lies behind the eye.
+  section.drawn = scale > 0.0 && glm::dot(splat.cone->facing, glm::dvec3(section.mean, 1)) > 0.0;
+  return section;
+}
+
+/// Whether the smallest q between two points of the picture is at most `level`. q is a ratio of two
+/// quadratic polynomials there; where its derivative is zero, a third one is.
+bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to, double level) {
+  const glm::dvec3 a(from, 1), b(to - from, 0);
+  const auto& [form, ray, facing] = *splat.cone;
+  const double n0 = glm::dot(a, form * a), n1 = glm::dot(a, form * b), n2 = glm::dot(b, form * b);
+  const double w0 = glm::dot(a, ray * a), w1 = glm::dot(a, ray * b), w2 = glm::dot(b, ray * b);
+  const double k2 = n2 * w1 - n1 * w2, k1 = n2 * w0 - n0 * w2, k0 = n1 * w0 - n0 * w1;
+  const double root = std::sqrt(std::max(0.0, k1 * k1 - 4 * k2 * k0));
+  const double half = -0.5 * (k1 + std::copysign(root, k1));
+  for (const double u : {0.0, 1.0, half / k2, k0 / half}) {
+    // Rounding must not leave out a tile in which the blend, rounding otherwise, finds an alpha of Th.
+    if (u >= 0.0 && u <= 1.0 && squared_distance(splat, from + u * (to - from)) <= level + 1e-8) return true;
+  }
+  return false;
+}
+
+/// Whether the smallest q over a rectangle of pixel centres is at most `level`: it lies in the mean or on a side.
+bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high, double level) {
+  if (glm::all(glm::lessThanEqual(low, splat.mean)) && glm::all(glm::lessThanEqual(splat.mean, high))) return true;
+  const glm::dvec2 right(high.x, low.y), left(low.x, high.y);
+  return cone_meets(splat, low, right, level) || cone_meets(splat, right, high, level) ||
+         cone_meets(splat, high, left, level) || cone_meets(splat, left, low, level);
+}
+
 /// The tiles that shape_meets() is worth asking about.
 TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
+  if (splat.cone && splat.drawn && tiles != TILES_ALL) {
+    if (tiles != TILES_AABB && !(splat.opacity >= splat.threshold)) return {0, 0, 0, 0};
+    if (is_wide(*splat.cone)) return {0, 0, tiles_along(view.width, tile_size), tiles_along(view.height, tile_size)};
+    return candidate_tiles(section_of(splat, level_of(splat, tiles)), tiles, tile_size, view);
+  }
   const int tiles_x = tiles_along(view.width, tile_size), tiles_y = tiles_along(view.height, tile_size);
   if (!splat.drawn) return {0, 0, 0, 0};
   switch (tiles) {
@@ -136,6 +192,11 @@ TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const sh
 bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
   const glm::dvec2 first(tx * tile_size, ty * tile_size);
   const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
+  if (splat.cone && tiles != TILES_ALL) {
+    if (is_wide(*splat.cone) || tiles == TILES_ELLIPSE)
+      return cone_meets_rectangle(splat, first, last, level_of(splat, tiles));
+    return shape_meets(section_of(splat, level_of(splat, tiles)), tiles, tile_size, tx, ty, view);
+  }
   const glm::dvec2 low = first - splat.mean, high = last - splat.mean;
   if (tiles == TILES_OBB) return oriented_box_meets(splat, low, high);
   if (tiles == TILES_ELLIPSE) return ellipse_meets(splat, low, high);
@@ -159,6 +220,23 @@ void for_each_tile(const Splat& splat, int tiles, int tile_size, const shared::V
 
 }  // namespace
 
+bool is_wide(const Cone& cone) {
+  const glm::dmat3& f = cone.form;
+  const double fx2 = 1 / cone.ray[0][0], fy2 = 1 / cone.ray[1][1];
+  const double xx = f[0][0] * fx2, yy = f[1][1] * fy2, xy2 = f[0][1] * f[0][1] * fx2 * fy2;
+  return 0.5 * (xx + yy) - std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy2) < WIDE_LEVEL;
+}
+
+double squared_distance(const Splat& splat, const glm::dvec2& at) {
+  if (splat.cone) {
+    const glm::dvec3 p(at, 1);
+    if (!(glm::dot(splat.cone->facing, p) > 0.0)) return std::numeric_limits<double>::infinity();
+    return glm::dot(p, splat.cone->form * p) / glm::dot(p, splat.cone->ray * p);
+  }
+  const glm::dvec2 d = at - splat.mean;
+  return splat.conic.x * d.x * d.x + 2 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
+}
+
 bool touches(const Splat& splat, int tiles, int tile_size, int tx, int ty, const shared::View& view) {
   const TileRange range = candidate_tiles(splat, tiles, tile_size, view);
   const bool candidate = range.x0 <= tx && tx < range.x1 && range.y0 <= ty && ty < range.y1;
@@ -177,7 +255,7 @@ std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats) {
     if (splats[i].drawn) order.push_back(static_cast<std::uint32_t>(i));
   }
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return splats[a].depth < splats[b].depth; });
+                   [&](std::uint32_t a, std::uint32_t b) { return splats[a].order < splats[b].order; });
   return order;
 }
 

@@ -11,6 +11,13 @@
 
 namespace binosplat::reference {
 
+/// Whether a cone may cut the picture in something else than an ellipse, at any level that can be seen
+/// (docs/method.md 4).
+bool is_wide(const Cone& cone);
+
+/// q of a splat at a point of the picture (docs/method.md 2 and 3); infinite where a ray leaves it behind.
+double squared_distance(const Splat& splat, const glm::dvec2& at);
+
 /// Indices of what is drawn, nearest first; equal depths in the order of their indices.
 std::vector<std::uint32_t> depth_order(const std::vector<Splat>& splats);
 

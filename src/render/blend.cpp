@@ -29,16 +29,18 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
                            Lists lists) {
   const bool is_long = lists == Lists::of_long;
   const char* name = by_subgroups(context, shape, variant) ? "blend_subgroups.comp" : "blend.comp";
-  return context.program(name, {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-                                {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
-                                {"PROBED", shape.probe ? "1" : "0"},
-                                {"LISTS", std::to_string(static_cast<int>(lists))},
-                                {"COLUMN", is_long ? "1" : "2"},
-                                {"AHEAD", is_long ? "8" : "4"},
-                                {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
-                                {"RECORDS", variant.records ? "1" : "0"},
-                                {"WEIGHS", variant.weighs ? "1" : "0"},
-                                {"SHOW", std::to_string(variant.show)}});
+  gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+                         {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
+                         {"PROBED", shape.probe ? "1" : "0"},
+                         {"LISTS", std::to_string(static_cast<int>(lists))},
+                         {"COLUMN", is_long ? "1" : "2"},
+                         {"AHEAD", is_long ? "8" : "4"},
+                         {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
+                         {"RECORDS", variant.records ? "1" : "0"},
+                         {"WEIGHS", variant.weighs ? "1" : "0"},
+                         {"SHOW", std::to_string(variant.show)}};
+  add_projection(defines, shape.perspective.projection);
+  return context.program(name, defines);
 }
 
 void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,

@@ -6,7 +6,8 @@ namespace {
 
 bool reuses(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  return s.anchor_reuse && measures(s.transmittance) && !is_exact(s.th) && !shape.probe &&
+  // What is hidden is told by the area of a splat as the affine projection, which the anchor cull goes by, has it.
+  return s.anchor_reuse && shape.perspective.projection == PROJECTION_AFFINE && measures(s.transmittance) && !is_exact(s.th) && !shape.probe &&
          shape.kernel_px2 == KERNEL_PX2;
 }
 
@@ -17,7 +18,7 @@ constexpr std::int64_t shared_bytes = 32768;
 gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networks) {
   const FrameSettings& s = shape.settings;
   const bool reuse = reuses(shape);
-  return {{"TILES_NAME", "aabb"},
+  gl::Defines defines = {{"TILES_NAME", "aabb"},
           {"TILES", std::to_string(TILES_AABB)},
           {"TILE_SIZE", std::to_string(ANCHOR_TILE)},
           {"TH", std::to_string(reuse ? s.th : TH_TAU)},
@@ -29,7 +30,10 @@ gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networ
           {"OFFSETS", std::to_string(shape.offset_count)},
           {"WEIGHTS", std::to_string(networks.bytes <= shared_bytes ? networks.bytes / 16 : 0)},
           {"HALF", s.precision == PRECISION_HALF ? "1" : "0"},
-          {"REUSE", reuse ? "1" : "0"}};
+          {"REUSE", reuse ? "1" : "0"},
+          {"ORDER", std::to_string(ORDER_DEPTH)}};
+  add_projection(defines, PROJECTION_AFFINE);
+  return defines;
 }
 
 }  // namespace

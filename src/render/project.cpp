@@ -84,6 +84,11 @@ gl::Defines::value_type subgroups_define(const gl::Context& context) {
   return {"WITH_SUBGROUPS", context.limits().subgroups_of_32 ? "1" : "0"};
 }
 
+void add_projection(gl::Defines& defines, int projection) {
+  defines.emplace_back("PROJECTION", std::to_string(projection));
+  defines.emplace_back("PROJECTION_NAME", projection_choices[projection].name);
+}
+
 gl::Defines pair_defines(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
   gl::Defines defines = {{"TILES_NAME", tiles_choices[s.tiles].name},
@@ -96,7 +101,9 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"PROBED", shape.probe ? "1" : "0"},
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
-                         {"OFFSETS", std::to_string(shape.offset_count)}};
+                         {"OFFSETS", std::to_string(shape.offset_count)},
+                         {"ORDER", std::to_string(shape.perspective.order)}};
+  add_projection(defines, shape.perspective.projection);
   if (shape.kernel_px2 != KERNEL_PX2)
     defines.emplace_back("KERNEL_PX2", fmt::format("{:.9g}", shape.kernel_px2));
   return defines;

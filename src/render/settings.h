@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -51,6 +52,9 @@ struct FrameSettings {
   bool weigh = false;
   /// DECODE_; of Scaffold-GS only. Cyclopean needs views in pairs, the eyes at 2k and 2k + 1.
   int decode = DECODE_EYES;
+  /// ORDER_ and PROJECTION_ of shared/axes.h; none: what the model was trained with. Together `distance` and
+  /// `tangent` make pictures that do not depend on where the head is turned.
+  std::optional<int> order, projection;
   bool anchor_cull = true;  // of Scaffold-GS: as trained; false: anchors out of sight are decoded, too
   /// Of Scaffold-GS: an anchor whose Gaussians of the last frame Th would all leave out, whatever they had
   /// become, is not decoded. With a measured transmittance, and no quality to probe.

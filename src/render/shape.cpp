@@ -13,10 +13,14 @@ namespace binosplat::render {
 
 namespace {
 
-// Equal to the bit in all that decides a Gaussian's depth.
-bool same_depths(const shared::View& a, const shared::View& b) {
-  return std::memcmp(&a.row_z, &b.row_z, sizeof(a.row_z)) == 0 &&
-         std::memcmp(&a.anchor, &b.anchor, sizeof(a.anchor)) == 0;
+// Equal to the bit in all that decides what Gaussians are sorted by.
+bool same_order(const shared::View& a, const shared::View& b, int order) {
+  const auto equal = [](const glm::vec4& x, const glm::vec4& y, int size) {
+    return std::memcmp(&x, &y, static_cast<std::size_t>(size)) == 0;
+  };
+  return equal(a.anchor, b.anchor, sizeof(a.anchor)) &&
+         (order == ORDER_DISTANCE ? equal(a.centre, b.centre, 3 * sizeof(float))
+                                  : equal(a.row_z, b.row_z, sizeof(a.row_z)));
 }
 
 // What settings need beside each other.
@@ -58,7 +62,7 @@ void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& 
     return (along + side - 1) / side;
   };
   shape.supertile_count += supertiles(view.tiles_x) * supertiles(view.tiles_y);
-  if (v == 0 || !same_depths(view, shape.views.back())) shape.groups.push_back({v, v});
+  if (v == 0 || !same_order(view, shape.views.back(), shape.perspective.order)) shape.groups.push_back({v, v});
   shape.groups.back().end = v + 1;
   view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
   shape.views.push_back(view);
@@ -71,23 +75,44 @@ std::uint32_t FrameShape::supertile_bits() const {
   return static_cast<std::uint32_t>(std::bit_width(keys - 1));
 }
 
+namespace {
+
+// The least and the largest thing that the Gaussians of a box can be sorted by in a view.
+glm::dvec2 order_span(const shared::View& view, int order, const Bounds& box) {
+  const glm::dvec3 anchor(view.anchor), forward(view.row_z), eye(view.eye), centre(view.centre);
+  const glm::dvec3 low = glm::dvec3(box.low) - anchor, high = glm::dvec3(box.high) - anchor;
+  const double near_plane = view.anchor.w;
+  const glm::dvec3 farthest = glm::max(glm::abs(low), glm::abs(high));
+  const double reach = farthest.x + farthest.y + farthest.z + std::abs(view.row_z.w);
+  const double rounding = 1e-5 * reach;  // fp32's
+  if (order == ORDER_DISTANCE) {
+    return {std::max(0.0, near_plane - glm::length(eye - centre) - rounding),
+            glm::length(glm::max(glm::abs(low - centre), glm::abs(high - centre))) + rounding};
+  }
+  const double deepest = view.row_z.w + glm::dot(glm::max(forward * low, forward * high), glm::dvec3(1.0));
+  return {near_plane, deepest + rounding};
+}
+
+}  // namespace
+
 void limit_keys(FrameShape& shape, const Bounds& box) {
   for (OrderGroup& group : shape.groups) {
-    const shared::View& view = shape.views[group.begin];
-    const glm::dvec3 anchor(view.anchor), forward(view.row_z);
-    const glm::dvec3 low = glm::dvec3(box.low) - anchor, high = glm::dvec3(box.high) - anchor;
-    double deepest = view.row_z.w, reach = std::abs(view.row_z.w);
-    for (int k = 0; k < 3; ++k) {
-      deepest += std::max(forward[k] * low[k], forward[k] * high[k]);
-      reach += std::max(std::abs(low[k]), std::abs(high[k]));
+    glm::dvec2 span = order_span(shape.views[group.begin], shape.perspective.order, box);
+    for (std::uint32_t v = group.begin + 1; v < group.end; ++v) {
+      const glm::dvec2 other = order_span(shape.views[v], shape.perspective.order, box);
+      span = {std::min(span.x, other.x), std::max(span.y, other.y)};
     }
-    const auto farthest = static_cast<float>(deepest + 1e-5 * reach);  // fp32's rounding may add to a depth
-    const float near_plane = view.anchor.w;
-    group.nearest_key = std::bit_cast<std::uint32_t>(near_plane);
-    group.key_bits = farthest > near_plane ? static_cast<std::uint32_t>(std::bit_width(
-                                                 std::bit_cast<std::uint32_t>(farthest) - group.nearest_key))
-                                           : 1;
+    const auto nearest = static_cast<float>(span.x), farthest = static_cast<float>(span.y);
+    group.nearest_key = std::bit_cast<std::uint32_t>(nearest);
+    group.key_bits = farthest > nearest ? static_cast<std::uint32_t>(std::bit_width(
+                                              std::bit_cast<std::uint32_t>(farthest) - group.nearest_key))
+                                        : 1;
   }
+}
+
+Perspective perspective_of(const FrameSettings& settings, const Model& model) {
+  return {settings.order.value_or(model.perspective.order),
+          settings.projection.value_or(model.perspective.projection)};
 }
 
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
@@ -102,6 +127,7 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   shape.degree = model.degree;
   shape.kernel_px2 = model.kernel_px2;
   shape.antialiased = model.antialiased;
+  shape.perspective = perspective_of(settings, model);
   shape.gaussian_count = static_cast<std::uint32_t>(model.count());
   if (model.scaffold) {
     shape.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);

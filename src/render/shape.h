@@ -43,6 +43,7 @@ struct FrameShape {
   int degree = 0;                  // of the model's SH
   double kernel_px2 = KERNEL_PX2;  // of the model
   bool antialiased = false;
+  Perspective perspective;
   std::uint32_t gaussian_count = 0;
   bool remembers = false;           // an earlier frame measured for this one
   bool records = false;             // this one measures for those to come
@@ -70,6 +71,9 @@ struct FrameShape {
   std::uint32_t decoding_count() const { return (asked + views_per_decoding - 1) / views_per_decoding; }
   std::uint32_t decoding_of_probe() const { return probe ? probe->view / views_per_decoding : 0; }
 };
+
+/// What the settings ask for, and otherwise what the model was trained with.
+Perspective perspective_of(const FrameSettings& settings, const Model& model);
 
 /// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
 /// contradict each other or the views.

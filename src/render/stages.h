@@ -51,6 +51,9 @@ gl::Defines::value_type subgroups_define(const gl::Context& context);
 void count_pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t kind,
                  FrameBuffers& buffers);
 
+/// Shader defines of a projection, PROJECTION_ of shared/axes.h.
+void add_projection(gl::Defines& defines, int projection);
+
 /// Shader defines that pick the variant of a stage which decides pairs.
 gl::Defines pair_defines(const FrameShape& shape);
 

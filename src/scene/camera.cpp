@@ -1,5 +1,6 @@
 #include "scene/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
@@ -14,6 +15,8 @@ void set_lens(shared::View& view, const Camera& camera) {
   const double margin_x = CLAMP_MARGIN * camera.width, margin_y = CLAMP_MARGIN * camera.height;
   view.slopes = glm::vec4(glm::dvec4(-(camera.cx + margin_x) / camera.fx, -(camera.cy + margin_y) / camera.fy,
                                      (right + margin_x) / camera.fx, (down + margin_y) / camera.fy));
+  const double x = std::max(camera.cx, right) / camera.fx, y = std::max(camera.cy, down) / camera.fy;
+  view.centre.w = static_cast<float>(x * x + y * y);
   view.width = static_cast<shared::uint>(camera.width);
   view.height = static_cast<shared::uint>(camera.height);
 }
@@ -26,6 +29,7 @@ shared::View make_view(const Camera& camera, const glm::vec3& anchor, double nea
   view.row_z = glm::vec4(glm::dvec4(camera.rotation[2], translation.z));
   view.anchor = glm::vec4(anchor, static_cast<float>(near_plane));
   view.eye = glm::vec4(glm::vec3(camera.position - glm::dvec3(anchor)), 0.0f);
+  view.centre = view.eye;
   set_lens(view, camera);
   return view;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/axes.h"
 #include "shared/limits.h"
 
 namespace binosplat {
@@ -20,6 +21,14 @@ constexpr double sh_c0 = 0.28209479177387814;
 constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
 
 struct Scaffold;
+
+/// How Gaussians become a picture (docs/method.md 2): ORDER_ and PROJECTION_ of shared/axes.h.
+struct Perspective {
+  int order = ORDER_DEPTH;
+  int projection = PROJECTION_AFFINE;
+
+  bool operator==(const Perspective&) const = default;
+};
 
 /// Arrays of equal length, one element a Gaussian, in file order. Every value is finite and every rotation of
 /// unit length: readers leave out what is not, and count it.
@@ -35,6 +44,7 @@ struct Model {
   std::size_t left_out = 0;         // Gaussians of the source with values not finite or a zero quaternion
   double kernel_px2 = KERNEL_PX2;   // variance of the low-pass it was trained with, px^2
   bool antialiased = false;  // trained with the opacity that the low-pass takes away (Mip-Splatting, Yu 2024)
+  Perspective perspective;   // that it was trained with
   std::string axes = "RDF";  // where the model's x, y and z point in the cameras' world (scene/axes.h)
   /// Where there is one, it makes the Gaussians anew for each eye, and all arrays above but `position` are
   /// stand-ins (scene/scaffold.h).
