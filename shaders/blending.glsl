@@ -192,35 +192,14 @@ void stage_nothing(uint at) {
 #endif
 }
 
-#if PROJECTION == PROJECTION_TANGENT
-// A wide splat: t and what s is the square of as they are at the middle of the cell, and by the pixel.
-void stage_wide(uint at, Splat splat, float bits) {
-  vec4 lens = views[view_index].lens;
-  vec3 direction = direction_of(splat), across, down;
-  tangent_axes(direction, across, down);
-  vec3 d = vec3(slope_at(views[view_index], middle), 1.0);
-  if (dot(direction, d) <= 0.0) {  // it has faded long before it comes to lie behind
-    stage_nothing(at);
-    return;
-  }
-  float focal = sqrt(level_scale * lens.x * lens.y);
-  float root = sqrt(splat.conic.x);
-  vec3 first = focal * (root * across + splat.conic.y / root * down);
-  vec3 second = focal / (splat.conic.w * root) * down;
-  vec2 gain = first.xy / lens.xy;
-  float v = dot(second, d), bend = second.y / lens.y;
-  batch_across[at] = vec4(gain.x, dot(first, d), 2.0 * gain.y, v * v);
-  batch_down[at] = vec4(2.0 * v * bend, gain.y * gain.y + bend * bend, -bits, 0.0);
-}
-#endif
-
 void stage(uint at, Splat splat) {
   batch_colour[at] = vec4(splat.colour.rgb, abs(splat.depth));
-  precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;
 #if PROJECTION == PROJECTION_TANGENT
+  // A wide one has faded long before it comes to lie behind: whether it does is a matter of the cell.
   if (is_wide(splat)) {
-    stage_wide(at, splat, bits);
-    return;
+    float facing = 1.0 + dot(slope_at(views[view_index], splat.mean), slope_at(views[view_index], middle));
+    if (facing < 0.0 != splat.conic.w < 0.0) splat.opacity = 0.0;
+    splat.conic.w = abs(splat.conic.w);
   }
 #endif
   precise vec2 mean = splat.mean - middle;
@@ -229,6 +208,7 @@ void stage(uint at, Splat splat) {
   precise float yy = level_scale / (splat.conic.w * xx);
   precise float u = -fma(xx, mean.x, yx * mean.y);
   precise float v = -yy * mean.y;
+  precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;
   precise float slope = 2.0 * v * yy;
   precise float bend = fma(yx, yx, yy * yy);
 #if PROJECTION == PROJECTION_TANGENT

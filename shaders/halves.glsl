@@ -77,6 +77,7 @@ uvec4 packed_shape(Splat splat) {
   precise float yx = splat.conic.y * inverse;
   precise float yy = inversesqrt(splat.conic.w * splat.conic.w * splat.conic.x);
   precise vec2 factor = clamp(HALF_FACTOR * vec2(xx, yy), vec2(HALF_LEAST), vec2(HALF_MOST));
+  if (splat.conic.w < 0.0) factor.y = -factor.y;  // and with it what is read (projection/tangent.glsl)
   precise float kept_xx = unpackHalf2x16(packHalf2x16(vec2(factor.x, 0.0))).x;
   precise float leaning = clamp(yx / xx * kept_xx, -HALF_MOST, HALF_MOST);
   precise float rest = leaning - unpackHalf2x16(packHalf2x16(vec2(leaning, 0.0))).x;

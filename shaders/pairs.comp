@@ -109,7 +109,9 @@ uint take_row(uint nth) {
   uint self = gl_LocalInvocationIndex;
   uint splat = splat_at[at];
   uvec4 box = box_of(at);
-  SupertileRow row = supertile_row(SPLAT(splat), views[view_of(splat)], box, supertile_rows(box).x + nth - rows_before[at]);
+  View view = views[view_of(splat)];
+  SupertileRow row =
+      supertile_row(outline_of(SPLAT(splat), view), view, box, supertile_rows(box).x + nth - rows_before[at]);
   row_place[self] = at;
   row_tiles[0][self] = row.tiles.x | row.tiles.y << 16;
 #if SUPERTILE_SIDE == 2
@@ -149,7 +151,8 @@ void make_many(uint held, uint first, uint end) {
   uint self = gl_LocalInvocationIndex;
   uint rows = 0u;
   if (self < held && splat_at[self] != NO_SPLAT) {
-    uvec4 box = tile_box(SPLAT(splat_at[self]), views[view_of(splat_at[self])]);
+    View view = views[view_of(splat_at[self])];
+    uvec4 box = box_of_tiles(outline_of(SPLAT(splat_at[self]), view), view);
     box_at[self] = box.xy | box.zw << 16;
     rows = supertile_rows(box).y - supertile_rows(box).x;
   }

@@ -62,10 +62,11 @@ void main() {
 #if HALF
       splat = rounded(splat);  // as `pairs` will find it
 #endif
-      uvec4 box = tile_box(splat, view);
+      Outline outline = outline_of(splat, view);
+      uvec4 box = box_of_tiles(outline, view);
       uvec2 rows = supertile_rows(box);
       bool is_tall = rows.y - rows.x > TALL_ROWS;
-      coverage = is_tall ? 1u : coverage_of(splat, view, box);  // not known yet
+      coverage = is_tall ? 1u : coverage_of(outline, view, box);  // not known yet
       if (is_tall) leave_aside(splat_at);
     }
     if (is_here) coverages[slot * frame.view_count + v] = coverage;

@@ -32,7 +32,8 @@ void main() {
   uint rows = 0u;
   if (has_one) {
     uint splat = tall[first + self];
-    uvec4 box = tile_box(SPLAT(splat), views[view_of(splat)]);
+    View view = views[view_of(splat)];
+    uvec4 box = box_of_tiles(outline_of(SPLAT(splat), view), view);
     box_at[self] = box;
     pairs_at[self] = 0u;
     rows = supertile_rows(box).y - supertile_rows(box).x;
@@ -44,7 +45,8 @@ void main() {
     uint splat = tall[first + at];
     uvec4 box = box_at[at];
     uint row = supertile_rows(box).x + nth - rows_before[at];
-    uvec2 columns = supertile_row(SPLAT(splat), views[view_of(splat)], box, row).columns;
+    View view = views[view_of(splat)];
+    uvec2 columns = supertile_row(outline_of(SPLAT(splat), view), view, box, row).columns;
     atomicAdd(pairs_at[at], columns.y - columns.x);
   }
   barrier();

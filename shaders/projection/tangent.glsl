@@ -3,12 +3,18 @@
 // head changes nothing. In the picture q = (p - mean)^T Q (p - mean) / |d|^2, |d| the length of p's ray with d.z = 1: Q is what
 // a splat keeps, and sqrt(det Q^-1).
 //
-// A wide splat, whose level lines need not be ellipses there, is kept with a negative depth. Its mean is (n.x, n.y) / (1 + n.z)
-// of its direction n, its conic that in the tangent plane, in px of the picture's middle, along what tangent_axes() gives.
+// A wide splat, whose level lines need not be ellipses there, is told by a negative depth. Its mean may lie behind the eye,
+// which is told by a negative sqrt(det Q^-1): then it is where the line through Gaussian and eye meets the picture's plane.
 
 // The largest squared sine at which anything is seen, as a multiple of the variance in the tangent plane: a little more than
 // 2 ln 255.
 #define LEVEL_MAX 11.2
+// Of a direction: it must not be level with the picture's plane, or the mean would have no place there.
+#if HALF
+#define RISE_MIN 1e-2  // so that fp16 holds the conic
+#else
+#define RISE_MIN 1e-4
+#endif
 
 bool is_wide(Splat splat) { return splat.depth < 0.0; }
 
@@ -17,53 +23,46 @@ vec2 slope_at(View view, vec2 pixel) {
   return slope;
 }
 
-// Two axes across n; the second is level with the picture's rows.
-void tangent_axes(vec3 n, out vec3 first, out vec3 second) {
-  float size = length(n.yz);
-  second = size > 0.0 ? vec3(0.0, n.z, -n.y) / size : vec3(0.0, 1.0, 0.0);
-  first = cross(second, n);
-}
-
-vec3 direction_of(Splat splat) {
-  float square = dot(splat.mean, splat.mean);
-  return vec3(2.0 * splat.mean, 1.0 - square) / (1.0 + square);
-}
-
 // Whether a Gaussian at v is too far from all rays of the picture to be seen.
 bool is_beside(View view, vec3 v, float distance, float widest) {
   float spread = widest / distance;
   float variance = spread * spread + float(KERNEL_PX2) / (view.lens.x * view.lens.y);
-  float sine2 = min(LEVEL_MAX * variance, LEVEL_MAX * float(WIDEST_TANGENT) * float(WIDEST_TANGENT));
+  float sine2 = LEVEL_MAX * min(variance, float(WIDEST_TANGENT) * float(WIDEST_TANGENT));
   float cosine = (sqrt(1.0 - sine2) - sqrt(sine2 * view.centre.w)) / sqrt(1.0 + view.centre.w);
   return v.z < distance * (cosine - 1e-4);
 }
 
-// What project() keeps of a wide splat; false where it is not drawn.
-bool keep_wide(View view, vec3 v, float distance, mat3 axes, inout Splat splat, out float kept) {
-  precise vec3 n = v / distance;
-  vec3 first, second;
-  tangent_axes(n, first, second);
-  mat3 to_world = transpose(mat3(view.row_x.xyz, view.row_y.xyz, view.row_z.xyz));
-  float gain = sqrt(view.lens.x * view.lens.y) / distance;
-  precise vec3 e1 = gain * vec3(dot(first, to_world[0]), dot(first, to_world[1]), dot(first, to_world[2]));
-  precise vec3 e2 = gain * vec3(dot(second, to_world[0]), dot(second, to_world[1]), dot(second, to_world[2]));
-  vec3 across = vec3(dot_precise(e1, axes[0]), dot_precise(e1, axes[1]), dot_precise(e1, axes[2]));
-  vec3 down = vec3(dot_precise(e2, axes[0]), dot_precise(e2, axes[1]), dot_precise(e2, axes[2]));
-  vec4 conic = conic_of(across, down, LowPass(vec2(0.0), 1.0), kept);
-  if (conic.w == 0.0) return false;
-  // No wider than WIDEST_TANGENT.
-  precise float det = 1.0 / conic.w / conic.w;
-  precise float half_difference = 0.5 * (conic.x - conic.z);
-  precise float most = 0.5 * (conic.x + conic.z) + sqrt(half_difference * half_difference + conic.y * conic.y);
-  precise float least = float(1.0 / (WIDEST_TANGENT * WIDEST_TANGENT)) / (view.lens.x * view.lens.y);
-  precise float more = max(0.0, least - det / most);
-  precise vec4 limited = vec4(conic.x + more, conic.y, conic.z + more,
-                              inversesqrt(det + more * (conic.x + conic.z + more)));
-  splat.conic = limited;
-  precise vec2 mean = n.xy / (1.0 + n.z);
-  splat.mean = mean;
-  splat.depth = -distance;
-  return true;
+vec3 onto_axes(vec3 direction, mat3 axes) {
+  return vec3(dot_precise(direction, axes[0]), dot_precise(direction, axes[1]), dot_precise(direction, axes[2]));
+}
+
+// How much both eigenvalues of Q in the tangent plane must grow by, so that none is wider than WIDEST_TANGENT; in radians, from
+// the Gaussian's direction in the world.
+float excess(View view, vec3 direction, float distance, mat3 axes) {
+  vec3 least = abs(direction.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  precise vec3 first = normalize(cross(least, direction));
+  precise vec3 second = cross(direction, first);
+  vec3 across = onto_axes(first / distance, axes);
+  vec3 down = onto_axes(second / distance, axes);
+  precise float low_pass = float(KERNEL_PX2) / (view.lens.x * view.lens.y);
+  precise float xx = dot_precise(across, across) + low_pass;
+  precise float xy = dot_precise(across, down);
+  precise float yy = dot_precise(down, down) + low_pass;
+  precise float half_difference = 0.5 * (xx - yy);
+  precise float most = 0.5 * (xx + yy) + sqrt(half_difference * half_difference + xy * xy);
+  return max(0.0, 1.0 / float(WIDEST_TANGENT * WIDEST_TANGENT) - 1.0 / most);
+}
+
+// The conic of a wide splat, no wider than it may be. The unit circle of the tangent plane is |d|^2 - (n . d)^2 = 1.
+vec4 limited(View view, vec4 conic, vec3 n, float more) {
+  if (more == 0.0) return conic;
+  precise vec2 f = 1.0 / view.lens.xy;
+  precise vec3 circle = vec3((1.0 - n.x * n.x) * f.x * f.x, -n.x * n.y * f.x * f.y, (1.0 - n.y * n.y) * f.y * f.y);
+  precise float root = 1.0 / conic.w;
+  precise float rise = n.z * f.x * f.y;
+  precise float mixed = conic.x * circle.z - 2.0 * conic.y * circle.y + conic.z * circle.x;
+  precise float det = root * root + more * (max(mixed, 0.0) + more * rise * rise);
+  return vec4(conic.xyz + more * circle, inversesqrt(det));
 }
 
 bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
@@ -77,41 +76,38 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   if (!(v.z > view.anchor.w)) return false;
 #endif
   if (is_beside(view, v, distance, max(max(g.scale.x, g.scale.y), g.scale.z))) return false;
-  splat.depth = distance;
-  splat.colour = vec4(0.0);
+  if (abs(v.z) < RISE_MIN * distance) v.z = v.z < 0.0 ? -RISE_MIN * distance : RISE_MIN * distance;
   // As the affine projection without a limit to its slopes, at the distance in place of the depth.
   precise vec2 slope = v.xy / v.z;
   precise vec2 gain = view.lens.xy / distance;
   precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
   precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
-  vec3 across = vec3(dot_precise(jx, axes[0]), dot_precise(jx, axes[1]), dot_precise(jx, axes[2]));
-  vec3 down = vec3(dot_precise(jy, axes[0]), dot_precise(jy, axes[1]), dot_precise(jy, axes[2]));
   float kept;
-  vec4 conic = vec4(0.0);
-  if (v.z > 0.0) conic = conic_of(across, down, LowPass(slope, view.lens.x / view.lens.y), kept);
-  // Narrow: both eigenvalues of Q, in slopes of the picture, are above WIDE_LEVEL.
-  precise vec3 q = vec3(view.lens.x * view.lens.x * conic.x, view.lens.x * view.lens.y * conic.y,
-                        view.lens.y * view.lens.y * conic.z);
-  precise float det = view.lens.x * view.lens.y / conic.w;
-  precise float over = det * det - float(WIDE_LEVEL) * (q.x + q.z - float(WIDE_LEVEL));
-  if (v.z > 0.0 && conic.w > 0.0 && q.x > float(WIDE_LEVEL) && over > 0.0) {
-    precise vec2 mean = view.lens.xy * slope + view.lens.zw - 0.5;
-    splat.mean = mean;
-    splat.conic = conic;
-  } else if (!keep_wide(view, v, distance, axes, splat, kept)) {
-    return false;
+  splat.conic = conic_of(onto_axes(jx, axes), onto_axes(jy, axes), LowPass(slope, view.lens.x / view.lens.y), kept);
+  if (splat.conic.w == 0.0) return false;
+  splat.depth = distance;
+  // Wide: not both eigenvalues of Q, in slopes of the picture, are above WIDE_LEVEL.
+  precise vec2 q = view.lens.xy * view.lens.xy * splat.conic.xz;
+  precise float root = view.lens.x * view.lens.y / splat.conic.w;
+  precise float above = root * root - float(WIDE_LEVEL) * (q.x + q.y - float(WIDE_LEVEL));
+  if (v.z < 0.0 || q.x <= float(WIDE_LEVEL) || above <= 0.0) {
+    splat.conic = limited(view, splat.conic, v / distance, excess(view, away / distance, distance, axes));
+    splat.depth = -distance;
+    if (v.z < 0.0) splat.conic.w = -splat.conic.w;
   }
+  precise vec2 mean = view.lens.xy * slope + view.lens.zw - 0.5;
+  splat.mean = mean;
   splat.opacity = g.position.w;
 #if ANTIALIASED
   splat.opacity *= kept;
 #endif
+  splat.colour = vec4(0.0);
   return true;
 }
 
 // sqrt(det C2), in px^2 of the picture's middle: what a threshold goes by.
 float size_of(View view, Splat splat) {
-  if (is_wide(splat)) return splat.conic.w;
   vec2 slope = slope_at(view, splat.mean);
-  precise float size = splat.conic.w / sqrt(1.0 + dot(slope, slope));
+  precise float size = abs(splat.conic.w) / sqrt(1.0 + dot(slope, slope));
   return size;
 }

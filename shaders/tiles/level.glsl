@@ -5,6 +5,7 @@ struct Outline {
   vec2 aside;   // what rounding left of it
   vec4 conic;   // Q, and sqrt(det Q^-1)
   float level;  // rho = 2 ln(sigma / Th): alpha reaches Th where q comes to no more
+  bool is_wide; // of the tangent projection: mean and conic are the splat's
 };
 
 // From the middle to a pixel's centre.

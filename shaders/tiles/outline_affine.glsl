@@ -1,9 +1,7 @@
 // With the affine projection a splat is an ellipse at every level.
 
-Outline outline_of(Splat splat, View view) { return Outline(splat.mean, vec2(0.0), splat.conic, splat.colour.w); }
+Outline outline_of(Splat splat, View view) { return Outline(splat.mean, vec2(0.0), splat.conic, splat.colour.w, false); }
 
-uvec4 tile_box(Splat splat, View view) { return tile_box(outline_of(splat, view), view); }
+uvec4 box_of_tiles(Outline outline, View view) { return tile_box(outline, view); }
 
-uint likely_row(Splat splat, View view, uvec4 box) { return likely_row(outline_of(splat, view), view, box); }
-
-uvec2 tile_row(Splat splat, View view, uvec4 box, uint row) { return tile_row(outline_of(splat, view), view, box, row); }
+uvec2 row_of_tiles(Outline outline, View view, uvec4 box, uint row) { return tile_row(outline, view, box, row); }

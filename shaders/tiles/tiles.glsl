@@ -89,12 +89,12 @@ SupertileRow supertile_row_of(uvec4 tiles) {
 #endif
 }
 
-SupertileRow supertile_row(Splat splat, View view, uvec4 box, uint nth) {
+SupertileRow supertile_row(Outline outline, View view, uvec4 box, uint nth) {
   uvec4 tiles = uvec4(0u);
   uint row = nth * uint(SUPERTILE_SIDE);
-  if (row >= box.y) tiles.xy = tile_row(splat, view, box, row);
+  if (row >= box.y) tiles.xy = row_of_tiles(outline, view, box, row);
 #if SUPERTILE_SIDE == 2
-  if (row + 1u < box.w) tiles.zw = tile_row(splat, view, box, row + 1u);
+  if (row + 1u < box.w) tiles.zw = row_of_tiles(outline, view, box, row + 1u);
 #endif
   return supertile_row_of(tiles);
 }
@@ -112,11 +112,11 @@ uint value_of(uint splat, SupertileRow row, uint column) {
 }
 
 // What a splat touches (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
-uint coverage_of(Splat splat, View view, uvec4 box) {
+uint coverage_of(Outline outline, View view, uvec4 box) {
   uint count = 0u;
 #if SUPERTILE_SIDE == 1
   for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = tile_row(splat, view, box, row);
+    uvec2 columns = row_of_tiles(outline, view, box, row);
     count += columns.y - columns.x;
   }
 #else
@@ -126,7 +126,7 @@ uint coverage_of(Splat splat, View view, uvec4 box) {
   uint bits = 0u;
   uvec4 tiles = uvec4(0u);
   for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = tile_row(splat, view, box, row);
+    uvec2 columns = row_of_tiles(outline, view, box, row);
     if (are_few) {
       uvec2 from = columns - (box.x & ~1u);
       uint row_bits = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
@@ -145,6 +145,7 @@ uint coverage_of(Splat splat, View view, uvec4 box) {
   return count;
 }
 
+// Whether it touches any; of wide splats some that lie between the tiles of a probe, or at their edges, are counted in.
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
   // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose
@@ -153,11 +154,16 @@ bool touches_a_tile(Splat splat, View view) {
   float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
   if (!is_wide(splat) && !is_probe(view) && q <= ellipse_inner_rho(splat.colour.w)) return true;
 #endif
-  uvec4 box = tile_box(splat, view);
-  uint likely = likely_row(splat, view, box);
+  Outline outline = outline_of(splat, view);
+#if PROJECTION == PROJECTION_TANGENT && TILES != TILES_ALL
+  vec2 at;
+  if (outline.is_wide) return touches_picture(outline, view, at);
+#endif
+  uvec4 box = tile_box(outline, view);
+  uint likely = likely_row(outline, view, box);
   for (uint n = 0u; n < box.w - box.y; ++n) {
     uint row = n == 0u ? likely : box.y + n - uint(box.y + n <= likely);
-    uvec2 columns = tile_row(splat, view, box, row);
+    uvec2 columns = tile_row(outline, view, box, row);
     if (columns.y > columns.x) return true;
   }
   return false;

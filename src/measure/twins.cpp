@@ -25,34 +25,21 @@ using render::OrderGroup;
 using render::Stage;
 
 // A cone as shaders/projection/tangent.glsl keeps it.
-void keep_cone(const reference::Splat& s, const shared::View& view, shared::Splat& out) {
-  const reference::Cone& cone = *s.cone;
-  const auto with_root = [](const glm::dmat2& q) {
-    return glm::vec4(glm::dvec4(q[0][0], q[0][1], q[1][1], 1 / std::sqrt(glm::determinant(q))));
-  };
-  if (!reference::is_wide(cone)) {
-    out.conic = with_root(glm::dmat2(cone.form));
-    return;
-  }
-  const glm::dvec4 lens = view.lens;
-  const glm::dmat3 to_pixel(lens[0], 0, 0, 0, lens[1], 0, lens[2] - 0.5, lens[3] - 0.5, 1);
-  const glm::dvec3 n = glm::normalize(glm::transpose(to_pixel) * cone.facing);
-  const double size = std::hypot(n.y, n.z);
-  const glm::dvec3 second = size > 0.0 ? glm::dvec3(0, n.z, -n.y) / size : glm::dvec3(0, 1, 0);
-  const glm::dmat2x3 axes(glm::cross(second, n), second);
-  const glm::dmat3 form = glm::transpose(to_pixel) * cone.form * to_pixel;
-  out.conic = with_root(glm::transpose(axes) * form * axes / (lens[0] * lens[1]));
-  out.mean = glm::vec2(glm::dvec2(n) / (1 + n.z));
+void keep_cone(const reference::Splat& s, shared::Splat& out) {
+  const glm::dmat2 q(s.cone->form);
+  out.conic = glm::vec4(glm::dvec4(q[0][0], q[0][1], q[1][1], 1 / std::sqrt(glm::determinant(q))));
+  if (!reference::is_wide(*s.cone)) return;
   out.depth = -out.depth;
+  if (s.cone->is_behind) out.conic.w = -out.conic.w;
 }
 
-shared::Splat to_shared(const reference::Splat& s, const shared::View& view) {
+shared::Splat to_shared(const reference::Splat& s) {
   shared::Splat out{};
   out.mean = glm::vec2(s.mean);
   out.depth = static_cast<float>(s.depth);
   out.opacity = static_cast<float>(s.opacity);
   out.conic = glm::vec4(glm::dvec4(s.conic, std::sqrt(s.det)));
-  if (s.cone) keep_cone(s, view, out);
+  if (s.cone) keep_cone(s, out);
   out.colour = glm::vec4(glm::dvec4(s.colour, 2.0 * std::log(s.opacity / s.threshold)));
   return out;
 }
@@ -232,7 +219,7 @@ void upload_projection(const FrameShape& shape, const std::vector<Slots>& slots,
   for (std::uint32_t v = 0; v < shape.view_count(); ++v) {
     const std::vector<std::uint32_t>& indices = slots[shape.views[v].order_group].indices;
     for (std::size_t slot = 0; slot < indices.size(); ++slot) {
-      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]], shape.views[v]);
+      splats[std::size_t{v} * shape.slots + slot] = to_shared(results[v].splats[indices[slot]]);
       pair_counts[slot * shape.view_count() + v] = results[v].pair_counts[indices[slot]];
     }
   }

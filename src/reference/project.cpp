@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "base/parallel.h"
 #include "reference/decode.h"
@@ -84,17 +83,21 @@ glm::dvec3 colour_towards(const Model& model, std::size_t i, const glm::dvec3& d
 
 namespace {
 
+/// Pixel coordinates of where the line through the eye and v meets the picture's plane.
+glm::dvec2 picture_point(const glm::dvec3& v, const shared::View& view) {
+  return {view.lens[0] * v.x / v.z + view.lens[2] - 0.5, view.lens[1] * v.y / v.z + view.lens[3] - 0.5};
+}
+
 /// Affine: J takes the Gaussian at v to the picture.
 void project_affine(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                     const LowPass& low_pass, Splat& splat) {
-  const glm::dvec4 lens = view.lens;
   const glm::dmat3x2 projection = perspective_jacobian(v, view) * axes_of(view);
   const glm::dmat2 c2 = projection * covariance_in_world(gaussian) * glm::transpose(projection);
   const double kernel = low_pass.kernel_px2;
   splat.covariance = glm::dvec3(c2[0][0] + kernel, c2[0][1], c2[1][1] + kernel);
   splat.det = splat.covariance.x * splat.covariance.z - splat.covariance.y * splat.covariance.y;
   splat.drawn = splat.det > 0.0;
-  splat.mean = glm::dvec2(lens[0] * v.x / v.z + lens[2] - 0.5, lens[1] * v.y / v.z + lens[3] - 0.5);
+  splat.mean = picture_point(v, view);
   splat.depth = v.z;
   splat.conic = glm::dvec3(splat.covariance.z, -splat.covariance.y, splat.covariance.x) / splat.det;
   if (low_pass.antialiased) splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(c2)) / splat.det);
@@ -121,8 +124,7 @@ void project_tangent(const Gaussian& gaussian, const shared::View& view, const g
   const glm::dmat2 widened = shape + glm::dmat2(low_pass.kernel_px2 / focal2);
   splat.drawn = glm::determinant(widened) > 0.0;
   splat.depth = distance;
-  splat.mean = v.z > 0.0 ? glm::dvec2(lens[0] * v.x / v.z + lens[2] - 0.5, lens[1] * v.y / v.z + lens[3] - 0.5)
-                         : glm::dvec2(std::numeric_limits<double>::quiet_NaN());
+  splat.mean = picture_point(v, view);
   if (low_pass.antialiased) {
     splat.opacity *= std::sqrt(std::max(0.0, glm::determinant(shape)) / glm::determinant(widened));
   }
@@ -137,7 +139,7 @@ void project_tangent(const Gaussian& gaussian, const shared::View& view, const g
   const glm::dmat3 to_ray(1 / lens[0], 0, 0, 0, 1 / lens[1], 0, (0.5 - lens[2]) / lens[0],
                           (0.5 - lens[3]) / lens[1], 1);
   const glm::dmat3x2 seen = onto * to_ray;
-  splat.cone = Cone{glm::transpose(seen) * q * seen, glm::transpose(to_ray) * to_ray,
+  splat.cone = Cone{glm::transpose(seen) * q * seen, glm::transpose(to_ray) * to_ray, n.z < 0.0,
                     glm::transpose(to_ray) * n};
 }
 

@@ -27,6 +27,7 @@ struct Gaussian {
 struct Cone {
   glm::dmat3 form{0.0};
   glm::dmat3 ray{0.0};       // |d|^2 of the pixel's ray d, whose d.z is 1
+  bool is_behind = false;    // the Gaussian's mean, of the eye: the splat's is then where their line meets the picture
   glm::dvec3 facing{0.0};    // the cosine of the angle to the Gaussian, times |d|
 };
 
@@ -42,7 +43,7 @@ struct Splat {
   glm::dvec3 colour{0.0};        // display-referred, not below 0, without an upper limit
   double threshold = ALPHA_MIN;  // Th, the alpha whose reach the tile tests go by; see threshold.h
   std::optional<Cone> cone;      // with PROJECTION_TANGENT, in the place of covariance
-                                 // and conic; no number for a mean behind the eye
+                                 // and conic
   bool drawn = false;            // deeper than the near plane, det > 0, and Th (threshold.h) not above sigma
 };
 

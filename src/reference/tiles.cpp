@@ -142,7 +142,7 @@ Splat section_of(const Splat& splat, double level) {
 /// quadratic polynomials there; where its derivative is zero, a third one is.
 bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to, double level) {
   const glm::dvec3 a(from, 1), b(to - from, 0);
-  const auto& [form, ray, facing] = *splat.cone;
+  const glm::dmat3 &form = splat.cone->form, &ray = splat.cone->ray;
   const double n0 = glm::dot(a, form * a), n1 = glm::dot(a, form * b), n2 = glm::dot(b, form * b);
   const double w0 = glm::dot(a, ray * a), w1 = glm::dot(a, ray * b), w2 = glm::dot(b, ray * b);
   const double k2 = n2 * w1 - n1 * w2, k1 = n2 * w0 - n0 * w2, k0 = n1 * w0 - n0 * w1;
@@ -157,7 +157,7 @@ bool cone_meets(const Splat& splat, const glm::dvec2& from, const glm::dvec2& to
 
 /// Whether the smallest q over a rectangle of pixel centres is at most `level`: it lies in the mean or on a side.
 bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::dvec2& high, double level) {
-  if (glm::all(glm::lessThanEqual(low, splat.mean)) && glm::all(glm::lessThanEqual(splat.mean, high))) return true;
+  if (!splat.cone->is_behind && glm::all(glm::lessThanEqual(low, splat.mean)) && glm::all(glm::lessThanEqual(splat.mean, high))) return true;
   const glm::dvec2 right(high.x, low.y), left(low.x, high.y);
   return cone_meets(splat, low, right, level) || cone_meets(splat, right, high, level) ||
          cone_meets(splat, high, left, level) || cone_meets(splat, left, low, level);
@@ -193,8 +193,9 @@ bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, c
   const glm::dvec2 first(tx * tile_size, ty * tile_size);
   const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
   if (splat.cone && tiles != TILES_ALL) {
-    if (is_wide(*splat.cone) || tiles == TILES_ELLIPSE)
-      return cone_meets_rectangle(splat, first, last, level_of(splat, tiles));
+    // A wide one by the tile's square, which leaves no gap to its neighbours.
+    if (is_wide(*splat.cone)) return cone_meets_rectangle(splat, first - 0.5, last + 0.5, level_of(splat, tiles));
+    if (tiles == TILES_ELLIPSE) return cone_meets_rectangle(splat, first, last, level_of(splat, tiles));
     return shape_meets(section_of(splat, level_of(splat, tiles)), tiles, tile_size, tx, ty, view);
   }
   const glm::dvec2 low = first - splat.mean, high = last - splat.mean;
@@ -224,7 +225,7 @@ bool is_wide(const Cone& cone) {
   const glm::dmat3& f = cone.form;
   const double fx2 = 1 / cone.ray[0][0], fy2 = 1 / cone.ray[1][1];
   const double xx = f[0][0] * fx2, yy = f[1][1] * fy2, xy2 = f[0][1] * f[0][1] * fx2 * fy2;
-  return 0.5 * (xx + yy) - std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy2) < WIDE_LEVEL;
+  return cone.is_behind || 0.5 * (xx + yy) - std::sqrt(0.25 * (xx - yy) * (xx - yy) + xy2) < WIDE_LEVEL;
 }
 
 double squared_distance(const Splat& splat, const glm::dvec2& at) {

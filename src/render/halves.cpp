@@ -60,7 +60,7 @@ Halves pack(const shared::Splat& s) {
           word(s.depth),
           pair(s.colour.r, s.colour.g),
           pair(kept_xx, leaning),
-          pair(std::max(factor * yy, least), s.opacity),
+          pair(std::copysign(std::max(factor * std::abs(yy), least), yy), s.opacity),
           pair(s.colour.b, leaning - rounded(leaning)),
           word(s.colour.w)};
 }

@@ -170,6 +170,8 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   context->set_shader_folder(how.shaders);
   Json json = {{"scene", c.name},
                {"precision", precision_choices[how.settings.precision].name},
+               {"order", order_choices[*how.settings.order].name},
+               {"projection", projection_choices[*how.settings.projection].name},
                {"gpu", context->renderer()},
                {"driver", context->version()}};
   json["context_ms"] = ms_since(start);
@@ -220,7 +222,7 @@ int main(int argc, char** argv) {
   std::string scenes;
   std::string views;
   std::string json;
-  std::string precision = "full";
+  std::string precision = "full", order = "depth", projection = "affine";
   How how;
   bool list = false;
   app.add_flag("--list", list, "Print the names of the cases and end");
@@ -234,8 +236,12 @@ int main(int argc, char** argv) {
                  "Pictures so many times smaller: tries the benchmark itself where there is no GPU");
   app.add_option("--tile", how.settings.tile_size, "Side of a tile in px; without: what the frame chooses");
   app.add_option("--precision", precision, "full or half")->check(CLI::IsMember({"full", "half"}));
+  app.add_option("--order", order, "depth or distance")->check(CLI::IsMember({"depth", "distance"}));
+  app.add_option("--projection", projection, "affine or tangent")->check(CLI::IsMember({"affine", "tangent"}));
   CLI11_PARSE(app, argc, argv);
   how.settings.precision = find_choice("--precision", precision, precision_choices);
+  how.settings.order = find_choice("--order", order, order_choices);
+  how.settings.projection = find_choice("--projection", projection, projection_choices);
   try {
     for (const Case& c : cases) {
       if (list) fmt::print("{}\n", c.name);

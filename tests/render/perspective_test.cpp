@@ -6,6 +6,9 @@
 #include "render/faulty_shaders.h"
 #include "render/support.h"
 #include "stereo/rig.h"
+#include "support/scenes.h"
+#include "formats/cameras_file.h"
+#include "formats/model_file.h"
 
 namespace binosplat {
 namespace {
@@ -64,6 +67,7 @@ TEST_P(InPerspective, EqualsTheReference) {
   const shared::View view = make_view(wide_camera());
   for (const Model& plain : {test::random_model(61, 3000, 1), surrounding_model(62, 4000)}) {
     const Model model = in(GetParam(), plain);
+    SCOPED_TRACE(model.name);
     const Picture expected = reference::render(model, view);
     const Picture drawn = draw(model, view);
     EXPECT_GE(psnr(drawn, expected), 80.0) << model.name;
@@ -101,6 +105,44 @@ TEST_P(InPerspective, EllipseAndSnugEqualBruteForceBitForBit) {
     }
     EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_AABB, .precision = precision}), brute));
     EXPECT_FALSE(same_bits(draw(model, view, {.tiles = TILES_OBB, .precision = precision}), brute));
+  }
+}
+
+// PSNR of what turned heads see along the same rays against what the head sees that is not turned.
+double consistency(const Model& model, const Perspective& perspective, const Camera& camera, double field_degrees,
+                   int count, const glm::dvec3& axis, double degrees) {
+  render::Frame frame(test::gl_context(), model);
+  const FrameSettings settings{.order = perspective.order, .projection = perspective.projection};
+  const Camera turned = measure::turned(camera, axis, glm::radians(degrees));
+  test::Uniform uniform(7);
+  std::vector<glm::dvec2> at, there;
+  const double reach = camera.fx * std::tan(glm::radians(0.5 * field_degrees));
+  while (count-- > 0) {
+    const glm::dvec2 pixel(std::floor(camera.cx + uniform(-reach, reach)), std::floor(camera.cy + uniform(-reach, reach)));
+    const glm::dvec2 other = measure::pixel_of(turned, measure::ray_through(camera, pixel));
+    if (!measure::is_inside(camera, pixel) || !measure::is_inside(turned, other)) continue;
+    at.push_back(pixel);
+    there.push_back(other);
+  }
+  const auto a = measure::colours_at(frame, camera, at, settings), b = measure::colours_at(frame, turned, there, settings);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += glm::dot(glm::dvec3(a[k] - b[k]), glm::dvec3(a[k] - b[k])) / 3.0;
+  return -10.0 * std::log10(sum / static_cast<double>(a.size()));
+}
+
+TEST(Turn, Scenes) {
+  for (const char* which : {"fox", "garden"}) {
+  const std::string scene = which;
+  REQUIRE_SCENE(scene, folder);
+  const Model model = load_model(folder / (scene + ".ply"));
+  for (Camera camera : load_cameras(folder / "cameras.json")) {
+    if (camera.name != "0042" && camera.name != "DSC08116") continue;
+    camera = stereo::apply_preset(camera, "headset");
+    camera.width /= 2; camera.height /= 2; camera.fx /= 2; camera.fy /= 2; camera.cx /= 2; camera.cy /= 2;
+    for (const Perspective& p : {perspectives[0], perspectives[3]})
+      for (double degrees : {0.25, 5.0, 15.0, 45.0})
+        fmt::print("{} {} {}: {:.1f}\n", scene, name_of(p), degrees, consistency(model, p, camera, 60, std::getenv("RAYS")?atoi(std::getenv("RAYS")):200, {0, 1, 0}, degrees)), std::fflush(stdout);
+  }
   }
 }
 
