@@ -27,7 +27,9 @@ void load(uint at) {
     stage_nothing(self);
     return;
   }
-  stage(self, SPLAT(values[at]));
+  Splat splat = SPLAT(values[at]);
+  if (!is_ahead(splat)) splat.opacity = 0.0;
+  stage(self, splat);
 #if SHOW == SHOW_LIGHT
   batch_light[self] = uintBitsToFloat(measured[values[at]]);
 #endif

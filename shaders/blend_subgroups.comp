@@ -28,7 +28,7 @@ uint blocks_reached(Splat splat, vec2 mean) {
   if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
   float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;
 #if PROJECTION == PROJECTION_TANGENT
-  if (is_wide(splat)) return (1u << BLOCKS_ACROSS * BLOCKS_DOWN) - 1u;
+  if (is_wide(splat)) return is_ahead(splat) ? (1u << BLOCKS_ACROSS * BLOCKS_DOWN) - 1u : 0u;
   rho *= farthest;
 #endif
   float tallest = splat.conic.w * sqrt(rho * splat.conic.x);                // half the ellipse's height,

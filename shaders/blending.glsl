@@ -192,20 +192,24 @@ void stage_nothing(uint at) {
 #endif
 }
 
+#if PROJECTION == PROJECTION_TANGENT
+// Whether rays of the cell go towards a splat and not away from it: a wide one has faded where they begin to, others are not in
+// the list.
+bool is_ahead(Splat splat) {
+  if (!is_wide(splat)) return true;
+  float facing = 1.0 + dot(slope_at(views[view_index], splat.mean), slope_at(views[view_index], middle));
+  return facing > 0.0 != splat.conic.w < 0.0;
+}
+#else
+bool is_ahead(Splat splat) { return true; }
+#endif
+
 void stage(uint at, Splat splat) {
   batch_colour[at] = vec4(splat.colour.rgb, abs(splat.depth));
-#if PROJECTION == PROJECTION_TANGENT
-  // A wide one has faded long before it comes to lie behind: whether it does is a matter of the cell.
-  if (is_wide(splat)) {
-    float facing = 1.0 + dot(slope_at(views[view_index], splat.mean), slope_at(views[view_index], middle));
-    if (facing < 0.0 != splat.conic.w < 0.0) splat.opacity = 0.0;
-    splat.conic.w = abs(splat.conic.w);
-  }
-#endif
   precise vec2 mean = splat.mean - middle;
   precise float xx = sqrt(level_scale * splat.conic.x);
   precise float yx = level_scale * splat.conic.y / xx;
-  precise float yy = level_scale / (splat.conic.w * xx);
+  precise float yy = level_scale / (abs(splat.conic.w) * xx);
   precise float u = -fma(xx, mean.x, yx * mean.y);
   precise float v = -yy * mean.y;
   precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;

@@ -20,6 +20,11 @@ float dot_precise(vec3 a, vec3 b) {
   return d;
 }
 
+float dot_precise(vec2 a, vec2 b) {
+  precise float d = fma(a.x, b.x, a.y * b.y);
+  return d;
+}
+
 // The point relative to the anchor in the eye's axes.
 vec3 to_eye(View view, vec3 d) {
   precise float x = dot_precise(view.row_x.xyz, d) + view.row_x.w;
@@ -29,10 +34,10 @@ vec3 to_eye(View view, vec3 d) {
 }
 
 // The low-pass: a variance of KERNEL_PX2 across and down, as it falls on a picture that leans against the ray by `slope` and
-// is `stretch` times as wide across, and inversely down.
+// is scaled by `scale`, whose product is 1.
 struct LowPass {
   vec2 slope;
-  float stretch;
+  vec2 scale;
 };
 
 // (Q.xx, Q.xy, Q.yy, sqrt(det C2)), and the share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P
@@ -42,9 +47,9 @@ struct LowPass {
 // drawn is told by w = 0.
 vec4 conic_of(vec3 across, vec3 down, LowPass low, out float kept) {
   const float s = float(KERNEL_PX2);
-  precise float xx = dot_precise(across, across) + s * (low.stretch * (1.0 + low.slope.x * low.slope.x));
+  precise float xx = dot_precise(across, across) + s * (low.scale.x * low.scale.x * (1.0 + low.slope.x * low.slope.x));
   precise float xy = dot_precise(across, down) + s * (low.slope.x * low.slope.y);
-  precise float yy = dot_precise(down, down) + s / low.stretch * (1.0 + low.slope.y * low.slope.y);
+  precise float yy = dot_precise(down, down) + s * (low.scale.y * low.scale.y * (1.0 + low.slope.y * low.slope.y));
   kept = 0.0;
   // A power of two takes the size out, so that no product overflows.
   int exponent = int(floatBitsToUint(max(xx, yy)) >> 23);
@@ -56,9 +61,13 @@ vec4 conic_of(vec3 across, vec3 down, LowPass low, out float kept) {
   precise float low_pass = unit * s * unit;
   precise vec3 n = vec3(a.y * d.z - a.z * d.y, a.z * d.x - a.x * d.z, a.x * d.y - a.y * d.x);
   precise float det_p = dot_precise(n, n);
-  precise vec3 lean = sqrt(low.stretch) * low.slope.x * d - low.slope.y / sqrt(low.stretch) * a;
-  precise float det = det_p + low_pass * (dot_precise(a, a) / low.stretch + low.stretch * dot_precise(d, d) +
-                                          dot_precise(lean, lean) + low_pass * (1.0 + dot(low.slope, low.slope)));
+  precise vec3 width = low.scale.y * a;
+  precise vec3 height = low.scale.x * d;
+  precise float det = det_p + low_pass * (dot_precise(width, width) + dot_precise(height, height) + low_pass);
+#if PROJECTION == PROJECTION_TANGENT
+  precise vec3 lean = low.slope.x * height - low.slope.y * width;
+  det += low_pass * (dot_precise(lean, lean) + low_pass * dot_precise(low.slope, low.slope));
+#endif
   if (!(det > 0.0)) return vec4(0.0);
   precise vec3 q = unit * vec3(yy, -xy, xx) * unit / det * unit * unit;
   precise float root = sqrt(det);

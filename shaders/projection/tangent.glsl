@@ -40,8 +40,9 @@ vec3 onto_axes(vec3 direction, mat3 axes) {
 // the Gaussian's direction in the world.
 float excess(View view, vec3 direction, float distance, mat3 axes) {
   vec3 least = abs(direction.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-  precise vec3 first = normalize(cross(least, direction));
-  precise vec3 second = cross(direction, first);
+  precise vec3 aside = least.yzx * direction.zxy - least.zxy * direction.yzx;  // cross products
+  precise vec3 first = aside / sqrt(dot_precise(aside, aside));
+  precise vec3 second = direction.yzx * first.zxy - direction.zxy * first.yzx;
   vec3 across = onto_axes(first / distance, axes);
   vec3 down = onto_axes(second / distance, axes);
   precise float low_pass = float(KERNEL_PX2) / (view.lens.x * view.lens.y);
@@ -75,15 +76,15 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
 #else
   if (!(v.z > view.anchor.w)) return false;
 #endif
-  if (is_beside(view, v, distance, max(max(g.scale.x, g.scale.y), g.scale.z))) return false;
+  if (v.z < 0.3 * distance && is_beside(view, v, distance, max(max(g.scale.x, g.scale.y), g.scale.z))) return false;
   if (abs(v.z) < RISE_MIN * distance) v.z = v.z < 0.0 ? -RISE_MIN * distance : RISE_MIN * distance;
   // As the affine projection without a limit to its slopes, at the distance in place of the depth.
   precise vec2 slope = v.xy / v.z;
   precise vec2 gain = view.lens.xy / distance;
   precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
   precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
-  float kept;
-  splat.conic = conic_of(onto_axes(jx, axes), onto_axes(jy, axes), LowPass(slope, view.lens.x / view.lens.y), kept);
+  float stretch = sqrt(view.lens.x / view.lens.y), kept;
+  splat.conic = conic_of(onto_axes(jx, axes), onto_axes(jy, axes), LowPass(slope, vec2(stretch, 1.0 / stretch)), kept);
   if (splat.conic.w == 0.0) return false;
   splat.depth = distance;
   // Wide: not both eigenvalues of Q, in slopes of the picture, are above WIDE_LEVEL.
@@ -108,6 +109,6 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
 // sqrt(det C2), in px^2 of the picture's middle: what a threshold goes by.
 float size_of(View view, Splat splat) {
   vec2 slope = slope_at(view, splat.mean);
-  precise float size = abs(splat.conic.w) / sqrt(1.0 + dot(slope, slope));
+  precise float size = abs(splat.conic.w) / sqrt(1.0 + dot_precise(slope, slope));
   return size;
 }

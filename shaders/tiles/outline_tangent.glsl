@@ -21,7 +21,7 @@ Outline outline_of(Splat splat, View view) {
   precise float root = 1.0 / splat.conic.w;
   precise float det = root * root - level * (splat.conic.x * f.y * f.y + m.z * f.x * f.x);
   precise vec2 middle = level / det * vec2(m.z * b.x - m.y * b.y, m.x * b.y - m.y * b.x);
-  precise float scale = 1.0 + dot(slope, slope) + dot(b, middle);
+  precise float scale = 1.0 + dot_precise(slope, slope) + dot_precise(b, middle);
   precise vec2 mean = splat.mean + middle;
   precise vec2 aside = middle - (mean - splat.mean);
   return Outline(mean, aside, vec4(m / scale, scale * inversesqrt(det)), splat.colour.w + more, false);
@@ -35,106 +35,117 @@ struct Cone {
 
 Cone cone_of(Outline outline, View view) {
   vec2 slope = slope_at(view, outline.mean);
-  float root = sqrt(outline.conic.x);
-  vec2 first = vec2(root, outline.conic.y / root) * view.lens.xy;
-  float second = view.lens.y / (abs(outline.conic.w) * root);
-  vec3 direction = vec3(slope, 1.0) * inversesqrt(1.0 + dot(slope, slope));
-  float rounding = 3e-6 * (length(first) + second);
-  return Cone(vec3(first, -dot(first, slope)), vec3(0.0, second, -second * slope.y),
-              outline.conic.w < 0.0 ? -direction : direction, OUTLINE_LEVEL(outline.level) + rounding);
+  precise float root = sqrt(outline.conic.x);
+  precise vec2 across = vec2(root, outline.conic.y / root) * view.lens.xy;
+  precise float down = view.lens.y / (abs(outline.conic.w) * root);
+  precise vec3 first = vec3(across, -dot_precise(across, slope));
+  precise vec3 second = vec3(0.0, down, -down * slope.y);
+  precise vec3 direction = outline.conic.w < 0.0 ? vec3(-slope, -1.0) : vec3(slope, 1.0);
+  precise float level = OUTLINE_LEVEL(outline.level) + 3e-6 * (abs(across.x) + abs(across.y) + down);  // and for rounding
+  return Cone(first, second, direction, level);
 }
 
 // Of rays d and e: below 0 for d = e where q is below the level.
 float inside(Cone cone, vec3 d, vec3 e) {
-  vec2 a = vec2(dot(cone.first, d), dot(cone.second, d)), b = vec2(dot(cone.first, e), dot(cone.second, e));
-  return dot(a, b) - cone.level * dot(d, e);
+  precise float level = dot_precise(cone.first, d) * dot_precise(cone.first, e) +
+                        dot_precise(cone.second, d) * dot_precise(cone.second, e) - cone.level * dot_precise(d, e);
+  return level;
 }
 
-// Whether one of the rays from d to d + along is seen, and which.
-bool edge_touches(Cone cone, vec3 d, vec3 along, out vec2 at) {
-  float middle = inside(cone, d, along), bend = inside(cone, along, along);
-  at = d.xy;
-  if (inside(cone, d, d) <= 0.0 && dot(cone.direction, d) > 0.0) return true;
-  d += clamp(-middle / bend, 0.0, 1.0) * along;
-  at = d.xy;
-  return bend > 0.0 && inside(cone, d, d) <= 0.0 && dot(cone.direction, d) > 0.0;
+bool is_ahead(Cone cone, vec3 d) { return dot_precise(cone.direction, d) > 0.0; }
+
+// Slopes that are seen, as far as they are known: of the lowest x to the highest. None at first.
+#define NO_SLOPES vec2(1e30, -1e30)
+
+void take(inout vec2 seen, float x) { seen = vec2(min(seen.x, x), max(seen.y, x)); }
+
+// Takes the ends of what is seen of the rays from d to d + along.
+void take_edge(Cone cone, vec3 d, vec3 along, inout vec2 seen) {
+  precise vec3 last = d + along;
+  float start = inside(cone, d, d), middle = inside(cone, d, along), bend = inside(cone, along, along);
+  if (start <= 0.0 && is_ahead(cone, d)) take(seen, d.x);
+  if (inside(cone, last, last) <= 0.0 && is_ahead(cone, last)) take(seen, last.x);
+  precise float square = middle * middle - bend * start;
+  if (bend <= 0.0 || square < 0.0) return;
+  precise float root = sqrt(square);
+  precise vec2 ends = vec2(-middle - root, root - middle) / bend;
+  precise vec3 deepest = d - middle / bend * along;
+  if (ends.y < 0.0 || ends.x > 1.0 || !is_ahead(cone, deepest)) return;
+  precise vec2 x = d.x + clamp(ends, 0.0, 1.0) * along.x;
+  take(seen, x.x);
+  take(seen, x.y);
 }
 
-// Whether any ray of a rectangle of slopes is seen, and which: with none on its sides, it lies outside, or around all.
-bool cone_touches(Cone cone, vec2 first, vec2 last, out vec2 at) {
-  vec3 axis = cone.direction;
-  at = axis.xy / axis.z;
-  if (axis.z > 0.0 && clamp(at, first, last) == at) return true;
-  vec2 size = last - first;
-  return edge_touches(cone, vec3(first, 1.0), vec3(size.x, 0.0, 0.0), at) ||
-         edge_touches(cone, vec3(last.x, first.y, 1.0), vec3(0.0, size.y, 0.0), at) ||
-         edge_touches(cone, vec3(last, 1.0), vec3(-size.x, 0.0, 0.0), at) ||
-         edge_touches(cone, vec3(first.x, last.y, 1.0), vec3(0.0, -size.y, 0.0), at);
+// What is seen of a rectangle of slopes. Where none of its sides is, it lies outside, or around all.
+vec2 seen_in(Cone cone, vec2 first, vec2 last) {
+  vec2 seen = NO_SLOPES;
+  precise vec2 size = last - first;
+  precise vec2 axis = cone.direction.xy / cone.direction.z;
+  if (cone.direction.z > 0.0 && clamp(axis, first, last) == axis) take(seen, axis.x);
+  take_edge(cone, vec3(first, 1.0), vec3(size.x, 0.0, 0.0), seen);
+  take_edge(cone, vec3(first.x, last.y, 1.0), vec3(size.x, 0.0, 0.0), seen);
+  take_edge(cone, vec3(first, 1.0), vec3(0.0, size.y, 0.0), seen);
+  take_edge(cone, vec3(last.x, first.y, 1.0), vec3(0.0, size.y, 0.0), seen);
+  return seen;
 }
 
 // The squares of the tiles from `first` to `last`, which leave no gaps between them, but in a probe.
-bool cone_touches_tiles(Cone cone, View view, uvec2 first, uvec2 last, out vec2 at) {
-  return cone_touches(cone, slope_at(view, tile_low(first, view) - 0.5), slope_at(view, tile_high(last, view) + 0.5), at);
+vec2 seen_in_tiles(Cone cone, View view, uvec2 first, uvec2 last) {
+  return seen_in(cone, slope_at(view, tile_low(first, view) - 0.5), slope_at(view, tile_high(last, view) + 0.5));
 }
 
-// Of tiles in a row of which the `known` one is touched, those that are lie side by side: the ends of [0, count) by halves.
-// `axis` is 0 for columns of one row, 1 for rows of all columns.
-uvec2 touched_span(Cone cone, View view, int axis, uint row, uint known, uint count) {
-  uvec2 first = axis == 0 ? uvec2(0u, row) : uvec2(0u), last = axis == 0 ? uvec2(0u, row) : uvec2(view.tiles_x - 1u, 0u);
-  uvec2 low = uvec2(0u, known), high = uvec2(known, count - 1u);  // of the first that is touched, and of the last
-  vec2 at;
-  while (low.x < high.x) {
-    uint middle = (low.x + high.x) / 2u;
-    first[axis] = last[axis] = middle;
-    if (cone_touches_tiles(cone, view, first, last, at)) high.x = middle;
-    else low.x = middle + 1u;
-  }
-  while (low.y < high.y) {
-    uint middle = (low.y + high.y + 1u) / 2u;
-    first[axis] = last[axis] = middle;
-    if (cone_touches_tiles(cone, view, first, last, at)) low.y = middle;
-    else high.y = middle - 1u;
-  }
-  return uvec2(low.x, low.y + 1u);
+bool touches(Cone cone, View view, uint column, uint row) {
+  vec2 seen = seen_in_tiles(cone, view, uvec2(column, row), uvec2(column, row));
+  return seen.x <= seen.y;
 }
 
-// The tile along an axis that a slope lies in.
-uint tile_at(View view, vec2 at, int axis, uint count) {
-  float pixel = at[axis] * view.lens[axis] + view.lens[axis + 2] - float(tile_shift(view)[axis]);
-  return uint(clamp(floor(pixel / float(tile_pitch(view))), 0.0, float(count - 1u)));
+uint column_at(View view, float slope) {
+  precise float pixel = slope * view.lens.x + view.lens.z - float(tile_shift(view).x);
+  return uint(clamp(floor(pixel / float(tile_pitch(view))), 0.0, float(view.tiles_x - 1u)));
 }
 
-// Whether a wide splat touches the picture, and where.
-bool touches_picture(Outline outline, View view, out vec2 at) {
+bool touches_picture(Outline outline, View view) {
   if (outline.level < RHO_NONE || view.tiles_x == 0u || view.tiles_y == 0u) return false;
-  return cone_touches_tiles(cone_of(outline, view), view, uvec2(0u), uvec2(view.tiles_x, view.tiles_y) - 1u, at);
+  vec2 seen = seen_in_tiles(cone_of(outline, view), view, uvec2(0u), uvec2(view.tiles_x, view.tiles_y) - 1u);
+  return seen.x <= seen.y;
+}
+
+// How many columns beyond a touched one, of `count` in direction `by`, are touched, too: by steps that grow until one is not.
+uint touched_beyond(Cone cone, View view, uint row, uint column, int by, uint count) {
+  uint known = 0u, step = 1u;
+  bool grows = true;
+  while (step > 0u && known < count) {
+    uint next = min(known + step, count);
+    bool is_touched = touches(cone, view, uint(int(column) + by * int(next)), row);
+    if (is_touched) known = next;
+    grows = grows && is_touched;
+    step = grows ? 2u * step : step / 2u;
+  }
+  return known;
+}
+
+// The columns that a wide splat touches in a row. They lie side by side: those of what the row's sides see, and some beyond.
+uvec2 cone_row(Outline outline, View view, uint row) {
+  Cone cone = cone_of(outline, view);
+  vec2 seen = seen_in_tiles(cone, view, uvec2(0u, row), uvec2(view.tiles_x - 1u, row));
+  if (seen.x > seen.y) return uvec2(0u);
+  if (is_probe(view)) return uvec2(0u, view.tiles_x);  // whose tiles lie apart
+  uint first = column_at(view, seen.x), last = column_at(view, seen.y);
+  first -= touched_beyond(cone, view, row, first, -1, first);
+  last += touched_beyond(cone, view, row, last, 1, view.tiles_x - 1u - last);
+  return uvec2(first, last + 1u);
 }
 
 uvec4 box_of_tiles(Outline outline, View view) {
 #if TILES != TILES_ALL
-  if (outline.is_wide) {
-    vec2 at;
-    if (!touches_picture(outline, view, at)) return uvec4(0u);
-    // A probe's tiles lie apart, so that what is seen may lie between them.
-    uvec2 rows = uvec2(0u, view.tiles_y);
-    if (!is_probe(view))
-      rows = touched_span(cone_of(outline, view), view, 1, 0u, tile_at(view, at, 1, view.tiles_y), view.tiles_y);
-    return uvec4(0u, rows.x, view.tiles_x, rows.y);
-  }
+  if (outline.is_wide) return outline.level < RHO_NONE ? uvec4(0u) : uvec4(0u, 0u, view.tiles_x, view.tiles_y);
 #endif
   return tile_box(outline, view);
 }
 
 uvec2 row_of_tiles(Outline outline, View view, uvec4 box, uint row) {
 #if TILES != TILES_ALL
-  if (outline.is_wide) {
-    Cone cone = cone_of(outline, view);
-    vec2 at;
-    if (!cone_touches_tiles(cone, view, uvec2(0u, row), uvec2(view.tiles_x - 1u, row), at)) return uvec2(0u);
-    uint known = tile_at(view, at, 0, view.tiles_x);
-    if (is_probe(view)) return box.xz;
-    return touched_span(cone, view, 0, row, known, view.tiles_x);
-  }
+  if (outline.is_wide) return cone_row(outline, view, row);
 #endif
   return tile_row(outline, view, box, row);
 }

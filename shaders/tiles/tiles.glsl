@@ -145,7 +145,7 @@ uint coverage_of(Outline outline, View view, uvec4 box) {
   return count;
 }
 
-// Whether it touches any; of wide splats some that lie between the tiles of a probe, or at their edges, are counted in.
+// Whether it touches any; of wide splats those between the tiles of a probe do, too.
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
   // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose
@@ -156,8 +156,7 @@ bool touches_a_tile(Splat splat, View view) {
 #endif
   Outline outline = outline_of(splat, view);
 #if PROJECTION == PROJECTION_TANGENT && TILES != TILES_ALL
-  vec2 at;
-  if (outline.is_wide) return touches_picture(outline, view, at);
+  if (outline.is_wide) return touches_picture(outline, view);
 #endif
   uvec4 box = tile_box(outline, view);
   uint likely = likely_row(outline, view, box);
