@@ -28,13 +28,13 @@ uint blocks_reached(Splat splat, vec2 mean) {
   if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
   float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;
 #if PROJECTION == PROJECTION_TANGENT
-  if (is_wide(splat)) return is_ahead(splat) ? (1u << BLOCKS_ACROSS * BLOCKS_DOWN) - 1u : 0u;
   rho *= farthest;
 #endif
-  float tallest = splat.conic.w * sqrt(rho * splat.conic.x);                // half the ellipse's height,
+  float size = abs(splat.conic.w);
+  float tallest = size * sqrt(rho * splat.conic.x);                // half the ellipse's height,
   float widest = sqrt(rho / splat.conic.x);                                 // half its widest row,
   float lean = -splat.conic.y / splat.conic.x;                              // of the line through its rows' middles,
-  float apex = -splat.conic.y * splat.conic.w * sqrt(rho / splat.conic.z);  // where it is furthest to the right
+  float apex = -splat.conic.y * size * sqrt(rho / splat.conic.z);  // where it is furthest to the right
   uint bits = 0u;
   for (uint row = 0u; row < BLOCKS_DOWN; ++row) {
     float low = float(row * BLOCK_HEIGHT) - mean.y;

@@ -192,18 +192,6 @@ void stage_nothing(uint at) {
 #endif
 }
 
-#if PROJECTION == PROJECTION_TANGENT
-// Whether rays of the cell go towards a splat and not away from it: a wide one has faded where they begin to, others are not in
-// the list.
-bool is_ahead(Splat splat) {
-  if (!is_wide(splat)) return true;
-  float facing = 1.0 + dot(slope_at(views[view_index], splat.mean), slope_at(views[view_index], middle));
-  return facing > 0.0 != splat.conic.w < 0.0;
-}
-#else
-bool is_ahead(Splat splat) { return true; }
-#endif
-
 void stage(uint at, Splat splat) {
   batch_colour[at] = vec4(splat.colour.rgb, abs(splat.depth));
   precise vec2 mean = splat.mean - middle;

@@ -1,6 +1,6 @@
 // With the tangent projection {q <= level} is what the picture's plane cuts out of a cone around the Gaussian's direction. Of a
-// narrow splat that is an ellipse, whose shape and middle depend on the level. A wide one touches a tile where the smallest q
-// over its square is at most the level, with every tile test.
+// narrow splat that is an ellipse, whose shape and middle depend on the level. Wide ones, of which there are few, are tested tile
+// by tile, in the same way with every tile test.
 
 #if TILES == TILES_AABB || TILES == TILES_OBB
 #define OUTLINE_LEVEL(rho) 9.0  // three standard deviations
@@ -45,95 +45,29 @@ Cone cone_of(Outline outline, View view) {
   return Cone(first, second, direction, level);
 }
 
-// Of rays d and e: below 0 for d = e where q is below the level.
-float inside(Cone cone, vec3 d, vec3 e) {
-  precise float level = dot_precise(cone.first, d) * dot_precise(cone.first, e) +
-                        dot_precise(cone.second, d) * dot_precise(cone.second, e) - cone.level * dot_precise(d, e);
-  return level;
+// The least and the largest of axis . d over a rectangle of slopes: its middle and half its size.
+vec2 between(vec3 axis, vec2 middle, vec2 size) {
+  precise float value = dot_precise(axis, vec3(middle, 1.0));
+  precise float spread = dot_precise(abs(axis.xy), size);
+  return vec2(value - spread, value + spread);
 }
 
-bool is_ahead(Cone cone, vec3 d) { return dot_precise(cone.direction, d) > 0.0; }
-
-// Slopes that are seen, as far as they are known: of the lowest x to the highest. None at first.
-#define NO_SLOPES vec2(1e30, -1e30)
-
-void take(inout vec2 seen, float x) { seen = vec2(min(seen.x, x), max(seen.y, x)); }
-
-// Takes the ends of what is seen of the rays from d to d + along.
-void take_edge(Cone cone, vec3 d, vec3 along, inout vec2 seen) {
-  precise vec3 last = d + along;
-  float start = inside(cone, d, d), middle = inside(cone, d, along), bend = inside(cone, along, along);
-  if (start <= 0.0 && is_ahead(cone, d)) take(seen, d.x);
-  if (inside(cone, last, last) <= 0.0 && is_ahead(cone, last)) take(seen, last.x);
-  precise float square = middle * middle - bend * start;
-  if (bend <= 0.0 || square < 0.0) return;
-  precise float root = sqrt(square);
-  precise vec2 ends = vec2(-middle - root, root - middle) / bend;
-  precise vec3 deepest = d - middle / bend * along;
-  if (ends.y < 0.0 || ends.x > 1.0 || !is_ahead(cone, deepest)) return;
-  precise vec2 x = d.x + clamp(ends, 0.0, 1.0) * along.x;
-  take(seen, x.x);
-  take(seen, x.y);
-}
-
-// What is seen of a rectangle of slopes. Where none of its sides is, it lies outside, or around all.
-vec2 seen_in(Cone cone, vec2 first, vec2 last) {
-  vec2 seen = NO_SLOPES;
-  precise vec2 size = last - first;
-  precise vec2 axis = cone.direction.xy / cone.direction.z;
-  if (cone.direction.z > 0.0 && clamp(axis, first, last) == axis) take(seen, axis.x);
-  take_edge(cone, vec3(first, 1.0), vec3(size.x, 0.0, 0.0), seen);
-  take_edge(cone, vec3(first.x, last.y, 1.0), vec3(size.x, 0.0, 0.0), seen);
-  take_edge(cone, vec3(first, 1.0), vec3(0.0, size.y, 0.0), seen);
-  take_edge(cone, vec3(last.x, first.y, 1.0), vec3(0.0, size.y, 0.0), seen);
-  return seen;
-}
-
-// The squares of the tiles from `first` to `last`, which leave no gaps between them, but in a probe.
-vec2 seen_in_tiles(Cone cone, View view, uvec2 first, uvec2 last) {
-  return seen_in(cone, slope_at(view, tile_low(first, view) - 0.5), slope_at(view, tile_high(last, view) + 0.5));
-}
-
-bool touches(Cone cone, View view, uint column, uint row) {
-  vec2 seen = seen_in_tiles(cone, view, uvec2(column, row), uvec2(column, row));
-  return seen.x <= seen.y;
-}
-
-uint column_at(View view, float slope) {
-  precise float pixel = slope * view.lens.x + view.lens.z - float(tile_shift(view).x);
-  return uint(clamp(floor(pixel / float(tile_pitch(view))), 0.0, float(view.tiles_x - 1u)));
+// Whether a wide splat may be seen in the squares of the tiles from `first` to `last`: each of the two squares by itself at its
+// least, and |d| at its largest.
+bool cone_touches(Cone cone, View view, uvec2 first, uvec2 last) {
+  vec2 low = slope_at(view, tile_low(first, view) - 0.5), high = slope_at(view, tile_high(last, view) + 0.5);
+  precise vec2 middle = 0.5 * (low + high);
+  precise vec2 size = 0.5 * (high - low);
+  vec2 across = between(cone.first, middle, size), down = between(cone.second, middle, size);
+  vec2 nearest = max(vec2(0.0), max(vec2(across.x, down.x), -vec2(across.y, down.y)));
+  vec2 farthest = max(abs(low), abs(high));
+  precise float most = cone.level * (1.0 + dot_precise(farthest, farthest));
+  return dot_precise(nearest, nearest) <= most && between(cone.direction, middle, size).y > 0.0;
 }
 
 bool touches_picture(Outline outline, View view) {
   if (outline.level < RHO_NONE || view.tiles_x == 0u || view.tiles_y == 0u) return false;
-  vec2 seen = seen_in_tiles(cone_of(outline, view), view, uvec2(0u), uvec2(view.tiles_x, view.tiles_y) - 1u);
-  return seen.x <= seen.y;
-}
-
-// How many columns beyond a touched one, of `count` in direction `by`, are touched, too: by steps that grow until one is not.
-uint touched_beyond(Cone cone, View view, uint row, uint column, int by, uint count) {
-  uint known = 0u, step = 1u;
-  bool grows = true;
-  while (step > 0u && known < count) {
-    uint next = min(known + step, count);
-    bool is_touched = touches(cone, view, uint(int(column) + by * int(next)), row);
-    if (is_touched) known = next;
-    grows = grows && is_touched;
-    step = grows ? 2u * step : step / 2u;
-  }
-  return known;
-}
-
-// The columns that a wide splat touches in a row. They lie side by side: those of what the row's sides see, and some beyond.
-uvec2 cone_row(Outline outline, View view, uint row) {
-  Cone cone = cone_of(outline, view);
-  vec2 seen = seen_in_tiles(cone, view, uvec2(0u, row), uvec2(view.tiles_x - 1u, row));
-  if (seen.x > seen.y) return uvec2(0u);
-  if (is_probe(view)) return uvec2(0u, view.tiles_x);  // whose tiles lie apart
-  uint first = column_at(view, seen.x), last = column_at(view, seen.y);
-  first -= touched_beyond(cone, view, row, first, -1, first);
-  last += touched_beyond(cone, view, row, last, 1, view.tiles_x - 1u - last);
-  return uvec2(first, last + 1u);
+  return cone_touches(cone_of(outline, view), view, uvec2(0u), uvec2(view.tiles_x, view.tiles_y) - 1u);
 }
 
 uvec4 box_of_tiles(Outline outline, View view) {
@@ -145,7 +79,14 @@ uvec4 box_of_tiles(Outline outline, View view) {
 
 uvec2 row_of_tiles(Outline outline, View view, uvec4 box, uint row) {
 #if TILES != TILES_ALL
-  if (outline.is_wide) return cone_row(outline, view, row);
+  if (outline.is_wide) {
+    Cone cone = cone_of(outline, view);
+    uvec2 columns = box.xz;
+    while (columns.x < columns.y && !cone_touches(cone, view, uvec2(columns.x, row), uvec2(columns.x, row))) ++columns.x;
+    while (columns.x < columns.y && !cone_touches(cone, view, uvec2(columns.y - 1u, row), uvec2(columns.y - 1u, row)))
+      --columns.y;
+    return columns;
+  }
 #endif
   return tile_row(outline, view, box, row);
 }
