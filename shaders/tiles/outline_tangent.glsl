@@ -1,6 +1,6 @@
 // With the tangent projection {q <= level} is what the picture's plane cuts out of a cone around the Gaussian's direction. Of a
-// narrow splat that is an ellipse, whose shape and middle depend on the level. Wide ones, of which there are few, are tested tile
-// by tile, in the same way with every tile test.
+// narrow splat that is an ellipse, whose shape and middle depend on the level. Wide ones, of which there are few, are offered to
+// some tiles more than they touch, the same with every tile test.
 
 #if TILES == TILES_AABB || TILES == TILES_OBB
 #define OUTLINE_LEVEL(rho) 9.0  // three standard deviations
@@ -45,29 +45,35 @@ Cone cone_of(Outline outline, View view) {
   return Cone(first, second, direction, level);
 }
 
-// The least and the largest of axis . d over a rectangle of slopes: its middle and half its size.
-vec2 between(vec3 axis, vec2 middle, vec2 size) {
-  precise float value = dot_precise(axis, vec3(middle, 1.0));
-  precise float spread = dot_precise(abs(axis.xy), size);
-  return vec2(value - spread, value + spread);
-}
-
-// Whether a wide splat may be seen in the squares of the tiles from `first` to `last`: each of the two squares by itself at its
-// least, and |d| at its largest.
-bool cone_touches(Cone cone, View view, uvec2 first, uvec2 last) {
-  vec2 low = slope_at(view, tile_low(first, view) - 0.5), high = slope_at(view, tile_high(last, view) + 0.5);
-  precise vec2 middle = 0.5 * (low + high);
-  precise vec2 size = 0.5 * (high - low);
-  vec2 across = between(cone.first, middle, size), down = between(cone.second, middle, size);
-  vec2 nearest = max(vec2(0.0), max(vec2(across.x, down.x), -vec2(across.y, down.y)));
-  vec2 farthest = max(abs(low), abs(high));
-  precise float most = cone.level * (1.0 + dot_precise(farthest, farthest));
-  return dot_precise(nearest, nearest) <= most && between(cone.direction, middle, size).y > 0.0;
+// Slopes across between which a wide splat is seen, if it is, in the rows of pixels [first, last]: a little too far apart. The
+// first is above the second where it is not. What is across depends on where |d| is largest between them, so it is found thrice.
+vec2 seen_across(Cone cone, View view, float first, float last) {
+  vec2 low = slope_at(view, vec2(-0.5, first - 0.5)), high = slope_at(view, vec2(float(view.width) - 0.5, last + 0.5));
+  precise float y = 0.5 * (low.y + high.y);
+  precise float size = 0.5 * (high.y - low.y);
+  precise float down = max(0.0, abs(cone.second.y * y + cone.second.z) - cone.second.y * size);
+  precise float middle = -(cone.first.y * y + cone.first.z) / cone.first.x;
+  precise float spread = abs(cone.first.y) * size;
+  vec2 seen = vec2(low.x, high.x);
+  for (int n = 0; n < 3; ++n) {
+    precise float square = 1.0 + max(seen.x * seen.x, seen.y * seen.y) + max(low.y * low.y, high.y * high.y);
+    precise float room = cone.level * square - down * down;
+    precise float reach = (sqrt(max(room, 0.0)) + spread) / cone.first.x;
+    seen = vec2(max(seen.x, middle - reach), min(seen.y, middle + reach));
+    if (room < 0.0 || seen.x > seen.y) return vec2(1.0, 0.0);
+  }
+  // Behind the eye there is nothing.
+  precise float ahead = cone.direction.y * y + abs(cone.direction.y) * size + cone.direction.z;
+  precise float end = -ahead / cone.direction.x;
+  if (cone.direction.x > 0.0) seen.x = max(seen.x, end);
+  if (cone.direction.x < 0.0) seen.y = min(seen.y, end);
+  return cone.direction.x == 0.0 && ahead <= 0.0 ? vec2(1.0, 0.0) : seen;
 }
 
 bool touches_picture(Outline outline, View view) {
-  if (outline.level < RHO_NONE || view.tiles_x == 0u || view.tiles_y == 0u) return false;
-  return cone_touches(cone_of(outline, view), view, uvec2(0u), uvec2(view.tiles_x, view.tiles_y) - 1u);
+  if (outline.level < RHO_NONE) return false;
+  vec2 seen = seen_across(cone_of(outline, view), view, 0.0, float(view.height - 1u));
+  return seen.x <= seen.y;
 }
 
 uvec4 box_of_tiles(Outline outline, View view) {
@@ -80,12 +86,11 @@ uvec4 box_of_tiles(Outline outline, View view) {
 uvec2 row_of_tiles(Outline outline, View view, uvec4 box, uint row) {
 #if TILES != TILES_ALL
   if (outline.is_wide) {
-    Cone cone = cone_of(outline, view);
-    uvec2 columns = box.xz;
-    while (columns.x < columns.y && !cone_touches(cone, view, uvec2(columns.x, row), uvec2(columns.x, row))) ++columns.x;
-    while (columns.x < columns.y && !cone_touches(cone, view, uvec2(columns.y - 1u, row), uvec2(columns.y - 1u, row)))
-      --columns.y;
-    return columns;
+    vec2 rows = vec2(tile_low(uvec2(0u, row), view).y, tile_high(uvec2(0u, row), view).y);
+    vec2 seen = seen_across(cone_of(outline, view), view, rows.x, rows.y);
+    if (seen.x > seen.y) return uvec2(0u);
+    precise vec2 columns = seen * view.lens.x + (view.lens.z - 0.5);
+    return tile_columns(columns.x - 1.0, columns.y + 1.0, view);
   }
 #endif
   return tile_row(outline, view, box, row);

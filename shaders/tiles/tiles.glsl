@@ -145,7 +145,7 @@ uint coverage_of(Outline outline, View view, uvec4 box) {
   return count;
 }
 
-// Whether it touches any; of wide splats those between the tiles of a probe do, too.
+// Whether it touches any; of wide splats some beside all tiles do, too.
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
   // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose

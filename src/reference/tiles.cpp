@@ -163,31 +163,6 @@ bool cone_meets_rectangle(const Splat& splat, const glm::dvec2& low, const glm::
          cone_meets(splat, high, left, level) || cone_meets(splat, left, low, level);
 }
 
-/// Whether a wide cone may meet a square of the picture: q |d|^2 is the sum of two squares of what is linear in the
-/// pixel; each of these is taken at its least, |d| at its largest.
-bool wide_meets(const Cone& cone, const glm::dvec2& low, const glm::dvec2& high, double level) {
-  const glm::dvec3 middle(0.5 * (low + high), 1), size(0.5 * (high - low), 0);
-  const auto between = [&](const glm::dvec3& axis) {
-    const double value = glm::dot(axis, middle), spread = glm::dot(glm::abs(axis), size);
-    return glm::dvec2(value - spread, value + spread);
-  };
-  const auto least_square = [&](const glm::dvec3& axis) {
-    const glm::dvec2 span = between(axis);
-    const double least = std::max({0.0, span.x, -span.y});
-    return least * least;
-  };
-  // The first row of the form's Cholesky factor, and what is left of it, which no x is in.
-  const glm::dvec3 first = cone.form[0] / std::sqrt(cone.form[0][0]);
-  const double down = std::sqrt(std::max(0.0, cone.form[1][1] - first.y * first.y));
-  const glm::dvec3 second(0, down, (cone.form[1][2] - first.y * first.z) / down);
-  double farthest = 0.0;
-  for (const glm::dvec2& corner : {low, high, glm::dvec2(low.x, high.y), glm::dvec2(high.x, low.y)}) {
-    const glm::dvec3 p(corner, 1);
-    farthest = std::max(farthest, glm::dot(p, cone.ray * p));
-  }
-  return least_square(first) + least_square(second) <= level * farthest && between(cone.facing).y > 0.0;
-}
-
 /// The tiles that shape_meets() is worth asking about.
 TileRange candidate_tiles(const Splat& splat, int tiles, int tile_size, const shared::View& view) {
   if (splat.cone && splat.drawn && tiles != TILES_ALL) {
@@ -218,8 +193,7 @@ bool shape_meets(const Splat& splat, int tiles, int tile_size, int tx, int ty, c
   const glm::dvec2 first(tx * tile_size, ty * tile_size);
   const glm::dvec2 last = glm::min(first + double(tile_size), glm::dvec2(view.width, view.height)) - 1.0;
   if (splat.cone && tiles != TILES_ALL) {
-    if (is_wide(*splat.cone)) return wide_meets(*splat.cone, first - 0.5, last + 0.5, level_of(splat, tiles));
-    if (tiles == TILES_ELLIPSE) return cone_meets_rectangle(splat, first, last, level_of(splat, tiles));
+    if (is_wide(*splat.cone) || tiles == TILES_ELLIPSE) return cone_meets_rectangle(splat, first, last, level_of(splat, tiles));
     return shape_meets(section_of(splat, level_of(splat, tiles)), tiles, tile_size, tx, ty, view);
   }
   const glm::dvec2 low = first - splat.mean, high = last - splat.mean;
