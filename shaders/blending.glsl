@@ -110,10 +110,9 @@ void blend(uint at[AHEAD]) {
     precise float slope = fma(t, across.z, down.x);
     for (uint p = 0u; p < COLUMN; ++p) {
       precise float y = pixel.y + float(p);
-#if PROJECTION == PROJECTION_TANGENT  // in an order that waits no longer than the other's
-      precise float exponent = fma(nearness[p] * y, fma(y, down.y, slope), fma(nearness[p], level, down.z));
-#else
       precise float exponent = fma(y, fma(y, down.y, slope), level);
+#if PROJECTION == PROJECTION_TANGENT
+      exponent = fma(nearness[p], exponent, down.z);
 #endif
       precise float a = exp2(-exponent);
       alpha[k][p] = a >= float(ALPHA_MIN) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0

@@ -70,9 +70,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec3 d = g.position.xyz - view.anchor.xyz;
   vec3 v = to_eye(view, d);
   precise vec3 away = d - view.eye.xyz;
-  precise float square = dot_precise(away, away);
-  precise float nearness = inversesqrt(square);
-  precise float distance = square * nearness;
+  precise float distance = sqrt(dot_precise(away, away));
 #if ORDER == ORDER_DISTANCE
   if (!(distance > view.anchor.w)) return false;
 #else
@@ -82,18 +80,17 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   if (abs(v.z) < RISE_MIN * distance) v.z = v.z < 0.0 ? -RISE_MIN * distance : RISE_MIN * distance;
   // As the affine projection without a limit to its slopes, at the distance in place of the depth.
   precise vec2 slope = v.xy / v.z;
-  precise vec2 gain = view.lens.xy * nearness;
+  precise vec2 gain = view.lens.xy / distance;
   precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
   precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
-  float kept;
-  splat.conic = conic_of(onto_axes(jx, axes), onto_axes(jy, axes), LowPass(slope, vec2(view.eye.w, 1.0 / view.eye.w)), kept);
+  float stretch = sqrt(view.lens.x / view.lens.y), kept;
+  splat.conic = conic_of(onto_axes(jx, axes), onto_axes(jy, axes), LowPass(slope, vec2(stretch, 1.0 / stretch)), kept);
   if (splat.conic.w == 0.0) return false;
   splat.depth = distance;
   // Wide: not both eigenvalues of Q, in slopes of the picture, are above WIDE_LEVEL.
   precise vec2 q = view.lens.xy * view.lens.xy * splat.conic.xz;
-  precise float focal2 = view.lens.x * view.lens.y;
-  precise float size = float(WIDE_LEVEL) * splat.conic.w * splat.conic.w;
-  precise float above = focal2 * focal2 - size * (q.x + q.y - float(WIDE_LEVEL));
+  precise float root = view.lens.x * view.lens.y / splat.conic.w;
+  precise float above = root * root - float(WIDE_LEVEL) * (q.x + q.y - float(WIDE_LEVEL));
   if (v.z < 0.0 || q.x <= float(WIDE_LEVEL) || above <= 0.0) {
     splat.conic = limited(view, splat.conic, v / distance, excess(view, away / distance, distance, axes));
     splat.depth = -distance;

@@ -22,7 +22,7 @@ struct View {
   vec4 row_y;   // axis y, then translation y
   vec4 row_z;   // axis z (forward), then translation z
   vec4 anchor;  // world point; w: near, the smallest depth drawn (world units)
-  vec4 eye;     // the eye minus the anchor, world axes; w: sqrt(fx / fy)
+  vec4 eye;     // the eye minus the anchor, world axes; w: unused
   vec4 lens;    // fx, fy, cx, cy in px
   vec4 slopes;  // v.x / v.z and v.y / v.z at which J is taken: lowest x, y, highest x, y (docs/method.md 2)
   vec4 centre;  // what distances are sorted by, minus the anchor: the eye, or the point between those of a rig;

@@ -17,7 +17,6 @@ void set_lens(shared::View& view, const Camera& camera) {
                                      (right + margin_x) / camera.fx, (down + margin_y) / camera.fy));
   const double x = std::max(camera.cx, right) / camera.fx, y = std::max(camera.cy, down) / camera.fy;
   view.centre.w = static_cast<float>(x * x + y * y);
-  view.eye.w = static_cast<float>(std::sqrt(camera.fx / camera.fy));
   view.width = static_cast<shared::uint>(camera.width);
   view.height = static_cast<shared::uint>(camera.height);
 }
