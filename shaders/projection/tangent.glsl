@@ -23,7 +23,7 @@ vec2 slope_at(View view, vec2 pixel) {
   return slope;
 }
 
-// Whether a Gaussian at v is too far from all rays of the picture to be seen.
+// Whether a Gaussian at v, behind the eye, is too far from all rays of the picture to be seen.
 bool is_beside(View view, vec3 v, float distance, float widest) {
   float spread = widest / distance;
   float variance = spread * spread + float(KERNEL_PX2) / (view.lens.x * view.lens.y);
@@ -76,7 +76,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
 #else
   if (!(v.z > view.anchor.w)) return false;
 #endif
-  if (v.z < 0.3 * distance && is_beside(view, v, distance, max(max(g.scale.x, g.scale.y), g.scale.z))) return false;
+  if (v.z < 0.0 && is_beside(view, v, distance, max(max(g.scale.x, g.scale.y), g.scale.z))) return false;
   if (abs(v.z) < RISE_MIN * distance) v.z = v.z < 0.0 ? -RISE_MIN * distance : RISE_MIN * distance;
   // As the affine projection without a limit to its slopes, at the distance in place of the depth.
   precise vec2 slope = v.xy / v.z;

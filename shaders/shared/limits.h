@@ -18,11 +18,11 @@
 // J is evaluated at most this share of the picture's size beyond its edges; 0.15 a side is INRIA's 1.3
 // (docs/method.md 2).
 #define CLAMP_MARGIN 0.15
-// The widest standard deviation, in radians, that PROJECTION_TANGENT draws: at a right angle to such a Gaussian
-// even an opaque one has faded below ALPHA_MIN (docs/method.md 2).
+// The widest standard deviation, in radians, that PROJECTION_TANGENT draws: at a right angle to such a
+// Gaussian even an opaque one has faded below ALPHA_MIN (docs/method.md 2).
 #define WIDEST_TANGENT 0.28
-// Where the quadratic form of a cone, in squared slopes of the picture, has an eigenvalue below this the cone may
-// cut the picture in something else than an ellipse: levels that can be seen are below 2 ln 255 = 11.1.
+// Where the quadratic form of a cone, in squared slopes of the picture, has an eigenvalue below this the cone
+// may cut the picture in something else than an ellipse: levels that can be seen are below 2 ln 255 = 11.1.
 #define WIDE_LEVEL 15.0
 // Side of a tile in px where nothing else is known.
 #define TILE_SIZE_DEFAULT 16

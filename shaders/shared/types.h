@@ -25,8 +25,8 @@ struct View {
   vec4 eye;     // the eye minus the anchor, world axes; w: unused
   vec4 lens;    // fx, fy, cx, cy in px
   vec4 slopes;  // v.x / v.z and v.y / v.z at which J is taken: lowest x, y, highest x, y (docs/method.md 2)
-  vec4 centre;  // what distances are sorted by, minus the anchor: the eye, or the point between those of a rig;
-                // w: the largest (v.x^2 + v.y^2) / v.z^2 of a ray in the picture
+  vec4 centre;  // what distances are sorted by, minus the anchor: the eye, or the point between those of a
+                // rig; w: the largest (v.x^2 + v.y^2) / v.z^2 of a ray in the picture
   uint width;   // px
   uint height;  // px
   uint tiles_x;

@@ -1,6 +1,6 @@
 // With the tangent projection {q <= level} is what the picture's plane cuts out of a cone around the Gaussian's direction. Of a
 // narrow splat that is an ellipse, whose shape and middle depend on the level. Wide ones, of which there are few, are offered to
-// some tiles more than they touch, the same with every tile test.
+// all tiles in which they can be seen at all, and some more, with every tile test and threshold (docs/method.md 4).
 
 #if TILES == TILES_AABB || TILES == TILES_OBB
 #define OUTLINE_LEVEL(rho) 9.0  // three standard deviations
@@ -12,7 +12,10 @@
 // so that q <= level is x^T (Q - level F) x - 2 level b.x <= level (1 + s^2).
 Outline outline_of(Splat splat, View view) {
   const float more = 1e-5;  // what rounding may take
-  if (is_wide(splat)) return Outline(splat.mean, vec2(0.0), splat.conic, splat.colour.w + more, true);
+  if (is_wide(splat)) {
+    float seen = splat.colour.w < RHO_NONE ? -1.0 : 1.3862943611198906 * log2(splat.opacity / float(ALPHA_MIN));
+    return Outline(splat.mean, vec2(0.0), splat.conic, seen + more, true);
+  }
   float level = OUTLINE_LEVEL(splat.colour.w);
   precise vec2 f = 1.0 / view.lens.xy;
   precise vec2 slope = (splat.mean + 0.5 - view.lens.zw) * f;
@@ -41,7 +44,7 @@ Cone cone_of(Outline outline, View view) {
   precise vec3 first = vec3(across, -dot_precise(across, slope));
   precise vec3 second = vec3(0.0, down, -down * slope.y);
   precise vec3 direction = outline.conic.w < 0.0 ? vec3(-slope, -1.0) : vec3(slope, 1.0);
-  precise float level = OUTLINE_LEVEL(outline.level) + 3e-6 * (abs(across.x) + abs(across.y) + down);  // and for rounding
+  precise float level = max(outline.level, 0.0) + 3e-6 * (abs(across.x) + abs(across.y) + down);  // and for rounding
   return Cone(first, second, direction, level);
 }
 

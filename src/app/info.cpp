@@ -133,6 +133,9 @@ void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds&
   fmt::print("{:<14} {} ({})\n", "axes", model.axes, axes_in_words(model));
   fmt::print("{:<14} {:.4g} px^2{}\n", "low-pass", model.kernel_px2,
              model.antialiased ? ", trained with anti-aliasing" : "");
+  fmt::print("{:<14} order by {}, {} projection\n", "perspective",
+             order_choices[model.perspective.order].name,
+             projection_choices[model.perspective.projection].name);
   print_bounds("bounds", s.all);
   print_bounds("98 % within", s.core);
   fmt::print("{:<14} {} for the model, at least {} for a frame of a headset's eyes\n", "GPU memory",
@@ -169,11 +172,12 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
   ordered_json scale;
   for (const auto& [decade, count] : s.scale)
     scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
-  ordered_json json =
-      object("name", model.name, "format", model.format, "gaussians", model.count(), "left_out",
-             model.left_out, "degree", model.degree, "axes", model.axes, "kernel_px2", model.kernel_px2,
-             "antialiased", model.antialiased, "bounds", to_json(s.all), "core_bounds", to_json(s.core),
-             "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
+  ordered_json json = object(
+      "name", model.name, "format", model.format, "gaussians", model.count(), "left_out", model.left_out,
+      "degree", model.degree, "axes", model.axes, "kernel_px2", model.kernel_px2, "antialiased",
+      model.antialiased, "order", order_choices[model.perspective.order].name, "projection",
+      projection_choices[model.perspective.projection].name, "bounds", to_json(s.all), "core_bounds",
+      to_json(s.core), "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest is made for each eye
   for (std::size_t k = 0; k < std::size(written_formats); ++k)
     json["file_bytes"][written_formats[k].name] =

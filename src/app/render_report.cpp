@@ -161,16 +161,18 @@ ordered_json settings_json(const RenderReport& report) {
   const DrawingOptions& o = report.options.drawing;
   const Background& background = report.options.output.background;
   const Model& model = report.model;
-  return object(
-      "tiles", tiles_choices[o.tiles].name, "tile", o.tile ? ordered_json(*o.tile) : ordered_json("auto"),
-      "precision", precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
-      model.antialiased, "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
-      o.tolerance, "transmittance", transmittance_choices[o.transmittance].name, "decode",
-      given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name), "detail_px",
-      report.options.scene.detail, "quality_db", o.quality, "calibration",
-      given(!o.calibration.empty(), o.calibration), "background",
-      background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
-      o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);
+  return object("tiles", tiles_choices[o.tiles].name, "tile",
+                o.tile ? ordered_json(*o.tile) : ordered_json("auto"), "precision",
+                precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
+                model.antialiased, "order", order_choices[o.order.value_or(model.perspective.order)].name,
+                "projection", projection_choices[o.projection.value_or(model.perspective.projection)].name,
+                "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
+                o.tolerance, "transmittance", transmittance_choices[o.transmittance].name, "decode",
+                given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
+                "detail_px", report.options.scene.detail, "quality_db", o.quality, "calibration",
+                given(!o.calibration.empty(), o.calibration), "background",
+                background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
+                o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);
 }
 
 ordered_json scene_json(const RenderReport& report) {

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "formats/bytes.h"
+#include "formats/perspective.h"
 #include "formats/ply_layout.h"
 
 namespace binosplat {
@@ -75,6 +76,7 @@ class CompressedPlyReader {
     model.format = "compressed ply";
     model.degree = degree_;
     model.antialiased = is_antialiased(header_, false);
+    model.perspective = read_perspective(header_.comments);
     model.resize(count_);
     std::vector<std::uint8_t> kept(count_);
     parallel_for(

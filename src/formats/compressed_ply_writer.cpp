@@ -6,6 +6,7 @@
 #include "formats/bytes.h"
 #include "formats/model_writers.h"
 #include "formats/morton.h"
+#include "formats/perspective.h"
 #include "formats/row_writer.h"
 
 namespace binosplat {
@@ -63,6 +64,7 @@ class CompressedPlyWriter {
     if (higher > 0) header += fmt::format("element sh {}\n", n);
     for (std::size_t k = 0; k < higher; ++k) header += fmt::format("property uchar f_rest_{}\n", k);
     if (model_.antialiased) header += "comment SplatRenderMode: mip\n";
+    header += perspective_comments(model_.perspective);
     file_.write(header + "end_header\n");
 
     boxes_.resize(chunks);

@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "formats/gltf_document.h"
+#include "formats/perspective.h"
 #include "formats/plausible.h"
 #include "formats/spz.h"
 
@@ -198,6 +199,7 @@ class GltfReader {
       const auto packed = packed_view(primitive, splatting);
       Model part = packed ? load_spz(fmt::format("{}: its spz data", path_.string()), document_.view(*packed))
                           : read_points(primitive.at("attributes"));
+      part.perspective = read_perspective(splatting, {.order = ORDER_DISTANCE});  // glTF's default
       packed_ = packed_ || packed.has_value();
       check_copies(shown.node,
                    read_ + mesh.model.count() + mesh.model.left_out + part.count() + part.left_out);

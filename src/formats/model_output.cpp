@@ -111,6 +111,11 @@ std::vector<std::string> write_model(OutputFile& file, const Model& model, Model
         fmt::format("{} does not tell the low-pass of {:.4g} px^2: draw it with --kernel-px2 {:.4g}",
                     written_format(format).name, model.kernel_px2, model.kernel_px2));
   }
+  if ((format == ModelFormat::spz || format == ModelFormat::splat) && model.perspective != Perspective{}) {
+    losses.push_back(fmt::format("{} does not tell how it is seen: draw it with --order {} --projection {}",
+                                 written_format(format).name, order_choices[model.perspective.order].name,
+                                 projection_choices[model.perspective.projection].name));
+  }
   return losses;
 }
 

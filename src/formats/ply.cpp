@@ -14,6 +14,7 @@
 #include "base/progress.h"
 #include "formats/compressed_ply.h"
 #include "formats/content.h"
+#include "formats/perspective.h"
 #include "formats/ply_layout.h"
 
 namespace binosplat {
@@ -77,6 +78,7 @@ class PlyReader {
     model_.format = "ply";
     model_.degree = layout_.degree;
     model_.antialiased = layout_.antialiased;
+    model_.perspective = read_perspective(header_.comments);
     if (layout_.filter_3d) model_.kernel_px2 = mip_splatting_kernel_px2;
     for (const PlyElement& element : header_.elements) {
       const bool gaussians = &element == layout_.vertices;

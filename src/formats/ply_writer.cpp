@@ -4,6 +4,7 @@
 
 #include "formats/bytes.h"
 #include "formats/model_writers.h"
+#include "formats/perspective.h"
 #include "formats/row_writer.h"
 
 namespace binosplat {
@@ -55,6 +56,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
   if (is_mip_splatting(model)) add("filter_3D");
   // Not before the elements: INRIA's viewer takes the third line for the count.
   if (model.antialiased) header += "comment SplatRenderMode: mip\n";
+  header += perspective_comments(model.perspective);
   file.write(header + "end_header\n");
 
   RowWriter rows([&](std::span<const std::byte> bytes) { file.write(bytes); }, model.count());

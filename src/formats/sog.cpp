@@ -19,6 +19,7 @@ Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   model.format = "SOG";
   model.degree = source.degree();
   model.antialiased = source.antialiased();
+  model.perspective = source.perspective();
   model.resize(source.count());
   std::vector<std::uint8_t> kept(source.count());
   const SogSource::Range all{0, source.count(), 0};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "formats/perspective.h"
 #include "formats/plausible.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
@@ -74,6 +75,7 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
       fail("{} holds flat Gaussians (2D Gaussian Splatting); only 3D ones can be drawn", source_);
     antialiased_ = kind == "antialiased";
   }
+  perspective_ = read_perspective(meta);
   const char* items[] = {"quats", "scales", "sh0"};
   for (std::size_t i = 0; i < 2; ++i) files_[i] = file_name(meta.at("means").at("files").list_of(2).at(i));
   for (std::size_t i = 0; i < 3; ++i) files_[quats + i] = file_name(meta.at(items[i]).at("files").at(0));

@@ -37,6 +37,7 @@ class SogSource {
   std::uint64_t bytes() const { return bytes_; }
   int degree() const { return degree_; }
   bool antialiased() const { return antialiased_; }
+  const Perspective& perspective() const { return perspective_; }
 
   /// Decodes ranges, which must lie below count(), into a model of this degree or a higher one; kept[i] says
   /// whether slot i may stay. May be called for disjoint slots by several threads.
@@ -61,6 +62,7 @@ class SogSource {
   std::uint64_t bytes_ = 0;
   int degree_ = 0;
   bool antialiased_ = false;
+  Perspective perspective_;
   std::array<std::string, 5> files_;  // means_l, means_u, quats, scales, sh0
   std::string labels_file_;           // empty without higher harmonics
   glm::dvec3 mean_low_{0.0};          // of sign(p) ln(1 + |p|)

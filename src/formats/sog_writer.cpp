@@ -13,6 +13,7 @@
 #include "formats/codebook.h"
 #include "formats/model_writers.h"
 #include "formats/morton.h"
+#include "formats/perspective.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
 
@@ -63,6 +64,7 @@ class SogWriter {
            widest);
     meta_ = {{"version", 2}, {"asset", {{"generator", "binosplat"}}}, {"count", model.count()}};
     if (model.antialiased) meta_["model"] = "antialiased";
+    write_perspective(model.perspective, meta_);
   }
 
   std::vector<std::byte> archive() {

@@ -212,6 +212,7 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
     bytes += part.source.bytes();
     model.degree = std::max(model.degree, part.source.degree());
     model.antialiased = model.antialiased || part.source.antialiased();
+    model.perspective = part.source.perspective();  // of all alike
     for (SogLevels::Taken& taken : part.taken) {
       taken.range.slot = total;
       total += taken.range.count;
@@ -268,6 +269,7 @@ StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source
     if (!file) continue;
     degree_ = std::max(degree_, file->degree());
     model_.antialiased = model_.antialiased || file->antialiased();
+    model_.perspective = file->perspective();
   }
   model_.degree = degree_;
 }
@@ -303,6 +305,7 @@ Model StreamedSog::empty_model() const {
   model.format = model_.format;
   model.degree = degree_;
   model.antialiased = model_.antialiased;
+  model.perspective = model_.perspective;
   return model;
 }
 

@@ -31,7 +31,8 @@ glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray) {
 }
 
 bool is_inside(const Camera& camera, const glm::dvec2& pixel) {
-  return pixel.x >= -0.5 && pixel.y >= -0.5 && pixel.x <= camera.width - 0.5 && pixel.y <= camera.height - 0.5;
+  return pixel.x >= -0.5 && pixel.y >= -0.5 && pixel.x <= camera.width - 0.5 &&
+         pixel.y <= camera.height - 0.5;
 }
 
 std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
@@ -43,7 +44,8 @@ std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
   std::vector<shared::View> views;
   for (std::size_t begin = 0; begin < pixels.size(); begin += MAX_VIEWS) {
     views.clear();
-    for (const glm::dvec2& pixel : pixels.subspan(begin, std::min<std::size_t>(MAX_VIEWS, pixels.size() - begin))) {
+    for (const glm::dvec2& pixel :
+         pixels.subspan(begin, std::min<std::size_t>(MAX_VIEWS, pixels.size() - begin))) {
       Camera one = camera;
       one.width = one.height = 1;
       one.cx -= pixel.x;

@@ -1,6 +1,6 @@
 #pragma once
-// What a renderer draws along rays, wherever the camera is turned: the same rays from the same place should have
-// the same colours.
+// What a renderer draws along rays, wherever the camera is turned: the same rays from the same place should
+// have the same colours.
 
 #include <glm/glm.hpp>
 #include <span>
@@ -24,8 +24,8 @@ glm::dvec2 pixel_of(const Camera& camera, const glm::dvec3& ray);
 /// Whether a point lies in the picture.
 bool is_inside(const Camera& camera, const glm::dvec2& pixel);
 
-/// The colours over black that the camera's picture has at these points of it, which need not be centres of pixels.
-/// Each is drawn as a picture of one pixel by itself, in frames of MAX_VIEWS.
+/// The colours over black that the camera's picture has at these points of it, which need not be centres of
+/// pixels. Each is drawn as a picture of one pixel by itself, in frames of MAX_VIEWS.
 std::vector<glm::vec3> colours_at(render::Frame& frame, const Camera& camera,
                                   std::span<const glm::dvec2> pixels, const render::FrameSettings& settings,
                                   double near_plane = near_default);

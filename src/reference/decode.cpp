@@ -108,8 +108,8 @@ std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, cons
 }  // namespace
 
 bool sees_anchor(const Scaffold& scaffold, std::size_t n, const shared::View& view) {
-  const Splat splat =
-      project({scaffold.position[n], scaffold.offset_scale[n], scaffold.rotation[n], 1.0}, view);  // as trained
+  const Splat splat = project({scaffold.position[n], scaffold.offset_scale[n], scaffold.rotation[n], 1.0},
+                              view);  // as trained
   return splat.drawn && touches_any(splat, TILES_AABB, ANCHOR_TILE, view);
 }
 
@@ -138,8 +138,7 @@ std::vector<Splat> project_all(const Model& model, const shared::View& view, con
       decoding.views.empty() ? std::span(&view, 1) : std::span(decoding.views);
   const std::vector<Decoded> decoded = decode(*model.scaffold, views, decoding.anchor_cull);
   parallel_for(decoded.size(), [&](std::size_t i) {
-    Splat splat =
-        project(decoded[i].gaussian, view, {model.kernel_px2, model.antialiased}, perspective);
+    Splat splat = project(decoded[i].gaussian, view, {model.kernel_px2, model.antialiased}, perspective);
     splat.colour = decoded[i].colour;
     splats[decoded[i].id] = splat;
   });

@@ -27,8 +27,7 @@ glm::dmat3 covariance_in_world(const Gaussian& gaussian) {
 
 /// World to eye.
 glm::dmat3 axes_of(const shared::View& view) {
-  return glm::transpose(
-      glm::dmat3(glm::dvec3(view.row_x), glm::dvec3(view.row_y), glm::dvec3(view.row_z)));
+  return glm::transpose(glm::dmat3(glm::dvec3(view.row_x), glm::dvec3(view.row_y), glm::dvec3(view.row_z)));
 }
 
 /// J: how a small step around v moves the projected point. Far outside the picture the perspective is
@@ -110,8 +109,8 @@ std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
   return {first, glm::cross(n, first)};
 }
 
-/// Tangent: what is seen along a unit ray d goes by where d, dropped at a right angle onto the plane that touches
-/// the unit sphere in the Gaussian's direction, comes to lie there.
+/// Tangent: what is seen along a unit ray d goes by where d, dropped at a right angle onto the plane that
+/// touches the unit sphere in the Gaussian's direction, comes to lie there.
 void project_tangent(const Gaussian& gaussian, const shared::View& view, const glm::dvec3& v,
                      const LowPass& low_pass, Splat& splat) {
   const glm::dvec4 lens = view.lens;
@@ -163,7 +162,8 @@ Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass&
 Splat project(const Model& model, std::size_t i, const shared::View& view,
               const std::optional<Perspective>& perspective) {
   const Gaussian gaussian{model.position[i], model.scale[i], model.rotation[i], model.opacity[i]};
-  Splat splat = project(gaussian, view, {model.kernel_px2, model.antialiased}, perspective.value_or(model.perspective));
+  Splat splat =
+      project(gaussian, view, {model.kernel_px2, model.antialiased}, perspective.value_or(model.perspective));
   if (!splat.drawn) return splat;
   const glm::dvec3 p = gaussian.position - glm::dvec3(view.anchor);
   splat.colour = colour_towards(model, i, glm::normalize(p - glm::dvec3(view.eye)));

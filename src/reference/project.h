@@ -26,9 +26,10 @@ struct Gaussian {
 /// q = p^T form p / p^T ray p where facing . p > 0, and nothing elsewhere.
 struct Cone {
   glm::dmat3 form{0.0};
-  glm::dmat3 ray{0.0};       // |d|^2 of the pixel's ray d, whose d.z is 1
-  bool is_behind = false;    // the Gaussian's mean, of the eye: the splat's is then where their line meets the picture
-  glm::dvec3 facing{0.0};    // the cosine of the angle to the Gaussian, times |d|
+  glm::dmat3 ray{0.0};  // |d|^2 of the pixel's ray d, whose d.z is 1
+  bool is_behind =
+      false;  // the Gaussian's mean, of the eye: the splat's is then where their line meets the picture
+  glm::dvec3 facing{0.0};  // the cosine of the angle to the Gaussian, times |d|
 };
 
 /// One Gaussian in one view. Symmetric matrices are kept as (xx, xy, yy).
@@ -57,13 +58,13 @@ struct LowPass {
 Splat project(const Gaussian& gaussian, const shared::View& view, const LowPass& low_pass = {},
               const Perspective& perspective = {});
 
-/// Gaussian `i` of the model in a view, in the model's own perspective where none is given; of Scaffold-GS its
-/// stand-in.
+/// Gaussian `i` of the model in a view, in the model's own perspective where none is given; of Scaffold-GS
+/// its stand-in.
 Splat project(const Model& model, std::size_t i, const shared::View& view,
               const std::optional<Perspective>& perspective = {});
 
-/// All Gaussians of the model, in its order and its own perspective; of Scaffold-GS by id, as the view by itself
-/// has them (decode.h).
+/// All Gaussians of the model, in its order and its own perspective; of Scaffold-GS by id, as the view by
+/// itself has them (decode.h).
 std::vector<Splat> project_all(const Model& model, const shared::View& view);
 
 /// The colour of Gaussian `i` seen along the unit vector `direction`, from the eye to the Gaussian in world

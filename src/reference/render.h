@@ -19,9 +19,9 @@ struct Settings {
   int tiles = TILES_ELLIPSE;
   int tile_size = TILE_SIZE_DEFAULT;  // px
   int th = TH_TAU;
-  double tolerance = 0.0;      // of threshold()
-  std::vector<double> bounds;  // T_upper or W by Gaussian; empty: 1 for all
-  Decoding decoding;           // of a Scaffold-GS model
+  double tolerance = 0.0;                  // of threshold()
+  std::vector<double> bounds;              // T_upper or W by Gaussian; empty: 1 for all
+  Decoding decoding;                       // of a Scaffold-GS model
   std::optional<Perspective> perspective;  // none: what the model was trained with
 };
 

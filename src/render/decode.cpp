@@ -6,9 +6,10 @@ namespace {
 
 bool reuses(const FrameShape& shape) {
   const FrameSettings& s = shape.settings;
-  // What is hidden is told by the area of a splat as the affine projection, which the anchor cull goes by, has it.
-  return s.anchor_reuse && shape.perspective.projection == PROJECTION_AFFINE && measures(s.transmittance) && !is_exact(s.th) && !shape.probe &&
-         shape.kernel_px2 == KERNEL_PX2;
+  // What is hidden is told by the area of a splat as the affine projection, which the anchor cull goes by,
+  // has it.
+  return s.anchor_reuse && shape.perspective.projection == PROJECTION_AFFINE && measures(s.transmittance) &&
+         !is_exact(s.th) && !shape.probe && shape.kernel_px2 == KERNEL_PX2;
 }
 
 // Of shared memory: what every driver has.
@@ -18,20 +19,21 @@ constexpr std::int64_t shared_bytes = 32768;
 gl::Defines decode_defines(const FrameShape& shape, const NetworkBuffers& networks) {
   const FrameSettings& s = shape.settings;
   const bool reuse = reuses(shape);
-  gl::Defines defines = {{"TILES_NAME", "aabb"},
-          {"TILES", std::to_string(TILES_AABB)},
-          {"TILE_SIZE", std::to_string(ANCHOR_TILE)},
-          {"TH", std::to_string(reuse ? s.th : TH_TAU)},
-          {"TH_NAME", th_choices[reuse ? s.th : TH_TAU].name},
-          {"TRANSMITTANCE", std::to_string(reuse ? s.transmittance : TRANSMITTANCE_ONE)},
-          {"ANTIALIASED", "0"},
-          {"HIDDEN", std::to_string(networks.hidden)},
-          {"BANK", networks.bank ? "1" : "0"},
-          {"OFFSETS", std::to_string(shape.offset_count)},
-          {"WEIGHTS", std::to_string(networks.bytes <= shared_bytes ? networks.bytes / 16 : 0)},
-          {"HALF", s.precision == PRECISION_HALF ? "1" : "0"},
-          {"REUSE", reuse ? "1" : "0"},
-          {"ORDER", std::to_string(ORDER_DEPTH)}};
+  gl::Defines defines = {
+      {"TILES_NAME", "aabb"},
+      {"TILES", std::to_string(TILES_AABB)},
+      {"TILE_SIZE", std::to_string(ANCHOR_TILE)},
+      {"TH", std::to_string(reuse ? s.th : TH_TAU)},
+      {"TH_NAME", th_choices[reuse ? s.th : TH_TAU].name},
+      {"TRANSMITTANCE", std::to_string(reuse ? s.transmittance : TRANSMITTANCE_ONE)},
+      {"ANTIALIASED", "0"},
+      {"HIDDEN", std::to_string(networks.hidden)},
+      {"BANK", networks.bank ? "1" : "0"},
+      {"OFFSETS", std::to_string(shape.offset_count)},
+      {"WEIGHTS", std::to_string(networks.bytes <= shared_bytes ? networks.bytes / 16 : 0)},
+      {"HALF", s.precision == PRECISION_HALF ? "1" : "0"},
+      {"REUSE", reuse ? "1" : "0"},
+      {"ORDER", std::to_string(ORDER_DEPTH)}};
   add_projection(defines, PROJECTION_AFFINE);
   return defines;
 }

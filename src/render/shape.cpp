@@ -62,7 +62,8 @@ void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& 
     return (along + side - 1) / side;
   };
   shape.supertile_count += supertiles(view.tiles_x) * supertiles(view.tiles_y);
-  if (v == 0 || !same_order(view, shape.views.back(), shape.perspective.order)) shape.groups.push_back({v, v});
+  if (v == 0 || !same_order(view, shape.views.back(), shape.perspective.order))
+    shape.groups.push_back({v, v});
   shape.groups.back().end = v + 1;
   view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
   shape.views.push_back(view);

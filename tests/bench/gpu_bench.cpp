@@ -237,7 +237,8 @@ int main(int argc, char** argv) {
   app.add_option("--tile", how.settings.tile_size, "Side of a tile in px; without: what the frame chooses");
   app.add_option("--precision", precision, "full or half")->check(CLI::IsMember({"full", "half"}));
   app.add_option("--order", order, "depth or distance")->check(CLI::IsMember({"depth", "distance"}));
-  app.add_option("--projection", projection, "affine or tangent")->check(CLI::IsMember({"affine", "tangent"}));
+  app.add_option("--projection", projection, "affine or tangent")
+      ->check(CLI::IsMember({"affine", "tangent"}));
   CLI11_PARSE(app, argc, argv);
   how.settings.precision = find_choice("--precision", precision, precision_choices);
   how.settings.order = find_choice("--order", order, order_choices);

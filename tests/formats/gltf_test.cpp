@@ -115,6 +115,24 @@ TEST_F(Gltf, TurnedGaussiansKeepQuaternionsOfLengthOne) {
   EXPECT_GT(glm::length(turned.rotation[7] - load(good).rotation[7]), 0.1f);
 }
 
+TEST_F(Gltf, SaysHowItIsSeen) {
+  const auto seen = [&](const json& words) {
+    Glb glb(good);
+    glb.root["meshes"][0]["primitives"][0]["extensions"][extension].update(words);
+    return load(glb.bytes()).perspective;
+  };
+  const Perspective by_distance{.order = ORDER_DISTANCE};
+  EXPECT_EQ(seen({{"sortingMethod", "cameraDistance"}}), by_distance);
+  EXPECT_EQ(seen({{"sortingMethod", "zDepth"}, {"projection", "perspective"}}), Perspective{});
+  EXPECT_EQ(seen({{"sortingMethod", "zDepth"}, {"projection", "tangential"}}),
+            (Perspective{.projection = PROJECTION_TANGENT}));
+  EXPECT_EQ(seen({{"sortingMethod", "byColour"}}), by_distance);  // with a warning
+  EXPECT_THROW(seen({{"projection", 3}}), Error);
+  Glb silent(good);
+  silent.root["meshes"][0]["primitives"][0]["extensions"][extension].erase("sortingMethod");
+  EXPECT_EQ(load(silent.bytes()).perspective, by_distance);  // glTF's default
+}
+
 TEST_F(Gltf, CopiesHaveALimit) {
   Glb glb = without_harmonics();
   const auto copies = [&](int n) {

@@ -126,6 +126,18 @@ TEST(ModelOutputFiles, TagsAreKeptOrSaid) {
   }
   EXPECT_EQ(round_trip(model, ModelFormat::splat).losses.back(),
             ".splat does not tell of anti-aliasing: draw it with --antialias");
+  model.antialiased = false;
+  model.perspective = {ORDER_DISTANCE, PROJECTION_TANGENT};
+  for (const ModelFormat format : formats) {
+    const Written written = round_trip(in_axes_of(model, format), format);
+    const bool is_kept = format != ModelFormat::splat && format != ModelFormat::spz;
+    EXPECT_EQ(written.model.perspective, is_kept ? model.perspective : Perspective{});
+    EXPECT_EQ(!written.losses.empty() &&
+                  written.losses.back().find("--order distance --projection tangent") != std::string::npos,
+              !is_kept);
+  }
+  model.perspective = {};
+  model.antialiased = true;
   model.kernel_px2 = 0.1;
   const Written mip = round_trip(model, ModelFormat::ply);
   EXPECT_TRUE(test::same_bits(mip.model, model));

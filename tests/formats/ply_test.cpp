@@ -343,6 +343,19 @@ TEST(Ply, CommentsTellAntialiasedModels) {
   EXPECT_FALSE(antialiased("comment antialiased 1\ncomment antialiased 0\n"));
 }
 
+TEST(Ply, CommentsTellHowAModelIsSeen) {
+  const auto seen = [](const std::string& comments) {
+    PlyFile file = test::inria_file(0, 2);
+    file.comments = comments;
+    return load(file).perspective;
+  };
+  EXPECT_EQ(seen(""), Perspective{});
+  EXPECT_EQ(seen("comment sortingMethod: cameraDistance\n"), (Perspective{.order = ORDER_DISTANCE}));
+  EXPECT_EQ(seen("comment projection: tangential \ncomment sortingMethod: zDepth\n"),
+            (Perspective{.projection = PROJECTION_TANGENT}));
+  EXPECT_EQ(seen("comment projection: fisheye\n"), Perspective{});  // with a warning
+}
+
 TEST(Ply, WarnsOfTrailingBytes) {
   testing::internal::CaptureStderr();
   load(to_bytes(test::inria_file(0, 2)) + "abc");

@@ -60,12 +60,27 @@ using Offsets = std::map<std::string, int>;
   { "", static_cast<int>(sizeof(shared::type)) }
 
 TEST(Layout, ViewIsWhereTheDriverPutsIt) {
-  const Offsets expected = {
-      AT(View, row_x),        AT(View, row_y),       AT(View, row_z),   AT(View, anchor),
-      AT(View, eye),          AT(View, lens),        AT(View, slopes), AT(View, centre),  AT(View, width),
-      AT(View, height),       AT(View, tiles_x),     AT(View, tiles_y), AT(View, supertile_offset),
-      AT(View, pixel_offset), AT(View, order_group), AT(View, pitch),   AT(View, shift_x),
-      AT(View, shift_y),      AT(View, is_probe),    AT(View, unused),  STRIDE(View)};
+  const Offsets expected = {AT(View, row_x),
+                            AT(View, row_y),
+                            AT(View, row_z),
+                            AT(View, anchor),
+                            AT(View, eye),
+                            AT(View, lens),
+                            AT(View, slopes),
+                            AT(View, centre),
+                            AT(View, width),
+                            AT(View, height),
+                            AT(View, tiles_x),
+                            AT(View, tiles_y),
+                            AT(View, supertile_offset),
+                            AT(View, pixel_offset),
+                            AT(View, order_group),
+                            AT(View, pitch),
+                            AT(View, shift_x),
+                            AT(View, shift_y),
+                            AT(View, is_probe),
+                            AT(View, unused),
+                            STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
 }
 

@@ -27,12 +27,18 @@ class SubgroupShaders : public testing::Test {
   }
 };
 
-// With a probe and without.
-void expect_compiles(const std::string& name, Defines defines, const std::string& what = "") {
-  defines.emplace_back("PROBED", "0");
-  for (const char* probed : {"0", "1"}) {
-    defines.back().second = probed;
-    EXPECT_EQ(said_of(name, defines, {}), "") << name << " " << what << ", probed " << probed;
+// In both projections, with a probe and without.
+void expect_compiles(const std::string& name, const Defines& some, const std::string& what = "") {
+  for (const char* projection : {"affine", "tangent"}) {
+    for (const char* probed : {"0", "1"}) {
+      Defines defines = some;
+      defines.emplace_back("PROBED", probed);
+      defines.emplace_back("PROJECTION_NAME", projection);
+      defines.emplace_back("PROJECTION", *projection == 'a' ? "0" : "1");
+      defines.emplace_back("ORDER", "0");
+      EXPECT_EQ(said_of(name, defines, {}), "")
+          << name << " " << what << ", " << projection << ", probed " << probed;
+    }
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 Splat round_splat(double depth, double opacity, const glm::dvec3& colour) {
   Splat splat;
   splat.mean = {8, 8};
-  splat.depth = depth;
+  splat.depth = splat.order = depth;
   splat.opacity = opacity;
   splat.covariance = {4, 0, 4};
   splat.conic = {0.25, 0, 0.25};

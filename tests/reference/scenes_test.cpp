@@ -145,7 +145,7 @@ std::vector<Splat> rounded(std::vector<Splat> splats) {
     round_each(s.covariance);
     round_each(s.conic);
     round_each(s.colour);
-    s.depth = static_cast<float>(s.depth);
+    s.order = static_cast<float>(s.order);
     s.opacity = static_cast<float>(s.opacity);
   }
   return splats;

@@ -19,7 +19,7 @@ std::vector<Splat> walls() {
   std::vector<Splat> splats;
   for (std::size_t i = 0; i < 4; ++i) {
     splats.push_back(make_splat({8, 8}, {1e12, 0, 1e12}, opacities[i]));
-    splats.back().depth = 1.0 + static_cast<double>(i);
+    splats.back().depth = splats.back().order = 1.0 + static_cast<double>(i);
     splats.back().colour = colours[i];
   }
   return splats;

@@ -18,7 +18,7 @@ inline shared::View view_of(int width, int height) {
 inline Splat make_splat(const glm::dvec2& mean, const glm::dvec3& covariance, double opacity) {
   Splat splat;
   splat.mean = mean;
-  splat.depth = 1.0;
+  splat.depth = splat.order = 1.0;
   splat.opacity = opacity;
   splat.covariance = covariance;
   splat.det = covariance.x * covariance.z - covariance.y * covariance.y;
@@ -40,7 +40,7 @@ inline std::vector<Splat> random_splats(std::uint32_t seed, int count, int width
     const double opacity = uniform(0, 1);
     Splat splat =
         make_splat({uniform(-30, width + 30), uniform(-30, height + 30)}, covariance, opacity * opacity);
-    splat.depth = uniform(1, 9);
+    splat.depth = splat.order = uniform(1, 9);
     splat.colour = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
     splats.push_back(splat);
   }

@@ -262,7 +262,7 @@ TEST(Tiles, SnugAgreesWithEveryPixelCentre) {
 TEST(Tiles, DepthOrderBreaksTiesByIndex) {
   std::vector<Splat> splats(6, make_splat({0, 0}, {4, 0, 4}, 1.0));
   const double depths[] = {2.0, 1.0, 2.0, 3.0, 1.0, 0.5};
-  for (int i = 0; i < 6; ++i) splats[i].depth = depths[i];
+  for (int i = 0; i < 6; ++i) splats[i].order = depths[i];
   splats[3].drawn = false;
   EXPECT_EQ(depth_order(splats), (std::vector<std::uint32_t>{5, 1, 4, 0, 2}));
 }

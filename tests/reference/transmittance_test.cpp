@@ -10,7 +10,7 @@ namespace {
 Splat coloured(double depth, double opacity, const glm::dvec3& colour, double variance = 4.0,
                const glm::dvec2& mean = {8, 8}) {
   Splat splat = make_splat(mean, {variance, 0, variance}, opacity);
-  splat.depth = depth;
+  splat.depth = splat.order = depth;
   splat.colour = colour;
   return splat;
 }
@@ -121,7 +121,7 @@ TEST(Transmittance, AgreesWithProductsOfAllThatIsNearer) {
   const std::vector<Splat> splats = faint_splats();
   const std::vector<double> wanted = by_products(splats), got = measure(splats, 48);
   std::vector<Splat> farther = splats;
-  for (Splat& splat : farther) splat.depth = 10 - splat.depth;
+  for (Splat& splat : farther) splat.order = 10 - splat.order;
   const std::vector<double> reversed = measure(farther, 48);
   int wrong_order = 0;
   for (std::size_t i = 0; i < splats.size(); ++i) {

@@ -60,7 +60,8 @@ TEST(Needles, AreExactAtEveryFocalLength) {
 TEST(Needles, TheDeterminantOfTheCovarianceWouldNotDo) {
   const test::FaultyShaders fault(
       "projection.glsl",
-      "precise float det = det_p + low_pass * (dot_precise(a, a) + dot_precise(d, d) + low_pass);",
+      "precise float det = det_p + low_pass * (dot_precise(width, width) + dot_precise(height, height) + "
+      "low_pass);",
       "precise float det = (dot_precise(a, a) + low_pass) * (dot_precise(d, d) + low_pass) - dot_precise(a, "
       "d) * "
       "dot_precise(a, d);");

@@ -272,7 +272,8 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 
 inline bool same_bits(const Model& a, const Model& b) {
   return a.degree == b.degree && a.axes == b.axes && a.antialiased == b.antialiased &&
-         a.kernel_px2 == b.kernel_px2 && same_bits(a.position, b.position) && same_bits(a.scale, b.scale) &&
+         a.kernel_px2 == b.kernel_px2 && a.perspective == b.perspective &&
+         same_bits(a.position, b.position) && same_bits(a.scale, b.scale) &&
          same_bits(a.rotation, b.rotation) && same_bits(a.opacity, b.opacity) && same_bits(a.sh, b.sh);
 }
 
