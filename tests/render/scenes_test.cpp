@@ -79,8 +79,11 @@ struct Drawn {
     }
   }
   render::FrameReport draw(int tiles, int precision = PRECISION_FULL) {
-    render::Frame frame(test::gl_context(), model, precision);
-    auto report = frame.draw(std::vector{view}, {.tiles = tiles, .precision = precision});
+    return draw({.tiles = tiles, .precision = precision});
+  }
+  render::FrameReport draw(const render::FrameSettings& settings) {
+    render::Frame frame(test::gl_context(), model, settings.precision);
+    auto report = frame.draw(std::vector{view}, settings);
     picture = frame.read_pictures().front();
     return report;
   }
@@ -177,6 +180,28 @@ TEST_P(Scenes, ExactEqualsTheReference) {
   EXPECT_GE(measure::psnr(over_black(drawn.picture), expected), 60.0) << "half";
 }
 
+// Other orders and projections than 3D-GS's.
+TEST(SceneSeen, OtherwiseEqualsTheReference) {
+  for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
+    REQUIRE_SCENE(c.trained.scene, folder);
+    Drawn drawn(folder, c);
+    drawn.draw(TILES_ELLIPSE);
+    const Image trained = over_black(drawn.picture);
+    for (const Perspective& seen :
+         {Perspective{ORDER_DISTANCE, PROJECTION_AFFINE}, Perspective{ORDER_DEPTH, PROJECTION_TANGENT},
+          Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}}) {
+      const Image expected = over_black(reference::render(drawn.model, drawn.view, {.perspective = seen}));
+      drawn.draw({.order = seen.order, .projection = seen.projection});
+      const double db = measure::psnr(over_black(drawn.picture), expected);
+      fmt::print("{} {}: {:.2f} dB\n", name_of(c), seen.order * 2 + seen.projection, db);
+      EXPECT_GE(db, 68.0);
+      EXPECT_LT(measure::psnr(trained, expected), 50.0);
+      drawn.draw({.order = seen.order, .projection = seen.projection, .precision = PRECISION_HALF});
+      EXPECT_GE(measure::psnr(over_black(drawn.picture), expected), 60.0) << "half";
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases),
                          [](const auto& one) { return name_of(one.param); });
 
@@ -232,6 +257,16 @@ TEST(SceneBruteForce, EllipseEqualsItBitForBit) {
     EXPECT_TRUE(test::same_bits(drawn.picture, brute)) << c.trained.ply;
     drawn.draw(TILES_AABB);
     EXPECT_FALSE(test::same_bits(drawn.picture, brute)) << c.trained.ply;
+    for (const int order : {ORDER_DEPTH, ORDER_DISTANCE}) {
+      const auto tangent = [&](int tiles) {
+        drawn.draw({.tiles = tiles, .order = order, .projection = PROJECTION_TANGENT});
+        return drawn.picture;
+      };
+      const Picture all = tangent(TILES_ALL);
+      EXPECT_TRUE(test::same_bits(tangent(TILES_ELLIPSE), all)) << c.trained.ply;
+      EXPECT_TRUE(test::same_bits(tangent(TILES_SNUG), all)) << c.trained.ply;
+      EXPECT_FALSE(test::same_bits(tangent(TILES_AABB), all)) << c.trained.ply;
+    }
   }
 }
 
