@@ -31,8 +31,8 @@ using nlohmann::ordered_json;
 using study::Variant;
 
 Studied open(const StudyOptions& options) {
-  // A case takes a head along paths of its own, and makes the eyes itself.
-  const RigOptions& rig = options.stability ? no_rig : options.rig;
+  // A case takes a head along paths of its own, and makes the eyes itself; a head that turns has one.
+  const RigOptions& rig = options.stability || options.turn ? no_rig : options.rig;
   OpenScene scene = open_scene(options.scene, options.camera);
   std::vector<Shot> shots = make_shots(options.camera.views, options.camera.lens, rig, scene.list,
                                        scene.near_plane, scene.model.axes);
@@ -129,38 +129,42 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
 }
 
 /// Which study the options ask for, beside the analyses.
-enum class Kind { analyses, stability, rules, motion, path };
+enum class Kind { analyses, stability, rules, motion, turn, path };
 
 Kind kind_of(const StudyOptions& o) {
   const bool path = !o.camera.path.empty() && !o.motion.chosen;  // --motion goes along one, too
-  if (int{o.stability} + int{o.rules} + int{o.motion.chosen} + int{path} > 1)
-    fail("study: --stability, --rules, --motion and --path FILE are studies of their own");
+  if (int{o.stability} + int{o.rules} + int{o.motion.chosen} + int{o.turn} + int{path} > 1)
+    fail("study: --stability, --rules, --motion, --turn and --path FILE are studies of their own");
   return o.stability       ? Kind::stability
          : o.rules         ? Kind::rules
          : o.motion.chosen ? Kind::motion
+         : o.turn          ? Kind::turn
          : path            ? Kind::path
                            : Kind::analyses;
 }
 
 void check(const StudyOptions& options, Kind kind) {
-  const bool of_page = kind == Kind::stability || kind == Kind::motion;
+  const bool of_page = kind == Kind::stability || kind == Kind::motion || kind == Kind::turn;
   if (!options.test.empty() || !options.photos.empty())
     fail(
-        "study: --test and --photos are for the analyses, without --stability, --rules, --motion and --path");
+        "study: --test and --photos are for the analyses, without --stability, --rules, --motion, --turn and "
+        "--path");
   if (options.frames && kind != Kind::rules && kind != Kind::motion)
     fail("--frames goes with --rules and --motion, or with the analyses");
   if (options.camera.views.size() > 1) fail("--view: this study is of one view");
   if (kind == Kind::motion && !options.camera.views.empty())
     fail("--view: --motion goes through all cameras");
   if (!options.output.empty() && !of_page)
-    fail("study: -o is for the analyses, --stability and --motion: --json keeps the numbers of the others");
+    fail(
+        "study: -o is for the analyses, --stability, --motion and --turn: --json keeps the numbers of the "
+        "others");
 }
 
 ExitCode study_scene(const StudyOptions& options) {
   const Kind kind = kind_of(options);
   if (kind == Kind::analyses) {
     if (!options.not_for_analyses.empty())
-      fail("study: {} {} with --stability, --rules, --motion or --path FILE",
+      fail("study: {} {} with --stability, --rules, --motion, --turn or --path FILE",
            fmt::join(options.not_for_analyses, ", "), options.not_for_analyses.size() > 1 ? "go" : "goes");
     return analyse_scene(options, options.test, options.frames.value_or(24),
                          options.output.empty() ? "out/study" : options.output);
@@ -175,6 +179,7 @@ ExitCode study_scene(const StudyOptions& options) {
   const Studied studied = open(options);
   const auto context = open_context(options.context);
   if (kind == Kind::stability) study_stability(*context, options, studied);
+  if (kind == Kind::turn) study_turn(*context, options, studied);
   if (kind == Kind::rules) save(options, rules(*context, options, studied), {});
   if (kind == Kind::path) save(options, along_path(*context, options, studied), {});
   return ExitCode::done;
@@ -184,9 +189,10 @@ ExitCode study_scene(const StudyOptions& options) {
 void add_studied_options(CLI::App& sub, StudyOptions& o) {
   sub.add_option("--cameras", o.camera.file, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
-  sub.add_option("--view", o.camera.views,
-                 "The camera to study from; default: the first. Without --stability, --rules, --motion\n"
-                 "and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
+  sub.add_option(
+         "--view", o.camera.views,
+         "The camera to study from; default: the first. Without --stability, --rules, --motion,\n"
+         "--turn and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
       ->type_name("NAME...");
   sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
   add_photos_option(sub, o.photos, "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB");
@@ -220,6 +226,9 @@ void add_study(CLI::App& program, Command& command) {
   sub->add_flag("--stability", o.stability, "Every rule and source on every failure case");
   auto* rules =
       sub->add_flag("--rules", o.rules, "Every rule and source at one error on a still pair, timed");
+  sub->add_flag("--turn", o.turn,
+                "What turning the head changes along the same rays, by order and projection:\n"
+                "best with pictures of 100 degrees (--preset headset)");
   CLI::Option* motion = add_motion_options(*sub, o.motion);
   sub->add_option(
          "--frames", o.frames,
@@ -258,6 +267,7 @@ void add_study(CLI::App& program, Command& command) {
       "  binosplat study garden.ply --photos images -o out/garden\n"
       "  binosplat study garden.ply --rules --preset headset\n"
       "  binosplat study garden.ply --motion --rule squared,one --rule squared,last --size 1280x1120\n"
+      "  binosplat study garden.ply --turn --preset headset\n"
       "  binosplat study garden.ply --stability --size 320x320");
   sub->callback([options, sub, &command] {
     for (const char* name :

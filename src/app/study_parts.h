@@ -31,6 +31,7 @@ struct StudyOptions : MeasuredOptions {
   RigOptions rig;
   bool stability = false;
   bool rules = false;
+  bool turn = false;
   MotionOptions motion;
   std::optional<int> frames;  // timed of each rule in each round
   std::vector<std::string> test;
@@ -56,6 +57,9 @@ void save(const StudyOptions& options, const nlohmann::ordered_json& numbers, co
 
 /// --stability: prints the tables, and saves.
 void study_stability(gl::Context& context, const StudyOptions& options, const Studied& studied);
+
+/// --turn: prints the table, and saves.
+void study_turn(gl::Context& context, const StudyOptions& options, const Studied& studied);
 
 /// Adds --motion, which it returns, and the options that no other study takes.
 CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options);

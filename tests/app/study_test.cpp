@@ -162,6 +162,8 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--stability", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--view", "all"}, "--view all"},
       {{"--rules", "--stability"}, "are studies of their own"},
+      {{"--turn", "--rules"}, "are studies of their own"},
+      {{"--turn", "--frames", "5"}, "--rules"},
       {{"--rules", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--th", "squared"}, "--rules"},
       {{"--rules", "--tolerance", "0.1"}, "--tolerance"},
