@@ -157,7 +157,7 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--stability", "--photos", folder / "."}, "--test and --photos are for the analyses"},
       {{"--test", "no-such"}, "--view no-such"},
       {{"-o", folder / "file"}, "file"},
-      {{"--rules", "-o", folder / "out"}, "-o is for the analyses, --stability and --motion"},
+      {{"--rules", "-o", folder / "out"}, "-o is for the analyses, --stability, --motion and --turn"},
       {{"--stability", "--case", "no-such"}, "far-wall"},
       {{"--stability", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--view", "all"}, "--view all"},
