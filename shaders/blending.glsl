@@ -266,7 +266,9 @@ void begin_pixels(uvec2 in_tile) {
     transmittance[p] = inside ? 1.0 : 0.0;
 #if PROJECTION == PROJECTION_TANGENT
     vec2 ray = slope_at(view, vec2(first_pixel + uvec2(0u, p)));
-    nearness[p] = 1.0 / (1.0 + dot(ray, ray));
+    precise float square = 1.0 + dot_precise(ray, ray);
+    precise float inverse = 1.0 / square;
+    nearness[p] = inverse;
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
 #if SHOW != SHOW_PICTURE

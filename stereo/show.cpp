@@ -105,6 +105,8 @@ std::vector<Picture> Show::exact(std::span<const shared::View> views, const rend
   render::FrameSettings plain;
   plain.tile_size = settings.tile_size;
   plain.anchor_cull = settings.anchor_cull;
+  plain.order = settings.order;
+  plain.projection = settings.projection;
   if (!exact_) exact_ = std::make_unique<render::Frame>(model_);
   exact_->draw(views, plain);
   return exact_->read_pictures();

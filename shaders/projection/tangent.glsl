@@ -51,7 +51,8 @@ float excess(View view, vec3 direction, float distance, mat3 axes) {
   precise float yy = dot_precise(down, down) + low_pass;
   precise float half_difference = 0.5 * (xx - yy);
   precise float most = 0.5 * (xx + yy) + sqrt(half_difference * half_difference + xy * xy);
-  return max(0.0, 1.0 / float(WIDEST_TANGENT * WIDEST_TANGENT) - 1.0 / most);
+  precise float more = max(0.0, 1.0 / float(WIDEST_TANGENT * WIDEST_TANGENT) - 1.0 / most);
+  return more;
 }
 
 // The conic of a wide splat, no wider than it may be. The unit circle of the tangent plane is |d|^2 - (n . d)^2 = 1.
@@ -63,7 +64,8 @@ vec4 limited(View view, vec4 conic, vec3 n, float more) {
   precise float rise = n.z * f.x * f.y;
   precise float mixed = conic.x * circle.z - 2.0 * conic.y * circle.y + conic.z * circle.x;
   precise float det = root * root + more * (max(mixed, 0.0) + more * rise * rise);
-  return vec4(conic.xyz + more * circle, inversesqrt(det));
+  precise vec4 narrower = vec4(conic.xyz + more * circle, inversesqrt(det));
+  return narrower;
 }
 
 bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
@@ -83,7 +85,8 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec2 gain = view.lens.xy / distance;
   precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
   precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
-  float stretch = sqrt(view.lens.x / view.lens.y), kept;
+  precise float stretch = sqrt(view.lens.x / view.lens.y);
+  float kept;
   splat.conic = conic_of(onto_axes(jx, axes), onto_axes(jy, axes), LowPass(slope, vec2(stretch, 1.0 / stretch)), kept);
   if (splat.conic.w == 0.0) return false;
   splat.depth = distance;

@@ -13,8 +13,9 @@
 Outline outline_of(Splat splat, View view) {
   const float more = 1e-5;  // what rounding may take
   if (is_wide(splat)) {
-    float seen = splat.colour.w < RHO_NONE ? -1.0 : 1.3862943611198906 * log2(splat.opacity / float(ALPHA_MIN));
-    return Outline(splat.mean, vec2(0.0), splat.conic, seen + more, true);
+    precise float seen = splat.colour.w < RHO_NONE ? -1.0 : 1.3862943611198906 * log2(splat.opacity / float(ALPHA_MIN));
+    precise float level = seen + more;
+    return Outline(splat.mean, vec2(0.0), splat.conic, level, true);
   }
   float level = OUTLINE_LEVEL(splat.colour.w);
   precise vec2 f = 1.0 / view.lens.xy;
@@ -27,7 +28,9 @@ Outline outline_of(Splat splat, View view) {
   precise float scale = 1.0 + dot_precise(slope, slope) + dot_precise(b, middle);
   precise vec2 mean = splat.mean + middle;
   precise vec2 aside = middle - (mean - splat.mean);
-  return Outline(mean, aside, vec4(m / scale, scale * inversesqrt(det)), splat.colour.w + more, false);
+  precise vec4 conic = vec4(m / scale, scale * inversesqrt(det));
+  precise float reached = splat.colour.w + more;
+  return Outline(mean, aside, conic, reached, false);
 }
 
 // A wide splat: q |d|^2 is the sum of the squares of first . d and second . d; seen are rays with direction . d above 0.

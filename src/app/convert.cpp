@@ -179,7 +179,9 @@ ExitCode convert(const ConvertOptions& o) {
   if (fs::is_regular_file(o.scene.name, ignored)) done.bytes_before = fs::file_size(o.scene.name);
   done.bytes = fs::file_size(o.output);
   if (o.report) {
+    const Perspective perspective = model.perspective;
     model = load_model(o.output);
+    model.perspective = perspective;  // as a format that does not tell it is to be drawn
     done.views = compare(views, model, originals);
   }
   print(o, done);

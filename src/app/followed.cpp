@@ -12,9 +12,12 @@ namespace binosplat::app {
 
 namespace {
 
-std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views, int tile_size) {
+std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views,
+                           const render::FrameSettings& settings) {
   render::FrameSettings plain;
-  plain.tile_size = tile_size;
+  plain.tile_size = settings.tile_size;
+  plain.order = settings.order;
+  plain.projection = settings.projection;
   frame.draw(views, plain);
   return frame.read_pictures();
 }
@@ -54,14 +57,13 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
   if (scene_.choose(views, detail_need(options_, settings_, scene_, views))) {
     levels.switched = true;
     std::vector<Picture> before;
-    if (report_) before = exact(frame, views, settings.tile_size);
+    if (report_) before = exact(frame, views, settings);
     read(model);
     show.release();
     const auto start = Clock::now();
     frame.model()->reload();
     levels.upload_ms = ms_since(start);
-    if (report_)
-      levels.switch_psnr = measure::psnr(before, exact(frame, views, settings.tile_size), background_);
+    if (report_) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
   }
   levels.gaussians = model.count();
   levels.read_ms = std::exchange(read_ms_, 0.0);

@@ -67,7 +67,8 @@ render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& mo
 
 // What --transmittance depth goes by: the cameras of the list, evenly chosen, as the shots see the scene.
 render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const CameraList& list,
-                               double near_plane, const std::string& axes) {
+                               double near_plane, const std::string& axes,
+                               const render::FrameSettings& settings) {
   constexpr std::size_t views_max = 16;
   const std::size_t count = std::min(views_max, list.cameras.size());
   std::vector<shared::View> views;
@@ -75,7 +76,8 @@ render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const Cam
     views.push_back(
         make_view(into_axes(sized(lens, list.cameras[k * list.cameras.size() / count]), axes), near_plane));
   log_info("--transmittance depth: measuring {} view{} of {}", count, count == 1 ? "" : "s", list.source);
-  return measure::measure_depth_table(frame, views);
+  return measure::measure_depth_table(frame, views,
+                                      {.order = settings.order, .projection = settings.projection});
 }
 
 // What is drawn, and by what.
@@ -100,8 +102,8 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
   stereo::Show show(gpu_model);
   const CalibratedSettings calibrated(drawing, report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
-    settings.depth_table =
-        depth_table(frame, report.options.camera.lens, work.list, report.near_plane, report.model.axes);
+    settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
+                                       report.model.axes, settings);
   const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
   std::size_t done = 0;

@@ -9,6 +9,7 @@
 
 #include "app/study_parts.h"
 #include "base/progress.h"
+#include "scene/axes.h"
 #include "stereo/rig.h"
 #include "study/turning.h"
 
@@ -55,8 +56,8 @@ void study_turn(gl::Context& context, const StudyOptions& options, const Studied
   render::Frame frame(context, *studied.model);
   Progress progress("turning", study::turning_steps(study.settings));
   std::size_t done = 0;
-  study.turns = study::measure_turning(frame, camera, studied.near_plane, study.settings,
-                                       [&] { progress.update(++done); });
+  study.turns = study::measure_turning(frame, into_axes(camera, studied.model->axes), studied.near_plane,
+                                       study.settings, [&] { progress.update(++done); });
   print(study);
   save(options, study::to_json(study), study::turning_page(study));
 }

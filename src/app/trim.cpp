@@ -96,7 +96,9 @@ study::TrimWriter trial_writer(const TrimOptions& o, ModelFormat format) {
     const Unfinished unfinished(file.path());
     write_model(file, model, format, harmonic_bits);
     file.flush();
-    return study::WrittenModel{load_model(file.path()), fs::file_size(file.path())};
+    Model read = load_model(file.path());
+    read.perspective = model.perspective;  // of formats that do not tell it, too
+    return study::WrittenModel{std::move(read), fs::file_size(file.path())};
   };
 }
 

@@ -110,6 +110,9 @@ void append(Model& all, Model&& part) {
   add(all.sh, part.sh);
   all.left_out += part.left_out;
   all.antialiased = all.antialiased || part.antialiased;
+  if (all.perspective != part.perspective)
+    log_warning("{}: its primitives are sorted or projected differently; all are drawn as the first is",
+                all.name);
 }
 
 class GltfReader {

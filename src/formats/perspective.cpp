@@ -56,9 +56,10 @@ void write_perspective(const Perspective& perspective, nlohmann::ordered_json& h
 Perspective read_perspective(const std::vector<std::string>& comments) {
   Perspective read;
   const auto word_after = [](const std::string& comment, std::string_view key) -> std::optional<std::string> {
-    const std::size_t at = comment.find(std::string(key) + ": ");
-    if (at == std::string::npos) return std::nullopt;
-    const std::size_t begin = at + key.size() + 2;
+    const std::string start = std::string(key) + ": ";
+    const std::size_t at = comment.find_first_not_of(" \t");
+    if (at == std::string::npos || comment.compare(at, start.size(), start) != 0) return std::nullopt;
+    const std::size_t begin = at + start.size();
     return comment.substr(begin, comment.find_first_of(" \t\r", begin) - begin);
   };
   for (const std::string& comment : comments) {

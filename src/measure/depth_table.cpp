@@ -16,7 +16,9 @@ render::DepthTable measure_depth_table(render::Frame& frame, std::span<const sha
   }
   std::vector<render::MeasuredGaussian> all;
   for (const shared::View& view : views) {
-    frame.draw(std::span(&view, 1), {.transmittance = TRANSMITTANCE_LAST});
+    frame.draw(
+        std::span(&view, 1),
+        {.transmittance = TRANSMITTANCE_LAST, .order = settings.order, .projection = settings.projection});
     const auto measured = frame.read_measured(0);
     all.insert(all.end(), measured.begin(), measured.end());
   }
@@ -27,7 +29,7 @@ render::DepthTable measure_depth_table(render::Frame& frame, std::span<const sha
   table.bounds.resize(static_cast<std::size_t>(settings.bins));
   for (const auto& gaussian : all) {
     const double bin = gaussian.depth / static_cast<double>(table.far) * settings.bins;
-    if (bin >= settings.bins) continue;
+    if (!(bin >= 0.0) || bin >= settings.bins) continue;
     float& bound = table.bounds[static_cast<std::size_t>(bin)];
     bound = std::max(bound, gaussian.transmittance);
   }

@@ -46,7 +46,7 @@ struct FrameReport {
 /// A Gaussian that a frame drew in a view, and the largest transmittance that it met.
 struct MeasuredGaussian {
   std::uint32_t index = 0;     // in the model
-  float depth = 0.0f;          // view z, world units
+  float depth = 0.0f;          // view z, with PROJECTION_TANGENT the distance, world units
   float transmittance = 0.0f;  // max(T), not floored; 0 where no pixel blends it
 };
 

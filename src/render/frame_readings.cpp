@@ -56,7 +56,10 @@ std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
   std::vector<MeasuredGaussian> measured;
   read_drawn<float>(v, [&](std::uint32_t i, float most) {
     const glm::vec3 p = model_->model().position[i] - glm::vec3(view.anchor);
-    measured.push_back({i, glm::dot(glm::vec3(view.row_z), p) + view.row_z.w, most});
+    const float depth = shape_.perspective.projection == PROJECTION_TANGENT
+                            ? glm::length(p - glm::vec3(view.eye))
+                            : glm::dot(glm::vec3(view.row_z), p) + view.row_z.w;
+    measured.push_back({i, depth, most});
   });
   return measured;
 }

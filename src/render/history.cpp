@@ -57,7 +57,7 @@ void FrameHistory::decide(FrameShape& now) {
   const FrameSettings& s = now.settings;
   if (!measures(s.transmittance)) return;
   now.remembers = measures(measured_.settings.transmittance) && measured_.settings.decode == s.decode &&
-                  continues(measured_, now, median_depth_);
+                  measured_.perspective == now.perspective && continues(measured_, now, median_depth_);
   since_cut_ = now.remembers ? since_cut_ + 1 : 0;
   ++since_measured_;
   now.records = since_cut_ < s.record_every || since_measured_ >= s.record_every || now.offset_count > 0 ||

@@ -89,7 +89,9 @@ std::vector<Turned> measure_turning(render::Frame& frame, const Camera& camera, 
   const std::vector<glm::dvec2> field = field_of(camera, s);
   std::vector<Turned> turns;
   for (const Perspective& seen : perspectives) {
-    const render::FrameSettings settings{.order = seen.order, .projection = seen.projection};
+    // Anchors of Scaffold-GS are culled by the picture, of which a ray by itself has none.
+    const render::FrameSettings settings{
+        .order = seen.order, .projection = seen.projection, .anchor_cull = false};
     const std::vector<glm::vec3> straight = measure::colours_at(frame, camera, field, settings, near_plane);
     progress();
     for (const HeadAxis& axis : head_axes) {

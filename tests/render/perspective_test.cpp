@@ -6,6 +6,7 @@
 #include "demo/room.h"
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
+#include "measure/depth_table.h"
 #include "measure/rays.h"
 #include "render/faulty_shaders.h"
 #include "render/support.h"
@@ -156,6 +157,31 @@ TEST_P(InPerspective, ThresholdsAndStagesOfTheReferenceGiveItsPictures) {
   }
 }
 
+TEST_P(InPerspective, TheTableOfDepthsGoesByWhatThresholdsAskItWith) {
+  const Model model = in(GetParam(), surrounding_model(71, 2000));
+  const shared::View view = make_view(wide_camera());
+  render::Frame frame(test::gl_context(), model);
+  const render::DepthTable table =
+      measure::measure_depth_table(frame, std::span(&view, 1), {.bins = 40, .far = 8.0f});
+  const auto splats = reference::project_all(model, view);
+  const auto measured = frame.read_measured(0);
+  ASSERT_GT(measured.size(), 200u);
+  std::size_t apart = 0;
+  for (const render::MeasuredGaussian& gaussian : measured) {
+    const double depth = splats[gaussian.index].depth;
+    EXPECT_NEAR(gaussian.depth, depth, 1e-4);
+    EXPECT_GE(gaussian.depth, 0.0f);
+    const auto bin = static_cast<std::size_t>(gaussian.depth / table.far * 40);
+    if (bin < 40) {
+      EXPECT_GE(table.bounds[bin], gaussian.transmittance);
+    }
+    apart += std::abs(splats[gaussian.index].order - depth) > 1e-3 ? 1 : 0;
+  }
+  // Distance and view depth are different things here.
+  EXPECT_EQ(apart > 100,
+            (GetParam().order == ORDER_DISTANCE) != (GetParam().projection == PROJECTION_TANGENT));
+}
+
 TEST_P(InPerspective, EachEyeEqualsItselfAloneBitForBit) {
   const Model model = in(GetParam(), surrounding_model(67, 3000));
   render::Frame frame(test::gl_context(), model);
@@ -268,8 +294,7 @@ TEST(Perspectives, FaultsAreNoticed) {
         Fault{"projection/tangent.glsl", "if (v.z < 0.0) splat.conic.w = -splat.conic.w;", ""},
         Fault{"projection/tangent.glsl", "conic.xyz + more * circle", "conic.xyz"},
         Fault{"projection.glsl", "d - view.centre.xyz", "d - 1.5 * view.anchor.xyz + vec3(0.3, 0.0, 0.0)"},
-        Fault{"blending.glsl", "nearness[p] = 1.0 / (1.0 + dot(ray, ray));",
-              "nearness[p] = 1.0 / (1.0 + 0.99 * dot(ray, ray));"},
+        Fault{"blending.glsl", "1.0 + dot_precise(ray, ray);", "1.0 + 0.99 * dot_precise(ray, ray);"},
         Fault{"tiles/outline_tangent.glsl", "splat.mean + middle;", "splat.mean - middle;"},
         Fault{"tiles/outline_tangent.glsl", "middle + reach));", "middle + 0.5 * reach));"}}) {
     const test::FaultyShaders faulty(shader, sought, fault);
