@@ -30,11 +30,11 @@ uint blocks_reached(Splat splat, vec2 mean) {
 #if PROJECTION == PROJECTION_TANGENT
   rho *= farthest;
 #endif
-  float size = abs(splat.conic.w);
-  float tallest = size * sqrt(rho * splat.conic.x);                // half the ellipse's height,
-  float widest = sqrt(rho / splat.conic.x);                                 // half its widest row,
-  float lean = -splat.conic.y / splat.conic.x;                              // of the line through its rows' middles,
-  float apex = -splat.conic.y * size * sqrt(rho / splat.conic.z);  // where it is furthest to the right
+  float root_det = abs(splat.conic.w);
+  float tallest = root_det * sqrt(rho * splat.conic.x);            // half the ellipse's height,
+  float widest = sqrt(rho / splat.conic.x);                        // half its widest row,
+  float lean = -splat.conic.y / splat.conic.x;                     // of the line through its rows' middles,
+  float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // where it is furthest to the right
   uint bits = 0u;
   for (uint row = 0u; row < BLOCKS_DOWN; ++row) {
     float low = float(row * BLOCK_HEIGHT) - mean.y;

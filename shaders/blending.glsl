@@ -46,13 +46,13 @@ shared float batch_light[BATCH];
 // projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
 #if PROJECTION == PROJECTION_TANGENT
-shared vec4 batch_down[BATCH];    // v, c, -log2(sigma), and 0
+#define DOWN vec4  // v, c, -log2(sigma), and 0
 #else
-shared vec2 batch_down[BATCH];    // v, c
+#define DOWN vec2  // v, c
 #endif
+shared DOWN batch_down[BATCH];
 shared vec4 batch_colour[BATCH];  // rgb, depth
 
-uint view_index = 0u;
 uvec2 first_pixel;  // of the column
 vec2 pixel;         // the same, from the middle of the cell
 vec2 middle;        // of the cell
@@ -100,11 +100,7 @@ void blend(uint at[AHEAD]) {
   float alpha[AHEAD][COLUMN];
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
-#if PROJECTION == PROJECTION_TANGENT
-    vec4 down = batch_down[at[k]];
-#else
-    vec2 down = batch_down[at[k]];
-#endif
+    DOWN down = batch_down[at[k]];
     precise float t = fma(across.x, pixel.x, across.y);
     precise float level = fma(t, t, across.w);
     precise float slope = fma(t, across.z, down.x);
@@ -180,24 +176,13 @@ void blend_from(uint first) {
 // alpha = sigma 2^-|L^T d|^2, d = pixel - mean, L the lower Cholesky factor of Q log2(e) / 2, as a polynomial of the pixel's
 // place from the middle of its cell. No splat is thinner than the low-pass, and where alpha can be seen the mean is no further
 // than a few of its widths: no term is large there, and their sum exact to 1e-4. Cells do not depend on the tiles' size.
-const float level_scale = 0.72134752044448170;  // log2(e) / 2
-
-void stage_nothing(uint at) {
-  batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
-  batch_colour[at] = vec4(0.0);
-#if PROJECTION == PROJECTION_TANGENT
-  batch_down[at] = vec4(0.0);
-#else
-  batch_down[at] = vec2(0.0);
-#endif
-}
-
 void stage(uint at, Splat splat) {
+  const float scale = 0.72134752044448170;  // log2(e) / 2
   batch_colour[at] = vec4(splat.colour.rgb, abs(splat.depth));
   precise vec2 mean = splat.mean - middle;
-  precise float xx = sqrt(level_scale * splat.conic.x);
-  precise float yx = level_scale * splat.conic.y / xx;
-  precise float yy = level_scale / (abs(splat.conic.w) * xx);
+  precise float xx = sqrt(scale * splat.conic.x);
+  precise float yx = scale * splat.conic.y / xx;
+  precise float yy = scale / (abs(splat.conic.w) * xx);
   precise float u = -fma(xx, mean.x, yx * mean.y);
   precise float v = -yy * mean.y;
   precise float bits = splat.opacity >= float(ALPHA_MIN) ? log2(splat.opacity) : -1e30;
@@ -213,8 +198,15 @@ void stage(uint at, Splat splat) {
 #endif
 }
 
+void stage_nothing(uint at) {
+  batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
+  batch_down[at] = DOWN(0.0);
+  batch_colour[at] = vec4(0.0);
+}
+
 // What the work group draws.
 uint tile = 0u;
+uint view_index = 0u;
 uint begin = 0u, end = 0u;  // its list
 
 // Whether there is anything for this work group to draw; else it must end.
@@ -255,8 +247,8 @@ void begin_pixels(uvec2 in_tile) {
   first_pixel = corner + in_tile;
   pixel = vec2(first_pixel) - middle;
 #if PROJECTION == PROJECTION_TANGENT
-  vec2 nearest_edge = slope_at(view, vec2(corner)), other_edge = slope_at(view, vec2(corner + uint(TILE_SIZE - 1)));
-  vec2 most = max(abs(nearest_edge), abs(other_edge));
+  vec2 first = slope_at(view, vec2(corner)), last = slope_at(view, vec2(corner + uint(TILE_SIZE - 1)));
+  vec2 most = max(abs(first), abs(last));
   farthest = 1.0 + dot(most, most);
 #endif
   for (uint p = 0u; p < COLUMN; ++p) {

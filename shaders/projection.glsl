@@ -90,4 +90,25 @@ float order_depth(View view, Gaussian g) {
 #endif
 }
 
+vec3 onto_axes(vec3 direction, mat3 axes) {
+  return vec3(dot_precise(direction, axes[0]), dot_precise(direction, axes[1]), dot_precise(direction, axes[2]));
+}
+
+// The scaled axes as they fall on the picture where its plane leans against the ray by `slope`, px: `gain` px a world unit.
+void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 across, out vec3 down) {
+  precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
+  precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
+  across = onto_axes(jx, axes);
+  down = onto_axes(jy, axes);
+}
+
+// What a splat has whatever the projection, but for its colour. `kept` as conic_of() has it.
+void finish(Gaussian g, float kept, inout Splat splat) {
+  splat.opacity = g.position.w;
+#if ANTIALIASED
+  splat.opacity *= kept;
+#endif
+  splat.colour = vec4(0.0);
+}
+
 #include "projection/{PROJECTION_NAME}.glsl"

@@ -102,13 +102,8 @@ glm::vec3 map_colour(float number) {
 }
 
 std::vector<Picture> Show::exact(std::span<const shared::View> views, const render::FrameSettings& settings) {
-  render::FrameSettings plain;
-  plain.tile_size = settings.tile_size;
-  plain.anchor_cull = settings.anchor_cull;
-  plain.order = settings.order;
-  plain.projection = settings.projection;
   if (!exact_) exact_ = std::make_unique<render::Frame>(model_);
-  exact_->draw(views, plain);
+  exact_->draw(views, render::exact_of(settings));
   return exact_->read_pictures();
 }
 

@@ -32,10 +32,6 @@ bool is_beside(View view, vec3 v, float distance, float widest) {
   return v.z < distance * (cosine - 1e-4);
 }
 
-vec3 onto_axes(vec3 direction, mat3 axes) {
-  return vec3(dot_precise(direction, axes[0]), dot_precise(direction, axes[1]), dot_precise(direction, axes[2]));
-}
-
 // How much both eigenvalues of Q in the tangent plane must grow by, so that none is wider than WIDEST_TANGENT; in radians, from
 // the Gaussian's direction in the world.
 float excess(View view, vec3 direction, float distance, mat3 axes) {
@@ -83,11 +79,12 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   // As the affine projection without a limit to its slopes, at the distance in place of the depth.
   precise vec2 slope = v.xy / v.z;
   precise vec2 gain = view.lens.xy / distance;
-  precise vec3 jx = gain.x * (view.row_x.xyz - slope.x * view.row_z.xyz);
-  precise vec3 jy = gain.y * (view.row_y.xyz - slope.y * view.row_z.xyz);
+  vec3 across;
+  vec3 down;
+  axes_on_picture(view, slope, gain, axes, across, down);
   precise float stretch = sqrt(view.lens.x / view.lens.y);
   float kept;
-  splat.conic = conic_of(onto_axes(jx, axes), onto_axes(jy, axes), LowPass(slope, vec2(stretch, 1.0 / stretch)), kept);
+  splat.conic = conic_of(across, down, LowPass(slope, vec2(stretch, 1.0 / stretch)), kept);
   if (splat.conic.w == 0.0) return false;
   splat.depth = distance;
   // Wide: not both eigenvalues of Q, in slopes of the picture, are above WIDE_LEVEL.
@@ -101,11 +98,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   }
   precise vec2 mean = view.lens.xy * slope + view.lens.zw - 0.5;
   splat.mean = mean;
-  splat.opacity = g.position.w;
-#if ANTIALIASED
-  splat.opacity *= kept;
-#endif
-  splat.colour = vec4(0.0);
+  finish(g, kept, splat);
   return true;
 }
 

@@ -14,11 +14,7 @@ namespace {
 
 std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views,
                            const render::FrameSettings& settings) {
-  render::FrameSettings plain;
-  plain.tile_size = settings.tile_size;
-  plain.order = settings.order;
-  plain.projection = settings.projection;
-  frame.draw(views, plain);
+  frame.draw(views, render::exact_of(settings));
   return frame.read_pictures();
 }
 

@@ -213,6 +213,25 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
 
 }  // namespace
 
+void print_table(const study::Table& table) {
+  fmt::print("| {} |\n|", fmt::join(table.columns, " | "));
+  for (std::size_t k = 0; k < table.columns.size(); ++k) fmt::print("---|");
+  fmt::print("\n");
+  for (const std::vector<study::Cell>& row : table.rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string& column = table.columns[k];
+      const int digits = column.ends_with("dB") ? 2 : column.ends_with("%") ? 1 : 3;
+      const auto* const number = std::get_if<double>(&row[k].value);
+      const auto* const text = std::get_if<std::string>(&row[k].value);
+      fmt::print("{} {}", k == 0 ? "|" : " |",
+                 number != nullptr ? fmt::format("{:.{}f}", *number, digits)
+                 : text != nullptr ? *text
+                                   : "");
+    }
+    fmt::print(" |\n");
+  }
+}
+
 void save(const StudyOptions& options, const ordered_json& numbers, const study::Page& page) {
   if (!options.json.empty()) save_json(options.json, numbers);
   if (!options.output.empty()) save_report(options.output, "study.json", numbers, page);

@@ -30,12 +30,6 @@ constexpr double frames_per_second = 90.0;
 constexpr const char* still_name = "still";
 constexpr std::size_t segments_default = 3;
 
-std::string repeated(const std::string& text, std::size_t times) {
-  std::string all;
-  for (std::size_t n = 0; n < times; ++n) all += text;
-  return all;
-}
-
 std::vector<std::string> words(const std::string& text) {
   std::vector<std::string> found(1);
   for (const char c : text) {
@@ -181,34 +175,17 @@ std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions
 }
 
 /// A table for a terminal and for documents: dB and % to what can be told apart, the rest to three digits.
-void print(const study::Table& table) {
-  fmt::print("| {} |\n|{}\n", fmt::join(table.columns, " | "), repeated("---|", table.columns.size()));
-  for (const std::vector<study::Cell>& row : table.rows) {
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const std::string& column = table.columns[k];
-      const int digits = column.ends_with("dB") ? 2 : column.ends_with("%") ? 1 : 3;
-      const auto* const number = std::get_if<double>(&row[k].value);
-      const auto* const text = std::get_if<std::string>(&row[k].value);
-      fmt::print("{} {}", k == 0 ? "|" : " |",
-                 number != nullptr ? fmt::format("{:.{}f}", *number, digits)
-                 : text != nullptr ? *text
-                                   : "");
-    }
-    fmt::print(" |\n");
-  }
-}
-
 void print(const study::MotionStudy& study, const study::Page& page) {
   fmt::print("{}: {}, {} x {} x {} px; a metre is {:.4g} units ({})\n", study.device, study.scene, study.eyes,
              study.width, study.height, study.units_per_metre, study.metre_source);
   for (const study::MotionResult& result : study.paths) {
     fmt::print("\n## {}\n{}; {}. Asked for {:g} dB:\n\n", result.path.name, result.path.motion,
                study::lengths_of(result.path), study.settings.quality);
-    print(study::asked_table(result));
+    print_table(study::asked_table(result));
     const study::Table at_target = study::target_table(result);
     if (at_target.rows.empty()) continue;
     fmt::print("\nAt {:g} dB of the moving frames' true mean:\n\n", study.settings.target);
-    print(at_target);
+    print_table(at_target);
   }
   fmt::print(
       "\nTrue: the worse eye's PSNR, of 8-bit pictures against exact ones, {:g} dB for equal ones; its mean,"

@@ -52,6 +52,9 @@ struct Studied {
   std::vector<Shot> shots;
 };
 
+/// Prints a table of a page, as Markdown.
+void print_table(const study::Table& table);
+
 /// Writes what --json and -o ask for.
 void save(const StudyOptions& options, const nlohmann::ordered_json& numbers, const study::Page& page);
 

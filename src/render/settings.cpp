@@ -29,6 +29,11 @@ void check(const FrameSettings& s, std::string_view prefix) {
   }
 }
 
+FrameSettings exact_of(const FrameSettings& s) {
+  return {
+      .order = s.order, .projection = s.projection, .anchor_cull = s.anchor_cull, .tile_size = s.tile_size};
+}
+
 void check_choice(const FrameSettings& s, std::string_view prefix) {
   check(s, prefix);
   if (!takes(s.th, s.transmittance)) {

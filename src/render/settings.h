@@ -70,8 +70,12 @@ struct FrameSettings {
 /// `prefix` goes before the names of settings in the text: "--" where they were given as options.
 void check(const FrameSettings& settings, std::string_view prefix = "");
 
-/// The same for what somebody chose to draw by, where all must have an effect: no transmittance with a rule
-/// that uses no bound. (A frame may measure by any rule, as measure_depth_table does.)
+/// What draws the exact pictures of what `settings` draw otherwise: in full precision, and with each eye's
+/// own Gaussians.
+FrameSettings exact_of(const FrameSettings& settings);
+
+/// The same as check() for what somebody chose to draw by, where all must have an effect: no transmittance
+/// with a rule that uses no bound. (A frame may measure by any rule, as measure_depth_table does.)
 void check_choice(const FrameSettings& settings, std::string_view prefix = "");
 
 }  // namespace binosplat::render

@@ -69,15 +69,6 @@ void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& 
   shape.views.push_back(view);
 }
 
-}  // namespace
-
-std::uint32_t FrameShape::supertile_bits() const {
-  const std::uint32_t keys = settings.tiles == TILES_ALL ? view_count() : supertile_count;
-  return static_cast<std::uint32_t>(std::bit_width(keys - 1));
-}
-
-namespace {
-
 // The least and the largest thing that the Gaussians of a box can be sorted by in a view.
 glm::dvec2 order_span(const shared::View& view, int order, const Bounds& box) {
   const glm::dvec3 anchor(view.anchor), forward(view.row_z), eye(view.eye), centre(view.centre);
@@ -95,6 +86,11 @@ glm::dvec2 order_span(const shared::View& view, int order, const Bounds& box) {
 }
 
 }  // namespace
+
+std::uint32_t FrameShape::supertile_bits() const {
+  const std::uint32_t keys = settings.tiles == TILES_ALL ? view_count() : supertile_count;
+  return static_cast<std::uint32_t>(std::bit_width(keys - 1));
+}
 
 void limit_keys(FrameShape& shape, const Bounds& box) {
   for (OrderGroup& group : shape.groups) {

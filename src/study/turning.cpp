@@ -8,7 +8,6 @@
 
 #include "base/image.h"
 #include "measure/flip.h"
-#include "measure/metrics.h"
 #include "measure/rays.h"
 #include "study/fields.h"
 
