@@ -28,9 +28,16 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 #if LISTS == LISTS_LONG
 layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  // tiles
 #endif
-#if RECORDS || WEIGHS
-layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat: bits of floats, or two words of a sum
+#if RECORDS
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat, bits of floats
+#define MEASURED uint
 shared uint batch_measured[BATCH];
+#elif TRANSPOSED
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat and channel, 64 bits, low first
+uniform uint scale;  // bits of a float
+#define MEASURED ivec4
+shared ivec4 batch_measured[BATCH];
+vec4 wanted[COLUMN];  // of the picture, scaled
 #endif
 #if SHOW != SHOW_PICTURE
 layout(std430, binding = 8) writeonly buffer Shown { float shown[]; };  // below 0: nothing to tell
@@ -67,24 +74,34 @@ float transmittance[COLUMN];  // 0 once the pixel is done,
 float least[COLUMN];          // and this -T; until then the T that the blend stops at
 
 // The most that a splat's alpha counts for in any pixel: T (docs/method.md 5). A maximum in shared memory, and one a tile in
-// the buffer, cost little beside the blend. Or what it counts for in all pixels together, as a whole number, so that the order
-// of the additions does not matter.
-void measure(uint at, uint p, float alpha) {
-#if WEIGHS
-  atomicAdd(batch_measured[at], uint(alpha * transmittance[p] * float(WEIGHT_SCALE) + 0.5));
+// the buffer, cost little beside the blend. Or the transposed blend: the picture of all pixels together, by what the splat
+// counts for in each, in whole numbers, so that the order of the additions does not matter.
+void measure(uint at, uint p, float weight) {
+#if TRANSPOSED
+  ivec4 steps = ivec4(floor(weight * wanted[p] + 0.5));
+  for (int c = 0; c < 4; ++c) {
+    if (steps[c] != 0) atomicAdd(batch_measured[at][c], steps[c]);
+  }
 #elif RECORDS
   atomicMax(batch_measured[at], floatBitsToUint(transmittance[p]));
 #endif
 }
 
 // What a tile measured of a splat, to the buffer.
-#if WEIGHS
-void pass_on(uint splat, uint sum) {
-  uint before = atomicAdd(measured[2u * splat], sum);
-  if (before + sum < before) atomicAdd(measured[2u * splat + 1u], 1u);
+#if TRANSPOSED
+void pass_on(uint splat, ivec4 sums) {
+  for (uint c = 0u; c < 4u; ++c) {
+    if (sums[c] == 0) continue;
+    uint at = 2u * (4u * splat + c), sum = uint(sums[c]);
+    uint before = atomicAdd(measured[at], sum);
+    uint above = (sums[c] < 0 ? 0xffffffffu : 0u) + (before + sum < before ? 1u : 0u);
+    if (above != 0u) atomicAdd(measured[at + 1u], above);
+  }
 }
 #elif RECORDS
-void pass_on(uint splat, uint most) { atomicMax(measured[splat], most); }
+void pass_on(uint splat, uint most) {
+  if (most != 0u) atomicMax(measured[splat], most);
+}
 #endif
 
 bool is_done(uint p) { return least[p] < 0.0; }
@@ -144,8 +161,8 @@ void blend(uint at[AHEAD]) {
     for (uint k = 0u; k < AHEAD; ++k) {
       vec4 c = batch_colour[at[k]];
       float weight = weights[k];
-#if RECORDS || WEIGHS
-      if (weight > 0.0) measure(at[k], p, alpha[k][p]);
+#if RECORDS || TRANSPOSED
+      if (weight > 0.0) measure(at[k], p, weight);
       transmittance[p] -= weight;
 #endif
       precise float r = fma(weight, c.r, colour[p].r);
@@ -263,6 +280,9 @@ void begin_pixels(uvec2 in_tile) {
     nearness[p] = inverse;
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
+#if TRANSPOSED
+    wanted[p] = inside ? uintBitsToFloat(scale) * colours[place_of(view, p)] : vec4(0.0);
+#endif
 #if SHOW != SHOW_PICTURE
     told[p] = 0.0;
 #endif
@@ -274,6 +294,9 @@ void write_pixels() {
   for (uint p = 0u; p < COLUMN; ++p) {
     if (first_pixel.x >= view.width || first_pixel.y + p >= view.height) continue;
     uint to = place_of(view, p);
+#if TRANSPOSED
+    continue;  // the picture stays
+#endif
     float left = is_done(p) ? -least[p] : transmittance[p];
 #if SHOW == SHOW_PAIRS
     told[p] = float(end - begin);

@@ -22,8 +22,8 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 3) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 4) readonly buffer Indices { uint indices[]; };          // Gaussian of each slot
 layout(std430, binding = 6) writeonly buffer Coverages { uint coverages[]; };  // (slot, view): supertiles.glsl
-#if RECORDS || WEIGHS
-layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // by splat, of one word or two
+#if RECORDS
+layout(std430, binding = 8) writeonly buffer Measured { uint measured[]; };  // by splat
 #endif
 layout(std430, binding = 10) buffer FrameCounters { Counters counters; };
 layout(std430, binding = 11) writeonly buffer Tall { uint tall[]; };  // splats for project_count_tall.comp, in any order
@@ -70,12 +70,7 @@ void main() {
       if (is_tall) leave_aside(splat_at);
     }
     if (is_here) coverages[slot * frame.view_count + v] = coverage;
-#if WEIGHS
-    if (is_here) {
-      measured[2u * splat_at] = 0u;
-      measured[2u * splat_at + 1u] = 0u;
-    }
-#elif RECORDS
+#if RECORDS
     if (is_here) measured[splat_at] = 0u;
 #endif
     if (coverage != 0u) {

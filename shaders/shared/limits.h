@@ -42,9 +42,10 @@
 // measured again.
 #define BOUND_FLOOR 0.01
 #define BOUND_AGEING 1.25
-// Blending weights alpha T are summed in steps of this: the least one that a pixel can blend, tau times the
-// least T, is more than one step, and the sum of a tile of 1,024 px fits a word.
-#define WEIGHT_SCALE 4194304.0
+// What the transposed blend sums, alpha T of a pixel times its picture of 1 at most, is rounded to steps of
+// this: the least weight that a pixel can blend, tau times the least T, is more than half of one, and the sum
+// of a tile of 1,024 px fits a word with its sign.
+#define TRANSPOSED_SCALE 2097152.0
 
 // A splat that reaches over more rows of tiles than this has its tiles counted by many invocations together;
 // so many splats a work group, and so many groups along x.

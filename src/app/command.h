@@ -26,6 +26,7 @@ void add_calibrate(CLI::App& program, Command& command);
 void add_view(CLI::App& program, Command& command);
 void add_convert(CLI::App& program, Command& command);
 void add_trim(CLI::App& program, Command& command);
+void add_refit(CLI::App& program, Command& command);
 void add_info(CLI::App& program, Command& command);
 
 /// From now on SIGHUP, SIGINT and SIGTERM end the program at once, or after the file that is being written

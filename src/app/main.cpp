@@ -44,6 +44,7 @@ int run(int argc, char** argv) {
   binosplat::app::add_info(program, command);
   binosplat::app::add_convert(program, command);
   binosplat::app::add_trim(program, command);
+  binosplat::app::add_refit(program, command);
   binosplat::app::add_devices(program, command);
   binosplat::app::add_study(program, command);
   binosplat::app::add_bench(program, command);

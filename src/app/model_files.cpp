@@ -1,6 +1,7 @@
 #include "app/model_files.h"
 
 #include "app/command.h"
+#include "formats/model_file.h"
 #include "formats/scaffold_file.h"
 
 namespace binosplat::app {
@@ -27,6 +28,18 @@ void refuse_scaffold(const Model& model, const std::string& scene) {
         "{} is a Scaffold-GS model, which makes its Gaussians anew for each eye: no other format can hold it",
         scene);
   }
+}
+
+study::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
+  return [output, format](const Model& model, int harmonic_bits) {
+    OutputFile file(output);
+    const Unfinished unfinished(file.path());
+    write_model(file, model, format, harmonic_bits);
+    file.flush();
+    Model read = load_model(file.path());
+    read.perspective = model.perspective;  // of formats that do not tell it, too
+    return study::WrittenModel{std::move(read), fs::file_size(file.path())};
+  };
 }
 
 std::vector<std::string> write_model_file(const std::string& output, const Model& model, ModelFormat format,

@@ -7,6 +7,7 @@
 
 #include "formats/model_output.h"
 #include "scene/model.h"
+#include "study/trim.h"
 
 namespace binosplat::app {
 
@@ -19,6 +20,9 @@ std::filesystem::path model_file(const std::string& scene);
 
 /// Throws Error for a Scaffold-GS model, which no file of Gaussians can hold.
 void refuse_scaffold(const Model& model, const std::string& scene);
+
+/// Writes to a file beside the output, which is never committed.
+study::TrialWriter trial_writer(const std::string& output, ModelFormat format);
 
 /// Writes a model in the axes of the format (write_model), and reads it back; a signal leaves nothing
 /// half-written. Returns what the format could not keep.

@@ -28,6 +28,14 @@ Image load_view_photo(const fs::path& file, const Camera& camera) {
   return photo;
 }
 
+study::PhotoOf photo_finder(const std::string& photos) {
+  if (photos.empty()) return {};
+  return [photos](const Camera& camera) {
+    const auto file = find_view_photo(photos, camera.name);
+    return file ? std::optional(load_view_photo(*file, camera)) : std::nullopt;
+  };
+}
+
 study::CalibrationTarget TargetOptions::target() const {
   using Kind = study::CalibrationTarget::Kind;
   return {max_drop ? Kind::drop : Kind::quality, max_drop ? *max_drop : *quality};

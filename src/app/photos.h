@@ -10,6 +10,7 @@
 #include "app/shots.h"
 #include "base/image.h"
 #include "study/calibrate.h"
+#include "study/refit.h"
 
 namespace binosplat::app {
 
@@ -19,6 +20,9 @@ std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path
 
 /// Reads it. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
+
+/// The photos of a folder for a fit; none where `photos` is empty.
+study::PhotoOf photo_finder(const std::string& photos);
 
 /// What pictures may lose: --max-drop against the photos, or --quality against the exact pictures.
 struct TargetOptions {

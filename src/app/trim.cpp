@@ -13,6 +13,7 @@
 #include "app/output_options.h"
 #include "app/photos.h"
 #include "app/shots.h"
+#include "app/split.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "formats/model_file.h"
@@ -33,16 +34,10 @@ using Kind = study::CalibrationTarget::Kind;
 
 struct TrimOptions : MeasuredOptions {
   TargetOptions bound;
-  int views = 16;                  // held back
-  std::vector<std::string> tests;  // views by name
+  SplitOptions split{.held_back = 16};
+  bool refit = false;
   std::string output;
   std::string json;
-};
-
-/// What the report says besides the steps.
-struct Names {
-  std::vector<std::string> held_back, test;
-  std::size_t weighed = 0;
 };
 
 ModelFormat check(const TrimOptions& o) {
@@ -51,55 +46,6 @@ ModelFormat check(const TrimOptions& o) {
   check_output(o.output);
   if (!o.json.empty()) check_output(o.json);
   return format;
-}
-
-/// Held back are so many of the cameras (that have a photo), evenly spread, and at most every other one; the
-/// rest are weighed. The test views are neither.
-study::TrimViews choose_views(const TrimOptions& o, const CameraList& list, const Model& model,
-                              Names& names) {
-  study::TrimViews views;
-  views.near_plane = near_plane_of(o.camera, list, model);
-  std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
-  for (const Camera& camera :
-       o.tests.empty() ? std::vector<Camera>() : chosen_cameras(o.tests, o.camera.lens, list)) {
-    views.test.push_back(with_photo(o.photos, camera));
-    names.test.push_back(camera.name);
-    std::erase_if(cameras, [&](const Camera& other) { return other.name == camera.name; });
-  }
-  if (cameras.size() < 2)
-    fail("{}: {} of its cameras for trim, which needs two at least: one to weigh in, one to hold back",
-         list.source, cameras.size());
-  std::vector<std::size_t> judging;
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    if (o.photos.empty() || find_view_photo(o.photos, cameras[i].name)) judging.push_back(i);
-  }
-  if (judging.empty()) fail("--photos {}: there is no photo of any view", o.photos);
-  const std::size_t wanted = std::min(static_cast<std::size_t>(o.views), cameras.size() / 2);
-  std::vector<bool> held_back(cameras.size(), false);
-  for (const std::size_t k : study::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    if (!held_back[i]) {
-      views.weighed.push_back(cameras[i]);
-      continue;
-    }
-    views.held_back.push_back(with_photo(o.photos, cameras[i]));
-    names.held_back.push_back(cameras[i].name);
-  }
-  names.weighed = views.weighed.size();
-  return views;
-}
-
-/// Every candidate goes to a file beside the output, which is never committed.
-study::TrimWriter trial_writer(const TrimOptions& o, ModelFormat format) {
-  return [&o, format](const Model& model, int harmonic_bits) {
-    OutputFile file(o.output);
-    const Unfinished unfinished(file.path());
-    write_model(file, model, format, harmonic_bits);
-    file.flush();
-    Model read = load_model(file.path());
-    read.perspective = model.perspective;  // of formats that do not tell it, too
-    return study::WrittenModel{std::move(read), fs::file_size(file.path())};
-  };
 }
 
 /// The file that was read, where it has the format that is to be written.
@@ -118,11 +64,12 @@ std::string decibels(Kind kind, double db) {
   return fmt::format("{:.3f}", db);
 }
 
-void print(const TrimOptions& o, const study::Trimmed& found, const Names& names, std::size_t gaussians) {
+void print(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
+           std::size_t gaussians) {
   const Kind kind = o.bound.target().kind;
   fmt::print(
-      "{} views weighed, {} held back, {} of test; bound: {}\n", names.weighed, names.held_back.size(),
-      names.test.size(),
+      "{} views weighed, {} held back, {} of test; bound: {}\n", views.training.size(),
+      views.held_back.size(), views.test.size(),
       o.bound.max_drop
           ? fmt::format("at most {} dB lost against the photos, mean of those held back", *o.bound.max_drop)
           : fmt::format("{} dB against the exact pictures, mean of those held back", *o.bound.quality));
@@ -130,38 +77,39 @@ void print(const TrimOptions& o, const study::Trimmed& found, const Names& names
              100.0 * static_cast<double>(found.unseen) / static_cast<double>(gaussians));
   const char* db = kind == Kind::drop ? "drop dB" : "PSNR dB";
   fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11}{:>9}{:>9}{:>9}{:>9}\n", "", "Gaussians", "SH", "bytes", "pairs",
-             "ms", db, "worst", names.test.empty() ? "" : "test");
+             "ms", db, "worst", views.test.empty() ? "" : "test");
   for (const study::TrimStep& s : found.steps) {
     fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}{:>9}{:>9}{:>9}\n", s.name, s.gaussians, s.degree,
                s.bytes > 0 ? std::to_string(s.bytes) : "", s.held_back.pairs, s.held_back.ms,
                decibels(kind, s.held_back.mean_db), decibels(kind, s.held_back.worst_db),
-               names.test.empty() ? "" : decibels(kind, s.test.mean_db));
+               views.test.empty() ? "" : decibels(kind, s.test.mean_db));
   }
   const Calibrator::Cost& last = found.steps.back().held_back;
-  fmt::print("worst of those held back: {}, {} dB\n", names.held_back[last.worst_view],
+  fmt::print("worst of those held back: {}, {} dB\n", views.held_back[last.worst_view].camera.name,
              decibels(kind, last.worst_db));
 }
 
-ordered_json to_json(const Calibrator::Cost& cost, const std::vector<std::string>& names) {
-  ordered_json json = study::object("mean_db", cost.mean_db, "worst_db", cost.worst_db, "worst_view",
-                                    names[cost.worst_view], "pairs", cost.pairs, "gpu_ms", cost.ms);
-  for (std::size_t v = 0; v < names.size(); ++v)
-    json["views"].push_back({{"name", names[v]}, {"db", cost.view_db[v]}});
+ordered_json to_json(const Calibrator::Cost& cost, const std::vector<study::CalibrationView>& views) {
+  ordered_json json =
+      study::object("mean_db", cost.mean_db, "worst_db", cost.worst_db, "worst_view",
+                    views[cost.worst_view].camera.name, "pairs", cost.pairs, "gpu_ms", cost.ms);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    json["views"].push_back({{"name", views[v].camera.name}, {"db", cost.view_db[v]}});
   return json;
 }
 
-ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const Names& names,
+ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
                      ModelFormat format, const std::vector<std::string>& losses) {
   ordered_json json = study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
                                     "format", written_format(format).name, "as_it_was", !found.less, "unseen",
-                                    found.unseen, "views_weighed", names.weighed, "losses", losses);
+                                    found.unseen, "views_weighed", views.training.size(), "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
   for (const study::TrimStep& s : found.steps) {
     ordered_json step = study::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
                                       s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
-                                      to_json(s.held_back, names.held_back));
-    if (!names.test.empty()) step["test"] = to_json(s.test, names.test);
+                                      to_json(s.held_back, views.held_back));
+    if (!views.test.empty()) step["test"] = to_json(s.test, views.test);
     json["steps"].push_back(step);
   }
   return json;
@@ -184,25 +132,21 @@ std::vector<std::string> write(const TrimOptions& o, const study::Trimmed& found
 
 ExitCode trim(const TrimOptions& o) {
   const ModelFormat format = check(o);
-  const CameraList list = listed_cameras(o.scene, o.camera);
-  if (!list.listed)
-    fail(
-        "trim needs the cameras that the pictures are of, and there are none beside {}: name their file with "
-        "--cameras",
-        o.scene.name);
+  const CameraList list = needed_cameras("trim", o);
   Model model = load_scene(o.scene);
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model.format, format);
   bring_into_axes(model, axes_of(format));
-  Names names;
-  const study::TrimViews views = choose_views(o, list, model, names);
+  const study::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list, model),
+                                             [](std::size_t, std::size_t cameras) { return cameras / 2; });
+  study::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
+  if (o.refit) settings.refit = photo_finder(o.photos);
   const auto context = open_context(o.context);
-  study::Trimmed found =
-      study::trim(*context, model, views, o.bound.target(), format, trial_writer(o, format));
+  study::Trimmed found = study::trim(*context, model, views, settings);
   if (const fs::path file = model_file(o.scene.name); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
   if (original && found.steps.back().bytes >= found.steps.front().bytes) found.less = false;
-  print(o, found, names, model.count());
+  print(o, found, views, model.count());
   if (!found.fits && !original) {
     fail(
         "-o {}: the format alone costs more than the bound allows, {}; choose .ply, which keeps all, or "
@@ -216,7 +160,7 @@ ExitCode trim(const TrimOptions& o) {
   } else {
     fmt::print("\n{}: the model as it was: nothing can be left out within the bound\n", o.output);
   }
-  if (!o.json.empty()) save_json(o.json, to_json(o, found, names, format, losses));
+  if (!o.json.empty()) save_json(o.json, to_json(o, found, views, format, losses));
   return ExitCode::done;
 }
 
@@ -239,14 +183,13 @@ void add_trim(CLI::App& program, Command& command) {
   add_photos_option(*sub, o->photos);
   sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
-  sub->add_option(
-         "--views", o->views,
-         "So many views (that have a photo) are held back to judge by, spread\nevenly, at most half of the "
-         "cameras (16); the others say what each\nGaussian is worth")
-      ->type_name("N")
-      ->check(range(1, 10000));
-  sub->add_option("--test", o->tests, "Views by name that decide nothing: what they lose is stated")
-      ->type_name("NAME...");
+  add_split_options(
+      *sub, o->split,
+      "So many views (that have a photo) are held back to judge by, spread\nevenly, at most half "
+      "of the cameras (16); the others say what each\nGaussian is worth");
+  sub->add_flag("--refit", o->refit,
+                "Fit the colours of what is left to the pictures, as refit does: a\nsmaller model, and many "
+                "times the time");
   add_size_option(*sub, o->camera.lens);
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);

@@ -58,6 +58,13 @@ void Buffer::reserve(std::int64_t bytes) {
   gl.ObjectLabel(GL_BUFFER, id_, -1, label_.c_str());
 }
 
+void Buffer::reserve_zeros(std::int64_t bytes) {
+  reserve(bytes);
+  context_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  context_.gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  context_.check("clearing " + label_);
+}
+
 void Buffer::write(const void* data, std::int64_t bytes, std::int64_t offset) {
   const auto* from = static_cast<const std::byte*>(data);
   for (std::int64_t at = 0; at < bytes; at += piece_bytes) {

@@ -40,6 +40,9 @@ class Buffer {
           static_cast<std::int64_t>(first * sizeof(T)));
   }
 
+  /// Room for so many bytes, and zeros everywhere.
+  void reserve_zeros(std::int64_t bytes);
+
   /// `count` elements from element `first` on, after everything before it has run.
   template <typename T>
   std::vector<T> read(std::size_t count, std::size_t first = 0) const {

@@ -18,6 +18,7 @@ namespace binosplat::gl {
   X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS)                           \
   X(Clear, CLEAR)                                                                       \
   X(ClearColor, CLEARCOLOR)                                                             \
+  X(ClearNamedBufferData, CLEARNAMEDBUFFERDATA)                                         \
   X(ClientWaitSync, CLIENTWAITSYNC)                                                     \
   X(CompileShader, COMPILESHADER)                                                       \
   X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA)                                     \

@@ -1,5 +1,9 @@
+#include <fmt/format.h>
+
+#include <bit>
 #include <cstddef>
 
+#include "base/error.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -8,17 +12,17 @@ namespace {
 
 struct Variant {
   bool records = false;
-  bool weighs = false;
+  bool transposed = false;
   int show = SHOW_PICTURE;
 };
 
 // LISTS of blending.glsl.
 enum class Lists { of_short, of_long };
 
-// Who measures or counts has the tile's splats before all its pixels; what tests nothing shows what tests
+// Who measures or sums up has the tile's splats before all its pixels; what tests nothing shows what tests
 // lose; and other sizes of tiles are for comparing.
 bool by_subgroups(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
-  const bool plain = !variant.records && !variant.weighs && variant.show == SHOW_PICTURE;
+  const bool plain = !variant.records && !variant.transposed && variant.show == SHOW_PICTURE;
   const bool usual = shape.settings.tiles != TILES_ALL && shape.settings.tile_size == TILE_SIZE_DEFAULT;
   return context.limits().subgroups_of_32 && plain && usual;
 }
@@ -37,14 +41,14 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
                          {"AHEAD", is_long ? "8" : "4"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"RECORDS", variant.records ? "1" : "0"},
-                         {"WEIGHS", variant.weighs ? "1" : "0"},
+                         {"TRANSPOSED", variant.transposed ? "1" : "0"},
                          {"SHOW", std::to_string(variant.show)}};
   add_projection(defines, shape.perspective.projection);
   return context.program(name, defines);
 }
 
 void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,
-         const gl::Buffer& measured) {
+         const gl::Buffer& measured, float scale = 0.0f) {
   gl::Context& context = dispatcher.context();
   const auto draw = [&](Lists lists, const gl::Work& work) {
     dispatcher.start(program(context, shape, variant, lists), work,
@@ -58,7 +62,8 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.long_lists},
                       {"Measured", measured},
-                      {"Shown", buffers.shown}});
+                      {"Shown", buffers.shown}},
+                     {{"scale", std::bit_cast<std::uint32_t>(scale)}});
   };
   draw(Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
   draw(Lists::of_short, gl::Work::of_groups(shape.tile_count()));
@@ -76,18 +81,36 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
                     {"LongLists", buffers.long_lists},
                     {"FrameCounters", buffers.counters}});
   }
-  run(dispatcher, shape, buffers, {.records = shape.records, .weighs = shape.settings.weigh},
-      buffers.measured);
+  run(dispatcher, shape, buffers, {.records = shape.records}, buffers.measured);
 }
 
 void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what) {
   buffers.shown.reserve(shape.pixel_count * 4);
   if (what == SHOW_LIGHT) {
-    buffers.shown_light.upload(std::vector<std::uint32_t>(std::size_t{shape.slots} * shape.view_count()));
+    buffers.shown_light.reserve_zeros(std::int64_t{shape.slots} * shape.view_count() * 4);
     run(dispatcher, shape, buffers, {.records = true, .show = SHOW_VISIBLE},
         buffers.shown_light);  // measures
   }
   run(dispatcher, shape, buffers, {.show = what}, buffers.shown_light);
+}
+
+void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer& colours,
+              FrameBuffers& buffers) {
+  dispatcher.run(dispatcher.context().program("recolour.comp"), gl::Work::threads(slots, THREADS),
+                 {{"Colours", colours}, {"Splats", buffers.splats}}, {{"slot_count", slots}});
+}
+
+void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, float scale,
+                      const gl::Buffer& sums) {
+  run(dispatcher, shape, buffers, {.transposed = true}, sums, scale);
+}
+
+void refuse_cut(const gl::Context& context, const shared::Counters& counters) {
+  if (counters.loop_cut == 0) return;
+  throw Error(ExitCode::out_of_memory,
+              fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. "
+                          "Use a smaller --tile or a smaller model.",
+                          context.renderer()));
 }
 
 }  // namespace binosplat::render

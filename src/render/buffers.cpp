@@ -106,7 +106,6 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
       (*each)[page]->reserve(std::int64_t{shape.decoding_count()} * model.pages[page].anchors->count * 4);
     }
   }
-  if (shape.settings.weigh) measured.reserve(slots * shape.view_count() * 8);
   order.reserve(slots);
   pair_offsets.reserve(slots * 4);
   splats.reserve(slots * shape.view_count() * splat_bytes(shape.settings.precision));
@@ -128,6 +127,19 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   scan.reserve(std::max(blocks, slots));
   for (const OrderGroup& group : shape.groups) sort.reserve(order, group.key_bits);
   sort.reserve(pairs, shape.supertile_bits());
+}
+
+std::vector<DrawnGaussian> FrameBuffers::read_drawn(const FrameShape& shape, std::uint32_t v) const {
+  const DrawnBuffers& of_group = *drawn[shape.views.at(v).order_group];
+  const std::uint32_t count = of_group.arguments.read<shared::DispatchArguments>(1).front().count;
+  const auto indices = of_group.indices.read<std::uint32_t>(count);
+  const std::size_t view_count = shape.view_count();
+  const auto covers = coverages.read<std::uint32_t>(count * view_count);
+  std::vector<DrawnGaussian> found;
+  for (std::uint32_t slot = 0; slot < count; ++slot) {
+    if (covers[slot * view_count + v] != 0) found.push_back({indices[slot], slot});
+  }
+  return found;
 }
 
 void FrameBuffers::keep_last(const FrameShape& shape) {

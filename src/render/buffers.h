@@ -26,6 +26,12 @@ struct DrawnBuffers {
   gl::Buffer indices;    // Gaussian by slot
 };
 
+/// A Gaussian that a view draws, and its slot.
+struct DrawnGaussian {
+  std::uint32_t index = 0;  // in the model
+  std::uint32_t slot = 0;
+};
+
 struct FrameBuffers {
   explicit FrameBuffers(gl::Context& context);
   gl::Context& context() const { return context_; }
@@ -40,6 +46,9 @@ struct FrameBuffers {
 
   /// Once a frame is complete: what it kept and measured is the last frame's for the next.
   void keep_last(const FrameShape& shape);
+
+  /// What the frame that was drawn last draws in its view `v`, in index order.
+  std::vector<DrawnGaussian> read_drawn(const FrameShape& shape, std::uint32_t v) const;
 
   /// What tiles are blended by: begin and end in the values, by tile; and those, splats.
   gl::Buffer& ranges_of_tiles(const FrameShape& shape) {
@@ -69,7 +78,7 @@ struct FrameBuffers {
   // Of Scaffold-GS, by page of the model, uint (decoding, anchor): bit k: Gaussian k is there; KEPT_HIDDEN:
   // none is, these are the last frame's. Written while the last frame's is read.
   std::vector<std::unique_ptr<gl::Buffer>> kept, kept_last;
-  gl::Buffer measured;     // uint by splat, bits of the largest float; two, low first, where weighed
+  gl::Buffer measured;     // uint by splat, bits of the largest float
   gl::Buffer depth_table;  // float by bin
 
   // Of all views.

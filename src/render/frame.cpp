@@ -119,10 +119,7 @@ FrameReport Frame::attempt(const Workings& workings, Stage last) {
   }
   if (counters_.loop_cut != 0) {
     forget();  // what this frame left behind is not to be gone by
-    throw Error(ExitCode::out_of_memory,
-                fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. "
-                            "Use a smaller --tile or a smaller model.",
-                            dispatcher_.context().renderer()));
+    refuse_cut(dispatcher_.context(), counters_);
   }
   if (last == Stage::probe) {
     history_.keep(shape_, counters_);

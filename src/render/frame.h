@@ -50,12 +50,6 @@ struct MeasuredGaussian {
   float transmittance = 0.0f;  // max(T), not floored; 0 where no pixel blends it
 };
 
-/// A Gaussian that a frame drew in a view, and how much of the picture it is.
-struct WeighedGaussian {
-  std::uint32_t index = 0;  // in the model
-  double weight = 0.0;      // alpha * T summed over the pixels, px; 0 exactly where no pixel blends it
-};
-
 class Frame {
  public:
   /// Frames of a model that others may draw, too: each has buffers and a memory of its own. The context must
@@ -100,11 +94,6 @@ class Frame {
   /// Throws Error after a frame whose blend something else stood in for: its lists never get to the GPU.
   std::vector<Image> read_shown(int what);
 
-  /// What the last frame's view `v` shows of each Gaussian drawn, in index order; none without
-  /// settings.weigh, or after a reload. Whole multiples of 1 / WEIGHT_SCALE, each pixel's to the nearest: the
-  /// same bits always.
-  std::vector<WeighedGaussian> read_weights(std::uint32_t v) const;
-
   const std::shared_ptr<GpuModel>& model() const { return model_; }
   /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not where something
   /// else stood in for blend, whose pictures never get there.
@@ -124,8 +113,6 @@ class Frame {
   FrameReport attempt(const Workings& workings, Stage last = Stage::probe);
   void run_stages(const Workings& workings, Stage last, FrameReport& report);
   void fill(FrameReport& report) const;
-  template <typename T, typename Take>
-  void read_drawn(std::uint32_t v, const Take& take) const;
 
   std::shared_ptr<GpuModel> model_;
   int uploads_ = 0;  // of the model, as far as was seen

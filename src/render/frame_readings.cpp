@@ -36,41 +36,20 @@ std::vector<Image> Frame::read_shown(int what) {
   return images;
 }
 
-// What was measured in a view, a T a slot: take(Gaussian, T) of those drawn.
-template <typename T, typename Take>
-void Frame::read_drawn(std::uint32_t v, const Take& take) const {
-  const DrawnBuffers& drawn = *buffers_.drawn[shape_.views.at(v).order_group];
-  const auto count = drawn.arguments.read<shared::DispatchArguments>(1).front().count;
-  const auto indices = drawn.indices.read<std::uint32_t>(count);
-  const std::size_t views = shape_.view_count();
-  const auto coverages = buffers_.coverages.read<std::uint32_t>(count * views);
-  const auto measured = buffers_.measured.read<T>(count, std::size_t{v} * shape_.slots);
-  for (std::size_t slot = 0; slot < count; ++slot) {
-    if (coverages[slot * views + v] != 0) take(indices[slot], measured[slot]);
-  }
-}
-
 std::vector<MeasuredGaussian> Frame::read_measured(std::uint32_t v) const {
   if (!shape_.records || uploads_ != model_->uploads()) return {};
   const shared::View& view = shape_.views.at(v);
+  const std::vector<DrawnGaussian> drawn = buffers_.read_drawn(shape_, v);
+  const auto largest = buffers_.measured.read<float>(shape_.slots, std::size_t{v} * shape_.slots);
   std::vector<MeasuredGaussian> measured;
-  read_drawn<float>(v, [&](std::uint32_t i, float most) {
+  for (const auto& [i, slot] : drawn) {
     const glm::vec3 p = model_->model().position[i] - glm::vec3(view.anchor);
     const float depth = shape_.perspective.projection == PROJECTION_TANGENT
                             ? glm::length(p - glm::vec3(view.eye))
                             : glm::dot(glm::vec3(view.row_z), p) + view.row_z.w;
-    measured.push_back({i, depth, most});
-  });
+    measured.push_back({i, depth, largest[slot]});
+  }
   return measured;
-}
-
-std::vector<WeighedGaussian> Frame::read_weights(std::uint32_t v) const {
-  if (!shape_.settings.weigh || uploads_ != model_->uploads()) return {};
-  std::vector<WeighedGaussian> weights;
-  read_drawn<std::uint64_t>(v, [&](std::uint32_t i, std::uint64_t steps) {
-    weights.push_back({i, static_cast<double>(steps) / WEIGHT_SCALE});
-  });
-  return weights;
 }
 
 }  // namespace binosplat::render

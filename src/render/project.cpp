@@ -117,7 +117,6 @@ void project(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t 
   compact(dispatcher, shape, views, drawn, buffers);
   gl::Defines defines = projecting(shape);
   defines.emplace_back("SH_DEGREE", std::to_string(shape.degree));
-  defines.emplace_back("WEIGHS", shape.settings.weigh ? "1" : "0");
   defines.push_back(subgroups_define(dispatcher.context()));
   const gl::Program& program = dispatcher.context().program("project.comp", defines);
   for (std::size_t p = 0; p < model.pages.size(); ++p) {

@@ -23,10 +23,6 @@ void check(const FrameSettings& s, std::string_view prefix) {
   if (s.probe_every < 1) fail("looking at one of {} frames: expected at least one", s.probe_every);
   if (s.probe_tiles < 1) fail("{} tiles of a view to probe: expected at least one", s.probe_tiles);
   if (s.record_every < 1) fail("measuring one of {} frames: expected at least one", s.record_every);
-  if (s.weigh && measures(s.transmittance)) {
-    fail("{}transmittance {}: not in a frame that weighs", prefix,
-         transmittance_choices[s.transmittance].name);
-  }
 }
 
 FrameSettings exact_of(const FrameSettings& s) {

@@ -47,9 +47,6 @@ struct FrameSettings {
   /// At least 1 of so many frames looks, and each whose eyes have gone a fifteenth of the way to a cut since
   /// the last that did (history.h): a degree, say.
   int probe_every = 4;
-  /// The frame sums the weight alpha * T of each Gaussian over the pixels, for Frame::read_weights; the
-  /// pictures are the same. Not with a measured transmittance.
-  bool weigh = false;
   /// DECODE_; of Scaffold-GS only. Cyclopean needs views in pairs, the eyes at 2k and 2k + 1.
   int decode = DECODE_EYES;
   /// ORDER_ and PROJECTION_ of shared/axes.h; none: what the model was trained with. Together `distance` and
@@ -66,7 +63,7 @@ struct FrameSettings {
 };
 
 /// Throws Error for values that no frame has and for settings that contradict each other: an exact rule with
-/// a tolerance or a quality, a tolerance with a quality, weights with what earlier frames tell.
+/// a tolerance or a quality, a tolerance with a quality.
 /// `prefix` goes before the names of settings in the text: "--" where they were given as options.
 void check(const FrameSettings& settings, std::string_view prefix = "");
 

@@ -34,6 +34,19 @@ void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& bu
 /// shared/axes.h. The pictures stay.
 void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what);
 
+/// Other colours for the splats of a frame of one view: vec4 by slot.
+void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer& colours,
+              FrameBuffers& buffers);
+
+/// Adds alpha * T times `scale` times the picture in buffers.colours, which stays, over the pixels of each
+/// splat to `sums`: by channel, ivec2 of 64 bits, low first. No channel times `scale` may be larger than
+/// TRANSPOSED_SCALE.
+void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, float scale,
+                      const gl::Buffer& sums);
+
+/// Throws Error(out_of_memory) where the driver ended a list of splats before its end.
+void refuse_cut(const gl::Context& context, const shared::Counters& counters);
+
 /// Keeps what was measured for the next frame, and tells the median depth. Nothing to do where nothing is
 /// measured.
 void remember(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);

@@ -23,6 +23,15 @@ struct CalibrationView {
   std::optional<Image> photo;  // RGB in the camera's size
 };
 
+/// Views of three tasks: what is learned in some is judged in others, since a model that was made for the
+/// views that it is judged in would look better than it is.
+struct ViewSplit {
+  std::vector<Camera> training;            // of the world
+  std::vector<CalibrationView> held_back;  // at least one; their mean decides
+  std::vector<CalibrationView> test;       // decide nothing: what they show is stated; may be empty
+  double near_plane = near_default;        // world units
+};
+
 /// A model in some views, and what each way to draw it costs there.
 class Calibrator {
  public:

@@ -17,33 +17,40 @@ namespace binosplat::study {
 namespace {
 
 constexpr int drawings = 3;                                 // of a view whose time is told
+constexpr int trial_rounds = 4;                             // that colours of a candidate are fitted in
 constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
 
 class Trimmer {
  public:
-  Trimmer(gl::Context& context, const Model& model, const TrimViews& views, const CalibrationTarget& target,
-          const TrimWriter& write)
-      : target_(target),
-        write_(write),
+  Trimmer(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings)
+      : context_(context),
+        views_(views),
+        settings_(settings),
         original_(model),
-        model_(model),
-        judge_(context, model, views.held_back, views.near_plane, target.kind) {
-    if (!views.test.empty()) {
-      test_ = std::make_unique<Calibrator>(context, model, views.test, views.near_plane, target.kind);
-    }
+        whole_(model),
+        judge_(context, model, views.held_back, views.near_plane, settings.target.kind) {
+    if (!views.test.empty())
+      test_ =
+          std::make_unique<Calibrator>(context, model, views.test, views.near_plane, settings.target.kind);
     tell("as it was", model, 0);
-    weights_ = weigh(context, model, views.weighed, views.near_plane);
   }
 
-  Trimmed run(ModelFormat format) {
+  Trimmed run() {
+    if (settings_.refit) {
+      fit(whole_, {}, [&](const Model& model) { return -sign() * judge_.cost(model).mean_db; });
+      start_ = judge_.cost(whole_).mean_db;
+      tell("colours fitted", whole_, 0);
+    }
+    weights_ = weigh(context_, whole_, views_.training, views_.near_plane);
     found_.unseen = weights_.unseen();
-    const std::string name = written_format(format).name;
-    const bool packs = format == ModelFormat::spz;
+    model_ = whole_;
+    const std::string name = written_format(settings_.format).name;
+    const bool packs = settings_.format == ModelFormat::spz;
     if (!holds(cost(model_, 8), 1.0)) {
       found_.fits = false;
       tell_written("as " + name);
     } else {
-      const bool has_harmonics = model_.degree > 0 && format != ModelFormat::splat;
+      const bool has_harmonics = model_.degree > 0 && settings_.format != ModelFormat::splat;
       if (packs && has_harmonics) lower_bits();
       tell_written(packs && has_harmonics
                        ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
@@ -56,20 +63,35 @@ class Trimmer {
   }
 
  private:
-  double cost(const Model& model, int bits) { return judge_.cost(write_(model, bits).model).mean_db; }
+  double cost(const Model& model, int bits) {
+    return judge_.cost(settings_.write(model, bits).model).mean_db;
+  }
+
+  void fit(Model& model, const RefitSettings& settings, const RefitJudge& judge) const {
+    const RefitTargets targets{original_, views_.training, *settings_.refit, views_.near_plane};
+    model.sh = refit(context_, model, targets, settings, judge).sh;
+  }
+
+  /// A candidate, its colours fitted again where that is asked for.
+  Model fitted(Model model) const {
+    if (settings_.refit) fit(model, {.rounds = trial_rounds, .keep_zeros = true}, {});
+    return model;
+  }
 
   /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
   double bound(double share) const {
-    return target_.kind == CalibrationTarget::Kind::drop ? share * target_.db
-                                                         : target_.db - 10.0 * std::log10(share);
+    const auto& [kind, db] = settings_.target;
+    return kind == CalibrationTarget::Kind::drop ? start_ + share * (db - start_)
+                                                 : db - 10.0 * std::log10(share);
   }
-  double sign() const { return target_.kind == CalibrationTarget::Kind::drop ? -1.0 : 1.0; }
+  double sign() const { return settings_.target.kind == CalibrationTarget::Kind::drop ? -1.0 : 1.0; }
   bool holds(double db, double share) const { return sign() * db >= sign() * bound(share); }
 
   /// The largest amount that holds a share of the bound, at which the model's cost is `db(amount)`; 0 must
   /// hold.
   double largest(const std::function<double(double)>& db, double share, measure::ToleranceSearch search) {
-    search.within = target_.kind == CalibrationTarget::Kind::drop ? 0.03 * target_.db : 0.1;
+    search.within =
+        settings_.target.kind == CalibrationTarget::Kind::drop ? 0.03 * (settings_.target.db - start_) : 0.1;
     const auto value = [&](double amount) { return sign() * db(amount); };
     return measure::find_tolerance(value, sign() * bound(share), search).tolerance;
   }
@@ -80,26 +102,26 @@ class Trimmer {
     found_.less = found_.harmonic_bits < 8;
   }
 
-  /// Harmonics of so many degrees, base colours brought to the mean of what the weighed views see.
+  /// Harmonics of so many degrees, base colours brought to the mean of what the training views see.
   Model lowered(const std::vector<std::uint8_t>& degrees) const {
-    Model model = with_degrees(original_, degrees);
+    Model model = with_degrees(whole_, degrees);
     const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
     for (std::size_t i = 0; i < degrees.size(); ++i) {
-      if (degrees[i] >= original_.degree) continue;
+      if (degrees[i] >= whole_.degree) continue;
       const glm::vec3 shift = weights_.shift(i, degrees[i]);
       for (int c = 0; c < 3; ++c)
         model.sh[i * values + static_cast<std::size_t>(c)] += shift[c] / static_cast<float>(sh_c0);
     }
-    return model;
+    return fitted(std::move(model));
   }
 
   void lower_harmonics(bool packs) {
-    const std::size_t count = original_.count();
-    for (int degree = 0; degree < original_.degree; ++degree) {
+    const std::size_t count = whole_.count();
+    for (int degree = 0; degree < whole_.degree; ++degree) {
       Model lower = lowered(std::vector<std::uint8_t>(count, static_cast<std::uint8_t>(degree)));
       if (!holds(cost(lower, found_.harmonic_bits), after_harmonics)) continue;
       model_ = std::move(lower);
-      take(fmt::format("degree {} instead of {}", degree, original_.degree));
+      take(fmt::format("degree {} instead of {}", degree, whole_.degree));
       break;
     }
     if (packs && model_.degree > 0 && holds(cost(model_, found_.harmonic_bits), after_harmonics))
@@ -108,7 +130,7 @@ class Trimmer {
 
   /// The degree each Gaussian needs where its colour may change by so much (Weights::change).
   std::vector<std::uint8_t> degrees(double change) const {
-    std::vector<std::uint8_t> of(original_.count());
+    std::vector<std::uint8_t> of(whole_.count());
     for (std::size_t i = 0; i < of.size(); ++i) {
       while (of[i] < model_.degree && weights_.change(i, of[i]) > change) ++of[i];
     }
@@ -118,7 +140,7 @@ class Trimmer {
   /// Zeros are packed well: a degree for each Gaussian.
   void lower_degrees() {
     std::vector<double> changes;
-    for (std::size_t i = 0; i < original_.count(); ++i) {
+    for (std::size_t i = 0; i < whole_.count(); ++i) {
       if (weights_.change(i, 0) > 0.0) changes.push_back(weights_.change(i, 0));
     }
     if (changes.empty()) return;
@@ -146,7 +168,7 @@ class Trimmer {
     const auto without = [&](double amount) {
       std::vector<std::uint8_t> kept(count, 1);
       for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_weight[k]] = 0;
-      return with_gaussians(model_, kept);
+      return fitted(with_gaussians(model_, kept));
     };
     std::map<std::size_t, double> known;  // amounts that come to the same number
     const auto db = [&](double amount) {
@@ -168,7 +190,7 @@ class Trimmer {
   }
 
   void tell_written(const std::string& name) {
-    const WrittenModel written = write_(model_, found_.harmonic_bits);
+    const WrittenModel written = settings_.write(model_, found_.harmonic_bits);
     tell(name, written.model, written.bytes);
   }
 
@@ -179,21 +201,23 @@ class Trimmer {
     log_info("{}: {} Gaussians, {:.3f} dB", name, step.gaussians, step.held_back.mean_db);
   }
 
-  const CalibrationTarget& target_;
-  const TrimWriter& write_;
+  gl::Context& context_;
+  const ViewSplit& views_;
+  const TrimSettings& settings_;
   const Model& original_;
+  Model whole_;  // with fitted colours
   Model model_;  // as trimmed so far
   Calibrator judge_;
   std::unique_ptr<Calibrator> test_;
+  double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained
   Weights weights_;
   Trimmed found_;
 };
 
 }  // namespace
 
-Trimmed trim(gl::Context& context, const Model& model, const TrimViews& views,
-             const CalibrationTarget& target, ModelFormat format, const TrimWriter& write) {
-  return Trimmer(context, model, views, target, write).run(format);
+Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings) {
+  return Trimmer(context, model, views, settings).run();
 }
 
 }  // namespace binosplat::study

@@ -8,17 +8,9 @@
 
 #include "formats/model_output.h"
 #include "study/calibrate.h"
+#include "study/refit.h"
 
 namespace binosplat::study {
-
-/// The views of a trimming. What a Gaussian is worth is learned in some, what leaving it out costs is judged
-/// in others: a model that was trimmed for the views it is judged in would look better than it is.
-struct TrimViews {
-  std::vector<Camera> weighed;             // of the world
-  std::vector<CalibrationView> held_back;  // at least one; the bound is on their mean
-  std::vector<CalibrationView> test;       // decide nothing: what is lost there is stated; may be empty
-  double near_plane = near_default;        // world units
-};
 
 /// A model as its file keeps it, and the bytes of that file.
 struct WrittenModel {
@@ -27,7 +19,7 @@ struct WrittenModel {
 };
 
 /// Writes a model to a file of the wanted format and reads it back.
-using TrimWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>;
+using TrialWriter = std::function<WrittenModel(const Model&, int harmonic_bits)>;
 
 /// A model on its way.
 struct TrimStep {
@@ -44,17 +36,25 @@ struct Trimmed {
   int harmonic_bits = 8;        // of spz
   bool fits = true;             // the bound allows for what the format itself costs; else nothing was tried
   bool less = false;            // anything could be left out
-  std::size_t unseen = 0;       // Gaussians that touch no pixel of the weighed views
+  std::size_t unseen = 0;       // Gaussians that touch no pixel of the training views
   std::vector<TrimStep> steps;  // from the whole model on, which has the bytes of no file
+};
+
+/// How to trim.
+struct TrimSettings {
+  CalibrationTarget target;  // what may be lost, in the mean of the views held back
+  ModelFormat format = ModelFormat::ply;
+  TrialWriter write;
+  std::optional<PhotoOf> refit;  // fit colours anew to these photos, or to the model's own pictures
 };
 
 /// Searches in the order in which the bound is spent: as few bits as the format has a choice of (spz) for a
 /// quarter of it; the harmonics that change colours least for another: a lower degree for all, then, where
 /// zeros are packed (spz), for as many Gaussians as possible; last the Gaussians of the least summed weight,
-/// for all that remains, half of it at least. Every candidate is judged as it reads back from its file, so
+/// for all that remains, half of it at least. What a Gaussian is worth is learned in the training views,
+/// the bound is on the mean of those held back. Every candidate is judged as it reads back from its file, so
 /// the bound holds for what is written. The model's axes are those of the format, and it is not
 /// Scaffold-GS's. Throws Error for views that a target cannot be measured in (Calibrator).
-Trimmed trim(gl::Context& context, const Model& model, const TrimViews& views,
-             const CalibrationTarget& target, ModelFormat format, const TrimWriter& write);
+Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings);
 
 }  // namespace binosplat::study

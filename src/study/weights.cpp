@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "render/frame.h"
+#include "render/linear_blend.h"
 #include "scene/axes.h"
 #include "scene/harmonics.h"
 
@@ -53,16 +53,19 @@ Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera
               double near_plane) {
   Weights weights{cameras.size(), std::vector<double>(model.count()),
                   std::vector<std::array<Weights::Lowered, 3>>(model.count())};
-  render::Frame frame(context, model);
+  render::LinearBlend blend(context, model);
   Progress progress("weighing the Gaussians in every view", cameras.size());
   std::size_t done = 0;
   for (const Camera& in_world : cameras) {
     const Camera camera = into_axes(in_world, model.axes);
-    const shared::View view = make_view(camera, near_plane);
-    frame.draw(std::span(&view, 1), {.weigh = true});
-    const std::vector<render::WeighedGaussian> seen = frame.read_weights(0);
-    parallel_for(seen.size(), [&](std::size_t k) {
-      const auto& [i, weight] = seen[k];
+    blend.set_view(make_view(camera, near_plane));
+    const std::size_t pixels =
+        static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+    blend.set_picture(std::vector<glm::vec4>(pixels, {1, 0, 0, 0}));
+    const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
+    parallel_for(sums.size(), [&](std::size_t k) {
+      const std::size_t i = blend.drawn()[k].index;
+      const double weight = sums[k].x;
       if (weight == 0.0) return;
       weights.weight[i] += weight;
       if (model.degree == 0 || model.scaffold) return;

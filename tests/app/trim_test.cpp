@@ -113,6 +113,19 @@ TEST_F(TrimTest, ALowerBoundLeavesLess) {
   EXPECT_EQ(all, visible);
 }
 
+TEST_F(TrimTest, WithColoursFittedAgainLessIsLeft) {
+  save(model, test::random_model(8, 600, 1));
+  const auto left = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--quality", "32"});
+    EXPECT_TRUE(good(trim("m.ply", more)));
+    EXPECT_GE(report()["steps"].back()["held_back"]["mean_db"].get<double>(), 32.0);
+    return trimmed("m.ply").count();
+  };
+  const std::size_t fitted = left({"--refit"}), as_they_were = left({});
+  EXPECT_LT(fitted, as_they_were);
+  EXPECT_GT(fitted, 0u);
+}
+
 TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   Model whole = seen();
   whole.degree = 0;

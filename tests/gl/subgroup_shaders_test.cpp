@@ -51,7 +51,7 @@ TEST_F(SubgroupShaders, Compile) {
                            {"AHEAD", *lists == '1' ? "8" : "4"},
                            {"LISTS", lists},
                            {"RECORDS", "0"},
-                           {"WEIGHS", "0"},
+                           {"TRANSPOSED", "0"},
                            {"SHOW", "0"}};
         defines.insert(defines.end(), tiles.begin(), tiles.end());
         expect_compiles("blend_subgroups.comp", defines, std::string(lists) + supertile_side + half);
@@ -69,7 +69,7 @@ TEST_F(SubgroupShaders, Compile) {
                              {"TH_NAME", "tau"},        {"TRANSMITTANCE", "0"}, {"TILE_SIZE", "16"},
                              {"SUPERTILE_SIDE", "2"},   {"HALF", half},         {"ANTIALIASED", "0"},
                              {"OFFSETS", "0"},          {"SH_DEGREE", "1"},     {"RECORDS", "1"},
-                             {"WEIGHS", "0"},           {"WITH_SUBGROUPS", "1"}};
+                             {"WITH_SUBGROUPS", "1"}};
     expect_compiles("project.comp", defines, half);
   }
   for (const char* writes : {"0", "1"})

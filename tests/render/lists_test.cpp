@@ -149,7 +149,7 @@ TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
   }
 }
 
-TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
+TEST(Lists, OfSeveralTilesAreShownAlike) {
   const Model model = test::random_model(53, 4000, 1);
   const auto told = [&](int supertile_side) {
     render::Frame frame(test::gl_context(), model);
@@ -162,14 +162,6 @@ TEST(Lists, OfSeveralTilesAreShownAndWeighedAlike) {
   const auto own = told(1), shared = told(2);
   EXPECT_EQ(own, shared);
   EXPECT_NE(own[0], own[2]) << "the same whatever is shown";
-  const auto weights = [&](int supertile_side) {
-    render::Frame frame(test::gl_context(), model);
-    frame.draw(two_views(), {.weigh = true}, {.supertile_side = supertile_side});
-    std::vector<double> all(model.count());
-    for (const render::WeighedGaussian& g : frame.read_weights(0)) all[g.index] = g.weight;
-    return all;
-  };
-  EXPECT_EQ(weights(1), weights(2));
 }
 
 TEST(Lists, GrowWithTheirTiles) {

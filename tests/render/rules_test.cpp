@@ -59,8 +59,6 @@ TEST(Settings, ThatContradictAreNamed) {
       {{.th = TH_SQUARED, .tolerance = nan}, "--tolerance nan"},
       {{.th = TH_SQUARED, .tolerance = infinite}, "--tolerance inf"},
       {{.th = TH_SQUARED, .quality = nan}, "--quality nan"},
-      {{.transmittance = TRANSMITTANCE_LAST, .weigh = true},
-       "--transmittance last: not in a frame that weighs"},
       {{.tile_size = 12}, "--tile 12"},
       {{.record_every = 0}, "measuring one of 0 frames"},
   };

@@ -1,0 +1,208 @@
+// binosplat refit: colours that fit the pictures best, in whatever order and projection.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "app/command.h"
+#include "app/load_scene.h"
+#include "app/model_files.h"
+#include "app/option_checks.h"
+#include "app/output_options.h"
+#include "app/photos.h"
+#include "app/split.h"
+#include "base/log.h"
+#include "scene/axes.h"
+#include "study/fields.h"
+#include "study/refit.h"
+
+namespace binosplat::app {
+
+namespace {
+
+using nlohmann::ordered_json;
+using study::Calibrator;
+using Kind = study::CalibrationTarget::Kind;
+
+struct RefitOptions : MeasuredOptions {
+  bool against_exact = false;
+  std::optional<int> order, projection;
+  int rounds = study::RefitSettings{}.rounds;
+  std::optional<int> harmonic_bits;
+  SplitOptions split{.held_back = 4};
+  std::string output;
+  std::string json;
+};
+
+ModelFormat check(const RefitOptions& o) {
+  if (o.photos.empty() != o.against_exact)
+    fail("refit needs what to fit: --photos DIR, or --against exact for the model's own pictures");
+  if (o.camera.lens.size && !o.photos.empty())
+    fail("--size with --photos: photos are fitted in their own size");
+  const ModelFormat format = output_format(o.output);
+  if (o.harmonic_bits && format != ModelFormat::spz)
+    fail("--sh-bits {}: only spz has a choice of them", *o.harmonic_bits);
+  check_output(o.output);
+  if (!o.json.empty()) check_output(o.json);
+  return format;
+}
+
+/// PSNR in dB, means over views: against the photos, or against the model's own pictures.
+struct Step {
+  std::string name;
+  double held_back = 0.0, worst = 0.0, test = 0.0;
+};
+
+/// A model's pictures against what they should be, in views that have no say.
+class Judge {
+ public:
+  Judge(gl::Context& context, const Model& original, const study::ViewSplit& views, Kind kind)
+      : kind_(kind), held_back_(context, original, views.held_back, views.near_plane, kind) {
+    if (!views.test.empty())
+      test_ = std::make_unique<Calibrator>(context, original, views.test, views.near_plane, kind);
+  }
+
+  double held_back(const Model& model) { return psnr(held_back_, held_back_.cost(model).mean_db); }
+
+  Step step(std::string name, const Model& model) {
+    const Calibrator::Cost cost = held_back_.cost(model);
+    const double own = kind_ == Kind::drop ? cost.view_db[cost.worst_view] : cost.worst_db;
+    Step step{std::move(name), psnr(held_back_, cost.mean_db), psnr(held_back_, own), 0.0};
+    if (test_) step.test = psnr(*test_, test_->cost(model).mean_db);
+    return step;
+  }
+
+ private:
+  /// Of a cost, which against photos is what is lost of what the model had.
+  double psnr(const Calibrator& views, double db) const {
+    return kind_ == Kind::drop ? views.exact_photo_db() - db : db;
+  }
+
+  Kind kind_;
+  Calibrator held_back_;
+  std::unique_ptr<Calibrator> test_;
+};
+
+std::string name_of(const Perspective& seen) {
+  return fmt::format("{}, {}", order_choices[seen.order].name, projection_choices[seen.projection].name);
+}
+
+void print(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
+           std::size_t photos) {
+  fmt::print("{} views fitted, {} of them to photos; {} held back, {} of test. PSNR in dB against {}\n\n",
+             views.training.size(), photos, views.held_back.size(), views.test.size(),
+             o.photos.empty() ? "the model's own pictures" : "the photos");
+  const bool has_test = !views.test.empty();
+  fmt::print("{:<44}{:>10}{:>9}\n", "", "held back", has_test ? "test" : "");
+  for (const Step& s : steps)
+    fmt::print("{:<44}{:>10.3f}{:>9}\n", s.name, s.held_back, has_test ? fmt::format("{:.3f}", s.test) : "");
+}
+
+ordered_json to_json(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
+                     std::size_t photos, const study::Refitted& found) {
+  ordered_json json = study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
+                                    "against", o.photos.empty() ? "exact" : "photos", "views_fitted",
+                                    views.training.size(), "photos", photos, "best_round", found.best_round);
+  for (const study::CalibrationView& view : views.held_back) json["held_back"].push_back(view.camera.name);
+  for (const Step& s : steps) {
+    ordered_json step = study::object("step", s.name, "held_back_db", s.held_back);
+    if (!views.test.empty()) step["test_db"] = s.test;
+    json["steps"].push_back(step);
+  }
+  return json;
+}
+
+ExitCode refit(const RefitOptions& o) {
+  const ModelFormat format = check(o);
+  const CameraList list = needed_cameras("refit", o);
+  Model model = load_scene(o.scene);
+  refuse_scaffold(model, o.scene.name);
+  bring_into_axes(model, axes_of(format));
+  const study::ViewSplit views =
+      split_views("refit", o, o.split, list, near_plane_of(o.camera, list, model),
+                  [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
+  const auto context = open_context(o.context);
+  Model fitted = model;
+  fitted.perspective = {o.order.value_or(model.perspective.order),
+                        o.projection.value_or(model.perspective.projection)};
+
+  Judge judge(*context, model, views, o.photos.empty() ? Kind::quality : Kind::drop);
+  std::vector<Step> steps;
+  if (fitted.perspective != model.perspective)
+    steps.push_back(judge.step("as it was: " + name_of(model.perspective), model));
+  steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
+  const double before = steps.back().held_back;
+
+  const study::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
+  const auto photos = static_cast<std::size_t>(std::count_if(
+      views.training.begin(), views.training.end(),
+      [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera.name); }));
+  study::Refitted found = study::refit(*context, fitted, targets, {.rounds = o.rounds},
+                                       [&](const Model& m) { return -judge.held_back(m); });
+  fitted.sh = std::move(found.sh);
+  steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));
+  const study::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
+  steps.push_back(
+      judge.step(fmt::format("as {}, {} bytes", written_format(format).name, written.bytes), written.model));
+  print(steps, o, views, photos);
+  if (!o.json.empty()) save_json(o.json, to_json(steps, o, views, photos, found));
+  if (found.best_round == 0 || steps.back().held_back < before) {
+    log_warning(
+        "{} is not written: the views held back would be no nearer than before, {:.3f} dB; other views held "
+        "back (--views) or more cameras may help",
+        o.output, before);
+    return ExitCode::fell_short;
+  }
+  for (const std::string& loss : write_model_file(o.output, fitted, format, o.harmonic_bits.value_or(8)))
+    log_warning("{}", loss);
+  fmt::print("\n{}\n", o.output);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_refit(CLI::App& program, Command& command) {
+  CLI::App* sub = program.add_subcommand("refit", "Fit a model's colours to photos, or to its own pictures");
+  const auto o = std::make_shared<RefitOptions>();
+  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
+  sub->add_option("-o,--output", o->output, "The file to write: " + written_endings())
+      ->type_name("FILE")
+      ->required();
+  add_photos_option(*sub, o->photos,
+                    "Fit DIR/NAME.jpg or .png of the views; a view without one is\nfitted to the model's own "
+                    "picture");
+  choose<bool>(*sub, "--against", o->against_exact,
+               "Instead of photos: the model's own exact pictures, in the order and\nprojection that it was "
+               "trained with",
+               {{"exact", true}});
+  choose_explained(*sub, "--order", o->order, "What Gaussians are sorted by from then on (as before)",
+                   order_choices);
+  choose_explained(*sub, "--projection", o->projection,
+                   "What a ray sees of a Gaussian from then on (as before)", projection_choices);
+  sub->add_option("--rounds", o->rounds, fmt::format("Of conjugate gradients, at most ({})", o->rounds))
+      ->type_name("N")
+      ->check(range(1, 1000));
+  sub->add_option("--sh-bits", o->harmonic_bits, "Bits of a harmonic in spz (8)")
+      ->type_name("N")
+      ->check(range(1, 8));
+  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
+      ->type_name("FILE");
+  add_split_options(*sub, o->split,
+                    "So many views (that have a photo) are held back to judge by, spread\nevenly, at most a "
+                    "quarter of them (4); the others are fitted");
+  add_size_option(*sub, o->camera.lens);
+  add_lod_option(*sub, o->scene);
+  add_axes_option(*sub, o->scene);
+  sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
+  add_measured_options(*sub, *o);
+  sub->footer(
+      "Shapes and opacities stay. Nothing is written where the views held back would get worse.\n"
+      "Takes about seven times the memory of the model's harmonics, whatever the number of views.\n"
+      "Examples:\n"
+      "  binosplat refit garden.ply --photos images --order distance --projection tangent -o steady.ply\n"
+      "  binosplat refit small.spz --against exact -o better.spz");
+  sub->callback([o, &command] { command = [o] { return refit(*o); }; });
+}
+
+}  // namespace binosplat::app

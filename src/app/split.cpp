@@ -1,0 +1,74 @@
+#include "app/split.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "app/option_checks.h"
+#include "app/photos.h"
+#include "base/error.h"
+#include "study/bench.h"
+
+namespace binosplat::app {
+
+void add_split_options(CLI::App& sub, SplitOptions& o, const char* views_help) {
+  sub.add_option("--views", o.held_back, views_help)->type_name("N")->check(range(1, 10000));
+  sub.add_option("--held-back", o.judges,
+                 "Views by name to hold back instead: photos that the model was not\ntrained on judge best")
+      ->type_name("NAME...")
+      ->excludes("--views");
+  sub.add_option("--test", o.tests, "Views by name that decide nothing: what they lose is stated")
+      ->type_name("NAME...");
+}
+
+CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) {
+  CameraList list = listed_cameras(o.scene, o.camera);
+  if (!list.listed)
+    fail(
+        "{} needs the cameras that the pictures are of, and there are none beside {}: name their file with "
+        "--cameras",
+        command, o.scene.name);
+  return list;
+}
+
+study::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const SplitOptions& split,
+                             const CameraList& list, double near_plane, const MostHeldBack& most) {
+  study::ViewSplit views;
+  views.near_plane = near_plane;
+  std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
+  const auto take = [&](const std::vector<std::string>& names, std::vector<study::CalibrationView>& into) {
+    if (names.empty()) return;
+    for (const Camera& camera : chosen_cameras(names, o.camera.lens, list)) {
+      into.push_back(with_photo(o.photos, camera));
+      if (std::erase_if(cameras, [&](const Camera& other) { return other.name == camera.name; }) == 0)
+        fail("view {} is named twice by --held-back and --test", camera.name);
+    }
+  };
+  take(split.tests, views.test);
+  take(split.judges, views.held_back);
+  if (cameras.size() + (views.held_back.empty() ? 0 : 1) < 2)
+    fail("{}: {} of its cameras for {}, which needs two at least: one to learn from, one to hold back",
+         list.source, cameras.size(), command);
+  if (!views.held_back.empty()) {
+    views.training = std::move(cameras);
+    return views;
+  }
+  std::vector<std::size_t> judging;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (o.photos.empty() || find_view_photo(o.photos, cameras[i].name)) judging.push_back(i);
+  }
+  if (judging.empty()) fail("--photos {}: there is no photo of any view", o.photos);
+  const std::size_t wanted = std::clamp<std::size_t>(most(judging.size(), cameras.size()), 1,
+                                                     static_cast<std::size_t>(split.held_back));
+  std::vector<bool> held_back(cameras.size(), false);
+  for (const std::size_t k : study::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (held_back[i]) {
+      views.held_back.push_back(with_photo(o.photos, cameras[i]));
+    } else {
+      views.training.push_back(cameras[i]);
+    }
+  }
+  return views;
+}
+
+}  // namespace binosplat::app

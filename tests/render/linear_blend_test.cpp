@@ -1,0 +1,174 @@
+// The blend as a linear map of colours, and its transpose, against the reference.
+
+#include "render/linear_blend.h"
+
+#include <gtest/gtest.h>
+
+#include "render/faulty_shaders.h"
+#include "render/support.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+
+namespace binosplat {
+namespace {
+
+using render::FrameSettings;
+using render::LinearBlend;
+
+constexpr int width = 96, height = 80;
+constexpr std::size_t pixels = std::size_t{width} * height;
+
+shared::View front() { return make_view(test::front_camera(width, height, 90)); }
+
+// What a picture of one value shows of each Gaussian of the model: 0 of those that are not drawn.
+std::vector<double> shown(const Model& model, float value, const FrameSettings& settings = {},
+                          const render::Workings& workings = {}) {
+  LinearBlend blend(test::gl_context(), model);
+  blend.set_view(front(), settings, workings);
+  blend.set_picture(std::vector<glm::vec4>(pixels, {0, 0, value, 0}));
+  const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
+  std::vector<double> found(model.count());
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    EXPECT_EQ(glm::dvec3(sums[k].x, sums[k].y, sums[k].w), glm::dvec3(0.0));
+    found[blend.drawn()[k].index] = sums[k].z;
+  }
+  return found;
+}
+
+// How many weights differ from the reference's by more than the steps of the pixels and fp32 explain.
+std::size_t differing(const std::vector<double>& weights, const Model& model) {
+  const shared::View view = front();
+  const auto splats = reference::project_all(model, view);
+  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+  const std::vector<double> expected = reference::measure_weights(splats, lists, view);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    count += std::abs(weights[i] - expected[i]) > 2e-4 + 1e-4 * expected[i] ? 1 : 0;
+  return count;
+}
+
+TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
+  const Model model = test::random_model(91, 4000, 0);
+  Model fainter = model;  // a weight that is a little off is told apart
+  for (float& opacity : fainter.opacity) opacity *= 0.995f;
+  for (const int tile : {8, 16, 32}) {
+    const std::vector<double> weights = shown(model, 1.0f, {.tile_size = tile});
+    // A few may lie where fp32 blends a pixel more or less.
+    const std::size_t few = model.count() / 500;
+    EXPECT_LE(differing(weights, model), few) << tile;
+    EXPECT_GT(differing(weights, fainter), 10 * few) << tile;
+    // All of them, and the light that is left, make up the picture.
+    const Picture picture = test::draw(model, front());
+    double left = 0.0, sum = 0.0;
+    for (const glm::vec4& colour : picture.colour) left += colour.a;
+    for (const double weight : weights) sum += weight;
+    EXPECT_NEAR(sum + left, static_cast<double>(pixels), 0.1) << tile;
+    EXPECT_EQ(weights, shown(model, 1.0f, {.tile_size = tile})) << "not the same bits twice";
+    EXPECT_EQ(weights, shown(model, 1.0f, {.tile_size = tile}, {.supertile_side = 1, .slots = 10}))
+        << "drawn again, in lists of other tiles";
+  }
+}
+
+// Sums that two words are needed for, of either sign, and what they hide.
+TEST(LinearBlends, LargeSumsCarry) {
+  Model model;
+  test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f);
+  test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.9f);
+  test::add(model, {0, 0, 4}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f);
+  test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);
+  const auto right = [&] {
+    for (const float sign : {1.0f, -1.0f}) {
+      const std::vector<double> sums = shown(model, sign);
+      if (std::abs(sign * sums[0] - 0.99 * pixels) > 0.1 ||
+          std::abs(sign * sums[1] - 0.01 * 0.9 * pixels) > 0.02)
+        return false;
+      EXPECT_GT(sign * sums[0] * TRANSPOSED_SCALE, 0x1p33) << "one word would do";
+      EXPECT_EQ(sums[2], 0.0) << "it would leave less than the blend goes on with";
+      EXPECT_EQ(sums[3], 0.0) << "behind the camera";
+    }
+    return true;
+  };
+  EXPECT_TRUE(right());
+  for (const auto& [sought, fault] : {std::pair{"0u) + (before + sum < before ?", "0u) + (false ?"},
+                                      std::pair{"sums[c] < 0 ? 0xffffffffu", "false ? 0xffffffffu"}}) {
+    const test::FaultyShaders faulty("blending.glsl", sought, fault);
+    EXPECT_FALSE(right()) << fault;
+  }
+}
+
+// The picture of colours of either sign is the reference's, and the transpose is one: <W c, p> = <c, W^T p>.
+TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
+  const Model model = test::random_model(93, 3000, 1);
+  test::Uniform uniform(5);
+  const auto either_sign = [&] {
+    return glm::vec3(static_cast<float>(uniform(-1, 1)), static_cast<float>(uniform(-1, 1)),
+                     static_cast<float>(uniform(-1, 1)));
+  };
+  std::vector<glm::vec4> picture;
+  for (std::size_t p = 0; p < pixels; ++p) picture.emplace_back(either_sign(), 0.0f);
+  const std::vector<glm::vec3> of_all = [&] {
+    std::vector<glm::vec3> colours(model.count());
+    for (glm::vec3& colour : colours) colour = either_sign();
+    return colours;
+  }();
+  struct Found {
+    double psnr, there, back;
+  };
+  const auto find = [&](const Perspective& seen) {
+    LinearBlend blend(test::gl_context(), model);
+    blend.set_view(front(), {.order = seen.order, .projection = seen.projection});
+    std::vector<glm::vec3> colours;
+    for (const auto& drawn : blend.drawn()) colours.push_back(of_all[drawn.index]);
+    blend.set_colours(colours);
+    const std::vector<glm::vec4> drawn = blend.read_picture();
+
+    Model as_seen = model;
+    as_seen.perspective = seen;
+    const shared::View view = front();
+    auto splats = reference::project_all(as_seen, view);
+    for (std::size_t i = 0; i < splats.size(); ++i) splats[i].colour = of_all[i];
+    const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+    const Picture expected = reference::blend(splats, lists, view);
+    double squares = 0.0;
+    for (std::size_t p = 0; p < pixels; ++p) {
+      const glm::dvec3 off = glm::dvec3(drawn[p]) - glm::dvec3(expected.colour[p]);
+      squares += glm::dot(off, off) / (3.0 * pixels);
+    }
+    Found found{-10.0 * std::log10(squares), 0.0, 0.0};
+
+    blend.set_picture(picture);
+    const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
+    for (std::size_t p = 0; p < pixels; ++p)
+      found.there += glm::dot(glm::dvec3(drawn[p]), glm::dvec3(picture[p]));
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      found.back += glm::dot(glm::dvec3(colours[k]), glm::dvec3(sums[k]));
+    return found;
+  };
+  for (const Perspective& seen : {Perspective{}, Perspective{ORDER_DISTANCE, PROJECTION_TANGENT}}) {
+    const Found found = find(seen);
+    EXPECT_GT(found.psnr, 90.0) << seen.projection;
+    EXPECT_GT(std::abs(found.there), 1.0) << "nothing to compare";
+    EXPECT_NEAR(found.there, found.back, 2e-3) << seen.projection;
+  }
+  for (const auto& [shader, sought, fault] :
+       {std::tuple{"recolour.comp", "colours[slot].rgb", "max(colours[slot].rgb, 0.0)"},
+        std::tuple{"blending.glsl", "colours[place_of(view, p)] :", "colours[place_of(view, 0u)] :"}}) {
+    const test::FaultyShaders faulty(shader, sought, fault);
+    const Found found = find({});
+    EXPECT_TRUE(found.psnr < 50.0 || std::abs(found.there - found.back) > 5e-3) << fault;
+  }
+}
+
+TEST(LinearBlends, OfNothingAreNothing) {
+  Model model;
+  test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);
+  LinearBlend blend(test::gl_context(), model);
+  blend.set_view(front());
+  EXPECT_TRUE(blend.drawn().empty());
+  blend.set_colours({});
+  EXPECT_EQ(blend.read_picture()[7], glm::vec4(0, 0, 0, 1));
+  EXPECT_TRUE(blend.transposed(1.0f).empty());
+}
+
+}  // namespace
+}  // namespace binosplat
