@@ -5,7 +5,7 @@
 #define INVOCATIONS (TILE_SIZE * TILE_SIZE / COLUMN)
 // Splats in shared memory at a time, 9 KiB at most: with more an H200 holds fewer groups, with less the longest lists take
 // longer (src/render/README.md).
-#if RECORDS || TRANSPOSED
+#if RECORDS || SUMS != SUMS_NONE
 #define BATCH_MAX 176
 #else
 #define BATCH_MAX 192
@@ -20,7 +20,7 @@ shared uint alive;  // 1 while a pixel still takes light
 void load(uint at) {
   uint self = gl_LocalInvocationIndex;
   if (self >= BATCH) return;
-#if RECORDS || TRANSPOSED
+#if RECORDS || SUMS != SUMS_NONE
   batch_measured[self] = MEASURED(0);
 #endif
   if (at >= end) {
@@ -62,7 +62,7 @@ void main() {
       for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) blend_from(next + i);
     }
     cut = cut || (!are_done() && next < size);
-#if RECORDS || TRANSPOSED
+#if RECORDS || SUMS != SUMS_NONE
     barrier();
     uint self = gl_LocalInvocationIndex;
     if (self < size) pass_on(values[batch + self], batch_measured[self]);

@@ -32,12 +32,14 @@ layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  /
 layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat, bits of floats
 #define MEASURED uint
 shared uint batch_measured[BATCH];
-#elif TRANSPOSED
+#elif SUMS != SUMS_NONE
 layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat and channel, 64 bits, low first
+#if SUMS == SUMS_TRANSPOSED
 uniform uint scale;  // bits of a float
+#endif
 #define MEASURED ivec4
 shared ivec4 batch_measured[BATCH];
-vec4 wanted[COLUMN];  // of the picture, scaled
+vec4 picture[COLUMN];  // transposed: scaled
 #endif
 #if SHOW != SHOW_PICTURE
 layout(std430, binding = 8) writeonly buffer Shown { float shown[]; };  // below 0: nothing to tell
@@ -74,11 +76,19 @@ float transmittance[COLUMN];  // 0 once the pixel is done,
 float least[COLUMN];          // and this -T; until then the T that the blend stops at
 
 // The most that a splat's alpha counts for in any pixel: T (docs/method.md 5). A maximum in shared memory, and one a tile in
-// the buffer, cost little beside the blend. Or the transposed blend: the picture of all pixels together, by what the splat
-// counts for in each, in whole numbers, so that the order of the additions does not matter.
+// the buffer, cost little beside the blend. Or sums over all pixels, in whole numbers, so that the order of the additions does
+// not matter. The transposed blend: the picture, by what the splat counts for. Changes: without the splat alone, what lies
+// behind it, of which it leaves the share 1 - alpha, is in its place.
 void measure(uint at, uint p, float weight) {
-#if TRANSPOSED
-  ivec4 steps = ivec4(floor(weight * wanted[p] + 0.5));
+#if SUMS != SUMS_NONE
+#if SUMS == SUMS_TRANSPOSED
+  ivec4 steps = ivec4(floor(weight * picture[p] + 0.5));
+#else
+  vec3 own = batch_colour[at].rgb;
+  vec3 behind = (picture[p].rgb - colour[p] - weight * own) / (transmittance[p] - weight);
+  vec3 change = weight * (behind - own);
+  ivec4 steps = ivec4(min(dot(change, change), float(CHANGE_MOST)) * float(CHANGE_SCALE) + 0.5, 0.0, 0.0, 0.0);
+#endif
   for (int c = 0; c < 4; ++c) {
     if (steps[c] != 0) atomicAdd(batch_measured[at][c], steps[c]);
   }
@@ -88,7 +98,7 @@ void measure(uint at, uint p, float weight) {
 }
 
 // What a tile measured of a splat, to the buffer.
-#if TRANSPOSED
+#if SUMS != SUMS_NONE
 void pass_on(uint splat, ivec4 sums) {
   for (uint c = 0u; c < 4u; ++c) {
     if (sums[c] == 0) continue;
@@ -161,7 +171,7 @@ void blend(uint at[AHEAD]) {
     for (uint k = 0u; k < AHEAD; ++k) {
       vec4 c = batch_colour[at[k]];
       float weight = weights[k];
-#if RECORDS || TRANSPOSED
+#if RECORDS || SUMS != SUMS_NONE
       if (weight > 0.0) measure(at[k], p, weight);
       transmittance[p] -= weight;
 #endif
@@ -280,8 +290,11 @@ void begin_pixels(uvec2 in_tile) {
     nearness[p] = inverse;
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
-#if TRANSPOSED
-    wanted[p] = inside ? uintBitsToFloat(scale) * colours[place_of(view, p)] : vec4(0.0);
+#if SUMS != SUMS_NONE
+    picture[p] = inside ? colours[place_of(view, p)] : vec4(0.0);
+#endif
+#if SUMS == SUMS_TRANSPOSED
+    picture[p] *= uintBitsToFloat(scale);
 #endif
 #if SHOW != SHOW_PICTURE
     told[p] = 0.0;
@@ -294,7 +307,7 @@ void write_pixels() {
   for (uint p = 0u; p < COLUMN; ++p) {
     if (first_pixel.x >= view.width || first_pixel.y + p >= view.height) continue;
     uint to = place_of(view, p);
-#if TRANSPOSED
+#if SUMS != SUMS_NONE
     continue;  // the picture stays
 #endif
     float left = is_done(p) ? -least[p] : transmittance[p];

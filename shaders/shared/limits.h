@@ -46,6 +46,13 @@
 // this: the least weight that a pixel can blend, tau times the least T, is more than half of one, and the sum
 // of a tile of 1,024 px fits a word with its sign.
 #define TRANSPOSED_SCALE 2097152.0
+// The squared change of a pixel without a splat, likewise, which counts as no more than this.
+#define CHANGE_SCALE 134217728.0
+#define CHANGE_MOST 0.015625
+// What a blend that draws no picture sums over the pixels of each splat.
+#define SUMS_NONE 0
+#define SUMS_TRANSPOSED 1
+#define SUMS_CHANGES 2
 
 // A splat that reaches over more rows of tiles than this has its tiles counted by many invocations together;
 // so many splats a work group, and so many groups along x.

@@ -12,7 +12,7 @@ namespace {
 
 struct Variant {
   bool records = false;
-  bool transposed = false;
+  int sums = SUMS_NONE;
   int show = SHOW_PICTURE;
 };
 
@@ -22,7 +22,7 @@ enum class Lists { of_short, of_long };
 // Who measures or sums up has the tile's splats before all its pixels; what tests nothing shows what tests
 // lose; and other sizes of tiles are for comparing.
 bool by_subgroups(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
-  const bool plain = !variant.records && !variant.transposed && variant.show == SHOW_PICTURE;
+  const bool plain = !variant.records && variant.sums == SUMS_NONE && variant.show == SHOW_PICTURE;
   const bool usual = shape.settings.tiles != TILES_ALL && shape.settings.tile_size == TILE_SIZE_DEFAULT;
   return context.limits().subgroups_of_32 && plain && usual;
 }
@@ -41,7 +41,7 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
                          {"AHEAD", is_long ? "8" : "4"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"RECORDS", variant.records ? "1" : "0"},
-                         {"TRANSPOSED", variant.transposed ? "1" : "0"},
+                         {"SUMS", std::to_string(variant.sums)},
                          {"SHOW", std::to_string(variant.show)}};
   add_projection(defines, shape.perspective.projection);
   return context.program(name, defines);
@@ -102,7 +102,12 @@ void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer&
 
 void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, float scale,
                       const gl::Buffer& sums) {
-  run(dispatcher, shape, buffers, {.transposed = true}, sums, scale);
+  run(dispatcher, shape, buffers, {.sums = SUMS_TRANSPOSED}, sums, scale);
+}
+
+void blend_changes(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
+                   const gl::Buffer& sums) {
+  run(dispatcher, shape, buffers, {.sums = SUMS_CHANGES}, sums);
 }
 
 void refuse_cut(const gl::Context& context, const shared::Counters& counters) {

@@ -31,12 +31,11 @@ void LinearBlend::run(const Record& record) {
 
 void LinearBlend::set_colours(std::span<const glm::vec3> colours) {
   if (colours.size() != drawn_.size()) throw std::logic_error("a colour for each Gaussian drawn");
-  const std::uint32_t slots = drawn_.empty() ? 0 : drawn_.back().slot + 1;
-  std::vector<glm::vec4> by_slot(slots);
+  std::vector<glm::vec4> by_slot(slots());
   for (std::size_t k = 0; k < drawn_.size(); ++k) by_slot[drawn_[k].slot] = glm::vec4(colours[k], 0.0f);
   colours_.upload(by_slot);
   run([&] {
-    recolour(dispatcher_, slots, colours_, frame_.buffers());
+    recolour(dispatcher_, slots(), colours_, frame_.buffers());
     blend(dispatcher_, frame_.shape(), frame_.buffers());
   });
 }
@@ -45,21 +44,35 @@ std::vector<glm::vec4> LinearBlend::read_picture() {
   return frame_.buffers().colours.read<glm::vec4>(static_cast<std::size_t>(frame_.shape().pixel_count));
 }
 
+// Four of each slot.
+template <typename Record>
+std::vector<std::int64_t> LinearBlend::sums(const Record& record) {
+  sums_.reserve_zeros(std::int64_t{slots()} * 4 * 8);
+  run(record);
+  return sums_.read<std::int64_t>(std::size_t{4} * slots());
+}
+
 std::vector<glm::dvec4> LinearBlend::transposed(float largest) {
-  const std::size_t slots = drawn_.empty() ? 0 : drawn_.back().slot + 1;
   const double scale = TRANSPOSED_SCALE / static_cast<double>(largest);
-  sums_.reserve_zeros(static_cast<std::int64_t>(slots) * 4 * 8);
-  run([&] {
+  const std::vector<std::int64_t> by_slot = sums([&] {
     blend_transposed(dispatcher_, frame_.shape(), frame_.buffers(), static_cast<float>(scale), sums_);
   });
-  const auto sums = sums_.read<std::int64_t>(4 * slots);
   std::vector<glm::dvec4> found(drawn_.size());
   for (std::size_t k = 0; k < drawn_.size(); ++k) {
-    for (int c = 0; c < 4; ++c) {
-      const std::int64_t steps = sums[4 * drawn_[k].slot + static_cast<std::size_t>(c)];
-      found[k][c] = static_cast<double>(steps) / scale;
-    }
+    const std::int64_t* const of = &by_slot[std::size_t{4} * drawn_[k].slot];
+    found[k] = glm::dvec4(of[0], of[1], of[2], of[3]) / scale;
   }
+  return found;
+}
+
+std::vector<double> LinearBlend::changes() {
+  const std::vector<std::int64_t> by_slot = sums([&] {
+    blend(dispatcher_, frame_.shape(), frame_.buffers());
+    blend_changes(dispatcher_, frame_.shape(), frame_.buffers(), sums_);
+  });
+  std::vector<double> found;
+  for (const DrawnGaussian& drawn : drawn_)
+    found.push_back(static_cast<double>(by_slot[std::size_t{4} * drawn.slot]) / CHANGE_SCALE);
   return found;
 }
 

@@ -41,9 +41,17 @@ class LinearBlend {
   /// each pixel's to the nearest, the same bits always. No channel may be larger than `largest`.
   std::vector<glm::dvec4> transposed(float largest);
 
+  /// What the picture would change by without each of drawn() alone: squared, over its pixels and channels,
+  /// each pixel's to the nearest 1 / CHANGE_SCALE and no more than CHANGE_MOST. Of the model's own colours,
+  /// or those that were set last.
+  std::vector<double> changes();
+
  private:
   template <typename Record>
   void run(const Record& record);
+  std::uint32_t slots() const { return drawn_.empty() ? 0 : drawn_.back().slot + 1; }
+  template <typename Record>
+  std::vector<std::int64_t> sums(const Record& record);
 
   Frame frame_;
   gl::Dispatcher dispatcher_;

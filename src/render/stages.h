@@ -44,6 +44,11 @@ void recolour(gl::Dispatcher& dispatcher, std::uint32_t slots, const gl::Buffer&
 void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, float scale,
                       const gl::Buffer& sums);
 
+/// Adds to `sums`, in channel 0 and multiples of 1 / CHANGE_SCALE, the squared change of each pixel of the
+/// picture in buffers.colours, which is theirs and stays, where the splat alone is left out.
+void blend_changes(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
+                   const gl::Buffer& sums);
+
 /// Throws Error(out_of_memory) where the driver ended a list of splats before its end.
 void refuse_cut(const gl::Context& context, const shared::Counters& counters);
 

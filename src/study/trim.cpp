@@ -160,14 +160,15 @@ class Trimmer {
   void drop_gaussians() {
     const std::size_t count = model_.count();
     if (count < 2) return;
-    std::vector<std::uint32_t> by_weight(count);
-    std::iota(by_weight.begin(), by_weight.end(), 0u);
-    std::stable_sort(by_weight.begin(), by_weight.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return weights_.weight[a] < weights_.weight[b];
+    const std::vector<double> changes = changes_without(context_, model_, views_.training, views_.near_plane);
+    std::vector<std::uint32_t> by_worth(count);
+    std::iota(by_worth.begin(), by_worth.end(), 0u);
+    std::stable_sort(by_worth.begin(), by_worth.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(changes[a], weights_.weight[a]) < std::pair(changes[b], weights_.weight[b]);
     });
     const auto without = [&](double amount) {
       std::vector<std::uint8_t> kept(count, 1);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_weight[k]] = 0;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_worth[k]] = 0;
       return fitted(with_gaussians(model_, kept));
     };
     std::map<std::size_t, double> known;  // amounts that come to the same number

@@ -50,11 +50,11 @@ struct TrimSettings {
 
 /// Searches in the order in which the bound is spent: as few bits as the format has a choice of (spz) for a
 /// quarter of it; the harmonics that change colours least for another: a lower degree for all, then, where
-/// zeros are packed (spz), for as many Gaussians as possible; last the Gaussians of the least summed weight,
-/// for all that remains, half of it at least. What a Gaussian is worth is learned in the training views,
-/// the bound is on the mean of those held back. Every candidate is judged as it reads back from its file, so
-/// the bound holds for what is written. The model's axes are those of the format, and it is not
-/// Scaffold-GS's. Throws Error for views that a target cannot be measured in (Calibrator).
+/// zeros are packed (spz), for as many Gaussians as possible; last the Gaussians without which the pictures
+/// change least, for all that remains, half of it at least. What a Gaussian is worth is learned in the
+/// training views, the bound is on the mean of those held back. Every candidate is judged as it reads back
+/// from its file, so the bound holds for what is written. The model's axes are those of the format, and it is
+/// not Scaffold-GS's. Throws Error for views that a target cannot be measured in (Calibrator).
 Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings);
 
 }  // namespace binosplat::study

@@ -77,4 +77,19 @@ Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera
   return weights;
 }
 
+std::vector<double> changes_without(gl::Context& context, const Model& model,
+                                    const std::vector<Camera>& cameras, double near_plane) {
+  std::vector<double> changes(model.count());
+  render::LinearBlend blend(context, model);
+  Progress progress("leaving out each Gaussian in every view", cameras.size());
+  std::size_t done = 0;
+  for (const Camera& camera : cameras) {
+    blend.set_view(make_view(into_axes(camera, model.axes), near_plane));
+    const std::vector<double> of_view = blend.changes();
+    for (std::size_t k = 0; k < of_view.size(); ++k) changes[blend.drawn()[k].index] += of_view[k];
+    progress.update(++done);
+  }
+  return changes;
+}
+
 }  // namespace binosplat::study

@@ -32,6 +32,11 @@ struct Weights {
   double change(std::size_t gaussian, std::size_t degree) const;
 };
 
+/// What the pictures of the views would change by without each Gaussian alone, squared and summed
+/// (render::LinearBlend::changes). As weigh().
+std::vector<double> changes_without(gl::Context& context, const Model& model,
+                                    const std::vector<Camera>& cameras, double near_plane);
+
 /// Draws each view once, exactly. `cameras` are of the world (scene/axes.h), `near_plane` in its units.
 /// Progress is shown.
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras,

@@ -51,7 +51,7 @@ TEST_F(SubgroupShaders, Compile) {
                            {"AHEAD", *lists == '1' ? "8" : "4"},
                            {"LISTS", lists},
                            {"RECORDS", "0"},
-                           {"TRANSPOSED", "0"},
+                           {"SUMS", "0"},
                            {"SHOW", "0"}};
         defines.insert(defines.end(), tiles.begin(), tiles.end());
         expect_compiles("blend_subgroups.comp", defines, std::string(lists) + supertile_side + half);

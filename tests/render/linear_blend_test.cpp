@@ -152,11 +152,49 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
   }
   for (const auto& [shader, sought, fault] :
        {std::tuple{"recolour.comp", "colours[slot].rgb", "max(colours[slot].rgb, 0.0)"},
-        std::tuple{"blending.glsl", "colours[place_of(view, p)] :", "colours[place_of(view, 0u)] :"}}) {
+        std::tuple{"blending.glsl", "colours[place_of(view, p)] : vec4",
+                   "colours[place_of(view, 0u)] : vec4"}}) {
     const test::FaultyShaders faulty(shader, sought, fault);
     const Found found = find({});
     EXPECT_TRUE(found.psnr < 50.0 || std::abs(found.there - found.back) > 5e-3) << fault;
   }
+}
+
+// Against pictures that the reference blends without one Gaussian after the other.
+TEST(LinearBlends, KnowWhatChangesWithoutOne) {
+  const Model model = test::random_model(94, 250, 1);
+  const shared::View view = front();
+  const auto splats = reference::project_all(model, view);
+  const auto order = reference::depth_order(splats);
+  const auto picture_of = [&](const std::vector<reference::Splat>& some) {
+    return reference::blend(some, reference::make_lists(some, order, view, TILES_ELLIPSE), view);
+  };
+  const Picture whole = picture_of(splats);
+  std::vector<double> expected(model.count());
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    auto without = splats;
+    without[i].opacity = 0.0;
+    const Picture rest = picture_of(without);
+    for (std::size_t p = 0; p < pixels; ++p) {
+      const glm::dvec3 change = glm::dvec3(whole.colour[p]) - glm::dvec3(rest.colour[p]);
+      expected[i] += std::min(glm::dot(change, change), CHANGE_MOST);
+    }
+  }
+  const auto differing = [&] {
+    LinearBlend blend(test::gl_context(), model);
+    blend.set_view(view);
+    const std::vector<double> found = blend.changes();
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const double should = expected[blend.drawn()[k].index];
+      count += std::abs(found[k] - should) > 1e-4 + 0.01 * should ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_LE(differing(), 1u);
+  EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 1.0);
+  const test::FaultyShaders faulty("blending.glsl", "weight * (behind - own)", "weight * own");
+  EXPECT_GT(differing(), 10u);
 }
 
 TEST(LinearBlends, OfNothingAreNothing) {
