@@ -1,12 +1,14 @@
 #include "study/trim.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <numeric>
 
 #include "base/log.h"
+#include "base/parallel.h"
 #include "base/statistics.h"
 #include "measure/search.h"
 #include "scene/reduce.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr int drawings = 3;                                 // of a view whose time is told
 constexpr int trial_rounds = 4;                             // that colours of a candidate are fitted in
+constexpr std::size_t some = 256;                           // Gaussians that a thread takes at a time
 constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bound
 
 class Trimmer {
@@ -102,16 +105,31 @@ class Trimmer {
     found_.less = found_.harmonic_bits < 8;
   }
 
-  /// Harmonics of so many degrees, base colours brought to the mean of what the training views see.
+  ColourFit::Coefficients coefficients(std::size_t gaussian) const {
+    const auto count = static_cast<std::size_t>(sh_count(whole_.degree));
+    ColourFit::Coefficients now{};
+    for (std::size_t k = 0; k < std::min(count, now.size()); ++k) {
+      const float* c = &whole_.sh[3 * (gaussian * count + k)];
+      now[k] = {c[0], c[1], c[2]};
+    }
+    return now;
+  }
+
+  /// Harmonics of so many degrees, nearest to the colours that the training views see.
   Model lowered(const std::vector<std::uint8_t>& degrees) const {
     Model model = with_degrees(whole_, degrees);
-    const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
-    for (std::size_t i = 0; i < degrees.size(); ++i) {
-      if (degrees[i] >= whole_.degree) continue;
-      const glm::vec3 shift = weights_.shift(i, degrees[i]);
-      for (int c = 0; c < 3; ++c)
-        model.sh[i * values + static_cast<std::size_t>(c)] += shift[c] / static_cast<float>(sh_c0);
-    }
+    const auto count = static_cast<std::size_t>(sh_count(model.degree));
+    parallel_for(
+        degrees.size(),
+        [&](std::size_t i) {
+          if (degrees[i] >= whole_.degree) return;
+          const auto near = weights_.colours[i].fitted(degrees[i], coefficients(i));
+          for (std::size_t k = 0; k < static_cast<std::size_t>(sh_count(degrees[i])); ++k) {
+            for (int c = 0; c < 3; ++c)
+              model.sh[3 * (i * count + k) + static_cast<std::size_t>(c)] = static_cast<float>(near[k][c]);
+          }
+        },
+        some);
     return fitted(std::move(model));
   }
 
@@ -128,23 +146,37 @@ class Trimmer {
       lower_degrees();
   }
 
-  /// The degree each Gaussian needs where its colour may change by so much (Weights::change).
-  std::vector<std::uint8_t> degrees(double change) const {
-    std::vector<std::uint8_t> of(whole_.count());
-    for (std::size_t i = 0; i < of.size(); ++i) {
-      while (of[i] < model_.degree && weights_.change(i, of[i]) > change) ++of[i];
-    }
-    return of;
+  /// How much the colours of each Gaussian change at each lower degree (ColourFit::change).
+  std::vector<std::array<double, 3>> changes_of_degrees() const {
+    std::vector<std::array<double, 3>> changes(whole_.count());
+    parallel_for(
+        changes.size(),
+        [&](std::size_t i) {
+          for (int degree = 0; degree < model_.degree; ++degree)
+            changes[i][static_cast<std::size_t>(degree)] =
+                weights_.colours[i].change(degree, coefficients(i));
+        },
+        some);
+    return changes;
   }
 
   /// Zeros are packed well: a degree for each Gaussian.
   void lower_degrees() {
-    std::vector<double> changes;
-    for (std::size_t i = 0; i < whole_.count(); ++i) {
-      if (weights_.change(i, 0) > 0.0) changes.push_back(weights_.change(i, 0));
+    const std::vector<std::array<double, 3>> changes = changes_of_degrees();
+    std::vector<double> positive;
+    for (const auto& of : changes) {
+      if (of[0] > 0.0) positive.push_back(of[0]);
     }
-    if (changes.empty()) return;
-    const double start = std::clamp(quantile(std::move(changes), 0.5), 1e-9, 1e9);
+    if (positive.empty()) return;
+    // The degree that each needs where its colours may change by so much.
+    const auto degrees = [&](double change) {
+      std::vector<std::uint8_t> of(changes.size());
+      for (std::size_t i = 0; i < of.size(); ++i) {
+        while (of[i] < model_.degree && changes[i][of[i]] > change) ++of[i];
+      }
+      return of;
+    };
+    const double start = std::clamp(quantile(std::move(positive), 0.5), 1e-9, 1e9);
     const auto db = [&](double change) {
       return cost(change > 0.0 ? lowered(degrees(change)) : model_, found_.harmonic_bits);
     };

@@ -12,24 +12,14 @@ namespace binosplat::study {
 
 namespace {
 
-/// Adds what ending with each degree takes from the colour of Gaussian i towards a unit direction.
-void add_lost(std::array<Weights::Lowered, 3>& lowered, const Model& model, std::size_t i,
-              const glm::dvec3& towards, double weight) {
-  const std::array<double, 16> basis = sh_basis(towards);
+/// The colour of Gaussian i towards a unit direction, less 0.5.
+glm::dvec3 colour_of(const Model& model, std::size_t i, const std::array<double, 16>& basis) {
   const auto count = static_cast<std::size_t>(sh_count(model.degree));
   const float* sh = &model.sh[3 * count * i];
-  std::array<glm::dvec3, 4> colour;  // by the degree that the sum ends with
-  glm::dvec3 sum(0.5);
-  for (std::size_t k = 0, degree = 0; k < count; ++k) {
+  glm::dvec3 sum(0.0);
+  for (std::size_t k = 0; k < count; ++k)
     sum += basis[k] * glm::dvec3(sh[3 * k], sh[3 * k + 1], sh[3 * k + 2]);
-    if (k + 1 == (degree + 1) * (degree + 1)) colour[degree++] = glm::max(sum, 0.0);
-  }
-  const auto last = static_cast<std::size_t>(model.degree);
-  for (std::size_t degree = 0; degree < last; ++degree) {
-    const glm::dvec3 lost = colour[last] - colour[degree];
-    lowered[degree].lost += weight * lost;
-    lowered[degree].square += weight * glm::dot(lost, lost) / 3.0;
-  }
+  return glm::max(sum, -0.5);
 }
 
 }  // namespace
@@ -38,21 +28,10 @@ std::size_t Weights::unseen() const {
   return static_cast<std::size_t>(std::count(weight.begin(), weight.end(), 0.0));
 }
 
-glm::vec3 Weights::shift(std::size_t gaussian, std::size_t degree) const {
-  const double sum = weight[gaussian];
-  return sum > 0.0 ? glm::vec3(lowered[gaussian][degree].lost / sum) : glm::vec3(0.0f);
-}
-
-double Weights::change(std::size_t gaussian, std::size_t degree) const {
-  if (weight[gaussian] == 0.0) return 0.0;
-  const auto& [lost, square] = lowered[gaussian][degree];
-  return std::max(0.0, square - glm::dot(lost, lost) / (3.0 * weight[gaussian]));
-}
-
 Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras,
               double near_plane) {
-  Weights weights{cameras.size(), std::vector<double>(model.count()),
-                  std::vector<std::array<Weights::Lowered, 3>>(model.count())};
+  Weights weights{cameras.size(), std::vector<double>(model.count()), {}};
+  if (model.degree > 0 && !model.scaffold) weights.colours.resize(model.count());
   render::LinearBlend blend(context, model);
   Progress progress("weighing the Gaussians in every view", cameras.size());
   std::size_t done = 0;
@@ -68,9 +47,9 @@ Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera
       const double weight = sums[k].x;
       if (weight == 0.0) return;
       weights.weight[i] += weight;
-      if (model.degree == 0 || model.scaffold) return;
-      const glm::dvec3 towards = glm::normalize(glm::dvec3(model.position[i]) - camera.position);
-      add_lost(weights.lowered[i], model, i, towards, weight);
+      if (weights.colours.empty()) return;
+      const auto basis = sh_basis(glm::normalize(glm::dvec3(model.position[i]) - camera.position));
+      weights.colours[i].add(basis, colour_of(model, i, basis), weight);
     });
     progress.update(++done);
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/axes.h"
+#include "scene/harmonics.h"
 #include "study/calibrate.h"
 #include "support/gl.h"
 #include "support/models.h"
@@ -31,7 +32,6 @@ TEST(StudyWeights, AddUpOverViewsWhateverTheAxes) {
   for (std::size_t i = 0; i < model.count(); ++i) {
     EXPECT_EQ(both.weight[i], one.weight[i] + other.weight[i]);
     EXPECT_NEAR(there.weight[i], both.weight[i], 1e-3 + 1e-3 * both.weight[i]);
-    EXPECT_LE(both.change(i, 0), both.lowered[i][0].square);
     sum += both.weight[i];
   }
   EXPECT_LE(sum, 2.0 * 64 * 48);
@@ -39,29 +39,76 @@ TEST(StudyWeights, AddUpOverViewsWhateverTheAxes) {
 }
 
 // One Gaussian straight ahead, whose harmonics along z are known; then from behind, too.
-TEST(StudyWeights, ChangeIsWhatABaseColourCannotMakeUpFor) {
+TEST(StudyWeights, ColoursAreFittedByLowerDegrees) {
   Model model;
   model.degree = 2;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.5f, glm::vec3(0.5f));
   model.sh[3 * 2] = 0.4f;                                          // red of the degree that z has
   for (std::size_t c = 0; c < 3; ++c) model.sh[3 * 6 + c] = 0.2f;  // all of 2 zz - xx - yy
+  ColourFit::Coefficients now{};
+  now[2].r = 0.4;
+  now[6] = glm::dvec3(0.2);
   std::vector<Camera> around(2, cameras()[0]);
   const Weights one = weigh(test::gl_context(), model, {around[0]}, near_default);
   const double w = one.weight[0], red = 0.4 * 0.4886025119, grey = 0.2 * 2 * 0.31539156525;
   EXPECT_GT(w, 1.0);
-  EXPECT_NEAR(one.lowered[0][0].square, w * ((red + grey) * (red + grey) + 2 * grey * grey) / 3, 1e-5 * w);
-  EXPECT_NEAR(one.lowered[0][1].square, w * grey * grey, 1e-5 * w);
-  EXPECT_EQ(one.lowered[0][2].square, 0.0);
-  EXPECT_NEAR(one.shift(0, 0).r, red + grey, 1e-6);
-  EXPECT_NEAR(one.shift(0, 0).g, grey, 1e-6);
-  EXPECT_NEAR(one.change(0, 0), 0.0, 1e-9) << "from one side the base colour can be what is seen";
+  // From one side the base colour can be what is seen, but for what holds it where it is.
+  const glm::dvec3 base = test::sh_c0 * one.colours[0].fitted(0, now)[0];
+  EXPECT_NEAR(base.r, red + grey, 0.01 * (red + grey));
+  EXPECT_NEAR(base.g, grey, 0.01 * grey);
+  EXPECT_LT(one.colours[0].change(0, now), 1e-3 * w * red * red);
   around[1].position = {0, 0, 6};
   around[1].rotation = glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, -1);
   const Weights both = weigh(test::gl_context(), model, around, near_default);
   EXPECT_NEAR(both.weight[0], 2 * w, 1e-3);
-  EXPECT_NEAR(both.shift(0, 0).r, grey, 1e-4);
-  EXPECT_NEAR(both.change(0, 0), 2 * w * red * red / 3, 1e-3 * w);
-  EXPECT_NEAR(both.change(0, 1), 0.0, 1e-9);
+  EXPECT_NEAR(test::sh_c0 * both.colours[0].fitted(0, now)[0].r, grey, 0.01 * grey);
+  EXPECT_NEAR(both.colours[0].change(0, now), 2 * w * red * red / 3, 0.01 * w * red * red);
+  const auto linear = both.colours[0].fitted(1, now);
+  EXPECT_NEAR(linear[2].r, 0.4, 0.01);
+  EXPECT_EQ(linear[6], glm::dvec3(0.0));
+  EXPECT_LT(both.colours[0].change(1, now), 1e-3 * w * red * red);
+}
+
+// Of random colours in random directions: no other coefficients come nearer, and those of no view stay.
+TEST(ColourFits, AreTheNearest) {
+  test::Uniform uniform(4);
+  const auto number = [&] { return uniform(-1, 1); };
+  const auto three = [&] { return glm::dvec3(number(), number(), number()); };
+  struct Seen {
+    std::array<double, 16> basis;
+    glm::dvec3 colour;
+    double weight;
+  };
+  std::vector<Seen> all;
+  ColourFit fit;
+  for (int k = 0; k < 60; ++k) {
+    const Seen& seen =
+        all.emplace_back(Seen{sh_basis(glm::normalize(three())), 0.4 * three(), uniform(0, 9)});
+    fit.add(seen.basis, seen.colour, seen.weight);
+  }
+  ColourFit::Coefficients now{};
+  for (glm::dvec3& c : now) c = 0.1 * three();
+  for (const int degree : {0, 1, 2}) {
+    const auto error = [&](const ColourFit::Coefficients& x) {
+      double sum = 0.0;
+      for (const Seen& seen : all) {
+        glm::dvec3 off = -seen.colour;
+        for (std::size_t k = 0; k < x.size(); ++k) off += seen.basis[k] * x[k];
+        sum += seen.weight * glm::dot(off, off) / 3.0;
+      }
+      return sum;
+    };
+    const auto best = fit.fitted(degree, now);
+    EXPECT_NEAR(fit.change(degree, now), error(best), 1e-4 * error(best));
+    for (int trial = 0; trial < 50; ++trial) {
+      auto other = best;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(sh_count(degree)); ++k) other[k] += 0.2 * three();
+      EXPECT_GT(error(other), error(best)) << degree;
+    }
+    const auto none = ColourFit().fitted(degree, now);
+    EXPECT_EQ(none[0], now[0]);
+    EXPECT_EQ(none[8], degree == 2 ? now[8] : glm::dvec3(0.0));
+  }
 }
 
 // Cameras are of the world: a model in other axes is seen as it would be in the world's.
