@@ -94,6 +94,7 @@ Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<co
   const Image left = error_of(approximate[0], exact[0]), right = error_of(approximate[1], exact[1]);
   Disagreement result;
   result.picture = Image(left.width, left.height, 3);
+  result.right = left;
   // One sum a row, added up in order: the same number whatever the threads do.
   std::vector<Counted> rows(static_cast<std::size_t>(left.height));
   parallel_for(left.height, [&](int y) {
@@ -105,6 +106,7 @@ Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<co
       for (int c = 0; c < 3; ++c) {
         const double d = left.at(x, y, c) - other[c];
         result.picture.at(x, y, c) = static_cast<float>(std::abs(d));
+        result.right.at(x, y, c) = static_cast<float>(other[c]);
         row.sum += d * d;
       }
       ++row.count;

@@ -16,6 +16,7 @@ struct Disagreement {
   double counted =
       0.0;        // share of the left eye's pixels that both eyes see; where it is 0, db is not a number
   Image picture;  // |eL(p) - eR(p')| of RGB in the left eye; 0 where not counted
+  Image right;    // eR(p') in the left eye; eL(p) where not counted
 };
 
 /// With e the approximate minus the exact colour (over black, not clamped) of an eye: how far eL(p) is from

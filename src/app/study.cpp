@@ -145,10 +145,10 @@ Kind kind_of(const StudyOptions& o) {
 
 void check(const StudyOptions& options, Kind kind) {
   const bool of_page = kind == Kind::stability || kind == Kind::motion || kind == Kind::turn;
-  if (!options.test.empty() || !options.photos.empty())
+  if (!options.test.empty() || (!options.photos.empty() && kind != Kind::turn))
     fail(
-        "study: --test and --photos are for the analyses, without --stability, --rules, --motion, --turn and "
-        "--path");
+        "study: --test and --photos are for the analyses, and --photos for --turn, without --stability, "
+        "--rules, --motion and --path");
   if (options.frames && kind != Kind::rules && kind != Kind::motion)
     fail("--frames goes with --rules and --motion, or with the analyses");
   if (options.camera.views.size() > 1) fail("--view: this study is of one view");

@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/photos.h"
 #include "app/study_parts.h"
 #include "base/progress.h"
 #include "scene/axes.h"
+#include "scene/tour.h"
 #include "study/turning.h"
 
 namespace binosplat::app {
@@ -19,6 +21,34 @@ study::TurningSettings settings_for(const gl::Context& context) {
   return context.software() ? study::TurningSettings{.columns = 16, .rows = 12} : study::TurningSettings{};
 }
 
+/// Of as many views as that suffices for a mean.
+constexpr std::size_t photos_max = 16;
+
+constexpr double metres_a_frame = 1.5 / 90.0;
+
+study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions& options,
+                                  const Studied& studied) {
+  const CameraList list = listed_cameras(options.scene, options.camera);
+  const std::string& axes = studied.model->axes;
+  study::PerspectiveViews views;
+  Camera head = studied.shots.front().eyes.front().camera;
+  const double metre = options.rig.units_per_metre.value_or(
+      list.known.units_per_metre.value_or(is_built_in(options.scene.name) ? 1.0 : metre_of(list.cameras)));
+  for (int n = 0; n < (context.software() ? 9 : 30); ++n) {
+    views.path.push_back(make_view(into_axes(head, axes), studied.near_plane));
+    head.position += metres_a_frame * metre * head.rotation[0];
+  }
+  views.eyes = views_of(
+      make_shots(options.camera.views, options.camera.lens, options.rig, list, studied.near_plane, axes)
+          .front());
+  if (views.eyes.size() != 2) views.eyes.clear();
+  if (options.photos.empty()) return views;
+  for (const study::CalibrationView& one :
+       photographed_views({.wanted = photos_max}, options.photos, {}, list))
+    views.photos.emplace_back(make_view(into_axes(one.camera, axes), studied.near_plane), *one.photo);
+  return views;
+}
+
 }  // namespace
 
 void study_turn(gl::Context& context, const StudyOptions& options, const Studied& studied) {
@@ -26,15 +56,23 @@ void study_turn(gl::Context& context, const StudyOptions& options, const Studied
   study::TurningStudy study{options.scene.name, context.renderer(),    camera.name, camera.width,
                             camera.height,      settings_for(context), {}};
   render::Frame frame(context, *studied.model);
-  Progress progress("turning", study::turning_steps(study.settings));
+  const study::PerspectiveViews views = views_for(context, options, studied);
+  Progress progress("turning", study::turning_steps(study.settings) + study::perspective_steps(views));
   std::size_t done = 0;
-  study.turns = study::measure_turning(frame, into_axes(camera, studied.model->axes), studied.near_plane,
-                                       study.settings, [&] { progress.update(++done); });
+  const auto step = [&] { progress.update(++done); };
+  study::measure_turning(study, frame, into_axes(camera, studied.model->axes), studied.near_plane, step);
+  study.numbers = study::measure_perspectives(frame, views, step);
   fmt::print("{}, {} of {}: {} x {} rays over {:g} degrees, pictures of {} x {} px\n", study.device,
              study.view, study.scene, study.settings.columns, study.settings.rows,
              study.settings.field_degrees, study.width, study.height);
   fmt::print("PSNR against the head that is not turned, along the same rays\n\n");
   print_table(study::turning_table(study));
+  fmt::print(
+      "\nAgainst {} photos; what the eyes do not share of the difference from distance and tangent; frames "
+      "of "
+      "a head that\nmoves sideways at 1.5 m/s, 90 a second, warped to one another by depth\n\n",
+      views.photos.size());
+  print_table(study::perspectives_table(study.numbers));
   save(options, study::to_json(study), study::turning_page(study));
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "base/output_file.h"
@@ -46,9 +47,15 @@ static void fields(const auto& io, const Table& t) {
   io("columns", t.columns, "rows", t.rows);
 }
 
+static void fields(const auto& io, const Figure& f) {
+  std::vector<int> values;
+  for (const float value : f.image.data) values.push_back(static_cast<int>(std::lround(255.0f * value)));
+  io("caption", f.caption, "width", f.image.width, "height", f.image.height, "rgb", values);
+}
+
 static void fields(const auto& io, const Section& s) {
   io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "plot", s.plot, "table",
-     s.table);
+     s.table, "figures", s.figures);
 }
 
 namespace {

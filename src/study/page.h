@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/image.h"
+
 namespace binosplat::study {
 
 struct Axis {
@@ -77,6 +79,12 @@ struct Table {
   std::vector<std::vector<Cell>> rows;
 };
 
+/// A small picture, drawn as large as there is room.
+struct Figure {
+  std::string caption;
+  Image image;  // RGB
+};
+
 /// One heading of the page: what it shows on this scene, in a sentence, then the plot and the table.
 struct Section {
   std::string id;  // of the link to it and of the plot's SVG
@@ -85,6 +93,7 @@ struct Section {
   std::optional<Plot> plot = {};
   std::optional<Table> table = {};
   std::string problem = {};  // why there is neither
+  std::vector<Figure> figures = {};
 };
 
 /// The series of a plot with this name, made where there is none yet.

@@ -17,20 +17,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array<Perspective, 4> perspectives = {{{ORDER_DEPTH, PROJECTION_AFFINE},
-                                                      {ORDER_DISTANCE, PROJECTION_AFFINE},
-                                                      {ORDER_DEPTH, PROJECTION_TANGENT},
-                                                      {ORDER_DISTANCE, PROJECTION_TANGENT}}};
+constexpr float difference_gain = 4.0f;  // of pictures to look at
 
 struct HeadAxis {
   const char* name;
   glm::dvec3 unit;
 };
 const std::array<HeadAxis, 3> head_axes = {{{"up", {0, 1, 0}}, {"across", {1, 0, 0}}, {"ahead", {0, 0, 1}}}};
-
-std::string name_of(const Perspective& seen) {
-  return fmt::format("{}, {}", order_choices[seen.order].name, projection_choices[seen.projection].name);
-}
 
 /// Points of the camera's picture, row by row; some may lie outside it.
 std::vector<glm::dvec2> field_of(const Camera& camera, const TurningSettings& s) {
@@ -53,6 +46,7 @@ Turned compare(const std::vector<glm::vec3>& straight, const std::vector<glm::ve
   Turned result;
   result.rays = shown.size();
   Image a(s.columns, s.rows, 3), b(s.columns, s.rows, 3);
+  result.difference = Image(s.columns, s.rows, 3);
   double sum = 0.0;
   std::size_t beyond = 0;
   for (std::size_t k = 0; k < shown.size(); ++k) {
@@ -63,6 +57,8 @@ Turned compare(const std::vector<glm::vec3>& straight, const std::vector<glm::ve
       a.data[3 * shown[k] + static_cast<std::size_t>(c)] = before;
       b.data[3 * shown[k] + static_cast<std::size_t>(c)] = after;
       const double error = static_cast<double>(after) - before;
+      result.difference.data[3 * shown[k] + static_cast<std::size_t>(c)] =
+          static_cast<float>(std::abs(error));
       sum += error * error / 3.0;
       largest = std::max(largest, std::abs(error));
     }
@@ -77,21 +73,42 @@ Turned compare(const std::vector<glm::vec3>& straight, const std::vector<glm::ve
   return result;
 }
 
+std::vector<Figure> pictures_of(const TurningStudy& study) {
+  std::vector<Figure> figures;
+  if (study.straight) figures.push_back({"The rays, straight ahead", *study.straight});
+  for (const Turned& turn : study.turns) {
+    if (turn.about != head_axes.front().name || turn.degrees != 15.0 || turn.rays == 0) continue;
+    Image larger = turn.difference;
+    for (float& value : larger.data) value = std::min(1.0f, difference_gain * value);
+    figures.push_back(
+        {fmt::format("{}: {:g} times the difference after 15 degrees", name_of(turn.seen), difference_gain),
+         std::move(larger)});
+  }
+  return figures;
+}
+
 }  // namespace
 
 std::size_t turning_steps(const TurningSettings& settings) {
   return perspectives.size() * (1 + head_axes.size() * settings.degrees.size());
 }
 
-std::vector<Turned> measure_turning(render::Frame& frame, const Camera& camera, double near_plane,
-                                    const TurningSettings& s, const std::function<void()>& progress) {
+void measure_turning(TurningStudy& study, render::Frame& frame, const Camera& camera, double near_plane,
+                     const std::function<void()>& progress) {
+  const TurningSettings& s = study.settings;
   const std::vector<glm::dvec2> field = field_of(camera, s);
-  std::vector<Turned> turns;
   for (const Perspective& seen : perspectives) {
     // Anchors of Scaffold-GS are culled by the picture, of which a ray by itself has none.
     const render::FrameSettings settings{
         .order = seen.order, .projection = seen.projection, .anchor_cull = false};
     const std::vector<glm::vec3> straight = measure::colours_at(frame, camera, field, settings, near_plane);
+    if (!study.straight) {
+      study.straight = Image(s.columns, s.rows, 3);
+      for (std::size_t k = 0; k < straight.size(); ++k) {
+        for (int c = 0; c < 3; ++c)
+          study.straight->data[3 * k + static_cast<std::size_t>(c)] = std::clamp(straight[k][c], 0.0f, 1.0f);
+      }
+    }
     progress();
     for (const HeadAxis& axis : head_axes) {
       for (const double degrees : s.degrees) {
@@ -104,16 +121,15 @@ std::vector<Turned> measure_turning(render::Frame& frame, const Camera& camera, 
           shown.push_back(k);
           there.push_back(at);
         }
-        turns.push_back(
+        Turned& turn = study.turns.emplace_back(
             compare(straight, measure::colours_at(frame, head, there, settings, near_plane), shown, s));
-        turns.back().seen = seen;
-        turns.back().about = axis.name;
-        turns.back().degrees = degrees;
+        turn.seen = seen;
+        turn.about = axis.name;
+        turn.degrees = degrees;
         progress();
       }
     }
   }
-  return turns;
 }
 
 Table turning_table(const TurningStudy& study) {
@@ -142,6 +158,7 @@ ordered_json to_json(const TurningStudy& study) {
       object("scene", study.scene, "device", study.device, "view", study.view, "width", study.width, "height",
              study.height, "field_degrees", study.settings.field_degrees, "columns", study.settings.columns,
              "rows", study.settings.rows);
+  if (!study.numbers.empty()) json["perspectives"] = to_json(std::span(study.numbers));
   for (const Turned& turn : study.turns) {
     json["turns"].push_back(object("order", order_choices[turn.seen.order].name, "projection",
                                    projection_choices[turn.seen.projection].name, "about", turn.about,
@@ -170,9 +187,23 @@ Page turning_page(const TurningStudy& study) {
     series.add(turn.degrees, turn.psnr_db);
   }
   page.sections.push_back(
-      {"turning", "What a turn changes",
-       "About the axis up; 40 dB is where many begin to see it. Equal pictures have no PSNR.", plot,
-       turning_table(study)});
+      {"turning",
+       "What a turn changes",
+       "About the axis up; 40 dB is where many begin to see it. Equal pictures have no PSNR.",
+       plot,
+       turning_table(study),
+       {},
+       pictures_of(study)});
+  if (!study.numbers.empty())
+    page.sections.push_back(
+        {"perspectives",
+         "What each order and projection is worth",
+         "Against photos: 8-bit PSNR, mean over the views. In one eye only: what the eyes do not share of "
+         "the "
+         "difference from distance and tangent. Apart: frames of a head that moves sideways at 1.5 m/s, 90 a "
+         "second, warped to one another by depth.",
+         {},
+         perspectives_table(study.numbers)});
   return page;
 }
 

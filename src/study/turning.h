@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "render/frame.h"
 #include "scene/camera.h"
 #include "study/page.h"
+#include "study/perspectives.h"
 
 namespace binosplat::study {
 
@@ -30,19 +32,22 @@ struct Turned {
   double psnr_db = 0.0;       // against the head that is not turned; infinite for equal colours
   double share_beyond = 0.0;  // of the rays, of which a channel is off by more than seen_error
   double flip = 0.0;          // of rays side by side as a picture of 67 pixels per degree
+  Image difference;           // of RGB, a pixel a ray; 0 where one of them is in no picture
 };
 
 struct TurningStudy {
   std::string scene, device, view;
   int width = 0, height = 0;  // of the camera's picture, px
   TurningSettings settings;
-  std::vector<Turned> turns;
+  std::optional<Image> straight = {};  // RGB, a pixel a ray, in the first of `perspectives`
+  std::vector<Turned> turns = {};
+  std::vector<PerspectiveNumbers> numbers = {};  // may be none
 };
 
-/// Every perspective, turned about each of the camera's axes by each angle. `progress` is called as often as
-/// turning_steps() says.
-std::vector<Turned> measure_turning(render::Frame& frame, const Camera& camera, double near_plane,
-                                    const TurningSettings& settings, const std::function<void()>& progress);
+/// Every one of `perspectives`, turned about each of the camera's axes by each angle. `progress` is called as
+/// often as turning_steps() says.
+void measure_turning(TurningStudy& study, render::Frame& frame, const Camera& camera, double near_plane,
+                     const std::function<void()>& progress);
 std::size_t turning_steps(const TurningSettings& settings);
 
 /// A row a perspective and axis, PSNR by angle.

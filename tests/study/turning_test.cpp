@@ -33,7 +33,7 @@ TEST(Turning, TellsWhatItChanges) {
   const Camera camera = test::front_camera(400, 400, 170);  // 99 degrees
   TurningStudy study{.scene = "shell", .settings = {.columns = 8, .rows = 6, .degrees = {15.0, 150.0}}};
   std::size_t steps = 0;
-  study.turns = measure_turning(frame, camera, near_default, study.settings, [&] { ++steps; });
+  measure_turning(study, frame, camera, near_default, [&] { ++steps; });
   EXPECT_EQ(steps, turning_steps(study.settings));
   ASSERT_EQ(study.turns.size(), 4u * 3 * 2);
   for (const Turned& turn : study.turns) {
@@ -55,7 +55,18 @@ TEST(Turning, TellsWhatItChanges) {
   EXPECT_EQ(table.rows.size(), 12u);
   for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size());
   EXPECT_EQ(to_json(study).at("turns").size(), 24u);
-  EXPECT_NE(html(turning_page(study), to_json(study)).find("Turn the head"), std::string::npos);
+  const Page page = turning_page(study);
+  EXPECT_NE(html(page, to_json(study)).find("Turn the head"), std::string::npos);
+  // The rays, and what a turn changes of them: black by distance and tangent.
+  const std::vector<Figure>& figures = page.sections.front().figures;
+  ASSERT_EQ(figures.size(), 5u);
+  const auto brightest = [](const Figure& figure) {
+    return *std::max_element(figure.image.data.begin(), figure.image.data.end());
+  };
+  EXPECT_EQ(figures[0].image.data.size(), 8u * 6 * 3);
+  EXPECT_GT(brightest(figures[0]), 0.5f);
+  EXPECT_GT(brightest(figures[1]), 0.2f);
+  EXPECT_LT(brightest(figures[4]), 0.01f);
 }
 
 }  // namespace

@@ -171,6 +171,17 @@ function figure(section) {
   return parts;
 }
 
+// A picture of few pixels.
+function picture({ caption, width, height, rgb }) {
+  const canvas = element("canvas", { width, height, role: "img", "aria-label": caption });
+  const context = canvas.getContext("2d");
+  const image = context.createImageData(width, height);
+  for (let k = 0; k < width * height; ++k)
+    image.data.set([rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2], 255], 4 * k);
+  context.putImageData(image, 0, 0);
+  return element("figure", { class: "picture" }, canvas, element("figcaption", {}, caption));
+}
+
 function sectionParts(section) {
   if (section.problem) return [problem(section.problem)];
   const parts = section.plot ? figure(section) : [];
@@ -178,6 +189,8 @@ function sectionParts(section) {
     parts.push(section.table.rows.length ? table(section.table.columns, section.table.rows)
       : problem("This table is empty: nothing was measured."));
   }
+  if (section.figures.length)
+    parts.push(element("div", { class: "pictures" }, ...section.figures.map(picture)));
   return parts;
 }
 
