@@ -151,6 +151,9 @@ void check(const StudyOptions& options, Kind kind) {
         "--rules, --motion and --path");
   if (options.frames && kind != Kind::rules && kind != Kind::motion)
     fail("--frames goes with --rules and --motion, or with the analyses");
+  if (options.rays && kind != Kind::turn) fail("--rays goes with --turn");
+  if (options.rays && std::int64_t{options.rays->x} * options.rays->y > 1'000'000)
+    fail("--rays {}x{}: at most a million", options.rays->x, options.rays->y);
   if (options.camera.views.size() > 1) fail("--view: this study is of one view");
   if (kind == Kind::motion && !options.camera.views.empty())
     fail("--view: --motion goes through all cameras");
@@ -248,6 +251,13 @@ void add_study(CLI::App& program, Command& command) {
   sub->add_flag("--turn", o.turn,
                 "What turning the head changes along the same rays, by order and projection:\n"
                 "best with pictures of 100 degrees (--preset headset)");
+  sub->add_option_function<std::string>(
+         "--rays",
+         [&o](const std::string& text) {
+           o.rays = parse_two("--rays", text, "rays across and down as NxN, for one 96x72");
+         },
+         "With --turn: rays across and down (48x36; where the CPU draws 16x12)")
+      ->type_name("NxN");
   CLI::Option* motion = add_motion_options(*sub, o.motion);
   sub->add_option(
          "--frames", o.frames,
@@ -289,8 +299,8 @@ void add_study(CLI::App& program, Command& command) {
       "  binosplat study garden.ply --turn --preset headset\n"
       "  binosplat study garden.ply --stability --size 320x320");
   sub->callback([options, sub, &command] {
-    for (const char* name :
-         {"--case", "--target", "--tolerance", "--quality", "--th", "--transmittance", "--mono", "--json"}) {
+    for (const char* name : {"--case", "--target", "--tolerance", "--quality", "--th", "--transmittance",
+                             "--mono", "--json", "--rays"}) {
       if (sub->count(name) > 0) options->not_for_analyses.emplace_back(name);
     }
     options->motion.lengths.moving = static_cast<std::size_t>(options->frames.value_or(60));

@@ -32,6 +32,7 @@ struct StudyOptions : MeasuredOptions {
   bool stability = false;
   bool rules = false;
   bool turn = false;
+  std::optional<glm::ivec2> rays;  // of --turn, across and down; none: as many as the device is quick with
   MotionOptions motion;
   std::optional<int> frames;  // timed of each rule in each round
   std::vector<std::string> test;

@@ -17,8 +17,14 @@ namespace binosplat::app {
 namespace {
 
 // Of a device that draws on the CPU fewer.
-study::TurningSettings settings_for(const gl::Context& context) {
-  return context.software() ? study::TurningSettings{.columns = 16, .rows = 12} : study::TurningSettings{};
+study::TurningSettings settings_for(const gl::Context& context, const StudyOptions& options) {
+  study::TurningSettings settings;
+  const glm::ivec2 some =
+      context.software() ? glm::ivec2(16, 12) : glm::ivec2(settings.columns, settings.rows);
+  const glm::ivec2 rays = options.rays.value_or(some);
+  settings.columns = rays.x;
+  settings.rows = rays.y;
+  return settings;
 }
 
 /// Of as many views as that suffices for a mean.
@@ -53,8 +59,13 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
 
 void study_turn(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   const Camera& camera = studied.shots.front().eyes.front().camera;
-  study::TurningStudy study{options.scene.name, context.renderer(),    camera.name, camera.width,
-                            camera.height,      settings_for(context), {}};
+  study::TurningStudy study{options.scene.name,
+                            context.renderer(),
+                            camera.name,
+                            camera.width,
+                            camera.height,
+                            settings_for(context, options),
+                            {}};
   render::Frame frame(context, *studied.model);
   const study::PerspectiveViews views = views_for(context, options, studied);
   Progress progress("turning", study::turning_steps(study.settings) + study::perspective_steps(views));

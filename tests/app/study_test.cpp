@@ -95,6 +95,25 @@ TEST_F(RulesCommand, PrintsARowForEachRuleAndKeepsAll) {
   }
 }
 
+TEST_F(RulesCommand, ATurnedHeadIsMeasuredAgainstPhotosToo) {
+  const std::string photos = folder / "photos";
+  ASSERT_TRUE(test::good(test::run_program({"render", model, "--mono", "--view", "all", "--order", "distance",
+                                            "--projection", "tangent", "-o", photos})));
+  const test::Outcome outcome =
+      test::run_program({"study", model, "--turn", "--view", "front", "--rays", "4x3", "--photos", photos,
+                         "--ipd", "0.1", "-o", folder / "page"});
+  ASSERT_TRUE(test::good(outcome));
+  const auto json =
+      nlohmann::json::parse(test::read_text(std::filesystem::path(folder / "page") / "study.json"));
+  EXPECT_EQ(json.at("columns"), 4);
+  EXPECT_EQ(json.at("turns").size(), 60u);
+  ASSERT_EQ(json.at("perspectives").size(), 4u);
+  EXPECT_LT(json.at("perspectives")[0].at("photos_db").get<double>(), 70.0);
+  EXPECT_TRUE(json.at("perspectives")[3].at("photos_db").is_null()) << "equal: the photos are of these";
+  EXPECT_GT(json.at("perspectives")[0].at("disagreement_db").get<double>(), 20.0);
+  EXPECT_NE(outcome.out.find("Against 4 photos"), std::string::npos) << outcome.out;
+}
+
 TEST_F(RulesCommand, DrawsTheOneView) {
   const auto json = rules({"--view", "front", "--mono", "--target", "36"});
   EXPECT_EQ(json.at("eyes"), 1);
@@ -164,6 +183,10 @@ TEST(Study, WhatMakesNoSenseIsNamed) {
       {{"--rules", "--stability"}, "are studies of their own"},
       {{"--turn", "--rules"}, "are studies of their own"},
       {{"--turn", "--frames", "5"}, "--rules"},
+      {{"--rules", "--rays", "8x6"}, "--rays goes with --turn"},
+      {{"--rays", "8x6"}, "--rays goes with"},
+      {{"--turn", "--rays", "8"}, "--rays 8: expected"},
+      {{"--turn", "--rays", "20000x20000"}, "at most a million"},
       {{"--rules", "--view", "no-such"}, "--view no-such"},
       {{"--rules", "--th", "squared"}, "--rules"},
       {{"--rules", "--tolerance", "0.1"}, "--tolerance"},
