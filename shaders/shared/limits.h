@@ -47,7 +47,7 @@
 // of a tile of 1,024 px fits a word with its sign.
 #define TRANSPOSED_SCALE 2097152.0
 // The squared change of a pixel without a splat, likewise, which counts as no more than this.
-#define CHANGE_SCALE 134217728.0
+#define CHANGE_SCALE 67108864.0
 #define CHANGE_MOST 0.015625
 // What a blend that draws no picture sums over the pixels of each splat.
 #define SUMS_NONE 0

@@ -15,6 +15,7 @@
 #include "base/log.h"
 #include "scene/axes.h"
 #include "study/fields.h"
+#include "study/perspectives.h"
 #include "study/refit.h"
 
 namespace binosplat::app {
@@ -51,7 +52,7 @@ ModelFormat check(const RefitOptions& o) {
 /// PSNR in dB, means over views: against the photos, or against the model's own pictures.
 struct Step {
   std::string name;
-  double held_back = 0.0, worst = 0.0, test = 0.0;
+  double held_back = 0.0, test = 0.0;
 };
 
 /// A model's pictures against what they should be, in views that have no say.
@@ -66,9 +67,7 @@ class Judge {
   double held_back(const Model& model) { return psnr(held_back_, held_back_.cost(model).mean_db); }
 
   Step step(std::string name, const Model& model) {
-    const Calibrator::Cost cost = held_back_.cost(model);
-    const double own = kind_ == Kind::drop ? cost.view_db[cost.worst_view] : cost.worst_db;
-    Step step{std::move(name), psnr(held_back_, cost.mean_db), psnr(held_back_, own), 0.0};
+    Step step{std::move(name), held_back(model), 0.0};
     if (test_) step.test = psnr(*test_, test_->cost(model).mean_db);
     return step;
   }
@@ -84,10 +83,6 @@ class Judge {
   std::unique_ptr<Calibrator> test_;
 };
 
-std::string name_of(const Perspective& seen) {
-  return fmt::format("{}, {}", order_choices[seen.order].name, projection_choices[seen.projection].name);
-}
-
 void print(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
            std::size_t photos) {
   fmt::print("{} views fitted, {} of them to photos; {} held back, {} of test. PSNR in dB against {}\n\n",
@@ -100,10 +95,11 @@ void print(const std::vector<Step>& steps, const RefitOptions& o, const study::V
 }
 
 ordered_json to_json(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
-                     std::size_t photos, const study::Refitted& found) {
-  ordered_json json = study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
-                                    "against", o.photos.empty() ? "exact" : "photos", "views_fitted",
-                                    views.training.size(), "photos", photos, "best_round", found.best_round);
+                     std::size_t photos, int best_round, bool written) {
+  ordered_json json =
+      study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
+                    o.photos.empty() ? "exact" : "photos", "views_fitted", views.training.size(), "photos",
+                    photos, "best_round", best_round, "written", written);
   for (const study::CalibrationView& view : views.held_back) json["held_back"].push_back(view.camera.name);
   for (const Step& s : steps) {
     ordered_json step = study::object("step", s.name, "held_back_db", s.held_back);
@@ -122,6 +118,13 @@ ExitCode refit(const RefitOptions& o) {
   const study::ViewSplit views =
       split_views("refit", o, o.split, list, near_plane_of(o.camera, list, model),
                   [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
+  const study::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
+  const auto photos = static_cast<std::size_t>(std::count_if(
+      views.training.begin(), views.training.end(),
+      [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera.name); }));
+  if (!o.photos.empty() && photos == 0)
+    fail("--photos {}: the only photo of a view is held back to judge by; add photos, or use --against exact",
+         o.photos);
   const auto context = open_context(o.context);
   Model fitted = model;
   fitted.perspective = {o.order.value_or(model.perspective.order),
@@ -130,14 +133,10 @@ ExitCode refit(const RefitOptions& o) {
   Judge judge(*context, model, views, o.photos.empty() ? Kind::quality : Kind::drop);
   std::vector<Step> steps;
   if (fitted.perspective != model.perspective)
-    steps.push_back(judge.step("as it was: " + name_of(model.perspective), model));
-  steps.push_back(judge.step("before: " + name_of(fitted.perspective), fitted));
+    steps.push_back(judge.step("as it was: " + study::name_of(model.perspective), model));
+  steps.push_back(judge.step("before: " + study::name_of(fitted.perspective), fitted));
   const double before = steps.back().held_back;
 
-  const study::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
-  const auto photos = static_cast<std::size_t>(std::count_if(
-      views.training.begin(), views.training.end(),
-      [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera.name); }));
   study::Refitted found = study::refit(*context, fitted, targets, {.rounds = o.rounds},
                                        [&](const Model& m) { return -judge.held_back(m); });
   fitted.sh = std::move(found.sh);
@@ -146,11 +145,12 @@ ExitCode refit(const RefitOptions& o) {
   steps.push_back(
       judge.step(fmt::format("as {}, {} bytes", written_format(format).name, written.bytes), written.model));
   print(steps, o, views, photos);
-  if (!o.json.empty()) save_json(o.json, to_json(steps, o, views, photos, found));
-  if (found.best_round == 0 || steps.back().held_back < before) {
+  const bool nearer = found.best_round > 0 && steps.back().held_back >= before;
+  if (!o.json.empty()) save_json(o.json, to_json(steps, o, views, photos, found.best_round, nearer));
+  if (!nearer) {
     log_warning(
-        "{} is not written: the views held back would be no nearer than before, {:.3f} dB; other views held "
-        "back (--views) or more cameras may help",
+        "{} is not written: the views held back would be no nearer than before, {:.3f} dB; others held back "
+        "(--views, --held-back) or more cameras may help",
         o.output, before);
     return ExitCode::fell_short;
   }

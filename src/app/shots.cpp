@@ -48,26 +48,27 @@ std::vector<Choice> all_choices(const std::vector<Camera>& cameras, bool pairs) 
   return choices;
 }
 
-[[noreturn]] void fail_unknown(const std::string& name, const CameraList& list) {
+[[noreturn]] void fail_unknown(const std::string& name, const CameraList& list, const char* option) {
   constexpr std::size_t shown = 8;
   std::string names;
   for (std::size_t i = 0; i < std::min(shown, list.cameras.size()); ++i)
     names += "\n  " + list.cameras[i].name;
   if (list.cameras.size() > shown) names += fmt::format("\n  and {} more", list.cameras.size() - shown);
-  fail("--view {}: {} has no camera of this name. It has:{}", name, list.source, names);
+  fail("{} {}: {} has no camera of this name. It has:{}", option, name, list.source, names);
 }
 
-Choice choose(const std::string& name, const CameraList& list, bool mono) {
+Choice choose(const std::string& name, const CameraList& list, bool mono, const char* option) {
   const auto exact =
       std::find_if(list.cameras.begin(), list.cameras.end(), [&](const Camera& c) { return c.name == name; });
   if (exact != list.cameras.end()) return {name, {*exact}};
   const auto eyes = stereo::find_eyes(list.cameras, name);
-  if (!eyes) fail_unknown(name, list);
+  if (!eyes) fail_unknown(name, list, option);
   if (mono) fail("--view {0} is a pair of eyes: with --mono name one of them, {0}_left or {0}_right", name);
   return {name, {(*eyes)[0], (*eyes)[1]}};
 }
 
-std::vector<Choice> chosen(const std::vector<std::string>& views, const CameraList& list, bool mono) {
+std::vector<Choice> chosen(const std::vector<std::string>& views, const CameraList& list, bool mono,
+                           const char* option = "--view") {
   const bool everything = !list.listed || list.path || views == all_views;
   if (everything || views.empty()) {
     std::vector<Choice> choices = all_choices(list.cameras, !mono);
@@ -78,7 +79,7 @@ std::vector<Choice> chosen(const std::vector<std::string>& views, const CameraLi
     return choices;
   }
   std::vector<Choice> choices;
-  for (const std::string& name : views) choices.push_back(choose(name, list, mono));
+  for (const std::string& name : views) choices.push_back(choose(name, list, mono, option));
   return choices;
 }
 
@@ -240,9 +241,9 @@ std::vector<shared::View> views_of(const Shot& shot) {
 }
 
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
-                                   const CameraList& list) {
+                                   const CameraList& list, const char* option) {
   std::vector<Camera> cameras;
-  for (const Choice& choice : chosen(views_or_all(views), list, true))
+  for (const Choice& choice : chosen(views_or_all(views), list, true, option))
     cameras.push_back(sized(lens, choice.cameras[0]));
   return cameras;
 }

@@ -99,9 +99,9 @@ inline const std::vector<std::string>& views_or_all(const std::vector<std::strin
 }
 
 /// The cameras of the views by name, or all where none is named, as they are drawn without a rig. Throws
-/// Error for a view that is not there; it names some that are.
+/// Error for a view that is not there; it names `option` and some that are.
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
-                                   const CameraList& list);
+                                   const CameraList& list, const char* option = "--view");
 
 /// The shots of the views by name: NAME, all_views, or none for the first. Of a path and of cameras that are
 /// made up, all. `near_plane` in world units, `axes` those of the model. Throws as chosen_cameras() does.

@@ -35,16 +35,17 @@ study::ViewSplit split_views(const std::string& command, const MeasuredOptions& 
   study::ViewSplit views;
   views.near_plane = near_plane;
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
-  const auto take = [&](const std::vector<std::string>& names, std::vector<study::CalibrationView>& into) {
+  const auto take = [&](const std::vector<std::string>& names, const char* option,
+                        std::vector<study::CalibrationView>& into) {
     if (names.empty()) return;
-    for (const Camera& camera : chosen_cameras(names, o.camera.lens, list)) {
+    for (const Camera& camera : chosen_cameras(names, o.camera.lens, list, option)) {
       into.push_back(with_photo(o.photos, camera));
       if (std::erase_if(cameras, [&](const Camera& other) { return other.name == camera.name; }) == 0)
-        fail("view {} is named twice by --held-back and --test", camera.name);
+        fail("{} {}: named twice: a view has one task", option, camera.name);
     }
   };
-  take(split.tests, views.test);
-  take(split.judges, views.held_back);
+  take(split.tests, "--test", views.test);
+  take(split.judges, "--held-back", views.held_back);
   if (cameras.size() + (views.held_back.empty() ? 0 : 1) < 2)
     fail("{}: {} of its cameras for {}, which needs two at least: one to learn from, one to hold back",
          list.source, cameras.size(), command);

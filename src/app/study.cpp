@@ -37,7 +37,8 @@ Studied open(const StudyOptions& options) {
   std::vector<Shot> shots = make_shots(options.camera.views, options.camera.lens, rig, scene.list,
                                        scene.near_plane, scene.model.axes);
   if (options.camera.path.empty() && shots.size() > 1) fail("--view all: a study is of one view");
-  return {std::make_shared<const Model>(std::move(scene.model)), scene.near_plane, std::move(shots)};
+  return {std::make_shared<const Model>(std::move(scene.model)), std::move(scene.list), scene.near_plane,
+          std::move(shots)};
 }
 
 ordered_json along_path(gl::Context& context, const StudyOptions& options, const Studied& studied) {
@@ -198,14 +199,17 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
          "--turn and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
       ->type_name("NAME...");
   sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
-  add_photos_option(sub, o.photos, "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB");
+  add_photos_option(sub, o.photos,
+                    "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB;\nwith --turn what each "
+                    "order and projection loses");
   sub.add_option("-o,--output", o.output,
-                 "Folder for report.html and study.json (out/study);\nwith --stability and --motion, too")
+                 "Folder for report.html and study.json (out/study);\nwith --stability, --motion and --turn, too")
       ->type_name("DIR");
   add_size_option(sub, o.camera.lens, "Of an eye's picture");
   add_preset_option(sub, o.camera.lens,
                     "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees");
-  sub.add_flag("--mono", o.rig.mono, "With --path, --rules and --motion: the cameras themselves, no rig");
+  sub.add_flag("--mono", o.rig.mono,
+               "With --path, --rules, --motion and --turn: the cameras themselves, no rig");
   add_measured_options(sub, o);
   sub.add_option("--ipd", o.rig.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
   sub.add_option("--units-per-metre", o.rig.units_per_metre,
@@ -249,7 +253,8 @@ void add_study(CLI::App& program, Command& command) {
   auto* rules =
       sub->add_flag("--rules", o.rules, "Every rule and source at one error on a still pair, timed");
   sub->add_flag("--turn", o.turn,
-                "What turning the head changes along the same rays, by order and projection:\n"
+                "What turning the head changes along the same rays, by order and projection,\n"
+                "and what these are worth to two eyes, in motion and against photos:\n"
                 "best with pictures of 100 degrees (--preset headset)");
   sub->add_option_function<std::string>(
          "--rays",

@@ -49,6 +49,7 @@ struct StudyOptions : MeasuredOptions {
 /// What is there to study, and the shots of it that the options ask for.
 struct Studied {
   std::shared_ptr<const Model> model;
+  CameraList list;
   double near_plane = 0.0;
   std::vector<Shot> shots;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -32,25 +33,38 @@ constexpr std::size_t photos_max = 16;
 
 constexpr double metres_a_frame = 1.5 / 90.0;
 
+/// A head that moves is seen in pictures of no more than so many pixels a side: what is compared is not
+/// drawn.
+constexpr int moving_side_max = 640;
+
+Lens lens_for_moving(const Camera& camera) {
+  const double scale = std::min(1.0, double{moving_side_max} / std::max(camera.width, camera.height));
+  Lens lens;
+  lens.size = glm::ivec2(glm::max(glm::round(scale * glm::dvec2(camera.width, camera.height)), 1.0));
+  return lens;
+}
+
 study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions& options,
                                   const Studied& studied) {
-  const CameraList list = listed_cameras(options.scene, options.camera);
   const std::string& axes = studied.model->axes;
+  const Camera& camera = studied.shots.front().eyes.front().camera;
+  Known known = studied.list.known;
+  if (!known.units_per_metre && studied.list.listed && !is_built_in(options.scene.name))
+    known.units_per_metre = metre_of(studied.list.cameras);
+  const stereo::RigSettings rig = rig_settings(options.rig, known, studied.near_plane);
   study::PerspectiveViews views;
-  Camera head = studied.shots.front().eyes.front().camera;
-  const double metre = options.rig.units_per_metre.value_or(
-      list.known.units_per_metre.value_or(is_built_in(options.scene.name) ? 1.0 : metre_of(list.cameras)));
-  for (int n = 0; n < (context.software() ? 9 : 30); ++n) {
+  Camera head = sized(lens_for_moving(camera), camera);
+  for (int n = 0; n < (context.software() ? 9 : 16); ++n) {
     views.path.push_back(make_view(into_axes(head, axes), studied.near_plane));
-    head.position += metres_a_frame * metre * head.rotation[0];
+    head.position += metres_a_frame * rig.units_per_metre * head.rotation[0];
   }
-  views.eyes = views_of(
-      make_shots(options.camera.views, options.camera.lens, options.rig, list, studied.near_plane, axes)
-          .front());
-  if (views.eyes.size() != 2) views.eyes.clear();
+  if (!options.rig.one_picture()) {
+    const stereo::EyePair eyes = stereo::make_rig(into_axes(camera, axes), rig);
+    views.eyes.assign(eyes.views.begin(), eyes.views.end());
+  }
   if (options.photos.empty()) return views;
   for (const study::CalibrationView& one :
-       photographed_views({.wanted = photos_max}, options.photos, {}, list))
+       photographed_views({.views = {}, .wanted = photos_max}, options.photos, {}, studied.list))
     views.photos.emplace_back(make_view(into_axes(one.camera, axes), studied.near_plane), *one.photo);
   return views;
 }

@@ -1,8 +1,6 @@
 // binosplat trim: the smallest model that keeps the pictures.
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -16,10 +14,8 @@
 #include "app/split.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
-#include "formats/model_file.h"
 #include "formats/model_output.h"
 #include "scene/axes.h"
-#include "study/bench.h"
 #include "study/fields.h"
 #include "study/trim.h"
 

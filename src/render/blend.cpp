@@ -72,15 +72,17 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
 
 }  // namespace
 
+void find_long_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
+  if (shape.settings.tiles == TILES_ALL) return;
+  dispatcher.run(dispatcher.context().program("blend_long_lists.comp"),
+                 gl::Work::threads(shape.tile_count(), THREADS),
+                 {{"Frame", buffers.parameters},
+                  {"Ranges", buffers.ranges_of_tiles(shape)},
+                  {"LongLists", buffers.long_lists},
+                  {"FrameCounters", buffers.counters}});
+}
+
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
-  if (shape.settings.tiles != TILES_ALL) {
-    dispatcher.run(dispatcher.context().program("blend_long_lists.comp"),
-                   gl::Work::threads(shape.tile_count(), THREADS),
-                   {{"Frame", buffers.parameters},
-                    {"Ranges", buffers.ranges_of_tiles(shape)},
-                    {"LongLists", buffers.long_lists},
-                    {"FrameCounters", buffers.counters}});
-  }
   run(dispatcher, shape, buffers, {.records = shape.records}, buffers.measured);
 }
 
@@ -114,7 +116,7 @@ void refuse_cut(const gl::Context& context, const shared::Counters& counters) {
   if (counters.loop_cut == 0) return;
   throw Error(ExitCode::out_of_memory,
               fmt::format("{} ended a tile's list early: too many Gaussians in one tile for this driver. "
-                          "Use a smaller --tile or a smaller model.",
+                          "Use smaller tiles (--tile, where a picture is drawn) or a smaller model.",
                           context.renderer()));
 }
 

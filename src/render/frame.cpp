@@ -152,6 +152,7 @@ void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report
   run(Stage::tile_sort, [&] { tile_sort(dispatcher_, shape_, buffers_); });
   run(Stage::ranges, [&] { ranges(dispatcher_, shape_, buffers_); });
   run(Stage::blend, [&] {
+    find_long_lists(dispatcher_, shape_, buffers_);
     blend(dispatcher_, shape_, buffers_);
     remember(dispatcher_, shape_, buffers_);
   });

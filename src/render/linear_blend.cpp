@@ -1,6 +1,5 @@
 #include "render/linear_blend.h"
 
-#include <array>
 #include <stdexcept>
 
 #include "render/stages.h"
@@ -13,12 +12,6 @@ LinearBlend::LinearBlend(std::shared_ptr<GpuModel> model)
       colours_(frame_.model()->context(), "colours by slot"),
       sums_(frame_.model()->context(), "sums of the transposed blend") {}
 
-void LinearBlend::set_view(const shared::View& view, const FrameSettings& settings,
-                           const Workings& workings) {
-  frame_.draw_until(Stage::ranges, std::span(&view, 1), exact_of(settings), workings);
-  drawn_ = frame_.buffers().read_drawn(frame_.shape(), 0);
-}
-
 template <typename Record>
 void LinearBlend::run(const Record& record) {
   dispatcher_.begin_frame();
@@ -27,6 +20,13 @@ void LinearBlend::run(const Record& record) {
   dispatcher_.end_frame();
   dispatcher_.wait_and_time();
   refuse_cut(dispatcher_.context(), frame_.buffers().counters.read<shared::Counters>(1).front());
+}
+
+void LinearBlend::set_view(const shared::View& view, const FrameSettings& settings,
+                           const Workings& workings) {
+  frame_.draw_until(Stage::ranges, std::span(&view, 1), exact_of(settings), workings);
+  run([&] { find_long_lists(dispatcher_, frame_.shape(), frame_.buffers()); });
+  drawn_ = frame_.buffers().read_drawn(frame_.shape(), 0);
 }
 
 void LinearBlend::set_colours(std::span<const glm::vec3> colours) {

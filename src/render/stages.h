@@ -27,6 +27,10 @@ void tile_sort(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers
 /// Where each tile's list lies among the pairs.
 void ranges(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
+/// Tiles whose lists are long, which are blended by a launch of their own: once a frame, before its first
+/// blend.
+void find_long_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
+
 /// The pictures; and, for a transmittance that is measured, the most that each splat counted for.
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "measure/flip.h"
@@ -42,32 +43,39 @@ double against_photos(render::Frame& frame, const PerspectiveViews& views, const
   return sum / static_cast<double>(views.photos.size());
 }
 
-/// The frames `now` and `then` of a path.
-void add_pair(Popping& popping, const shared::View& now, const Picture& shown, const shared::View& then,
-              const Picture& before) {
-  const std::array black = {uncoloured(shown), uncoloured(before)}, coloured = {shown, before};
-  const stereo::Disagreement warped = stereo::disagreement({now, then}, black, coloured);
-  popping.mse += std::isfinite(warped.db) ? std::pow(10.0, -0.1 * warped.db) : 0.0;
-  popping.flip += measure::flip(on_black(shown), warped.right);
+/// Frames of a path, and what they show.
+struct Shown {
+  const shared::View& view;
+  const Picture& picture;
+};
+
+/// Adds what `now` shows against what was shown earlier, warped to it. False where they share nothing.
+bool add_pair(Popping& popping, const Shown& now, const Shown& earlier) {
+  const std::array black = {uncoloured(now.picture), uncoloured(earlier.picture)};
+  const std::array coloured = {now.picture, earlier.picture};
+  const stereo::Disagreement warped = stereo::disagreement({now.view, earlier.view}, black, coloured);
+  if (warped.counted == 0.0) return false;
+  popping.mse += std::pow(10.0, -0.1 * warped.db);
+  popping.flip += measure::flip(on_black(now.picture), warped.right) / warped.counted;
   popping.counted += warped.counted;
+  return true;
 }
 
 std::vector<Popping> measure_popping(render::Frame& frame, std::span<const shared::View> path,
                                      const Perspective& seen, const std::function<void()>& progress) {
   std::vector<Popping> found;
   std::vector<Picture> pictures;
-  for (const shared::View& view : path) {
-    pictures.push_back(draw(frame, std::span(&view, 1), seen).front());
-    progress();
-  }
+  for (const shared::View& view : path) pictures.push_back(draw(frame, std::span(&view, 1), seen).front());
   for (const int apart : apart_frames) {
     const auto step = static_cast<std::size_t>(apart);
-    if (path.size() <= step) continue;
     Popping popping{.apart = apart};
-    const std::size_t pairs = path.size() - step;
-    for (std::size_t n = 0; n < pairs; ++n)
-      add_pair(popping, path[n + step], pictures[n + step], path[n], pictures[n]);
-    for (double* sum : {&popping.mse, &popping.flip, &popping.counted}) *sum /= static_cast<double>(pairs);
+    double pairs = 0.0;
+    for (std::size_t n = 0; n + step < path.size(); ++n) {
+      pairs += add_pair(popping, {path[n + step], pictures[n + step]}, {path[n], pictures[n]}) ? 1.0 : 0.0;
+      progress();
+    }
+    if (pairs == 0.0) continue;
+    for (double* sum : {&popping.mse, &popping.flip, &popping.counted}) *sum /= pairs;
     found.push_back(popping);
   }
   return found;
@@ -80,7 +88,10 @@ std::string name_of(const Perspective& seen) {
 }
 
 std::size_t perspective_steps(const PerspectiveViews& views) {
-  return perspectives.size() * (views.photos.size() + views.path.size());
+  std::size_t pairs = 0;
+  for (const int apart : apart_frames)
+    pairs += views.path.size() - std::min(views.path.size(), static_cast<std::size_t>(apart));
+  return perspectives.size() * (views.photos.size() + pairs);
 }
 
 std::vector<PerspectiveNumbers> measure_perspectives(render::Frame& frame, const PerspectiveViews& views,
@@ -101,17 +112,22 @@ std::vector<PerspectiveNumbers> measure_perspectives(render::Frame& frame, const
 
 Table perspectives_table(std::span<const PerspectiveNumbers> numbers) {
   Table table{{"order, projection", "against photos, dB", "in one eye only, dB"}, {}};
-  if (!numbers.empty()) {
-    for (const Popping& popping : numbers.front().popping) {
-      table.columns.push_back(fmt::format("{} apart, dB", popping.apart));
-      table.columns.push_back(fmt::format("{} apart, FLIP", popping.apart));
-    }
+  for (const int apart : apart_frames) {
+    table.columns.push_back(fmt::format("{} apart, dB", apart));
+    table.columns.push_back(fmt::format("{} apart, FLIP", apart));
   }
   for (const PerspectiveNumbers& of : numbers) {
     std::vector<Cell>& cells = table.rows.emplace_back(row(name_of(of.seen), of.photos_db, of.eyes_db));
-    for (const Popping& popping : of.popping) {
-      cells.emplace_back(-10.0 * std::log10(popping.mse));
-      cells.emplace_back(popping.flip);
+    for (const int apart : apart_frames) {
+      const auto found = std::find_if(of.popping.begin(), of.popping.end(),
+                                      [&](const Popping& popping) { return popping.apart == apart; });
+      std::optional<double> db, flip;
+      if (found != of.popping.end()) {
+        db = -10.0 * std::log10(found->mse);
+        flip = found->flip;
+      }
+      cells.emplace_back(db);
+      cells.emplace_back(flip);
     }
   }
   return table;

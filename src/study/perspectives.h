@@ -27,9 +27,9 @@ std::string name_of(const Perspective& seen);
 /// (Radl et al. 2024, section 5), but by depth and poses where they estimate the flow.
 struct Popping {
   int apart = 1;         // frames
-  double mse = 0.0;      // of colours over black that both show, mean over the pairs
-  double flip = 0.0;     // likewise
-  double counted = 0.0;  // share of the pixels
+  double mse = 0.0;      // of colours over black, of the pixels that both show; mean over the pairs
+  double flip = 0.0;     // likewise; what one alone shows counts as equal
+  double counted = 0.0;  // share of the pixels that both show
 };
 
 struct PerspectiveNumbers {

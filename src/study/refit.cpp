@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 
-#include "base/log.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "render/linear_blend.h"
@@ -73,13 +72,12 @@ class Refit {
     for (int round = 1; round <= settings_.rounds; ++round) {
       if ((round - 1) % settings_.rounds_linear == 0) linearise();
       if (!step()) break;
-      if (judge_) {
-        found_.judged.push_back(judge_(candidate_));
-        if (round - found_.best_round > patience) break;
-      }
+      if (judge_) found_.judged.push_back(judge_(candidate_));
       if (!judge_ || found_.judged.back() < found_.judged[static_cast<std::size_t>(found_.best_round)]) {
         found_.best_round = round;
         found_.sh = candidate_.sh;
+      } else if (round - found_.best_round == patience) {
+        break;
       }
     }
     return std::move(found_);
@@ -90,16 +88,11 @@ class Refit {
   std::size_t at(std::size_t gaussian, std::size_t k) const { return 3 * (gaussian * coefficients_ + k); }
 
   glm::dvec3 sum_of(const Vector& sh, std::size_t gaussian, const std::array<double, 16>& basis) const {
-    glm::dvec3 sum(0.0);
-    for (std::size_t k = 0; k < coefficients_; ++k) {
-      const float* c = &sh[at(gaussian, k)];
-      sum += basis[k] * glm::dvec3(c[0], c[1], c[2]);
-    }
-    return sum;
+    return sh_sum(std::span(sh).subspan(at(gaussian, 0), 3 * coefficients_), basis);
   }
 
-  /// Calls body(n, Gaussian, basis towards it, 1 by channel where its colour is not cut off) for each that
-  /// the view draws.
+  /// Calls body(n, Gaussian, basis towards it, its colour before that is cut off at 0, 1 by channel where it
+  /// is not) for each that the view draws, as of the last linearise().
   template <typename Body>
   void for_drawn(const Camera& camera, const Body& body) const {
     const auto& drawn = blend_.drawn();
@@ -112,7 +105,8 @@ class Refit {
     parallel_for(drawn.size(), one, chunk);
   }
 
-  /// Calls body(camera in the model's axes) for every target, with W of its view in blend_.
+  /// Calls body(camera of the world, the same in the model's axes) for every target, whose W is then in
+  /// blend_.
   template <typename Body>
   void for_targets(const Body& body) {
     for (const Camera& in_world : targets_.cameras) {
@@ -232,7 +226,7 @@ class Refit {
                 [&](std::size_t n, std::size_t i, const auto& basis, const glm::dvec3&,
                     const glm::dvec3& counts) { colours[n] = counts * sum_of(direction_, i, basis); });
       blend_.set_colours(colours);
-      // No pixel is further from 0 than the colours: weights add up to 1 at most.
+      // No pixel is further from 0 than the colours, since weights add up to 1 at most; nor T from 1.
       const std::vector<glm::dvec4> sums = blend_.transposed(std::max(1.0f, largest_of(colours)));
       for_drawn(camera,
                 [&](std::size_t n, std::size_t i, const auto& basis, const glm::dvec3&,

@@ -40,11 +40,12 @@ class Trimmer {
 
   Trimmed run() {
     if (settings_.refit) {
-      fit(whole_, {}, [&](const Model& model) { return -sign() * judge_.cost(model).mean_db; });
+      found_.less = fit(whole_, {}, judge());
       start_ = judge_.cost(whole_).mean_db;
       tell("colours fitted", whole_, 0);
     }
-    weights_ = weigh(context_, whole_, views_.training, views_.near_plane);
+    const bool has_harmonics = whole_.degree > 0 && settings_.format != ModelFormat::splat;
+    weights_ = weigh(context_, whole_, views_.training, views_.near_plane, has_harmonics);
     found_.unseen = weights_.unseen();
     model_ = whole_;
     const std::string name = written_format(settings_.format).name;
@@ -53,7 +54,6 @@ class Trimmer {
       found_.fits = false;
       tell_written("as " + name);
     } else {
-      const bool has_harmonics = model_.degree > 0 && settings_.format != ModelFormat::splat;
       if (packs && has_harmonics) lower_bits();
       tell_written(packs && has_harmonics
                        ? fmt::format("as {}, {} bits a harmonic", name, found_.harmonic_bits)
@@ -70,15 +70,22 @@ class Trimmer {
     return judge_.cost(settings_.write(model, bits).model).mean_db;
   }
 
-  void fit(Model& model, const RefitSettings& settings, const RefitJudge& judge) const {
+  /// Whether it got nearer.
+  bool fit(Model& model, const RefitSettings& settings, const RefitJudge& judge) const {
     const RefitTargets targets{original_, views_.training, *settings_.refit, views_.near_plane};
-    model.sh = refit(context_, model, targets, settings, judge).sh;
+    Refitted found = refit(context_, model, targets, settings, judge);
+    model.sh = std::move(found.sh);
+    return found.best_round > 0;
   }
 
-  /// A candidate, its colours fitted again where that is asked for.
-  Model fitted(Model model) const {
-    if (settings_.refit) fit(model, {.rounds = trial_rounds, .keep_zeros = true}, {});
+  /// A candidate, its colours fitted again where that is asked for and helps.
+  Model fitted(Model model) {
+    if (settings_.refit) fit(model, {.rounds = trial_rounds, .keep_zeros = true}, judge());
     return model;
+  }
+
+  RefitJudge judge() {
+    return [this](const Model& model) { return -sign() * judge_.cost(model).mean_db; };
   }
 
   /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
@@ -102,7 +109,7 @@ class Trimmer {
   void lower_bits() {
     while (found_.harmonic_bits > 1 && holds(cost(model_, found_.harmonic_bits - 1), after_bits))
       --found_.harmonic_bits;
-    found_.less = found_.harmonic_bits < 8;
+    found_.less = found_.less || found_.harmonic_bits < 8;
   }
 
   ColourFit::Coefficients coefficients(std::size_t gaussian) const {
@@ -116,7 +123,7 @@ class Trimmer {
   }
 
   /// Harmonics of so many degrees, nearest to the colours that the training views see.
-  Model lowered(const std::vector<std::uint8_t>& degrees) const {
+  Model lowered(const std::vector<std::uint8_t>& degrees) {
     Model model = with_degrees(whole_, degrees);
     const auto count = static_cast<std::size_t>(sh_count(model.degree));
     parallel_for(
@@ -199,6 +206,7 @@ class Trimmer {
       return std::pair(changes[a], weights_.weight[a]) < std::pair(changes[b], weights_.weight[b]);
     });
     const auto without = [&](double amount) {
+      if (amount < 1.0) return model_;
       std::vector<std::uint8_t> kept(count, 1);
       for (std::size_t k = 0; k < static_cast<std::size_t>(amount); ++k) kept[by_worth[k]] = 0;
       return fitted(with_gaussians(model_, kept));

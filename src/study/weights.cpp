@@ -10,28 +10,15 @@
 
 namespace binosplat::study {
 
-namespace {
-
-/// The colour of Gaussian i towards a unit direction, less 0.5.
-glm::dvec3 colour_of(const Model& model, std::size_t i, const std::array<double, 16>& basis) {
-  const auto count = static_cast<std::size_t>(sh_count(model.degree));
-  const float* sh = &model.sh[3 * count * i];
-  glm::dvec3 sum(0.0);
-  for (std::size_t k = 0; k < count; ++k)
-    sum += basis[k] * glm::dvec3(sh[3 * k], sh[3 * k + 1], sh[3 * k + 2]);
-  return glm::max(sum, -0.5);
-}
-
-}  // namespace
-
 std::size_t Weights::unseen() const {
   return static_cast<std::size_t>(std::count(weight.begin(), weight.end(), 0.0));
 }
 
-Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras,
-              double near_plane) {
+Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras, double near_plane,
+              bool with_colours) {
   Weights weights{cameras.size(), std::vector<double>(model.count()), {}};
-  if (model.degree > 0 && !model.scaffold) weights.colours.resize(model.count());
+  if (with_colours) weights.colours.resize(model.count());
+  const auto values = 3 * static_cast<std::size_t>(sh_count(model.degree));
   render::LinearBlend blend(context, model);
   Progress progress("weighing the Gaussians in every view", cameras.size());
   std::size_t done = 0;
@@ -42,15 +29,16 @@ Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera
         static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
     blend.set_picture(std::vector<glm::vec4>(pixels, {1, 0, 0, 0}));
     const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
-    parallel_for(sums.size(), [&](std::size_t k) {
+    const auto add = [&](std::size_t k) {
       const std::size_t i = blend.drawn()[k].index;
       const double weight = sums[k].x;
-      if (weight == 0.0) return;
       weights.weight[i] += weight;
-      if (weights.colours.empty()) return;
+      if (weight == 0.0 || weights.colours.empty()) return;
       const auto basis = sh_basis(glm::normalize(glm::dvec3(model.position[i]) - camera.position));
-      weights.colours[i].add(basis, colour_of(model, i, basis), weight);
-    });
+      const glm::dvec3 colour = sh_sum(std::span(model.sh).subspan(i * values, values), basis);
+      weights.colours[i].add(basis, glm::max(colour, -0.5), weight);
+    };
+    parallel_for(sums.size(), add, 256);
     progress.update(++done);
   }
   return weights;

@@ -15,7 +15,7 @@ struct Weights {
   /// By Gaussian: its blending weight alpha * T summed over the pixels of all views, px; 0 exactly where no
   /// pixel blends it.
   std::vector<double> weight;
-  std::vector<ColourFit> colours;  // by Gaussian; none of a model of degree 0, or Scaffold-GS's
+  std::vector<ColourFit> colours;  // by Gaussian, where asked for
 
   /// How many Gaussians touch no pixel of any view.
   std::size_t unseen() const;
@@ -28,7 +28,7 @@ std::vector<double> changes_without(gl::Context& context, const Model& model,
 
 /// Draws each view once, exactly. `cameras` are of the world (scene/axes.h), `near_plane` in its units.
 /// Progress is shown.
-Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras,
-              double near_plane);
+Weights weigh(gl::Context& context, const Model& model, const std::vector<Camera>& cameras, double near_plane,
+              bool with_colours = false);
 
 }  // namespace binosplat::study

@@ -71,6 +71,7 @@ TEST_F(RefitTest, BringsThePhotosBack) {
   EXPECT_EQ(found.opacity, load_model(model).opacity);
   EXPECT_EQ(found.perspective, Perspective{});
 
+  EXPECT_EQ(test::load_json(folder / "r.json")["written"], true);
   // A view without a photo is fitted to the model's own picture.
   std::filesystem::remove(folder / "photos" / "view5.png");
   const Outcome fewer = refit("n.ply", {"--photos", folder / "photos"});
@@ -101,6 +102,10 @@ TEST_F(RefitTest, WritesNothingThatIsWorse) {
 }
 
 TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
+  take_photos(folder / "one");
+  for (int i = 1; i < 8; ++i) std::filesystem::remove(folder / "one" / ("view" + std::to_string(i) + ".png"));
+  EXPECT_TRUE(
+      ended(refit("m.ply", {"--photos", folder / "one"}), 2, "the only photo of a view is held back"));
   EXPECT_TRUE(ended(refit("m.ply", {}), 2, "--photos DIR, or --against exact"));
   EXPECT_TRUE(ended(refit("m.ply", {"--against", "exact", "--photos", folder.path()}), 2, "--against exact"));
   EXPECT_TRUE(ended(refit("m.png", {"--against", "exact"}), 2, "m.png"));
@@ -108,14 +113,14 @@ TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
   EXPECT_TRUE(ended(refit("m.ply", {"--against", "photos"}), 2, "photos"));
   EXPECT_TRUE(ended(refit("m.ply", {"--photos", folder / "none"}), 2, "none"));
   EXPECT_TRUE(ended(refit("m.ply", {"--photos", folder.path()}), 2, "there is no photo of any view"));
-  EXPECT_TRUE(ended(refit("m.ply", {"--against", "exact", "--test", "nowhere"}), 2, "nowhere"));
+  EXPECT_TRUE(ended(refit("m.ply", {"--against", "exact", "--test", "nowhere"}), 2, "--test nowhere: "));
   EXPECT_TRUE(ended(refit("m.ply", {"--against", "exact", "--test", "view1", "--held-back", "view1"}), 2,
-                    "view1 is named twice"));
+                    "--held-back view1: named twice"));
   std::filesystem::remove(folder / "cameras.json");
   EXPECT_TRUE(ended(refit("m.ply", {"--against", "exact"}), 2, "refit needs the cameras"));
 }
 
-// Photos of a trained model, in half the size of nobody: a few rounds over a few views.
+// A trained model, in small pictures: a few rounds over a few views.
 TEST(RefitScenes, FoxByDistanceGetsNearItsPictures) {
   REQUIRE_SCENE("fox", scene);
   test::TempFolder folder;

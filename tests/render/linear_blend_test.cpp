@@ -197,6 +197,42 @@ TEST(LinearBlends, KnowWhatChangesWithoutOne) {
   EXPECT_GT(differing(), 10u);
 }
 
+// Tiles whose lists are long have a launch of their own, whatever is asked first and how often.
+TEST(LinearBlends, OfLongListsAreWhole) {
+  Model model;
+  test::Uniform uniform(104);
+  for (int i = 0; i < 2 * LONG_LIST; ++i) {
+    test::add(model, glm::vec3(uniform(-0.05, 0.05), uniform(-0.05, 0.05), uniform(1.0, 2.0)),
+              glm::vec3(static_cast<float>(uniform(0.01, 0.1))), 0.02f, glm::vec3(uniform(0, 1)));
+  }
+  const auto right = [&] {
+    LinearBlend blend(test::gl_context(), model);
+    blend.set_view(front());
+    blend.set_picture(std::vector<glm::vec4>(pixels, {1, 0, 0, 0}));
+    std::vector<double> weights(model.count());
+    const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
+    for (std::size_t k = 0; k < sums.size(); ++k) weights[blend.drawn()[k].index] = sums[k].x;
+    const std::vector<double> changes = blend.changes();
+    return differing(weights, model) <= model.count() / 500 && blend.changes() == changes;
+  };
+  EXPECT_TRUE(right());
+  const test::FaultyShaders faulty("blend_long_lists.comp", "atomicAdd(counters.long_lists, 1u)",
+                                   "(counters.long_lists & 0u)");
+  EXPECT_FALSE(right());
+}
+
+// A pixel counts for no more than it may, and a whole tile of them for no less.
+TEST(LinearBlends, ChangesOfWholeTilesAddUp) {
+  Model model;
+  test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.99f, glm::vec3(1.0f));
+  test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.9f, glm::vec3(0.0f));
+  for (const int tile : {8, 16, 32}) {
+    LinearBlend blend(test::gl_context(), model);
+    blend.set_view(front(), {.tile_size = tile});
+    EXPECT_EQ(blend.changes()[0], CHANGE_MOST * pixels) << tile;
+  }
+}
+
 TEST(LinearBlends, OfNothingAreNothing) {
   Model model;
   test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);

@@ -110,6 +110,22 @@ TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
   for (std::size_t k = 15; k < 24; ++k) EXPECT_EQ(found.sh[k], 0.0f);
 }
 
+TEST(Refit, TheBestRoundIsKeptAndThreeWithoutABetterEndIt) {
+  const Model right = truth(), start = changed(right);
+  const RefitTargets targets{right, cameras(), {}, near_default};
+  const auto best_of = [&](std::vector<double> told) {
+    std::size_t asked = 0;
+    return refit(test::gl_context(), start, targets, {.rounds = 9},
+                 [&](const Model&) { return told.at(asked++); });
+  };
+  const Refitted third = best_of({5, 6, 6, 4, 4, 6, 6});
+  EXPECT_EQ(third.best_round, 3);
+  EXPECT_EQ(third.judged.size(), 7u);
+  const Refitted none = best_of({5, 6, 6, 6});
+  EXPECT_EQ(none.best_round, 0);
+  EXPECT_EQ(none.sh, start.sh);
+}
+
 TEST(Refit, AModelThatIsRightStays) {
   const Model right = truth();
   const Refitted found = fitted(right, right, {.rounds = 5});
