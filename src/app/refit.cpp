@@ -186,14 +186,9 @@ void add_refit(CLI::App& program, Command& command) {
   sub->add_option("--sh-bits", o->harmonic_bits, "Bits of a harmonic in spz (8)")
       ->type_name("N")
       ->check(range(1, 8));
-  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
-      ->type_name("FILE");
-  add_split_options(*sub, o->split,
+  add_split_options(*sub, *o, o->split,
                     "So many views (that have a photo) are held back to judge by, spread\nevenly, at most a "
                     "quarter of them (4); the others are fitted");
-  add_size_option(*sub, o->camera.lens);
-  add_lod_option(*sub, o->scene);
-  add_axes_option(*sub, o->scene);
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);
   sub->footer(

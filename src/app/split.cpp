@@ -10,7 +10,9 @@
 
 namespace binosplat::app {
 
-void add_split_options(CLI::App& sub, SplitOptions& o, const char* views_help) {
+void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& o, const char* views_help) {
+  sub.add_option("--cameras", measured.camera.file, "Cameras, where they are not beside the model")
+      ->type_name("FILE");
   sub.add_option("--views", o.held_back, views_help)->type_name("N")->check(range(1, 10000));
   sub.add_option("--held-back", o.judges,
                  "Views by name to hold back instead: photos that the model was not\ntrained on judge best")
@@ -18,6 +20,9 @@ void add_split_options(CLI::App& sub, SplitOptions& o, const char* views_help) {
       ->excludes("--views");
   sub.add_option("--test", o.tests, "Views by name that decide nothing: what they lose is stated")
       ->type_name("NAME...");
+  add_size_option(sub, measured.camera.lens);
+  add_lod_option(sub, measured.scene);
+  add_axes_option(sub, measured.scene);
 }
 
 CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) {

@@ -17,8 +17,9 @@ struct SplitOptions {
   std::vector<std::string> tests = {};   // views by name
 };
 
-/// Adds --views, --held-back and --test; `options` must outlive the parsing.
-void add_split_options(CLI::App& sub, SplitOptions& options, const char* views_help);
+/// Adds --cameras, --views, --held-back, --test, --size, --lod and --axes; both options must outlive the
+/// parsing.
+void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split, const char* views_help);
 
 /// The cameras that pictures of the scene are of. Throws Error, which names the command, where there are
 /// none.

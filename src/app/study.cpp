@@ -202,8 +202,9 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
   add_photos_option(sub, o.photos,
                     "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB;\nwith --turn what each "
                     "order and projection loses");
-  sub.add_option("-o,--output", o.output,
-                 "Folder for report.html and study.json (out/study);\nwith --stability, --motion and --turn, too")
+  sub.add_option(
+         "-o,--output", o.output,
+         "Folder for report.html and study.json (out/study);\nwith --stability, --motion and --turn, too")
       ->type_name("DIR");
   add_size_option(sub, o.camera.lens, "Of an eye's picture");
   add_preset_option(sub, o.camera.lens,

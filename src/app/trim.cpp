@@ -177,18 +177,14 @@ void add_trim(CLI::App& program, Command& command) {
       ->type_name("DB")
       ->check(above_zero);
   add_photos_option(*sub, o->photos);
-  sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
-      ->type_name("FILE");
   add_split_options(
-      *sub, o->split,
+      *sub, *o, o->split,
       "So many views (that have a photo) are held back to judge by, spread\nevenly, at most half "
       "of the cameras (16); the others say what each\nGaussian is worth");
-  sub->add_flag("--refit", o->refit,
-                "Fit the colours of what is left to the pictures, as refit does: a\nsmaller model, and many "
-                "times the time");
-  add_size_option(*sub, o->camera.lens);
-  add_lod_option(*sub, o->scene);
-  add_axes_option(*sub, o->scene);
+  sub->add_flag(
+      "--refit", o->refit,
+      "Fit the colours of every candidate to the pictures, as refit does: fewer\nGaussians, and many "
+      "times the time");
   sub->add_option("--json", o->json, "Write everything printed as JSON")->type_name("FILE");
   add_measured_options(*sub, *o);
   sub->footer(
