@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/model.h"
+
 namespace binosplat::study {
 
 namespace {
@@ -13,7 +15,7 @@ constexpr double inertia = 0.01;
 
 constexpr std::size_t at(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }
 
-constexpr std::size_t count_of(int degree) { return static_cast<std::size_t>((degree + 1) * (degree + 1)); }
+std::size_t count_of(int degree) { return static_cast<std::size_t>(sh_count(degree)); }
 
 }  // namespace
 

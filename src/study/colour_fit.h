@@ -11,7 +11,6 @@ namespace binosplat::study {
 /// weighted least squares.
 class ColourFit {
  public:
-  static constexpr int degree_max = 2;
   using Coefficients = std::array<glm::dvec3, 9>;  // those beyond the degree asked for are 0
 
   /// A colour that harmonics of `basis` (sh_basis) make, less 0.5, and how much of the picture it is, px.
