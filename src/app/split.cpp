@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
 #include "app/option_checks.h"
 #include "app/photos.h"
@@ -28,6 +29,8 @@ void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& s
 
 CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) {
   CameraList list = listed_cameras(o.scene, o.camera);
+  if (!list.listed && !is_built_in(o.scene.name) && !std::filesystem::exists(o.scene.name))
+    fail("cannot read {}: No such file or directory", o.scene.name);
   if (!list.listed)
     fail(
         "{} needs the cameras that the pictures are of, and there are none beside {}: name their file with "

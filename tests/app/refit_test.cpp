@@ -118,6 +118,8 @@ TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
                     "--held-back view1: named twice"));
   std::filesystem::remove(folder / "cameras.json");
   EXPECT_TRUE(ended(refit("m.ply", {"--against", "exact"}), 2, "refit needs the cameras"));
+  std::filesystem::remove(model);
+  EXPECT_TRUE(ended(refit("m.ply", {"--against", "exact"}), 2, "cannot read " + model));
 }
 
 // A trained model, in small pictures: a few rounds over a few views.
