@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr float difference_gain = 4.0f;  // of pictures to look at
+constexpr float difference_gain = 8.0f;  // of pictures to look at
 
 struct HeadAxis {
   const char* name;

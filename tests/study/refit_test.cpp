@@ -80,6 +80,34 @@ TEST(Refit, GetsNearThePicturesInAnotherOrderAndProjection) {
   EXPECT_LT(found.judged[static_cast<std::size_t>(found.best_round)], found.judged[0] - 1.5);
 }
 
+// From one side a colour is cut off at 0, before and after: that view must have no say, or the first step,
+// which is all that the other one needs, would be too short.
+TEST(Refit, ViewsOfColoursThatAreCutOffHaveNoSay) {
+  const auto of = [](float along_z) {
+    Model model;
+    model.degree = 1;
+    test::add(model, {0, 0, 3}, glm::vec3(0.3f), 0.5f, glm::vec3(0.5f));
+    for (std::size_t c = 0; c < 3; ++c) {
+      model.sh[3 * 2 + c] = along_z;
+      model.sh[3 * 3 + c] = 1.5f;  // of the degree that x has: -0.23 along it
+    }
+    return model;
+  };
+  const Model start = of(-1.2f), right = of(-1.6f);
+  std::vector<Camera> around(2, test::front_camera(64, 48, 60));
+  around[0].position = {-3, 0, 3};
+  around[0].rotation = glm::dmat3(0, 0, -1, 0, 1, 0, 1, 0, 0);
+  around[1].position = {0, 0, 6};
+  around[1].rotation = glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, -1);
+  const auto error = [&](const Model& model) {
+    return -measure::psnr(drawn(model, around[1]), drawn(right, around[1]));
+  };
+  const RefitTargets targets{right, around, {}, near_default};
+  const Refitted found = refit(test::gl_context(), start, targets, {.rounds = 1, .damping = 0.0}, error);
+  EXPECT_GT(found.judged[0], -45.0);
+  EXPECT_LT(found.judged[1], -90.0);
+}
+
 TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
   const Model right = truth();
   Model start = changed(right);
