@@ -69,5 +69,7 @@ void main() {
 #endif
   }
   if (cut || (!are_done() && batch < end)) atomicAdd(counters.loop_cut, 1u);
+#if SUMS == SUMS_NONE  // the picture stays
   write_pixels();
+#endif
 }

@@ -307,9 +307,6 @@ void write_pixels() {
   for (uint p = 0u; p < COLUMN; ++p) {
     if (first_pixel.x >= view.width || first_pixel.y + p >= view.height) continue;
     uint to = place_of(view, p);
-#if SUMS != SUMS_NONE
-    continue;  // the picture stays
-#endif
     float left = is_done(p) ? -least[p] : transmittance[p];
 #if SHOW == SHOW_PAIRS
     told[p] = float(end - begin);

@@ -67,8 +67,7 @@ ModelFormat format_of(const ConvertOptions& o) {
 
 void check(const ConvertOptions& o, ModelFormat format) {
   check_output(o.output);
-  if (o.harmonic_bits && format != ModelFormat::spz)
-    fail("--sh-bits {}: only spz has a choice of them", *o.harmonic_bits);
+  check_harmonic_bits(o.harmonic_bits, format);
   if (!o.json.empty()) check_output(o.json);
   if (!o.report && (o.camera.lens.size || !o.camera.file.empty() || !o.camera.views.empty()))
     fail("--cameras, --view and --size are of the pictures that --report draws: add it, or leave them out");
@@ -96,7 +95,7 @@ std::vector<Image> draw(const Views& views, const Model& model, const char* labe
   for (const Camera& camera : views.cameras) {
     const shared::View view = make_view(into_axes(camera, model.axes), views.near_plane);
     frame.draw({&view, 1});
-    pictures.push_back(quantised(composite(frame.read_pictures()[0], glm::vec3(0.0f))));
+    pictures.push_back(quantised(on_black(frame.read_pictures()[0])));
     progress.update(pictures.size());
   }
   return pictures;
@@ -179,9 +178,7 @@ ExitCode convert(const ConvertOptions& o) {
   if (fs::is_regular_file(o.scene.name, ignored)) done.bytes_before = fs::file_size(o.scene.name);
   done.bytes = fs::file_size(o.output);
   if (o.report) {
-    const Perspective perspective = model.perspective;
-    model = load_model(o.output);
-    model.perspective = perspective;  // as a format that does not tell it is to be drawn
+    model = load_written(o.output, model);
     done.views = compare(views, model, originals);
   }
   print(o, done);
@@ -202,11 +199,7 @@ void add_convert(CLI::App& program, Command& command) {
   for (const WrittenFormat& format : written_formats)
     formats.emplace_back(format.name, static_cast<ModelFormat>(formats.size()));
   choose(*sub, "--to", o->to, "The format, where FILE's ending does not say it", formats);
-  sub->add_option("--sh-bits", o->harmonic_bits,
-                  "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
-                  "costs some 15 dB")
-      ->check(range(1, 8))
-      ->type_name("N");
+  add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
   sub->add_option_function<int>(

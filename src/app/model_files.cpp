@@ -1,6 +1,9 @@
 #include "app/model_files.h"
 
+#include <CLI/CLI.hpp>
+
 #include "app/command.h"
+#include "app/option_checks.h"
 #include "formats/model_file.h"
 #include "formats/scaffold_file.h"
 
@@ -30,15 +33,31 @@ void refuse_scaffold(const Model& model, const std::string& scene) {
   }
 }
 
+void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits) {
+  sub.add_option("--sh-bits", bits,
+                 "Of spz: bits of a harmonic (8); 4, as other writers take, saves a third of the\nfile and "
+                 "costs some 15 dB")
+      ->check(range(1, 8))
+      ->type_name("N");
+}
+
+void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format) {
+  if (bits && format != ModelFormat::spz) fail("--sh-bits {}: only spz has a choice of them", *bits);
+}
+
+Model load_written(const fs::path& file, const Model& model) {
+  Model written = load_model(file);
+  written.perspective = model.perspective;
+  return written;
+}
+
 study::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
   return [output, format](const Model& model, int harmonic_bits) {
     OutputFile file(output);
     const Unfinished unfinished(file.path());
     write_model(file, model, format, harmonic_bits);
     file.flush();
-    Model read = load_model(file.path());
-    read.perspective = model.perspective;  // of formats that do not tell it, too
-    return study::WrittenModel{std::move(read), fs::file_size(file.path())};
+    return study::WrittenModel{load_written(file.path(), model), fs::file_size(file.path())};
   };
 }
 

@@ -2,9 +2,11 @@
 // What sub-commands that write models share.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/cli.h"
 #include "formats/model_output.h"
 #include "scene/model.h"
 #include "study/trim.h"
@@ -20,6 +22,13 @@ std::filesystem::path model_file(const std::string& scene);
 
 /// Throws Error for a Scaffold-GS model, which no file of Gaussians can hold.
 void refuse_scaffold(const Model& model, const std::string& scene);
+
+/// Adds --sh-bits; `bits` must outlive the parsing. Where it is given, the format must be spz, or Error.
+void add_harmonic_bits_option(CLI::App& sub, std::optional<int>& bits);
+void check_harmonic_bits(const std::optional<int>& bits, ModelFormat format);
+
+/// Reads what was written of a model, in that model's perspective, which some formats do not tell.
+Model load_written(const std::filesystem::path& file, const Model& model);
 
 /// Writes to a file beside the output, which is never committed.
 study::TrialWriter trial_writer(const std::string& output, ModelFormat format);

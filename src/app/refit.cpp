@@ -42,8 +42,7 @@ ModelFormat check(const RefitOptions& o) {
   if (o.camera.lens.size && !o.photos.empty())
     fail("--size with --photos: photos are fitted in their own size");
   const ModelFormat format = output_format(o.output);
-  if (o.harmonic_bits && format != ModelFormat::spz)
-    fail("--sh-bits {}: only spz has a choice of them", *o.harmonic_bits);
+  check_harmonic_bits(o.harmonic_bits, format);
   check_output(o.output);
   if (!o.json.empty()) check_output(o.json);
   return format;
@@ -183,9 +182,7 @@ void add_refit(CLI::App& program, Command& command) {
   sub->add_option("--rounds", o->rounds, fmt::format("Of conjugate gradients, at most ({})", o->rounds))
       ->type_name("N")
       ->check(range(1, 1000));
-  sub->add_option("--sh-bits", o->harmonic_bits, "Bits of a harmonic in spz (8)")
-      ->type_name("N")
-      ->check(range(1, 8));
+  add_harmonic_bits_option(*sub, o->harmonic_bits);
   add_split_options(*sub, *o, o->split,
                     "So many views (that have a photo) are held back to judge by, spread\nevenly, at most a "
                     "quarter of them (4); the others are fitted");

@@ -84,6 +84,10 @@ struct OpenScene {
 /// Those listed for the scene, or made up for its model.
 OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera);
 
+/// Where nothing else tells how many units make a metre, the distances of the cameras do (metre_of); whether
+/// they did.
+bool take_metre_of_cameras(const SceneOptions& scene, const RigOptions& rig, CameraList& list);
+
 /// What there is of a rig. `near_plane` in world units.
 stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane = near_default);
 

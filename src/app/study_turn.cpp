@@ -10,7 +10,6 @@
 #include "app/study_parts.h"
 #include "base/progress.h"
 #include "scene/axes.h"
-#include "scene/tour.h"
 #include "study/turning.h"
 
 namespace binosplat::app {
@@ -48,10 +47,9 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
                                   const Studied& studied) {
   const std::string& axes = studied.model->axes;
   const Camera& camera = studied.shots.front().eyes.front().camera;
-  Known known = studied.list.known;
-  if (!known.units_per_metre && studied.list.listed && !is_built_in(options.scene.name))
-    known.units_per_metre = metre_of(studied.list.cameras);
-  const stereo::RigSettings rig = rig_settings(options.rig, known, studied.near_plane);
+  CameraList list = studied.list;
+  if (list.listed) take_metre_of_cameras(options.scene, options.rig, list);
+  const stereo::RigSettings rig = rig_settings(options.rig, list.known, studied.near_plane);
   study::PerspectiveViews views;
   Camera head = sized(lens_for_moving(camera), camera);
   for (int n = 0; n < (context.software() ? 9 : 16); ++n) {
@@ -64,7 +62,7 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
   }
   if (options.photos.empty()) return views;
   for (const study::CalibrationView& one :
-       photographed_views({.views = {}, .wanted = photos_max}, options.photos, {}, studied.list))
+       photographed_views({.views = {}, .wanted = photos_max}, options.photos, {}, list))
     views.photos.emplace_back(make_view(into_axes(one.camera, axes), studied.near_plane), *one.photo);
   return views;
 }

@@ -71,8 +71,7 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
         "with --orbit",
         scene.name);
   }
-  if (!rig.units_per_metre && !list.known.units_per_metre && !is_built_in(scene.name)) {
-    list.known.units_per_metre = metre_of(list.cameras);
+  if (take_metre_of_cameras(scene, rig, list)) {
     log_info(
         "--tour: {:.4g} world units count as a metre, for the eyes' distance, too: from each camera to the "
         "next, in the median (--units-per-metre for another)",

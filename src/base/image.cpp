@@ -43,6 +43,8 @@ Image composite(const Picture& picture, const Background& background) {
   return image;
 }
 
+Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0f)); }
+
 Image depth_map(const Picture& picture) {
   Image image(picture.width, picture.height, 1);
   for (std::size_t k = 0; k < picture.colour.size(); ++k) {

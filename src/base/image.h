@@ -52,6 +52,9 @@ using Background = std::optional<glm::vec3>;
 /// straight alpha, colour C/A (0 where A = 0).
 Image composite(const Picture& picture, const Background& background);
 
+/// The same over black.
+Image on_black(const Picture& picture);
+
 /// Depth Z/A where A > 0.5, +infinity elsewhere; view-space z in world units; one channel.
 Image depth_map(const Picture& picture);
 

@@ -6,11 +6,11 @@
 
 namespace binosplat::render {
 
-LinearBlend::LinearBlend(std::shared_ptr<GpuModel> model)
-    : frame_(std::move(model)),
-      dispatcher_(frame_.model()->context()),
-      colours_(frame_.model()->context(), "colours by slot"),
-      sums_(frame_.model()->context(), "sums of the transposed blend") {}
+LinearBlend::LinearBlend(gl::Context& context, const Model& model)
+    : frame_(context, model),
+      dispatcher_(context),
+      colours_(context, "colours by slot"),
+      sums_(context, "sums of the transposed blend") {}
 
 template <typename Record>
 void LinearBlend::run(const Record& record) {
@@ -25,7 +25,7 @@ void LinearBlend::run(const Record& record) {
 void LinearBlend::set_view(const shared::View& view, const FrameSettings& settings,
                            const Workings& workings) {
   frame_.draw_until(Stage::ranges, std::span(&view, 1), exact_of(settings), workings);
-  run([&] { find_long_lists(dispatcher_, frame_.shape(), frame_.buffers()); });
+  find_long_lists(dispatcher_, frame_.shape(), frame_.buffers());
   drawn_ = frame_.buffers().read_drawn(frame_.shape(), 0);
 }
 

@@ -3,7 +3,6 @@
 // (docs/method.md 3). Here are W and its transpose, which tell what each Gaussian is worth and which colours
 // fit a picture best.
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -14,11 +13,9 @@ namespace binosplat::render {
 /// W of one view at a time, exact and in full precision.
 class LinearBlend {
  public:
-  /// The context must be current in every call.
-  explicit LinearBlend(std::shared_ptr<GpuModel> model);
-  /// Throws as GpuModel does.
-  LinearBlend(gl::Context& context, const Model& model)
-      : LinearBlend(std::make_shared<GpuModel>(context, model)) {}
+  /// Context and model must outlive it, and the context must be current in every call. Throws as GpuModel
+  /// does.
+  LinearBlend(gl::Context& context, const Model& model);
 
   /// W becomes that of a view, and the picture undefined. Of the settings count those of exact_of(). Throws
   /// as Frame::draw() does.

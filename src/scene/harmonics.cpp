@@ -37,8 +37,6 @@ std::array<double, 16> sh_basis(const glm::dvec3& d) {
           -0.5900435899266435 * x * (xx - 3.0 * yy)};
 }
 
-// The basis is orthonormal: an entry is the integral of one function times a turned one. Both have degree 3
-// at most, for whose products 4 Gauss-Legendre nodes in z by 8 azimuths are exact.
 glm::dvec3 sh_sum(std::span<const float> sh, const std::array<double, 16>& basis) {
   glm::dvec3 sum(0.0);
   for (std::size_t k = 0; 3 * k < sh.size(); ++k)
@@ -46,6 +44,8 @@ glm::dvec3 sh_sum(std::span<const float> sh, const std::array<double, 16>& basis
   return sum;
 }
 
+// The basis is orthonormal: an entry is the integral of one function times a turned one. Both have degree 3
+// at most, for whose products 4 Gauss-Legendre nodes in z by 8 azimuths are exact.
 HarmonicsTurn::HarmonicsTurn(const glm::dmat3& turn) {
   constexpr double nodes[][2] = {{-0.8611363115940526, 0.3478548451374538},
                                  {-0.3399810435848563, 0.6521451548625461},

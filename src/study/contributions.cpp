@@ -73,8 +73,6 @@ std::vector<DepthBin> by_depth(const std::vector<Shown>& shown, const render::De
 
 double capped(double db) { return std::min(db, equal_db); }
 
-Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0f)); }
-
 }  // namespace
 
 Contributions contributions(const Model& model, std::span<const ContributionView> views,

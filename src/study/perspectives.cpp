@@ -24,8 +24,6 @@ std::vector<Picture> draw(render::Frame& frame, std::span<const shared::View> vi
   return frame.read_pictures();
 }
 
-Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0f)); }
-
 /// Its depth, in black.
 Picture uncoloured(Picture picture) {
   for (glm::vec4& colour : picture.colour) colour = {0.0f, 0.0f, 0.0f, colour.a};

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "base/log.h"
 #include "base/parallel.h"
@@ -30,7 +31,6 @@ class Trimmer {
         views_(views),
         settings_(settings),
         original_(model),
-        whole_(model),
         judge_(context, model, views.held_back, views.near_plane, settings.target.kind) {
     if (!views.test.empty())
       test_ =
@@ -40,14 +40,15 @@ class Trimmer {
 
   Trimmed run() {
     if (settings_.refit) {
-      found_.less = fit(whole_, {}, judge());
-      start_ = judge_.cost(whole_).mean_db;
-      tell("colours fitted", whole_, 0);
+      refitted_ = original_;
+      found_.less = fit(*refitted_, {}, judge());
+      start_ = judge_.cost(*refitted_).mean_db;
+      tell("colours fitted", *refitted_, 0);
     }
-    const bool has_harmonics = whole_.degree > 0 && settings_.format != ModelFormat::splat;
-    weights_ = weigh(context_, whole_, views_.training, views_.near_plane, has_harmonics);
+    const bool has_harmonics = whole().degree > 0 && settings_.format != ModelFormat::splat;
+    weights_ = weigh(context_, whole(), views_.training, views_.near_plane, has_harmonics);
     found_.unseen = weights_.unseen();
-    model_ = whole_;
+    model_ = whole();
     const std::string name = written_format(settings_.format).name;
     const bool packs = settings_.format == ModelFormat::spz;
     if (!holds(cost(model_, 8), 1.0)) {
@@ -69,6 +70,9 @@ class Trimmer {
   double cost(const Model& model, int bits) {
     return judge_.cost(settings_.write(model, bits).model).mean_db;
   }
+
+  /// What is trimmed.
+  const Model& whole() const { return refitted_ ? *refitted_ : original_; }
 
   /// Whether it got nearer.
   bool fit(Model& model, const RefitSettings& settings, const RefitJudge& judge) const {
@@ -113,10 +117,10 @@ class Trimmer {
   }
 
   ColourFit::Coefficients coefficients(std::size_t gaussian) const {
-    const auto count = static_cast<std::size_t>(sh_count(whole_.degree));
+    const auto count = static_cast<std::size_t>(sh_count(whole().degree));
     ColourFit::Coefficients now{};
     for (std::size_t k = 0; k < std::min(count, now.size()); ++k) {
-      const float* c = &whole_.sh[3 * (gaussian * count + k)];
+      const float* c = &whole().sh[3 * (gaussian * count + k)];
       now[k] = {c[0], c[1], c[2]};
     }
     return now;
@@ -124,12 +128,12 @@ class Trimmer {
 
   /// Harmonics of so many degrees, nearest to the colours that the training views see.
   Model lowered(const std::vector<std::uint8_t>& degrees) {
-    Model model = with_degrees(whole_, degrees);
+    Model model = with_degrees(whole(), degrees);
     const auto count = static_cast<std::size_t>(sh_count(model.degree));
     parallel_for(
         degrees.size(),
         [&](std::size_t i) {
-          if (degrees[i] >= whole_.degree) return;
+          if (degrees[i] >= whole().degree) return;
           const auto near = weights_.colours[i].fitted(degrees[i], coefficients(i));
           for (std::size_t k = 0; k < static_cast<std::size_t>(sh_count(degrees[i])); ++k) {
             for (int c = 0; c < 3; ++c)
@@ -141,12 +145,12 @@ class Trimmer {
   }
 
   void lower_harmonics(bool packs) {
-    const std::size_t count = whole_.count();
-    for (int degree = 0; degree < whole_.degree; ++degree) {
+    const std::size_t count = whole().count();
+    for (int degree = 0; degree < whole().degree; ++degree) {
       Model lower = lowered(std::vector<std::uint8_t>(count, static_cast<std::uint8_t>(degree)));
       if (!holds(cost(lower, found_.harmonic_bits), after_harmonics)) continue;
       model_ = std::move(lower);
-      take(fmt::format("degree {} instead of {}", degree, whole_.degree));
+      take(fmt::format("degree {} instead of {}", degree, whole().degree));
       break;
     }
     if (packs && model_.degree > 0 && holds(cost(model_, found_.harmonic_bits), after_harmonics))
@@ -155,7 +159,7 @@ class Trimmer {
 
   /// How much the colours of each Gaussian change at each lower degree (ColourFit::change).
   std::vector<std::array<double, 3>> changes_of_degrees() const {
-    std::vector<std::array<double, 3>> changes(whole_.count());
+    std::vector<std::array<double, 3>> changes(whole().count());
     parallel_for(
         changes.size(),
         [&](std::size_t i) {
@@ -246,8 +250,8 @@ class Trimmer {
   const ViewSplit& views_;
   const TrimSettings& settings_;
   const Model& original_;
-  Model whole_;  // with fitted colours
-  Model model_;  // as trimmed so far
+  std::optional<Model> refitted_;  // the original with fitted colours, where that is asked for
+  Model model_;                    // as trimmed so far
   Calibrator judge_;
   std::unique_ptr<Calibrator> test_;
   double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained

@@ -73,11 +73,16 @@ Turned compare(const std::vector<glm::vec3>& straight, const std::vector<glm::ve
   return result;
 }
 
+/// Of which the page has a picture.
+bool is_pictured(const Turned& turn) {
+  return turn.about == head_axes.front().name && turn.degrees == 15.0 && turn.rays > 0;
+}
+
 std::vector<Figure> pictures_of(const TurningStudy& study) {
   std::vector<Figure> figures;
   if (study.straight) figures.push_back({"The rays, straight ahead", *study.straight});
   for (const Turned& turn : study.turns) {
-    if (turn.about != head_axes.front().name || turn.degrees != 15.0 || turn.rays == 0) continue;
+    if (!is_pictured(turn)) continue;
     Image larger = turn.difference;
     for (float& value : larger.data) value = std::min(1.0f, difference_gain * value);
     figures.push_back(
@@ -126,6 +131,7 @@ void measure_turning(TurningStudy& study, render::Frame& frame, const Camera& ca
         turn.seen = seen;
         turn.about = axis.name;
         turn.degrees = degrees;
+        if (!is_pictured(turn)) turn.difference = {};
         progress();
       }
     }
@@ -199,8 +205,8 @@ Page turning_page(const TurningStudy& study) {
         {"perspectives",
          "What each order and projection is worth",
          "Against photos: 8-bit PSNR, mean over the views. In one eye only: what the eyes do not share of "
-         "the "
-         "difference from distance and tangent. Apart: frames of a head that moves sideways at 1.5 m/s, 90 a "
+         "the difference from distance and tangent. Apart: frames of a head that moves sideways at 1.5 m/s, "
+         "90 a "
          "second, warped to one another by depth.",
          {},
          perspectives_table(study.numbers)});

@@ -32,7 +32,7 @@ struct Turned {
   double psnr_db = 0.0;       // against the head that is not turned; infinite for equal colours
   double share_beyond = 0.0;  // of the rays, of which a channel is off by more than seen_error
   double flip = 0.0;          // of rays side by side as a picture of 67 pixels per degree
-  Image difference;           // of RGB, a pixel a ray; 0 where one of them is in no picture
+  Image difference;  // of RGB, a pixel a ray, 0 where one of them is in no picture; by 15 degrees up only
 };
 
 struct TurningStudy {

@@ -1,10 +1,8 @@
 // binosplat refit.
 
 #include "app/scene.h"
-#include "base/output_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
-#include "formats/model_output.h"
 #include "support/fixtures.h"
 #include "support/models.h"
 #include "support/scenes.h"
@@ -26,17 +24,8 @@ Model colourful() {
 
 struct RefitTest : test::SceneTest {
   RefitTest() {
-    json cameras;
-    for (int i = 0; i < 8; ++i)
-      cameras.push_back(test::camera_json("view" + std::to_string(i), 0.1 * i - 0.35));
-    test::write_text(folder / "cameras.json", cameras.dump());
-    save(colourful());
-  }
-
-  void save(const Model& changed) const {
-    OutputFile file(model);
-    write_model(file, changed, ModelFormat::ply);
-    file.commit();
+    add_row_of_cameras(8);
+    test::save_ply(model, colourful());
   }
 
   /// Pictures of the model as it is now, as photos of the views.
@@ -55,7 +44,7 @@ TEST_F(RefitTest, BringsThePhotosBack) {
   take_photos(folder / "photos");
   Model darker = colourful();
   for (float& c : darker.sh) c -= 0.2f;
-  save(darker);
+  test::save_ply(model, darker);
   const Outcome outcome = refit("m.ply", {"--photos", folder / "photos", "--views", "2", "--test", "view3"});
   ASSERT_TRUE(good(outcome));
   const json all = steps();

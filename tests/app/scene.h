@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/output_file.h"
+#include "formats/model_output.h"
 #include "support/ply.h"
 #include "support/program.h"
 
@@ -36,6 +38,12 @@ inline PlyFile small_model() {
   return file;
 }
 
+inline void save_ply(const std::filesystem::path& path, const Model& model) {
+  OutputFile file(path);
+  write_model(file, model, ModelFormat::ply);
+  file.commit();
+}
+
 struct SceneTest : testing::Test {
   TempFolder folder;
   const std::string model = folder / "model.ply";
@@ -48,6 +56,14 @@ struct SceneTest : testing::Test {
   void add_cameras() {
     const nlohmann::json cameras = {camera_json("front", 0.0), camera_json("side", 0.5),
                                     camera_json("pair_left", -0.1), camera_json("pair_right", 0.1)};
+    write_text(folder / "cameras.json", cameras.dump());
+  }
+
+  /// So many, 0.1 apart: view0 and so on.
+  void add_row_of_cameras(int count) {
+    nlohmann::json cameras;
+    for (int i = 0; i < count; ++i)
+      cameras.push_back(camera_json("view" + std::to_string(i), 0.1 * i - 0.05 * (count - 1)));
     write_text(folder / "cameras.json", cameras.dump());
   }
 

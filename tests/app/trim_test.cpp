@@ -1,10 +1,8 @@
 // binosplat trim, and what info says of views.
 
 #include "app/scene.h"
-#include "base/output_file.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
-#include "formats/model_output.h"
 #include "support/fixtures.h"
 #include "support/models.h"
 #include "support/scaffold_files.h"
@@ -18,6 +16,7 @@ using test::ended;
 using test::good;
 using test::Outcome;
 using test::run_program;
+using test::save_ply;
 
 constexpr std::size_t visible = 42, useless = 60;
 
@@ -48,19 +47,8 @@ Model with_useless() {
   return model;
 }
 
-void save(const std::filesystem::path& path, const Model& model) {
-  OutputFile file(path);
-  write_model(file, model, ModelFormat::ply);
-  file.commit();
-}
-
 struct TrimTest : test::SceneTest {
-  TrimTest() {
-    json cameras;
-    for (int i = 0; i < 6; ++i)
-      cameras.push_back(test::camera_json("view" + std::to_string(i), 0.1 * i - 0.25));
-    test::write_text(folder / "cameras.json", cameras.dump());
-  }
+  TrimTest() { add_row_of_cameras(6); }
 
   Outcome trim(const std::string& to, std::vector<std::string> more) const {
     more.insert(more.begin(), {"trim", model, "-o", folder / to, "--json", folder / "r.json"});
@@ -71,7 +59,7 @@ struct TrimTest : test::SceneTest {
 };
 
 TEST_F(TrimTest, FindsExactlyWhatNoPixelSees) {
-  save(model, with_useless());
+  save_ply(model, with_useless());
   const Outcome outcome = trim("m.ply", {"--quality", "65"});
   ASSERT_TRUE(good(outcome));
   const Model left = trimmed("m.ply");
@@ -93,14 +81,14 @@ TEST_F(TrimTest, FindsExactlyWhatNoPixelSees) {
   // One of them where it is seen: it stays.
   Model one_less = with_useless();
   one_less.position[visible].z = 2.0f;
-  save(model, one_less);
+  save_ply(model, one_less);
   ASSERT_TRUE(good(trim("m.ply", {"--quality", "65"})));
   EXPECT_EQ(report()["unseen"], useless - 1);
   EXPECT_EQ(trimmed("m.ply").count(), visible + 1);
 }
 
 TEST_F(TrimTest, ALowerBoundLeavesLess) {
-  save(model, seen());
+  save_ply(model, seen());
   const auto left = [&](const char* db) {
     EXPECT_TRUE(good(trim("m.ply", {"--quality", db})));
     const double reached = report()["steps"].back()["held_back"]["mean_db"];
@@ -114,7 +102,7 @@ TEST_F(TrimTest, ALowerBoundLeavesLess) {
 }
 
 TEST_F(TrimTest, WithColoursFittedAgainLessIsLeft) {
-  save(model, test::random_model(8, 600, 1));
+  save_ply(model, test::random_model(8, 600, 1));
   const auto left = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--quality", "32"});
     EXPECT_TRUE(good(trim("m.ply", more)));
@@ -131,7 +119,7 @@ TEST_F(TrimTest, AModelThatNeedsAllIsReturnedAsItWas) {
   whole.degree = 0;
   whole.sh.clear();
   for (std::size_t k = 0; k < 3 * visible; ++k) whole.sh.push_back(seen().sh[48 * (k / 3) + k % 3]);
-  save(model, whole);
+  save_ply(model, whole);
   const Outcome outcome = trim("m.ply", {"--quality", "65"});
   ASSERT_TRUE(good(outcome));
   EXPECT_EQ(test::read_text(folder / "m.ply"), test::read_text(model));
@@ -161,7 +149,7 @@ TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
     float* sh = &shiny.sh[48 * i];
     for (std::size_t k = 3; k < 48; ++k) sh[k] = k < 12 ? 0.8f : 1e-5f;
   }
-  save(model, shiny);
+  save_ply(model, shiny);
   ASSERT_TRUE(good(trim("m.ply", {"--quality", "55"})));
   EXPECT_EQ(trimmed("m.ply").degree, 1);
   EXPECT_EQ(trimmed("m.ply").count(), visible);
@@ -169,7 +157,7 @@ TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
   for (std::size_t i = 0; i < visible; ++i) {
     for (std::size_t k = 3; k < 48; ++k) shiny.sh[48 * i + k] = i == 20 ? 0.8f : 1e-4f;
   }
-  save(model, shiny);
+  save_ply(model, shiny);
   const Outcome outcome = trim("m.spz", {"--quality", "38"});
   ASSERT_TRUE(good(outcome));
   EXPECT_NE(outcome.out.find("lower degrees for"), std::string::npos) << outcome.out;
@@ -180,9 +168,9 @@ TEST_F(TrimTest, HarmonicsThatDoNotCountGo) {
 TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
   Model blurred = with_useless();  // the photos' model: no picture of ours is equal to them
   for (glm::vec3& scale : blurred.scale) scale *= 1.2f;
-  save(model, blurred);
+  save_ply(model, blurred);
   ASSERT_TRUE(good(render({"--mono", "--view", "all", "-o", folder / "photos"})));
-  save(model, with_useless());
+  save_ply(model, with_useless());
   const Outcome outcome = trim("m.ply", {"--photos", folder / "photos", "--max-drop", "0.5", "--views", "2",
                                          "--test", "view1", "view3"});
   ASSERT_TRUE(good(outcome));
@@ -221,7 +209,7 @@ TEST_F(TrimTest, ErrorsSayWhatToDo) {
 }
 
 TEST_F(TrimTest, InfoSaysHowMuchTheViewsShow) {
-  save(model, with_useless());
+  save_ply(model, with_useless());
   const Outcome outcome =
       run_program({"info", model, "--cameras", folder / "cameras.json", "--json", folder / "r.json"});
   ASSERT_TRUE(good(outcome));

@@ -48,6 +48,4 @@ struct Scene {
   double pixels() const { return double(view.width) * view.height; }
 };
 
-inline Image on_black(const Picture& picture) { return composite(picture, glm::vec3(0.0f)); }
-
 }  // namespace binosplat::reference
