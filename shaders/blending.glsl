@@ -54,16 +54,12 @@ shared float batch_light[BATCH];
 // -log2(alpha) in a pixel (x, y) of the cell is (t^2 + s) + y ((2 b t + v) + c y), t = a x + u. See stage(). With the tangent
 // projection that is divided by |d|^2, d being the pixel's ray, before -log2(sigma), which is no part of s, is added.
 shared vec4 batch_across[BATCH];  // a, u, 2 b, s
-#if PROJECTION == PROJECTION_TANGENT
-#define DOWN vec4  // v, c, -log2(sigma), and 0
-#else
-#define DOWN vec2  // v, c
-#endif
-shared DOWN batch_down[BATCH];
+shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma), and 0: one address finds all three
 shared vec4 batch_colour[BATCH];  // rgb, depth
 
 uvec2 first_pixel;  // of the column
-vec2 pixel;         // the same, from the middle of the cell
+float column;       // from the middle of the cell
+float row[COLUMN];  // of each pixel, as well
 vec2 middle;        // of the cell
 uint size;          // splats of the batch
 vec3 colour[COLUMN];
@@ -124,53 +120,58 @@ bool are_done() {
 
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
 void blend(uint at[AHEAD]) {
-  float alpha[AHEAD][COLUMN];
+  float weights[COLUMN][AHEAD];  // alphas at first
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
-    DOWN down = batch_down[at[k]];
-    precise float t = fma(across.x, pixel.x, across.y);
+    vec4 down = batch_down[at[k]];
+    precise float t = fma(across.x, column, across.y);
     precise float level = fma(t, t, across.w);
     precise float slope = fma(t, across.z, down.x);
     for (uint p = 0u; p < COLUMN; ++p) {
-      precise float y = pixel.y + float(p);
-      precise float exponent = fma(y, fma(y, down.y, slope), level);
+      precise float exponent = fma(row[p], fma(row[p], down.y, slope), level);
 #if PROJECTION == PROJECTION_TANGENT
       exponent = fma(nearness[p], exponent, down.z);
 #endif
       precise float a = exp2(-exponent);
-      alpha[k][p] = a >= float(ALPHA_MIN) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
+      weights[p][k] = a >= float(ALPHA_MIN) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
     }
   }
+  float left[COLUMN];
   for (uint p = 0u; p < COLUMN; ++p) {
 #if SHOW == SHOW_ALPHAS
     uint asked = min(uint(AHEAD), size - min(at[0], size));
     if (!is_done(p)) told[p] += float(asked);
 #endif
-    precise float left = transmittance[p];
-    float weights[AHEAD];
+    precise float next = transmittance[p];
     for (uint k = 0u; k < AHEAD; ++k) {
-      precise float weight = alpha[k][p] * left;
-      weights[k] = weight;
-      left -= weight;
+      precise float weight = weights[p][k] * next;
+      weights[p][k] = weight;
+      next -= weight;
     }
-    if (left < least[p]) {  // seldom: it stops at one of these
-      left = transmittance[p];
+    left[p] = next;
+    if (next < least[p]) {  // seldom: it stops before one of these
+      next = transmittance[p];
+      float last = next;
       for (uint k = 0u; k < AHEAD; ++k) {
-        precise float weight = alpha[k][p] * left;
-        precise float next = left - weight;
-        if (next < least[p]) {
-          least[p] = -left;
+        next -= weights[p][k];
+        bool is_kept = next >= least[p];
+        weights[p][k] = is_kept ? weights[p][k] : 0.0;
+        last = is_kept ? next : last;
 #if SHOW == SHOW_ALPHAS
-          told[p] -= float(asked - 1u - k);
+        told[p] += float(is_kept);
 #endif
-        }
-        weights[k] = is_done(p) ? 0.0 : weight;
-        left = is_done(p) ? 0.0 : next;
       }
+#if SHOW == SHOW_ALPHAS
+      told[p] -= float(asked - 1u);
+#endif
+      least[p] = -last;
+      left[p] = 0.0;
     }
-    for (uint k = 0u; k < AHEAD; ++k) {
-      vec4 c = batch_colour[at[k]];
-      float weight = weights[k];
+  }
+  for (uint k = 0u; k < AHEAD; ++k) {
+    vec4 c = batch_colour[at[k]];
+    for (uint p = 0u; p < COLUMN; ++p) {
+      float weight = weights[p][k];
 #if RECORDS || SUMS != SUMS_NONE
       if (weight > 0.0) measure(at[k], p, weight);
       transmittance[p] -= weight;
@@ -187,8 +188,8 @@ void blend(uint at[AHEAD]) {
       colour[p] = vec3(r, g, b);
       z_sum[p] = z;
     }
-    transmittance[p] = left;
   }
+  for (uint p = 0u; p < COLUMN; ++p) transmittance[p] = left[p];
 }
 
 // Those that follow one another.
@@ -221,13 +222,13 @@ void stage(uint at, Splat splat) {
 #else
   precise float level = fma(v, v, -bits);
   batch_across[at] = vec4(xx, u, 2.0 * yx, level);
-  batch_down[at] = vec2(slope, bend);
+  batch_down[at] = vec4(slope, bend, 0.0, 0.0);
 #endif
 }
 
 void stage_nothing(uint at) {
   batch_across[at] = vec4(0.0, 0.0, 0.0, 1e30);
-  batch_down[at] = DOWN(0.0);
+  batch_down[at] = vec4(0.0);
   batch_colour[at] = vec4(0.0);
 }
 
@@ -272,21 +273,22 @@ void begin_pixels(uvec2 in_tile) {
   uvec2 corner = tile_corner(tile_of(tile, view), view);
   middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
   first_pixel = corner + in_tile;
-  pixel = vec2(first_pixel) - middle;
+  column = float(first_pixel.x) - middle.x;
 #if PROJECTION == PROJECTION_TANGENT
-  vec2 first = slope_at(view, vec2(corner)), last = slope_at(view, vec2(corner + uint(TILE_SIZE - 1)));
-  vec2 most = max(abs(first), abs(last));
+  precise vec2 step = 1.0 / view.lens.xy;
+  vec2 first = (vec2(corner) + 0.5 - view.lens.zw) * step;
+  vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
   farthest = 1.0 + dot(most, most);
 #endif
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x < view.width && first_pixel.y + p < view.height;
+    row[p] = float(first_pixel.y + p) - middle.y;
     colour[p] = vec3(0.0);
     z_sum[p] = 0.0;
     transmittance[p] = inside ? 1.0 : 0.0;
 #if PROJECTION == PROJECTION_TANGENT
-    vec2 ray = slope_at(view, vec2(first_pixel + uvec2(0u, p)));
-    precise float square = 1.0 + dot_precise(ray, ray);
-    precise float inverse = 1.0 / square;
+    precise vec2 ray = (vec2(first_pixel + uvec2(0u, p)) + 0.5 - view.lens.zw) * step;
+    precise float inverse = 1.0 / fma(ray.y, ray.y, fma(ray.x, ray.x, 1.0));
     nearness[p] = inverse;
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;

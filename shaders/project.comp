@@ -65,7 +65,7 @@ void main() {
       Outline outline = outline_of(splat, view);
       uvec4 box = box_of_tiles(outline, view);
       uvec2 rows = supertile_rows(box);
-      bool is_tall = rows.y - rows.x > TALL_ROWS;
+      bool is_tall = rows.y - rows.x > TALL_ROWS || outline.is_wide;
       coverage = is_tall ? 1u : coverage_of(outline, view, box);  // not known yet
       if (is_tall) leave_aside(splat_at);
     }

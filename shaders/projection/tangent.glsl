@@ -23,9 +23,9 @@ vec2 slope_at(View view, vec2 pixel) {
   return slope;
 }
 
-// Whether a Gaussian at v, behind the eye, is too far from all rays of the picture to be seen.
-bool is_beside(View view, vec3 v, float distance, float widest) {
-  float spread = widest / distance;
+// Whether a Gaussian at v is too far from all rays of the picture to be seen.
+bool is_beside(View view, vec3 v, float distance, vec3 scale) {
+  float spread = max(max(scale.x, scale.y), scale.z) / distance;
   float variance = spread * spread + float(KERNEL_PX2) / (view.lens.x * view.lens.y);
   float sine2 = LEVEL_MAX * min(variance, float(WIDEST_TANGENT) * float(WIDEST_TANGENT));
   float cosine = (sqrt(1.0 - sine2) - sqrt(sine2 * view.centre.w)) / sqrt(1.0 + view.centre.w);
@@ -74,7 +74,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
 #else
   if (!(v.z > view.anchor.w)) return false;
 #endif
-  if (v.z < 0.0 && is_beside(view, v, distance, max(max(g.scale.x, g.scale.y), g.scale.z))) return false;
+  if (v.z < 0.0 && is_beside(view, v, distance, g.scale.xyz)) return false;
   if (abs(v.z) < RISE_MIN * distance) v.z = v.z < 0.0 ? -RISE_MIN * distance : RISE_MIN * distance;
   // As the affine projection without a limit to its slopes, at the distance in place of the depth.
   precise vec2 slope = v.xy / v.z;
@@ -92,6 +92,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise float root = view.lens.x * view.lens.y / splat.conic.w;
   precise float above = root * root - float(WIDE_LEVEL) * (q.x + q.y - float(WIDE_LEVEL));
   if (v.z < 0.0 || q.x <= float(WIDE_LEVEL) || above <= 0.0) {
+    if (v.z > 0.0 && is_beside(view, v, distance, g.scale.xyz)) return false;
     splat.conic = limited(view, splat.conic, v / distance, excess(view, away / distance, distance, axes));
     splat.depth = -distance;
     if (v.z < 0.0) splat.conic.w = -splat.conic.w;

@@ -76,12 +76,6 @@ vec2 seen_across(Cone cone, View view, float first, float last) {
   return cone.direction.x == 0.0 && ahead <= 0.0 ? vec2(1.0, 0.0) : seen;
 }
 
-bool touches_picture(Outline outline, View view) {
-  if (outline.level < RHO_NONE) return false;
-  vec2 seen = seen_across(cone_of(outline, view), view, 0.0, float(view.height - 1u));
-  return seen.x <= seen.y;
-}
-
 uvec4 box_of_tiles(Outline outline, View view) {
 #if TILES != TILES_ALL
   if (outline.is_wide) return outline.level < RHO_NONE ? uvec4(0u) : uvec4(0u, 0u, view.tiles_x, view.tiles_y);

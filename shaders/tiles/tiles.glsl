@@ -111,12 +111,12 @@ uint value_of(uint splat, SupertileRow row, uint column) {
 #endif
 }
 
-// What a splat touches (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
+// What a splat that is not wide touches (supertiles.glsl). Tile row by tile row, so that neighbours ask at the same time.
 uint coverage_of(Outline outline, View view, uvec4 box) {
   uint count = 0u;
 #if SUPERTILE_SIDE == 1
   for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = row_of_tiles(outline, view, box, row);
+    uvec2 columns = tile_row(outline, view, box, row);
     count += columns.y - columns.x;
   }
 #else
@@ -126,7 +126,7 @@ uint coverage_of(Outline outline, View view, uvec4 box) {
   uint bits = 0u;
   uvec4 tiles = uvec4(0u);
   for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = row_of_tiles(outline, view, box, row);
+    uvec2 columns = tile_row(outline, view, box, row);
     if (are_few) {
       uvec2 from = columns - (box.x & ~1u);
       uint row_bits = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
@@ -145,7 +145,8 @@ uint coverage_of(Outline outline, View view, uvec4 box) {
   return count;
 }
 
-// Whether it touches any; of wide splats some beside all tiles do, too.
+// Whether it touches any; of wide splats all that can be seen at all do, since asking more of these few is what the others
+// would wait for.
 bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
   // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose
@@ -155,9 +156,7 @@ bool touches_a_tile(Splat splat, View view) {
   if (!is_wide(splat) && !is_probe(view) && q <= ellipse_inner_rho(splat.colour.w)) return true;
 #endif
   Outline outline = outline_of(splat, view);
-#if PROJECTION == PROJECTION_TANGENT && TILES != TILES_ALL
-  if (outline.is_wide) return touches_picture(outline, view);
-#endif
+  if (outline.is_wide) return outline.level >= RHO_NONE;
   uvec4 box = tile_box(outline, view);
   uint likely = likely_row(outline, view, box);
   for (uint n = 0u; n < box.w - box.y; ++n) {
