@@ -29,6 +29,9 @@ void add_trim(CLI::App& program, Command& command);
 void add_refit(CLI::App& program, Command& command);
 void add_info(CLI::App& program, Command& command);
 
+/// Whether the preview was built and lies beside this program.
+bool has_preview();
+
 /// From now on SIGHUP, SIGINT and SIGTERM end the program at once, or after the file that is being written
 /// (Uninterrupted), so that no half file is left. Call it before any thread is made.
 void end_cleanly_on_signals();

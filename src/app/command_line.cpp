@@ -1,13 +1,18 @@
 #include "app/command_line.h"
 
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <string>
+#include <utility>
 
 #include "app/command.h"
 #include "app/model_files.h"
+#include "app/scene_options.h"
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
@@ -26,6 +31,52 @@ constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--co
 
 constexpr double gaussian_bytes = 400.0;         // in memory, while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes: more than shaders take
+
+// Letters to put in, take out, change or swap with the next one.
+std::size_t edits(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before, last(b.size() + 1), now(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    now[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      now[j + 1] = std::min({last[j + 1] + 1, now[j] + 1, last[j] + (a[i] == b[j] ? 0u : 1u)});
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+        now[j + 1] = std::min(now[j + 1], before[j - 1] + 1);
+    }
+    before = std::exchange(last, now);
+  }
+  return last[b.size()];
+}
+
+// "; did you mean WORD?", if one of the words is near enough.
+std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::string nearest;
+  for (const std::string& other : words) {
+    const std::size_t count = other.starts_with(word) && word.size() > 3 ? 1 : edits(word, other);
+    if (count < least) {
+      least = count;
+      nearest = other;
+    }
+  }
+  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+bool has_display() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && *value != '\0') return true;
+  }
+  return false;
+}
 
 void note(const std::string& value) {
   note_input(value);
@@ -53,6 +104,42 @@ void check_arguments(int argc, const char* const* argv) {
       fail("{} '': its value is empty; give it one, or leave the option out", before);
     fail("argument {} is empty: leave it out, or fill in what it should be", i);
   }
+}
+
+std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty() || words[0].starts_with("-")) return words;
+  std::vector<std::string> commands;
+  for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
+  if (std::find(commands.begin(), commands.end(), words[0]) != commands.end()) return words;
+  std::error_code ignored;
+  if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
+    fail("{}: there is no such command and no such model{}\n  see: binosplat --help", words[0],
+         suggestion(words[0], commands));
+  words.insert(words.begin(), has_display() && has_preview() ? "view" : "render");
+  log_info("no command: binosplat {} {}", words[0], words[1]);
+  return words;
+}
+
+std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {
+  std::string text = error.what();
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
+    const std::vector<std::string> extras = command.remaining(true);
+    const auto option = std::find_if(extras.begin(), extras.end(),
+                                     [](const std::string& word) { return word.starts_with("-"); });
+    if (option == extras.end()) {
+      text = fmt::format("{}: one word too many", fmt::join(extras, " "));
+    } else {
+      const std::string word = option->substr(0, option->find('='));
+      text = fmt::format("{}: {} has no such option{}", word, name, suggestion(word, option_names(command)));
+    }
+  }
+  return fmt::format("{}\n  see: {} --help", text, name);
+}
+
+void add_quiet(CLI::App& sub) {
+  sub.add_flag_callback(
+      "--quiet", [] { set_quiet(true); }, "Say nothing but results, warnings and errors");
 }
 
 void spare_full_disk() {

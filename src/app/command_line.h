@@ -1,12 +1,23 @@
 #pragma once
 // What holds for the arguments of every sub-command.
 
+#include <string>
+#include <vector>
+
 #include "app/cli.h"
 
 namespace binosplat::app {
 
 /// Throws Error for an argument that is empty, as an unset variable of a script leaves it.
 void check_arguments(int argc, const char* const* argv);
+
+/// What the program is given, with the sub-command that is meant where it begins with a model: `view` where
+/// there are a display and the preview, else `render`; says so. Throws Error for a word that is neither.
+std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
+
+/// What a command line that cannot be parsed is told: what is wrong, what may be meant, and where to look;
+/// `name` is the (sub-)command's whole name.
+std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error);
 
 /// Where the disk of the user's caches is full, drivers are told to keep no shaders there: they write into
 /// mapped files, and SIGBUS would end the program. Says so. Call it before any context is made.
@@ -15,6 +26,9 @@ void spare_full_disk();
 /// --max-memory for a sub-command that reads a model: how much of it is believed of a file that is small
 /// (formats/plausible.h).
 void add_max_memory(CLI::App& sub);
+
+/// --quiet.
+void add_quiet(CLI::App& sub);
 
 /// Notes the files that a parsed command line names to be read (base/inputs.h): all but its outputs.
 void note_inputs(const CLI::App& program);

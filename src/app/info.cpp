@@ -34,6 +34,7 @@ using study::object;
 struct InfoOptions {
   SceneOptions scene;
   CameraOptions camera;
+  bool views = false;
   std::string json;
 };
 
@@ -190,8 +191,28 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
   return json;
 }
 
+// The names that --view takes.
+ExitCode list_views(const InfoOptions& options) {
+  const CameraList list = listed_cameras(options.scene, options.camera);
+  if (list.cameras.empty())
+    fail("{}: there are no cameras beside it; name their file with --cameras", options.scene.name);
+  std::size_t widest = 0;
+  for (const Camera& camera : list.cameras) widest = std::max(widest, camera.name.size());
+  fmt::print("{}: {} views\n", list.source, list.cameras.size());
+  ordered_json json = ordered_json::array();
+  for (const Camera& c : list.cameras) {
+    const double fov = 2.0 * glm::degrees(std::atan(0.5 * c.height / c.fy));
+    fmt::print("{:<{}}  {} x {} px, {:.1f} degrees high, at {:.4g},{:.4g},{:.4g}\n", c.name, widest, c.width,
+               c.height, fov, c.position.x, c.position.y, c.position.z);
+    json.push_back(camera_json(c));
+  }
+  if (!options.json.empty()) save_json(options.json, json);
+  return ExitCode::done;
+}
+
 ExitCode info(const InfoOptions& options) {
   if (!options.json.empty()) check_output(options.json);
+  if (options.views) return list_views(options);
   const Model model = load_model(options.scene.name, {.lod = options.scene.lod});
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
@@ -218,6 +239,7 @@ void add_info(CLI::App& program, Command& command) {
   sub->add_option("--cameras", options->camera.file,
                   "Draw the views of these cameras, and say how many Gaussians they show")
       ->type_name("FILE");
+  sub->add_flag("--views", options->views, "List the views instead, by the names that --view takes");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
   sub->footer(
       "Odd ones: never visible: opacity below 1/255; flat, needles: a hundred times thinner or longer than "

@@ -1,12 +1,16 @@
 // The command line: finds the sub-command, runs it, and turns what went wrong into a line and an exit code.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "app/command.h"
 #include "app/command_line.h"
@@ -52,10 +56,13 @@ int run(int argc, char** argv) {
   for (CLI::App* sub : program.get_subcommands({})) {
     const std::string name = sub->get_name();
     if (name != "compare" && name != "devices" && name != "view") binosplat::app::add_max_memory(*sub);
+    if (name != "view") binosplat::app::add_quiet(*sub);
   }
   try {
     binosplat::app::check_arguments(argc, argv);
-    program.parse(argc, argv);
+    std::vector<std::string> words = binosplat::app::with_command(program, argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    program.parse(std::move(words));
     binosplat::app::note_inputs(program);
     const ExitCode code = command();
     if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
@@ -64,8 +71,9 @@ int run(int argc, char** argv) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {
     const auto chosen = program.get_subcommands();
-    const std::string hint = chosen.empty() ? "" : chosen.front()->get_name() + " ";
-    return end(ExitCode::bad_input, fmt::format("{}\n  see: binosplat {}--help", error.what(), hint));
+    if (chosen.empty()) return end(ExitCode::bad_input, binosplat::app::explain(program, "binosplat", error));
+    return end(ExitCode::bad_input,
+               binosplat::app::explain(*chosen.front(), "binosplat " + chosen.front()->get_name(), error));
   } catch (const Error& error) {
     return end(error.code(), error.what());
   } catch (const std::bad_alloc&) {

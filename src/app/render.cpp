@@ -9,6 +9,7 @@
 #include "app/calibrated.h"
 #include "app/command.h"
 #include "app/detail.h"
+#include "app/empty_view.h"
 #include "app/followed.h"
 #include "app/load_scene.h"
 #include "app/photos.h"
@@ -130,6 +131,10 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     drawn.photo_psnr = photo_psnr(work.photos, output.backdrop(), drawn.shot, pictures[0]);
   }
   if (video) video->finish();
+  const auto is_empty = [](const Drawn& drawn) { return drawn.report.visible == 0; };
+  if (std::all_of(report.drawn.begin(), report.drawn.end(), is_empty))
+    log_warning("the pictures are empty: {}",
+                why_empty(report.model, report.drawn[0].shot, report.near_plane));
 }
 
 void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model) {

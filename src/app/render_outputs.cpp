@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <set>
 
 #include "app/command.h"
 #include "app/tour.h"
@@ -106,12 +107,44 @@ double frames_a_second(const std::vector<Shot>& shots) {
   return 1.0 / step;
 }
 
+// Whether a path's ending, as in .gif or .jp2, is one of a file; not .2 and .v2, which folders have.
+bool names_a_file(const fs::path& path) {
+  const std::string ending = lower_extension(path);
+  std::error_code ignored;
+  if (ending.size() < 3 || ending.size() > 5 || fs::is_directory(path, ignored)) return false;
+  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
+  return std::all_of(ending.begin() + 1, ending.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0; }) &&
+         std::count_if(ending.begin() + 1, ending.end(), is_letter) > 1;
+}
+
+// Whether trainers and exporters call every model's file or folder so, maybe with a number behind it.
+bool tells_nothing(std::string name) {
+  while (!name.empty() && (std::isdigit(static_cast<unsigned char>(name.back())) != 0 || name.back() == '_' ||
+                           name.back() == '-'))
+    name.pop_back();
+  static const std::set<std::string> said = {
+      "",       "point_cloud", "iteration", "ply",  "splat",    "splats", "model",     "scene",
+      "output", "export",      "exports",   "meta", "lod-meta", "step",   "gaussians", "exported"};
+  return said.contains(name);
+}
+
 }  // namespace
 
 fs::path default_folder(const std::string& scene) {
-  const auto colon = is_built_in(scene) ? scene.find(':') + 1 : 0;
-  const fs::path path = scene.substr(colon);
-  return fs::path("out") / (path.has_filename() ? path : path.parent_path()).stem();
+  if (is_built_in(scene)) return fs::path("out") / scene.substr(scene.find(':') + 1);
+  fs::path path = fs::absolute(scene).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  std::error_code ignored;
+  std::string name = fs::is_directory(path, ignored) ? path.filename().string() : path.stem().string();
+  // A name with a number tells apart what one training saved.
+  std::string number;
+  while (tells_nothing(name) && path.has_relative_path()) {
+    if (number.empty() && name.find_first_of("0123456789") != std::string::npos) number = "_" + name;
+    path = path.parent_path();
+    name = path.filename().string();
+  }
+  return fs::path("out") / (name.empty() ? "model" : name + number);
 }
 
 OutputPlan plan_outputs(const RenderOptions& render) {
@@ -128,8 +161,13 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   const std::string extension = lower_extension(output);
   const bool file = extension == ".png" || extension == ".exr";
   if (options.fps && !tour) fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
-  for (const char* other : {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp"}) {
-    if (extension == other) fail("-o {}: pictures are written as .png or .exr", output.string());
+  if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
+  if (!file && names_a_file(output)) {
+    fail(
+        "-o {}: pictures are written as .png or .exr, videos as .mp4, .mov, .mkv or .webm; for a folder of "
+        "that "
+        "name, make it first",
+        output.string());
   }
   if (file) {
     check_output(output);

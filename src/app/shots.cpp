@@ -122,7 +122,27 @@ void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings
 
 Known known_of(const std::optional<SavedPose>& saved) {
   if (!saved) return {};
-  return {saved->units_per_metre, saved->ipd, saved->up};
+  return {saved->units_per_metre, saved->ipd, saved->up, {}};
+}
+
+// What the cameras beside a model tell of those that are made up.
+void learn(const CameraList& list, Known& known) {
+  const auto capture = capture_of(list.cameras);
+  if (!capture) return;
+  if (!known.up) known.up = capture->up;
+  known.around = capture->around;
+}
+
+// Cameras are made up all the same where those beside the model cannot be read.
+void learn_beside(const std::string& scene, Known& known) {
+  const auto found = find_cameras(scene);
+  if (!found) return;
+  note_input(*found);
+  try {
+    learn({found->string(), load_cameras(*found)}, known);
+  } catch (const Error& error) {
+    log_warning("{}; what is up is taken from nowhere but --up", error.what());
+  }
 }
 
 }  // namespace
@@ -142,8 +162,11 @@ std::string stem_of(std::string name) {
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
                           const std::optional<SavedPose>& saved) {
   const std::vector<Camera> built_in = built_in_cameras(scene);
-  const Known known = known_of(saved);
-  if (camera.made_up()) return {.known = known};
+  Known known = known_of(saved);
+  if (camera.made_up()) {
+    if (built_in.empty()) learn_beside(scene.name, known);
+    return {.known = known};
+  }
   std::string file = camera.path.empty() ? camera.file : camera.path;
   if (file.empty() && built_in.empty()) {
     const auto found = find_cameras(scene.name);
@@ -156,6 +179,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.listed = !list.cameras.empty();
   list.path = camera.along_path();
   list.known = known;
+  if (built_in.empty()) learn(list, list.known);
   if (list.listed && (camera.up || camera.fov)) {
     fail(
         "--up and --fov are for cameras that are made up: {} has cameras; use --eye and --at, or --orbit, "
@@ -198,7 +222,8 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
     list.cameras = {look_at(*camera.eye, *camera.at, up, fov, made_up_width, made_up_height)};
   } else if (camera.orbit) {
     list.source = "--orbit";
-    list.cameras = orbit(model, *camera.orbit, made_up_width, made_up_height, fov, up);
+    if (known.around) log_info("--orbit: around what the cameras beside {} look at", scene.name);
+    list.cameras = orbit(model, *camera.orbit, made_up_width, made_up_height, fov, up, known.around);
   } else {
     log_info("no cameras beside {}: framing the model", scene.name);
     list.cameras = {frame_model(model, made_up_width, made_up_height, fov, up)};

@@ -9,6 +9,7 @@
 #include "app/scene_options.h"
 #include "formats/pose_file.h"
 #include "scene/camera.h"
+#include "scene/framing.h"
 #include "scene/model.h"
 #include "shared/types.h"
 #include "stereo/rig.h"
@@ -40,6 +41,7 @@ struct Known {
   std::optional<double> units_per_metre;  // world units
   std::optional<double> ipd;              // m
   std::optional<glm::dvec3> up;           // the world's
+  std::optional<Capture::Around> around;  // what the cameras beside the model stand around
 };
 
 /// Where cameras come from, for the log, and which they are.
@@ -64,7 +66,8 @@ std::optional<SavedPose> find_saved(const SceneOptions& scene);
 std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& camera,
                                        const std::optional<SavedPose>& saved);
 
-/// Cameras made up from --eye, --orbit or the model.
+/// Cameras made up from --eye, --orbit or the model: level, and on the orbit around, as those beside the
+/// model.
 CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const Known& known,
                            const Model& model);
 

@@ -15,9 +15,13 @@ namespace binosplat::app {
 
 namespace {
 
+std::filesystem::path preview() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "binosplat-view";
+}
+
 ExitCode view(std::vector<std::string> arguments) {
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "binosplat-view";
-  if (access(program.c_str(), X_OK) != 0) {
+  const auto program = preview();
+  if (!has_preview()) {
     throw Error(
         ExitCode::no_gl,
         fmt::format(
@@ -39,6 +43,8 @@ ExitCode view(std::vector<std::string> arguments) {
 }
 
 }  // namespace
+
+bool has_preview() { return access(preview().c_str(), X_OK) == 0; }
 
 void add_view(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("view", "Look at a model with both eyes, in a window");

@@ -1,9 +1,18 @@
 #include "base/log.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 
 namespace binosplat {
+
+namespace {
+std::atomic<bool> quiet_all = false;
+}
+
+void set_quiet(bool quiet) { quiet_all = quiet; }
+
+bool is_quiet() { return quiet_all; }
 
 void log_line(const std::string& text) {
   const auto control = [](char c) { return (static_cast<unsigned char>(c) < ' ' && c != '\n') || c == 127; };

@@ -12,10 +12,14 @@ namespace binosplat {
 /// characters but newlines, which could drive the terminal, come out as '?'.
 void log_line(const std::string& text);
 
+/// Whether nothing is said but warnings and errors; of the whole program, false at first.
+void set_quiet(bool quiet);
+bool is_quiet();
+
 /// Something worth knowing: which device is used, what was left out, that a frame was drawn again.
 template <typename... Args>
 void log_info(fmt::format_string<Args...> format, Args&&... args) {
-  log_line(fmt::format(format, std::forward<Args>(args)...));
+  if (!is_quiet()) log_line(fmt::format(format, std::forward<Args>(args)...));
 }
 
 /// Something that is probably not what the user meant.

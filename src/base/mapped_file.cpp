@@ -76,7 +76,11 @@ void end_cleanly_on_cut_files() {
 
 MappedFile::MappedFile(const std::filesystem::path& path) : name_(path.string()) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) fail("cannot read {}: {}", path.string(), std::strerror(errno));
+  if (file < 0) {
+    const bool address = path.string().find("://") != std::string::npos;
+    fail("cannot read {}: {}", path.string(),
+         address ? "it is an address, and only files are read: download it first" : std::strerror(errno));
+  }
   struct stat status {};
   int reason = fstat(file, &status) == 0 ? 0 : errno;
   const bool regular = S_ISREG(status.st_mode);

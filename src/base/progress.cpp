@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <mutex>
 #include <utility>
@@ -22,6 +23,13 @@ void say(const std::string& text) {
 }
 
 }  // namespace
+
+std::string spoken_time(double seconds) {
+  const auto whole = static_cast<std::int64_t>(std::ceil(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
+}
 
 std::string latest_progress() {
   const std::lock_guard lock(latest_mutex);
@@ -45,8 +53,14 @@ void Progress::update(std::uint64_t done) {
   if (now < next_) return;
   const int percent =
       total_ == 0 ? 100 : static_cast<int>(100.0 * static_cast<double>(done) / static_cast<double>(total_));
-  const std::string text = fmt::format("{} {} %", label_, percent);
+  std::string text = fmt::format("{} {} %", label_, percent);
+  const double spent = std::chrono::duration<double>(now - start_).count();
+  constexpr double seconds_to_judge = 5.0;
+  if (spent > seconds_to_judge && done > 0 && done < total_)
+    text += fmt::format(", {} left",
+                        spoken_time(spent * static_cast<double>(total_ - done) / static_cast<double>(done)));
   say(text);
+  if (is_quiet()) return;
   shown_ = true;
   next_ = now + std::chrono::milliseconds(100);
   if (terminal_) {

@@ -11,12 +11,12 @@ namespace binosplat {
 
 namespace {
 
-/// Cameras look down on the model by this angle.
+/// Cameras look down on the model by this angle, unless others tell of a better one.
 constexpr double elevation_degrees = 15.0;
 /// More Gaussians than this tell no more about what stands in the way.
 constexpr std::size_t sample_count = 200000;
 
-double median(std::vector<double>& values) {
+double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -56,8 +56,10 @@ struct Ring {
   Core core;
   glm::dvec3 up, ahead, aside;
   double distance = 0.0;
+  double elevation = glm::radians(elevation_degrees);
 
-  Ring(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& wanted_up)
+  Ring(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& wanted_up,
+       const std::optional<Capture::Around>& around)
       : core(core_of(model)) {
     const glm::dvec3 up_there = glm::normalize(wanted_up);
     // Any direction that is not up will do to start the circle; z, unless up is along it, is where COLMAP's
@@ -72,12 +74,15 @@ struct Ring {
     const double tan_y = std::tan(0.5 * glm::radians(fov_degrees));
     const double half_angle = std::atan(std::min(tan_y, tan_y * width / height));
     distance = core.radius / std::sin(half_angle);
+    if (!around) return;
+    core.middle = into * around->middle;
+    distance = around->distance;
+    elevation = around->elevation;
   }
 
   glm::dvec3 eye(double turn) const {
-    const double e = glm::radians(elevation_degrees);
-    return core.middle +
-           distance * (std::sin(e) * up - std::cos(e) * (std::cos(turn) * ahead + std::sin(turn) * aside));
+    return core.middle + distance * (std::sin(elevation) * up -
+                                     std::cos(elevation) * (std::cos(turn) * ahead + std::sin(turn) * aside));
   }
 };
 
@@ -116,11 +121,48 @@ double clearest_turn(const Model& model, const Ring& ring) {
   return best_turn;
 }
 
+// The point nearest to the cameras' axes: the sum of (1 - f f^T) (x - p) is zero.
+std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const glm::dvec3& up) {
+  glm::dmat3 across{0.0};
+  glm::dvec3 places{0.0};
+  for (const Camera& camera : cameras) {
+    const glm::dvec3 forward = camera.rotation[2];
+    const glm::dmat3 of_one = glm::dmat3(1.0) - glm::outerProduct(forward, forward);
+    across += of_one;
+    places += of_one * camera.position;
+  }
+  const double count = static_cast<double>(cameras.size());
+  constexpr double parallel = 1e-3;  // 1/27 is the most: axes in all directions
+  if (glm::determinant(across) < parallel * count * count * count) return std::nullopt;
+  Capture::Around around{glm::inverse(across) * places};
+  std::vector<double> distances, heights, facing;
+  for (const Camera& camera : cameras) {
+    const glm::dvec3 away = camera.position - around.middle;
+    distances.push_back(std::max(glm::length(away), 1e-9));
+    heights.push_back(std::asin(std::clamp(glm::dot(away, up) / distances.back(), -1.0, 1.0)));
+    facing.push_back(-glm::dot(away, camera.rotation[2]) / distances.back());
+  }
+  constexpr double half_look_there = 0.866;  // within 30 degrees
+  if (!(median(facing) > half_look_there)) return std::nullopt;
+  around.distance = median(distances);
+  around.elevation = median(heights);
+  return around;
+}
+
 }  // namespace
 
+std::optional<Capture> capture_of(std::span<const Camera> cameras) {
+  glm::dvec3 sum{0.0};
+  for (const Camera& camera : cameras) sum -= camera.rotation[1];
+  constexpr double common = 0.3;
+  if (cameras.empty() || glm::length(sum) < common * static_cast<double>(cameras.size())) return std::nullopt;
+  const glm::dvec3 up = glm::normalize(sum);
+  return Capture{up, around_of(cameras, up)};
+}
+
 std::vector<Camera> orbit(const Model& model, int count, int width, int height, double fov_degrees,
-                          const glm::dvec3& up) {
-  const Ring ring(model, width, height, fov_degrees, up);
+                          const glm::dvec3& up, const std::optional<Capture::Around>& around) {
+  const Ring ring(model, width, height, fov_degrees, up, around);
   const glm::dmat3 world = world_from_axes(model.axes);
   const double start = clearest_turn(model, ring);
   std::vector<Camera> cameras;

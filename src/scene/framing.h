@@ -3,6 +3,8 @@
 // the world (scene/axes.h), whatever the model's frame is.
 
 #include <glm/glm.hpp>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "scene/camera.h"
@@ -16,6 +18,22 @@ constexpr glm::dvec3 default_up{0.0, -1.0, 0.0};
 /// Vertical field of view of cameras that the program makes up, in degrees.
 constexpr double default_fov_degrees = 60.0;
 
+/// How a scene was captured: what goes for cameras that are made up where others are known. World units.
+struct Capture {
+  glm::dvec3 up;  // the mean of theirs
+  /// What they stand around, nearest to all their axes, and how far from it and how high above it they are
+  /// in the median; nothing where their axes do not meet before them.
+  struct Around {
+    glm::dvec3 middle;
+    double distance = 0.0;
+    double elevation = 0.0;  // radians
+  };
+  std::optional<Around> around;
+};
+
+/// Nothing for no cameras, and for those that have no common up.
+std::optional<Capture> capture_of(std::span<const Camera> cameras);
+
 /// A camera that looks at the densest part of the model from slightly above, so far away that the part fills
 /// the picture, and from the side where the least stands in the way. A few far outliers change nothing.
 /// Throws Error if the model is empty.
@@ -23,8 +41,10 @@ Camera frame_model(const Model& model, int width, int height, double fov_degrees
                    const glm::dvec3& up = default_up);
 
 /// `count` cameras on a circle around the same part, called orbit_000 and so on; the first is frame_model's.
+/// Or on the circle `around` which the scene was captured.
 std::vector<Camera> orbit(const Model& model, int count, int width, int height,
-                          double fov_degrees = default_fov_degrees, const glm::dvec3& up = default_up);
+                          double fov_degrees = default_fov_degrees, const glm::dvec3& up = default_up,
+                          const std::optional<Capture::Around>& around = {});
 
 /// near_default, or less for a model so small that near_default would cut into it when it is framed.
 double near_for(const Model& model);

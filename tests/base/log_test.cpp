@@ -41,5 +41,25 @@ TEST(Progress, IsSilentForShortWorkAndALineInALogForLong) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: reading x.ply 25 %\n");
 }
 
+TEST(Progress, TellsTheTimeThatIsLeftOnceItCanBeJudged) {
+  testing::internal::CaptureStderr();
+  Progress progress("drawing", 100);
+  std::this_thread::sleep_for(std::chrono::milliseconds(5100));
+  progress.update(10);
+  EXPECT_EQ(latest_progress(), "drawing 10 %, 46 s left");
+  testing::internal::GetCapturedStderr();
+  EXPECT_EQ(spoken_time(59.2), "1 min 0 s");
+  EXPECT_EQ(spoken_time(7500), "2 h 5 min");
+}
+
+TEST(Log, SaysOnlyWhatIsWrongWhereItIsToBeQuiet) {
+  testing::internal::CaptureStderr();
+  set_quiet(true);
+  log_info("drawing");
+  log_warning("empty");
+  set_quiet(false);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "binosplat: warning: empty\n");
+}
+
 }  // namespace
 }  // namespace binosplat

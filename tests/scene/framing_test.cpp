@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "base/error.h"
 
@@ -129,6 +130,56 @@ TEST(Framing, OddModels) {
   EXPECT_NEAR(glm::length(camera.position - glm::dvec3(1, 2, 3)), 1.0, 1e-6);
   EXPECT_THROW(frame_model(one, 640, 360, 0.0), Error);
   EXPECT_THROW(frame_model(one, 640, 360, 60.0, {0, 0, 0}), Error);
+}
+
+// Cameras on a circle that leans, 20 degrees above its plane, which look at its middle.
+std::vector<Camera> ring(const glm::dvec3& middle, const glm::dvec3& up, double distance,
+                         double outwards = 1.0) {
+  const glm::dvec3 x = glm::normalize(glm::cross(up, glm::dvec3(0.3, 0.5, -0.8))), y = glm::cross(up, x);
+  std::vector<Camera> cameras;
+  for (int k = 0; k < 7; ++k) {
+    const double turn = 2.0 * glm::pi<double>() * k / 7, rise = glm::radians(20.0);
+    const glm::dvec3 away = std::cos(rise) * (std::cos(turn) * x + std::sin(turn) * y) + std::sin(rise) * up;
+    const glm::dvec3 eye = middle + distance * away;
+    cameras.push_back(look_at(eye, eye - outwards * away, up, 50, 64, 48));
+  }
+  return cameras;
+}
+
+TEST(Capture, IsWhatTheCamerasStandAround) {
+  const glm::dvec3 up = glm::normalize(glm::dvec3(0.3, -0.8, 0.4)), middle(3, -2, 7);
+  const auto capture = capture_of(ring(middle, up, 5.0));
+  ASSERT_TRUE(capture && capture->around);
+  EXPECT_LT(glm::distance(capture->up, up), 1e-6);
+  EXPECT_LT(glm::distance(capture->around->middle, middle), 1e-6);
+  EXPECT_NEAR(capture->around->distance, 5.0, 1e-6);
+  EXPECT_NEAR(glm::degrees(capture->around->elevation), 20.0, 1e-6);
+  // An orbit stands where they stood.
+  const Model model = ball(glm::vec3(40, 0, 0), 1.0f);
+  for (const Camera& camera : orbit(model, 5, 64, 48, 50, capture->up, capture->around)) {
+    EXPECT_NEAR(glm::distance(camera.position, middle), 5.0, 1e-6);
+    EXPECT_LT(glm::distance(camera.rotation[2], glm::normalize(middle - camera.position)), 1e-6);
+  }
+}
+
+TEST(Capture, HasNoMiddleWhereAxesDoNotMeetBeforeThem) {
+  const auto outwards = capture_of(ring({0, 0, 0}, {0, -1, 0}, 5.0, -1.0));
+  ASSERT_TRUE(outwards);
+  EXPECT_FALSE(outwards->around);
+  std::vector<Camera> parallel(5, look_at({0, 0, 0}, {0, 0, 1}, {0, -1, 0}, 50, 64, 48));
+  for (int k = 0; k < 5; ++k) parallel[static_cast<std::size_t>(k)].position.x = k;
+  ASSERT_TRUE(capture_of(parallel));
+  EXPECT_FALSE(capture_of(parallel)->around);
+}
+
+TEST(Capture, NeedsACommonUp) {
+  EXPECT_FALSE(capture_of({}));
+  std::vector<Camera> rolled;
+  for (int k = 0; k < 4; ++k) {
+    const double roll = 0.5 * glm::pi<double>() * k;
+    rolled.push_back(look_at({0, 0, 0}, {0, 0, 1}, {std::sin(roll), -std::cos(roll), 0}, 50, 64, 48));
+  }
+  EXPECT_FALSE(capture_of(rolled));
 }
 
 }  // namespace

@@ -141,6 +141,7 @@ int run(int argc, char** argv) {
   try {
     add_view_options(program, options);
     add_max_memory(program);
+    add_quiet(program);
     check_arguments(argc, argv);
     program.parse(argc, argv);
     note_inputs(program);
@@ -149,7 +150,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return end(ExitCode::bad_input, fmt::format("{}\n  see: binosplat view --help", error.what()));
+    return end(ExitCode::bad_input, explain(program, "binosplat view", error));
   } catch (const Error& error) {
     return end(error.code(), error.what());
   } catch (const std::bad_alloc&) {

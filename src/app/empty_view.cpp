@@ -1,0 +1,62 @@
+#include "app/empty_view.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scene/axes.h"
+#include "scene/summary.h"
+
+namespace binosplat::app {
+
+namespace {
+
+// Where the model's Gaussians lie, as a camera sees their middles.
+struct Seen {
+  std::size_t inside = 0;  // the picture, beyond the near plane
+  std::size_t ahead = 0;   // beyond the near plane
+  std::size_t near = 0;    // before the camera, but not beyond it
+};
+
+Seen look(const Model& model, Camera camera, double near_plane) {
+  camera = into_axes(camera, model.axes);
+  Seen seen;
+  for (const glm::vec3& p : model.position) {
+    const glm::dvec3 v = glm::transpose(camera.rotation) * (glm::dvec3(p) - camera.position);
+    if (v.z <= 0.0) continue;
+    ++(v.z > near_plane ? seen.ahead : seen.near);
+    const double x = camera.fx * v.x / v.z + camera.cx, y = camera.fy * v.y / v.z + camera.cy;
+    const bool inside = x >= 0.0 && x < camera.width && y >= 0.0 && y < camera.height;
+    if (inside && v.z > near_plane) ++seen.inside;
+  }
+  return seen;
+}
+
+}  // namespace
+
+std::string why_empty(const Model& model, const Shot& shot, double near_plane) {
+  const Camera& eye = shot.eyes.front().camera;
+  const Seen seen = look(model, eye, near_plane);
+  if (seen.inside > 0)
+    return "what lies in the picture has opacities below 1/255, or the threshold leaves it out (--th)";
+  if (shot.ipd && shot.eyes.size() == 2) {
+    Camera head = eye;
+    head.position = 0.5 * (eye.position + shot.eyes[1].camera.position);
+    if (look(model, head, near_plane).inside > 0) {
+      return fmt::format(
+          "the eyes are {:.4g} m apart, {:.4g} world units, and see past the model between them: --ipd is in "
+          "metres, --units-per-metre says how many world units make one",
+          *shot.ipd, *shot.ipd * shot.units_per_metre);
+    }
+  }
+  if (seen.ahead == 0 && seen.near > 0)
+    return fmt::format("all that lies ahead is nearer than --near {:.4g}", near_plane);
+  const Bounds core = summarise(model).core;
+  const glm::dvec3 middle =
+      world_from_axes(model.axes) * (0.5 * (glm::dvec3(core.low) + glm::dvec3(core.high)));
+  return fmt::format(
+      "view {} looks {} the model, whose middle is at {:.4g},{:.4g},{:.4g}: see --eye and --at, or --orbit 8",
+      shot.name, seen.ahead == 0 ? "away from" : "past", middle.x, middle.y, middle.z);
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,135 @@
+// What a new user types first, right or wrong: the program does what is meant, or says what was not.
+
+#include "app/scene.h"
+
+namespace binosplat {
+namespace {
+
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::run_program;
+
+struct FirstWords : test::SceneTest {
+  test::Surroundings here;
+
+  FirstWords() {
+    add_cameras();
+    here.folder = folder.path();
+    here.variables = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}};
+  }
+
+  Outcome run(const std::vector<std::string>& words) const { return run_program(words, here); }
+
+  /// What drawing a small picture said.
+  std::string said(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"-o", out});
+    const Outcome outcome = render(arguments, here);
+    EXPECT_TRUE(good(outcome));
+    return outcome.err;
+  }
+};
+
+TEST_F(FirstWords, AModelAloneIsDrawn) {
+  EXPECT_TRUE(ended(run({"model.ply", "--view", "side"}), 0, "no command: binosplat render model.ply"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out" / folder.path().filename() / "side_left.png"));
+  EXPECT_TRUE(ended(run({"mdoel.ply"}), 2, "mdoel.ply: there is no such command and no such model"));
+}
+
+TEST_F(FirstWords, MistakesInWordsGetASuggestion) {
+  EXPECT_TRUE(ended(run({"rendr", "model.ply"}), 2, "did you mean render?"));
+  EXPECT_TRUE(ended(run({"render", "model.ply", "--sise", "3"}), 2,
+                    "--sise: binosplat render has no such option; did you mean --size?"));
+  EXPECT_TRUE(ended(run({"render", "model.ply", "--convergance=3"}), 2, "did you mean --convergence?"));
+  EXPECT_TRUE(ended(run({"render", "model.ply", "other.ply"}), 2, "other.ply: one word too many"));
+  const Outcome far = run({"render", "model.ply", "--xyzzy"});
+  EXPECT_TRUE(ended(far, 2, "--xyzzy: binosplat render has no such option"));
+  EXPECT_EQ(far.err.find("did you mean"), std::string::npos) << far.err;
+}
+
+TEST_F(FirstWords, AddressesAreNotFiles) {
+  EXPECT_TRUE(ended(run({"render", "https://example.org/a.ply"}), 2, "download it first"));
+}
+
+TEST_F(FirstWords, OptionsMayComeBeforeTheScene) {
+  EXPECT_TRUE(good(run({"render", "--view", "front", "side", "--size", "36x24", "-o", out, model})));
+  EXPECT_TRUE(std::filesystem::exists(out + "/side_right.png"));
+}
+
+TEST_F(FirstWords, EyesApartHaveAUnit) {
+  EXPECT_TRUE(ended(render({"--ipd", "63", "-o", out}), 2, "--ipd 63: that is 63 metres"));
+  EXPECT_TRUE(ended(render({"--ipd", "0.063x", "-o", out}), 2, "its unit may be m, cm or mm"));
+  const auto ipd = [&](const char* text) {
+    EXPECT_TRUE(good(render({"--ipd", text, "--size", "36x24", "-o", out, "--json", folder / "r.json"})));
+    return nlohmann::json::parse(test::read_text(folder / "r.json"))["views"][0]["ipd_metres"].get<double>();
+  };
+  EXPECT_DOUBLE_EQ(ipd("64mm"), 0.064);
+  EXPECT_DOUBLE_EQ(ipd("0.5"), 0.5);
+  EXPECT_DOUBLE_EQ(ipd("2m"), 2.0);
+}
+
+TEST_F(FirstWords, EmptyPicturesAreExplained) {
+  EXPECT_NE(said({"--eye", "0,0,0", "--at", "0,0,-4"}).find("view camera looks away from the model"),
+            std::string::npos);
+  EXPECT_NE(said({"--eye", "0,0,-100", "--at", "100,0,-90"}).find("looks past the model"), std::string::npos);
+  EXPECT_NE(said({"--view", "front", "--near", "50"}).find("nearer than --near 50"), std::string::npos);
+  EXPECT_NE(said({"--view", "front", "--ipd", "500m"}).find("the eyes are 500 m apart"), std::string::npos);
+  EXPECT_EQ(said({"--view", "front"}).find("empty"), std::string::npos);
+}
+
+TEST_F(FirstWords, OutputsAreWhatTheirEndingsSay) {
+  EXPECT_TRUE(ended(render({"-o", folder / "a.gif"}), 2, "pictures are written as .png or .exr"));
+  EXPECT_TRUE(ended(render({"-o", folder / "a.avi"}), 2, "videos as .mp4"));
+  EXPECT_TRUE(ended(render({"-o", "-"}), 2, "-o -: pictures are files"));
+  for (const char* name : {"v1.2", "run.v2", "plain"}) {
+    EXPECT_TRUE(good(render({"--size", "36x24", "-o", folder / name})));
+    EXPECT_TRUE(std::filesystem::exists(folder / name / "front_left.png")) << name;
+  }
+}
+
+TEST_F(FirstWords, ModelsOfOneNameLeaveTheirPicturesApart) {
+  const std::string bytes = test::read_text(model);
+  for (const char* file : {"garden/point_cloud/iteration_7000/point_cloud.ply", "fox/exports/splat/splat.ply",
+                           "bike/model.ply"}) {
+    std::filesystem::create_directories((folder / file).parent_path());
+    test::write_text(folder / file, bytes);
+    EXPECT_TRUE(good(run({"render", file, "--size", "36x24"})));
+  }
+  EXPECT_TRUE(good(run({"render", "garden", "--size", "36x24"})));
+  for (const char* name : {"garden_iteration_7000", "fox", "bike", "garden"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / name / "framed_left.png")) << name;
+}
+
+TEST_F(FirstWords, QuietIsQuiet) {
+  const Outcome outcome = render({"--quiet", "--mono", "--size", "36x24", "-o", out});
+  EXPECT_TRUE(good(outcome));
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(FirstWords, ViewsAreListed) {
+  const Outcome outcome = run({"info", "model.ply", "--views", "--json", folder / "views.json"});
+  ASSERT_TRUE(good(outcome));
+  EXPECT_NE(outcome.out.find("cameras.json: 4 views"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("side        72 x 48 px, 43.6 degrees high, at 0.5,0,0"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(nlohmann::json::parse(test::read_text(folder / "views.json")).size(), 4u);
+}
+
+TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
+  // Around (0, 0, 4), 4 away from each; up is -y.
+  nlohmann::json cameras = {test::camera_json("back", 0.0), test::camera_json("front", 0.0)};
+  cameras[1]["position"] = {0.0, 0.0, 8.0};
+  cameras[1]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+  cameras.push_back(test::camera_json("side", -4.0));
+  cameras[2]["position"] = {-4.0, 0.0, 4.0};
+  cameras[2]["rotation"] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
+  test::write_text(folder / "cameras.json", cameras.dump());
+  const Outcome outcome =
+      render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out, "--json", folder / "r.json"});
+  EXPECT_TRUE(ended(outcome, 0, "--orbit: around what the cameras beside"));
+  test::write_text(folder / "cameras.json", "no cameras");
+  EXPECT_TRUE(ended(render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out}), 0, "warning"));
+}
+
+}  // namespace
+}  // namespace binosplat
