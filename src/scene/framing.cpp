@@ -54,20 +54,21 @@ Core core_of(const Model& model) {
 /// The place on the circle around the core where a camera at `turn` radians stands.
 struct Ring {
   Core core;
+  glm::dmat3 world;  // from the model's frame
   glm::dvec3 up, ahead, aside;
   double distance = 0.0;
   double elevation = glm::radians(elevation_degrees);
 
   Ring(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& wanted_up,
        const std::optional<Capture::Around>& around)
-      : core(core_of(model)) {
+      : core(core_of(model)), world(world_from_axes(model.axes)) {
     const glm::dvec3 up_there = glm::normalize(wanted_up);
     // Any direction that is not up will do to start the circle; z, unless up is along it, is where COLMAP's
     // first camera looks.
     const glm::dvec3 start = std::abs(up_there.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     const glm::dvec3 aside_there = glm::normalize(glm::cross(start, up_there));
     // The world's directions in the model's frame.
-    const glm::dmat3 into = glm::transpose(world_from_axes(model.axes));
+    const glm::dmat3 into = glm::transpose(world);
     up = into * up_there;
     aside = into * aside_there;
     ahead = into * glm::cross(up_there, aside_there);
@@ -78,6 +79,12 @@ struct Ring {
     core.middle = into * around->middle;
     distance = around->distance;
     elevation = around->elevation;
+  }
+
+  /// Where a point of the world lies, seen from the middle in the direction `away`.
+  double turn_to(const glm::dvec3& away) const {
+    const glm::dvec3 there = glm::transpose(world) * away;
+    return std::atan2(-glm::dot(there, aside), -glm::dot(there, ahead));
   }
 
   glm::dvec3 eye(double turn) const {
@@ -144,6 +151,7 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
   }
   constexpr double half_look_there = 0.866;  // within 30 degrees
   if (!(median(facing) > half_look_there)) return std::nullopt;
+  around.first = cameras[0].position - around.middle;
   around.distance = median(distances);
   around.elevation = median(heights);
   return around;
@@ -156,7 +164,13 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras) {
   for (const Camera& camera : cameras) sum -= camera.rotation[1];
   constexpr double common = 0.3;
   if (cameras.empty() || glm::length(sum) < common * static_cast<double>(cameras.size())) return std::nullopt;
-  const glm::dvec3 up = glm::normalize(sum);
+  // People hold cameras level across, but up or down: the up that has the least of their right axes, and
+  // where these say little is near the mean. Minimises mean (r . u)^2 + near (u - mean)^2.
+  constexpr double near = 0.01;
+  glm::dmat3 across(near);
+  for (const Camera& camera : cameras)
+    across += glm::outerProduct(camera.rotation[0], camera.rotation[0]) / static_cast<double>(cameras.size());
+  const glm::dvec3 up = glm::normalize(glm::inverse(across) * sum);
   return Capture{up, around_of(cameras, up)};
 }
 
@@ -164,7 +178,7 @@ std::vector<Camera> orbit(const Model& model, int count, int width, int height, 
                           const glm::dvec3& up, const std::optional<Capture::Around>& around) {
   const Ring ring(model, width, height, fov_degrees, up, around);
   const glm::dmat3 world = world_from_axes(model.axes);
-  const double start = clearest_turn(model, ring);
+  const double start = around ? ring.turn_to(around->first) : clearest_turn(model, ring);
   std::vector<Camera> cameras;
   for (int k = 0; k < count; ++k) {
     const glm::dvec3 eye = world * ring.eye(start + glm::two_pi<double>() * k / count);

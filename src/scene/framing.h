@@ -20,13 +20,14 @@ constexpr double default_fov_degrees = 60.0;
 
 /// How a scene was captured: what goes for cameras that are made up where others are known. World units.
 struct Capture {
-  glm::dvec3 up;  // the mean of theirs
+  glm::dvec3 up;  // the mean of theirs, made level across as far as they are
   /// What they stand around, nearest to all their axes, and how far from it and how high above it they are
   /// in the median; nothing where their axes do not meet before them.
   struct Around {
     glm::dvec3 middle;
     double distance = 0.0;
     double elevation = 0.0;  // radians
+    glm::dvec3 first{0.0};   // from the middle to the first of them
   };
   std::optional<Around> around;
 };
@@ -41,7 +42,7 @@ Camera frame_model(const Model& model, int width, int height, double fov_degrees
                    const glm::dvec3& up = default_up);
 
 /// `count` cameras on a circle around the same part, called orbit_000 and so on; the first is frame_model's.
-/// Or on the circle `around` which the scene was captured.
+/// Or on the circle `around` which the scene was captured, from its first camera on.
 std::vector<Camera> orbit(const Model& model, int count, int width, int height,
                           double fov_degrees = default_fov_degrees, const glm::dvec3& up = default_up,
                           const std::optional<Capture::Around>& around = {});

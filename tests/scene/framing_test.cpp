@@ -156,10 +156,25 @@ TEST(Capture, IsWhatTheCamerasStandAround) {
   EXPECT_NEAR(glm::degrees(capture->around->elevation), 20.0, 1e-6);
   // An orbit stands where they stood.
   const Model model = ball(glm::vec3(40, 0, 0), 1.0f);
+  const Camera first = orbit(model, 5, 64, 48, 50, capture->up, capture->around)[0];
+  EXPECT_LT(glm::distance(first.position, middle + capture->around->first), 1e-6);
   for (const Camera& camera : orbit(model, 5, 64, 48, 50, capture->up, capture->around)) {
     EXPECT_NEAR(glm::distance(camera.position, middle), 5.0, 1e-6);
     EXPECT_LT(glm::distance(camera.rotation[2], glm::normalize(middle - camera.position)), 1e-6);
   }
+}
+
+TEST(Capture, OfOneSideIsLevelAcrossItsCameras) {
+  // Three of the seven, which all look down: their mean leans back by most of that.
+  const glm::dvec3 up(0, -1, 0);
+  std::vector<Camera> cameras = ring({0, 0, 0}, up, 5.0);
+  cameras.resize(3);
+  const auto capture = capture_of(cameras);
+  ASSERT_TRUE(capture);
+  EXPECT_GT(glm::dot(capture->up, up), std::cos(glm::radians(2.0)));
+  glm::dvec3 mean{0.0};
+  for (const Camera& camera : cameras) mean -= camera.rotation[1];
+  EXPECT_LT(glm::dot(glm::normalize(mean), up), std::cos(glm::radians(8.0)));
 }
 
 TEST(Capture, HasNoMiddleWhereAxesDoNotMeetBeforeThem) {
