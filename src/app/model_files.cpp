@@ -5,7 +5,6 @@
 #include "app/command.h"
 #include "app/option_checks.h"
 #include "formats/model_file.h"
-#include "formats/scaffold_file.h"
 
 namespace binosplat::app {
 
@@ -22,7 +21,8 @@ ModelFormat output_format(const std::string& output, const std::string& hint) {
 fs::path model_file(const std::string& scene) {
   std::error_code ignored;
   if (!fs::is_directory(scene, ignored)) return scene;
-  return find_point_cloud(scene).value_or("");
+  const std::vector<fs::path> found = models_in(scene);
+  return found.size() == 1 ? found[0] : fs::path();
 }
 
 void refuse_scaffold(const Model& model, const std::string& scene) {

@@ -9,6 +9,7 @@
 #include "base/inputs.h"
 #include "base/log.h"
 #include "formats/cameras_file.h"
+#include "formats/dataparser.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 
@@ -133,13 +134,22 @@ void learn(const CameraList& list, Known& known) {
   known.around = capture->around;
 }
 
+// In the model's world, which may not be the cameras' own.
+std::vector<Camera> cameras_for(const std::string& scene, const std::string& file) {
+  std::vector<Camera> cameras = load_cameras(file);
+  const auto dataparser = is_built_in(scene) ? std::nullopt : find_dataparser(scene);
+  if (dataparser && move_into_training(*dataparser, file, cameras))
+    log_info("{}: moved into the world that the model was trained in, by {}", file, dataparser->string());
+  return cameras;
+}
+
 // Cameras are made up all the same where those beside the model cannot be read.
 void learn_beside(const std::string& scene, Known& known) {
   const auto found = find_cameras(scene);
   if (!found) return;
   note_input(*found);
   try {
-    learn({found->string(), load_cameras(*found)}, known);
+    learn({found->string(), cameras_for(scene, found->string())}, known);
   } catch (const Error& error) {
     log_warning("{}; what is up is taken from nowhere but --up", error.what());
   }
@@ -175,7 +185,8 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
       note_input(*found);
     }
   }
-  CameraList list = file.empty() ? CameraList{scene.name, built_in} : CameraList{file, load_cameras(file)};
+  CameraList list =
+      file.empty() ? CameraList{scene.name, built_in} : CameraList{file, cameras_for(scene.name, file)};
   list.listed = !list.cameras.empty();
   list.path = camera.along_path();
   list.known = known;

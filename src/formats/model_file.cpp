@@ -1,5 +1,9 @@
 #include "formats/model_file.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
@@ -23,19 +27,55 @@ namespace fs = std::filesystem;
 constexpr const char* known =
     "a ply, spz, .splat, .ksplat, glTF, or a SOG (meta.json, lod-meta.json or .sog)";
 
+/// gsplat's ply/point_cloud_N.ply of the largest N.
+std::optional<fs::path> latest_of_gsplat(const fs::path& folder) {
+  std::error_code ignored;
+  fs::path found;
+  unsigned long long latest = 0;
+  for (const auto& entry : fs::directory_iterator(folder / "ply", ignored)) {
+    unsigned long long n = 0;
+    const std::string name = entry.path().filename().string();
+    if (std::sscanf(name.c_str(), "point_cloud_%llu.ply", &n) != 1 || (!found.empty() && n < latest))
+      continue;
+    latest = n;
+    found = entry.path();
+  }
+  return found.empty() ? std::nullopt : std::optional(found);
+}
+
+/// Whether a file is a model by its name, and not the points that a training begins with.
+bool is_named_as_model(const fs::path& path) {
+  std::string ending = path.extension().string(), name = path.filename().string();
+  for (std::string* text : {&ending, &name})
+    std::transform(text->begin(), text->end(), text->begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+  for (const char* points : {"input.ply", "points3d.ply", "sparse_pc.ply", "sparse.ply"}) {
+    if (name == points) return false;
+  }
+  for (const char* of_model : {".ply", ".spz", ".splat", ".ksplat", ".sog", ".glb", ".gltf"}) {
+    if (ending == of_model) return true;
+  }
+  return false;
+}
+
 /// The file to read where a folder is named.
 fs::path file_of(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return path;
-  for (const char* name : {"lod-meta.json", "meta.json"}) {
-    if (fs::is_regular_file(path / name, ignored)) return path / name;
+  const std::vector<fs::path> found = models_in(path);
+  if (found.size() == 1) return found[0];
+  if (found.empty()) {
+    fail(
+        "{} is a folder without a model: no file of one, no lod-meta.json or meta.json of a SOG, and no "
+        "point_cloud.ply, also not in point_cloud/ or point_cloud/iteration_N/, nor gsplat's "
+        "ply/point_cloud_N.ply or nerfstudio's exports/splat/splat.ply",
+        path.string());
   }
-  if (const auto ply = find_point_cloud(path)) return *ply;
-  fail(
-      "{} is a folder without a model: no lod-meta.json or meta.json of a SOG, and no point_cloud.ply, also "
-      "not "
-      "in point_cloud/ or point_cloud/iteration_N/; name a file in it",
-      path.string());
+  std::string names;
+  constexpr std::size_t shown = 8;
+  for (std::size_t i = 0; i < std::min(shown, found.size()); ++i) names += "\n  " + found[i].string();
+  if (found.size() > shown) names += fmt::format("\n  and {} more", found.size() - shown);
+  fail("{} is a folder with {} models; name one of them:{}", path.string(), found.size(), names);
 }
 
 void refuse_level(const fs::path& path, const ModelOptions& options) {
@@ -98,6 +138,24 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
 }
 
 }  // namespace
+
+std::vector<fs::path> models_in(const fs::path& folder) {
+  std::error_code ignored;
+  for (const char* name : {"lod-meta.json", "meta.json"}) {
+    if (fs::is_regular_file(folder / name, ignored)) return {folder / name};
+  }
+  if (const auto ply = find_point_cloud(folder)) return {*ply};
+  if (const auto ply = latest_of_gsplat(folder)) return {*ply};
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (is_named_as_model(entry.path()) && fs::is_regular_file(entry.path(), ignored))
+      found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  const fs::path exported = folder / "exports/splat/splat.ply";
+  if (found.empty() && fs::is_regular_file(exported, ignored)) return {exported};
+  return found;
+}
 
 Model load_model(const fs::path& path, const ModelOptions& options) {
   const fs::path file = file_of(path);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "formats/detail.h"
 #include "scene/model.h"
@@ -16,11 +17,16 @@ struct ModelOptions {
   std::optional<DetailBudget> budget;  // instead of `lod`
 };
 
+/// The models that a folder stands for, best one: lod-meta.json or meta.json of a SOG; point_cloud.ply, also
+/// in point_cloud/ or the latest point_cloud/iteration_N/ (INRIA, Scaffold-GS); the latest
+/// ply/point_cloud_N.ply (gsplat); all files in it that are called as models are; exports/splat/splat.ply
+/// (nerfstudio).
+std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder);
+
 /// Reads a trained model: INRIA's ply and PlayCanvas' compressed one (formats/ply.h), Scaffold-GS's with the
 /// networks beside it (formats/scaffold_file.h), SOG as a folder, a .sog archive, or streamed
-/// (formats/sog.h), spz, .splat, .ksplat, and glTF with Gaussians. `path` may be a folder that holds
-/// lod-meta.json, meta.json, or point_cloud.ply, also in point_cloud/ or the latest
-/// point_cloud/iteration_N/. Says on standard error how many Gaussians were left out because a value is not
+/// (formats/sog.h), spz, .splat, .ksplat, and glTF with Gaussians. `path` may be a folder
+/// with one of models_in(). Says on standard error how many Gaussians were left out because a value is not
 /// finite or the quaternion is zero. Throws Error for anything that is not such a
 /// model; the text says what the file looks like instead.
 Model load_model(const std::filesystem::path& path, const ModelOptions& options = {});

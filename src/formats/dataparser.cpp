@@ -1,0 +1,98 @@
+#include "formats/dataparser.h"
+
+#include <cmath>
+
+#include "base/mapped_file.h"
+#include "formats/colmap.h"
+#include "formats/content.h"
+#include "formats/json_file.h"
+#include "formats/lens.h"
+#include "formats/transforms.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// p' = scale (rotation p + shift).
+struct Similarity {
+  glm::dmat3 rotation{1.0};
+  glm::dvec3 shift{0.0};
+  double scale = 1.0;
+};
+
+// Three rows of four numbers.
+Similarity read_rows(const JsonValue& rows) {
+  if (rows.size() != 3 && rows.size() != 4)
+    rows.fail_here("expected 3 or 4 rows of 4 numbers, found {} rows", rows.size());
+  Similarity to;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const JsonValue row = rows.at(i).list_of(4);
+    const int r = static_cast<int>(i);
+    for (std::size_t j = 0; j < 3; ++j) to.rotation[static_cast<int>(j)][r] = row.at(j).number();
+    to.shift[r] = row.at(3).number();
+  }
+  if (const std::string fault = rotation_fault(to.rotation); !fault.empty()) rows.fail_here("{}", fault);
+  return to;
+}
+
+double read_scale(const JsonValue& value) {
+  if (!(value.number() > 0.0)) value.fail_here("expected a number above 0");
+  return value.number();
+}
+
+// What ns-process-data did to the poses before it wrote them; nothing for COLMAP's own. `is_moved` is false
+// where they are in no world that a dataparser knows.
+Similarity applied(const fs::path& cameras_file, bool& is_moved) {
+  std::error_code ignored;
+  is_moved = true;
+  if (is_colmap(cameras_file) || is_colmap(cameras_file.parent_path())) return {};
+  const MappedFile file(cameras_file);
+  const nlohmann::json root = parse_json(cameras_file.string(), as_text(file.bytes()));
+  is_moved = is_transforms(root);
+  if (!is_moved) return {};
+  const JsonValue value(cameras_file.string(), root);
+  Similarity done;
+  if (value.has("applied_transform")) {
+    done = read_rows(value.at("applied_transform"));
+  } else if (fs::exists(cameras_file.parent_path() / "colmap/sparse/0", ignored)) {
+    // Files from before the key was written.
+    done.rotation = glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, -1);
+  }
+  if (value.has("applied_scale")) done.scale = read_scale(value.at("applied_scale"));
+  return done;
+}
+
+}  // namespace
+
+std::optional<fs::path> find_dataparser(const fs::path& model) {
+  std::error_code ignored;
+  fs::path folder = fs::absolute(model).lexically_normal();
+  if (!fs::is_directory(folder, ignored)) folder = folder.parent_path();
+  for (int up = 0; up < 4; ++up, folder = folder.parent_path()) {
+    const fs::path file = folder / "dataparser_transforms.json";
+    if (fs::is_regular_file(file, ignored)) return file;
+  }
+  return std::nullopt;
+}
+
+bool move_into_training(const fs::path& dataparser, const fs::path& cameras_file,
+                        std::vector<Camera>& cameras) {
+  bool is_moved = false;
+  const Similarity before = applied(cameras_file, is_moved);
+  if (!is_moved) return false;
+  const MappedFile file(dataparser);
+  const nlohmann::json root = parse_json(dataparser.string(), as_text(file.bytes()));
+  const JsonValue value(dataparser.string(), root);
+  Similarity to = read_rows(value.at("transform"));
+  to.scale = read_scale(value.at("scale"));
+  for (Camera& camera : cameras) {
+    const glm::dvec3 p = glm::transpose(before.rotation) * (camera.position / before.scale - before.shift);
+    camera.position = to.scale * (to.rotation * p + to.shift);
+    camera.rotation = to.rotation * glm::transpose(before.rotation) * camera.rotation;
+  }
+  return true;
+}
+
+}  // namespace binosplat

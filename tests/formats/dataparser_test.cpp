@@ -1,0 +1,149 @@
+// Folders of trainings: which model is meant, and where nerfstudio's cameras lie in its world.
+
+#include "formats/dataparser.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "formats/cameras_file.h"
+#include "formats/model_file.h"
+#include "support/broken.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::TempFolder;
+using test::write_text;
+
+json rows(const glm::dmat3& rotation, const glm::dvec3& shift) {
+  json all;
+  for (int r = 0; r < 3; ++r) all.push_back({rotation[0][r], rotation[1][r], rotation[2][r], shift[r]});
+  return all;
+}
+
+glm::dmat3 turn(double degrees, const glm::dvec3& axis) {
+  return glm::dmat3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), axis));
+}
+
+struct Dataparser : testing::Test {
+  TempFolder folder;
+  // A pose in COLMAP's world, what ns-process-data made of it, and the training's.
+  const glm::dmat3 pose = turn(40, {1, 2, 3});
+  const glm::dvec3 place{1, -2, 5};
+  const glm::dmat3 applied = turn(-90, {1, 0, 0}), trained = turn(70, {0, 1, 1});
+  const glm::dvec3 applied_shift{0.5, 0, -1}, trained_shift{3, -4, 0.25};
+  const double scale = 0.3;
+
+  Dataparser() {
+    const json transforms = {{"transform", rows(trained, trained_shift)}, {"scale", scale}};
+    write_text(folder / "dataparser_transforms.json", transforms.dump());
+  }
+
+  std::vector<Camera> moved(const fs::path& cameras_file) const {
+    std::vector<Camera> cameras = load_cameras(cameras_file);
+    EXPECT_TRUE(move_into_training(folder / "dataparser_transforms.json", cameras_file, cameras));
+    return cameras;
+  }
+
+  bool is_trained(const Camera& camera) const {
+    return glm::distance(camera.position, scale * (trained * place + trained_shift)) < 1e-9 &&
+           glm::distance(camera.rotation[2], trained * pose[2]) < 1e-9 &&
+           glm::distance(camera.rotation[0], trained * pose[0]) < 1e-9;
+  }
+};
+
+TEST_F(Dataparser, MovesCamerasOfTransforms) {
+  const glm::dmat3 world = applied * pose;
+  json file = {{"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows(applied, applied_shift)}};
+  file["frames"] = {{{"file_path", "a.png"},
+                     {"transform_matrix",
+                      rows(glm::dmat3(world[0], -world[1], -world[2]), applied * place + applied_shift)}}};
+  write_text(folder / "transforms.json", file.dump());
+  EXPECT_TRUE(is_trained(moved(folder / "transforms.json")[0]));
+  // Planted fault: what was applied is not taken back.
+  file.erase("applied_transform");
+  write_text(folder / "transforms.json", file.dump());
+  EXPECT_FALSE(is_trained(moved(folder / "transforms.json")[0]));
+}
+
+TEST_F(Dataparser, MovesCamerasOfColmap) {
+  const glm::dmat3 to_camera = glm::transpose(pose);
+  const glm::dquat q = glm::quat_cast(to_camera);
+  const glm::dvec3 t = -(to_camera * place);
+  write_text(folder / "cameras.txt", "1 PINHOLE 64 48 50 50 32 24\n");
+  write_text(folder / "images.txt",
+             fmt::format("1 {} {} {} {} {} {} {} 1 a.png\n\n", q.w, q.x, q.y, q.z, t.x, t.y, t.z));
+  write_text(folder / "points3D.txt", "");
+  EXPECT_TRUE(is_trained(moved(folder.path())[0]));
+}
+
+TEST_F(Dataparser, LeavesCamerasThatAreToldInTheModelsWorld) {
+  const json list = {{{"img_name", "a"},
+                      {"width", 64},
+                      {"height", 48},
+                      {"position", {1, 2, 3}},
+                      {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                      {"fx", 50},
+                      {"fy", 50}}};
+  write_text(folder / "cameras.json", list.dump());
+  std::vector<Camera> cameras = load_cameras(folder / "cameras.json");
+  EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", folder / "cameras.json", cameras));
+  EXPECT_EQ(cameras[0].position, glm::dvec3(1, 2, 3));
+}
+
+TEST_F(Dataparser, IsFoundAboveAnExportAndSaysWhatIsWrong) {
+  fs::create_directories(folder / "exports/splat");
+  write_text(folder / "exports/splat/splat.ply", "ply");
+  EXPECT_EQ(find_dataparser(folder / "exports/splat/splat.ply"), folder / "dataparser_transforms.json");
+  EXPECT_EQ(find_dataparser(folder.path()), folder / "dataparser_transforms.json");
+  EXPECT_FALSE(find_dataparser("/no/such/model.ply"));
+  write_text(
+      folder / "transforms.json",
+      R"({"w":64,"h":48,"fl_x":50,"frames":[{"file_path":"a","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]}]})");
+  for (const auto& [text, said] : std::map<std::string, std::string>{
+           {"{}", "transform"},
+           {R"({"transform":[[1,0,0,0],[0,1,0,0],[0,0,1,0]]})", "scale"},
+           {R"({"transform":[[1,0,0,0],[0,1,0,0],[0,0,1,0]],"scale":0})", "above 0"},
+           {R"({"transform":[[2,0,0,0],[0,1,0,0],[0,0,1,0]],"scale":1})", "key 'transform'"}}) {
+    write_text(folder / "dataparser_transforms.json", text);
+    std::vector<Camera> cameras = load_cameras(folder / "transforms.json");
+    EXPECT_TRUE(test::fails_saying(
+        [&] {
+          move_into_training(folder / "dataparser_transforms.json", folder / "transforms.json", cameras);
+        },
+        {"dataparser_transforms.json", said}));
+  }
+}
+
+TEST(ModelsIn, AFolderIsTheModelThatItsTrainerLeft) {
+  const TempFolder folder;
+  const auto add = [&](const std::string& name) {
+    fs::create_directories((folder / name).parent_path());
+    write_text(folder / name, "ply");
+  };
+  using Paths = std::vector<fs::path>;
+  EXPECT_EQ(models_in(folder.path()), Paths{});
+  add("exports/splat/splat.ply");
+  EXPECT_EQ(models_in(folder.path()), Paths{folder / "exports/splat/splat.ply"});
+  add("points3D.ply");
+  add("input.ply");
+  add("Garden.PLY");
+  EXPECT_EQ(models_in(folder.path()), Paths{folder / "Garden.PLY"});
+  add("other.spz");
+  EXPECT_EQ(models_in(folder.path()), (Paths{folder / "Garden.PLY", folder / "other.spz"}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { load_model(folder.path()); }, {"2 models", "Garden.PLY", "other.spz"}));
+  add("ply/point_cloud_6999.ply");
+  add("ply/point_cloud_29999.ply");
+  EXPECT_EQ(models_in(folder.path()), Paths{folder / "ply/point_cloud_29999.ply"});
+  add("point_cloud/iteration_30000/point_cloud.ply");
+  EXPECT_EQ(models_in(folder.path()), Paths{folder / "point_cloud/iteration_30000/point_cloud.ply"});
+}
+
+}  // namespace
+}  // namespace binosplat
