@@ -69,7 +69,8 @@ ordered_json identity_of(const RenderOptions& o, const CameraList& list, double 
                                    "near", near_plane, "units_per_metre", shots[0].units_per_metre);
   if (!is_built_in(o.scene.name)) run["model"] = content_key(fs::path(o.scene.name));
   if (!o.drawing.calibration.empty()) run["calibration"] = file_key(o.drawing.calibration);
-  return run;
+  // As save_json() leaves it: names may be in any encoding.
+  return ordered_json::parse(run.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 void leave_out_drawn(const OutputPlan& plan, const ordered_json& run, std::vector<Shot>& shots) {

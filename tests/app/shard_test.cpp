@@ -167,6 +167,14 @@ TEST_F(Resume, DrawsPairsOfWhichAFileIsMissing) {
   EXPECT_TRUE(ended(draw(out, pairs), 2, "says other views."));
 }
 
+TEST_F(Resume, TakesNamesInAnyEncoding) {
+  const std::string other = folder / "mod\xe9le.ply";
+  std::filesystem::copy_file(model, other);
+  for (int n = 0; n < 2; ++n)
+    EXPECT_TRUE(
+        good(test::run_program({"render", other, "--view", "view0", "--mono", "--resume", "-o", out})));
+}
+
 TEST_F(Resume, TakesNoPicturesOfAnotherRun) {
   ASSERT_TRUE(good(again({"--shard", "1/2"})));
   EXPECT_TRUE(refused("says other options", {"--background", "1,1,1"}));
