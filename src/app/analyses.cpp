@@ -45,7 +45,7 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
     calibrated = tested;
   }
 
-  const auto context = open_context(options.context);
+  const auto context = open_context_for_all("study", true, options.context);
   Parts parts;
   const bool photos = !options.photos.empty();
   const study::Analysis analysis = study::analyse(

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <numeric>
 
 #include "app/bench_plan.h"
 #include "app/command.h"
@@ -12,7 +13,6 @@
 #include "app/output_options.h"
 #include "app/photos.h"
 #include "base/log.h"
-#include "base/numbers.h"
 #include "base/progress.h"
 #include "study/bench.h"
 
@@ -21,19 +21,6 @@ namespace binosplat::app {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Which points this run measures: those whose number leaves `index` when divided by `count`.
-struct Shard {
-  std::size_t index = 0;
-  std::size_t count = 1;
-};
-
-Shard parse_shard(const std::string& text) {
-  if (text.empty()) return {};
-  const auto shard = two_numbers(text, '/');
-  if (shard && shard->first >= 1 && shard->first <= shard->second) return {shard->first - 1, shard->second};
-  fail("--shard {}: expected I/N with I from 1 to N, as in 2/8", text);
-}
 
 /// The shots of a case: as many as the axes want, evenly spread, or all that --view names. Where photos can
 /// be compared, only shots that have one count.
@@ -78,12 +65,11 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
 }
 
 void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
-  const Shard shard = parse_shard(options.shard);
-  std::vector<std::size_t> missing;
-  for (std::size_t i = shard.index; i < plan.points.size(); i += shard.count) {
-    if (!folder.has(i)) missing.push_back(i);
-  }
-  const std::size_t of_shard = (plan.points.size() + shard.count - 1 - shard.index) / shard.count;
+  std::vector<std::size_t> missing(plan.points.size());
+  std::iota(missing.begin(), missing.end(), std::size_t{0});
+  take_share(options.shard, missing);
+  const std::size_t of_shard = missing.size();
+  std::erase_if(missing, [&](std::size_t point) { return folder.has(point); });
   log_info("{} points to measure{}", missing.size(),
            missing.size() == of_shard
                ? ""
@@ -191,7 +177,7 @@ BenchFolder merge(const BenchOptions& options) {
 void check(const BenchOptions& options) {
   if (options.merge.empty() == options.scenes.empty())
     fail("bench needs scenes to measure, or --merge and the folders of shards");
-  if (!options.merge.empty() && !options.shard.empty())
+  if (!options.merge.empty() && !options.shard.all())
     fail("--shard measures and --merge does not: choose one");
   if (options.scenes.size() > 1 &&
       (!options.camera.file.empty() || !options.photos.empty() || !options.calibration.empty()))
@@ -204,7 +190,6 @@ ExitCode bench(const BenchOptions& options) {
   check_output(fs::path(options.output) / "results.json");
   if (!options.compare.empty()) load_points(options.compare);  // while nothing is lost
   if (!options.merge.empty()) return finish(options, merge(options));
-  parse_shard(options.shard);
   const BenchPlan plan = make_plan(options);
   const BenchFolder folder(options.output, plan.json);
   measure_all(options, plan, folder);
@@ -238,8 +223,7 @@ void add_bench(CLI::App& program, Command& command) {
   sub->add_flag("--profile", o->profile,
                 "Set each stage beside what it must move and compute at least, at this GPU's best rates");
   add_measured_options(*sub, *o);
-  sub->add_option("--shard", o->shard, "Measure every Nth point from the Ith on: one job of N")
-      ->type_name("I/N");
+  add_shard_option(*sub, o->shard, "Measure every Nth point from the Ith on: one job of N");
   sub->add_option("--merge", o->merge, "Join the folders of shards in -o")->type_name("DIR...");
   sub->add_option("--compare", o->compare, "Print what changed beyond noise since an older results.json")
       ->type_name("FILE");

@@ -10,10 +10,8 @@
 #include "app/load_scene.h"
 #include "app/report.h"
 #include "base/error.h"
-#include "base/mapped_file.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
-#include "formats/content.h"
 #include "study/calibration.h"
 #include "study/fields.h"
 #include "study/settings.h"
@@ -80,12 +78,6 @@ void add_calibrated(const std::string& file, study::Axes& axes) {
     study::check(file, settings);
     if (known.insert(study::named(settings)).second) axes.settings.push_back(settings);
   }
-}
-
-ordered_json load_json(const fs::path& path) {
-  ordered_json json = ordered_json::parse(as_text(MappedFile(path).bytes()), nullptr, false);
-  if (json.is_discarded()) fail("{}: not JSON, or cut short", path.string());
-  return json;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "app/measured_options.h"
 #include "app/rig_options.h"
+#include "app/shard.h"
 #include "app/shots.h"
 #include "study/axes.h"
 #include "study/bench_results.h"
@@ -21,7 +22,7 @@ struct BenchOptions : MeasuredOptions {
   std::vector<std::string> scenes;
   std::string axes = "quick";
   std::string output = "out/bench";
-  std::string shard;               // I/N; empty: all
+  Shard shard;                     // of the points
   std::vector<std::string> merge;  // folders, instead of scenes
   std::string compare;             // results.json of an older run
   std::string calibration;         // a file whose settings are measured, too

@@ -49,7 +49,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const OpenScene scene = open_scene(o.scene, o.camera);
   const std::vector<study::CalibrationView> views = photographed_views(
       {o.camera.views, static_cast<std::size_t>(o.views)}, o.photos, o.camera.lens, scene.list);
-  const auto context = open_context(o.context);
+  const auto context = open_context_for_all("calibrate", false, o.context);
   Progress progress("calibrating", study::calibrated_settings().size());
   const study::Calibration found =
       study::calibrate(*context, scene.model, views, scene.near_plane, o.target.target(), o.table,

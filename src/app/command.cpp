@@ -9,7 +9,9 @@
 #include <thread>
 
 #include "base/inputs.h"
+#include "base/mapped_file.h"
 #include "base/output_file.h"
+#include "formats/content.h"
 
 namespace binosplat::app {
 
@@ -83,6 +85,12 @@ void check_output(const fs::path& path) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     fail("cannot write {}: {}: {}", path.string(), folder.string(), std::strerror(errno));
   }
+}
+
+nlohmann::ordered_json load_json(const fs::path& path) {
+  auto json = nlohmann::ordered_json::parse(as_text(MappedFile(path).bytes()), nullptr, false);
+  if (json.is_discarded()) fail("{}: not JSON, or cut short", path.string());
+  return json;
 }
 
 void save_json(const fs::path& path, const nlohmann::ordered_json& value) {

@@ -62,6 +62,9 @@ std::filesystem::path folder_there(std::filesystem::path folder);
 /// work.
 void check_output(const std::filesystem::path& path);
 
+/// Throws Error for a file that is no JSON.
+nlohmann::ordered_json load_json(const std::filesystem::path& path);
+
 /// Writes `value` for people and programs to read. Numbers that are not finite become null, as JSON has none.
 void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& value);
 

@@ -87,6 +87,8 @@ std::string content_key(const fs::path& path) {
   return key_of(folder, files);
 }
 
+std::string file_key(const fs::path& file) { return key_of(file.parent_path(), {file}); }
+
 std::string pictures_key(const fs::path& folder) {
   return key_of(folder, files_in<fs::directory_iterator>(folder, is_any));
 }

@@ -14,6 +14,9 @@ namespace binosplat::app {
 /// folder. Throws Error for what cannot be read.
 std::string content_key(const std::filesystem::path& path);
 
+/// The same of one file by itself.
+std::string file_key(const std::filesystem::path& file);
+
 /// The same of all files in a folder of photos.
 std::string pictures_key(const std::filesystem::path& folder);
 

@@ -44,4 +44,12 @@ std::unique_ptr<gl::Context> open_context(const ContextOptions& o) {
   return context;
 }
 
+std::unique_ptr<gl::Context> open_context_for_all(const std::string& command, bool on_gpus,
+                                                  const ContextOptions& options) {
+  auto context = open_context(options);
+  if (on_gpus || context->software())
+    log_info("{} may take long and keeps nothing until it is done: if it is ended, it begins anew", command);
+  return context;
+}
+
 }  // namespace binosplat::app

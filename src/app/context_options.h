@@ -27,4 +27,9 @@ void check(const ContextOptions& options, const char* with_devices = "device or 
 /// The context that they name; the log says what it is.
 std::unique_ptr<gl::Context> open_context(const ContextOptions& options);
 
+/// The same for a command that keeps nothing of its work until all of it is done. The log says so, too, where
+/// that takes long: on a CPU, or with `on_gpus` anywhere.
+std::unique_ptr<gl::Context> open_context_for_all(const std::string& command, bool on_gpus,
+                                                  const ContextOptions& options);
+
 }  // namespace binosplat::app

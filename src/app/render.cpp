@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/calibrated.h"
 #include "app/command.h"
@@ -16,6 +17,7 @@
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/render_report.h"
+#include "app/resume.h"
 #include "app/shots.h"
 #include "app/tour.h"
 #include "base/log.h"
@@ -31,6 +33,7 @@
 namespace binosplat::app {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
 namespace {
 
@@ -109,6 +112,8 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
   std::size_t done = 0;
   for (Shot& shot : work.shots) {
+    // Single pictures do not depend on which were drawn before them.
+    if (!work.list.path) frame.start_over();
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
@@ -169,6 +174,21 @@ CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
   return o.camera.tour ? go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list)) : list;
 }
 
+// Leaves the shots that this run is to draw.
+void take_what_is_left(const RenderOptions& o, double near_plane, Work& work) {
+  std::optional<ordered_json> run;
+  if (o.resume) run = identity_of(o, work.list, near_plane, work.shots);
+  const std::size_t all = work.shots.size();
+  take_share(o.shard, work.shots);
+  if (!o.shard.all())
+    log_info("--shard {}/{}: {} of {} views", o.shard.index + 1, o.shard.count, work.shots.size(), all);
+  if (run) {
+    leave_out_drawn(work.plan, *run, work.shots);
+  } else {
+    forget_run(work.plan);
+  }
+}
+
 ExitCode render(const RenderOptions& o) {
   check(o);
   std::unique_ptr<gl::Context> context;  // outlives what draws with it
@@ -190,6 +210,8 @@ ExitCode render(const RenderOptions& o) {
   work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
   check_shots(work.plan, work.shots);
   if (!work.photos.empty()) check_photos(work.photos, work.shots);
+  take_what_is_left(o, near_plane, work);
+  if (work.shots.empty()) return ExitCode::done;
   if (work.followed) work.followed->bring(model, views_of(work.shots[0]));
 
   context = open_context(o.context);
@@ -219,8 +241,12 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
       "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
+      "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
-  sub->callback([options, &command] { command = [options] { return render(*options); }; });
+  sub->callback([options, sub, &command] {
+    options->given = options_given(*sub);
+    command = [options] { return render(*options); };
+  });
 }
 
 }  // namespace binosplat::app

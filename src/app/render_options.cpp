@@ -44,6 +44,30 @@ void check_eyes(const RigOptions& rig, const DrawingOptions& drawing, const Outp
     fail("--photos needs --mono: a photo shows what the camera sees, not an eye beside it");
 }
 
+// What is drawn in parts must not go by what would have been drawn before it.
+void check_parts(const RenderOptions& o) {
+  if (o.shard.all() && !o.resume) return;
+  const char* const part = o.resume ? "--resume" : "--shard";
+  if (o.scene.detail) {
+    fail("{} with --detail: a view's levels go by those of the view before it; take --lod or --gpu-memory",
+         part);
+  }
+  if (o.camera.along_path() && o.drawing.quality) {
+    fail(
+        "{} with --quality along a path: a frame's tolerance goes by the frames before it; draw the path "
+        "in one run, or give --tolerance or --calibration instead",
+        part);
+  }
+  if (o.camera.along_path() && render::measures(o.drawing.transmittance)) {
+    fail(
+        "{} with --transmittance {} along a path: a frame goes by what those before it measured; draw "
+        "the path in one run, or take another --transmittance",
+        part, transmittance_choices[o.drawing.transmittance].name);
+  }
+  if (o.resume && !(o.output.json.empty() && o.output.photos.empty()))
+    fail("--json and --photos tell of all views, and --resume leaves out those that are there: choose");
+}
+
 // All but what is done with the pictures.
 void add_picture_options(CLI::App& sub, RenderOptions& o) {
   add_scene_options(sub, o.scene);
@@ -59,6 +83,10 @@ void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
+  add_shard_option(sub, o.shard, "Draw every Nth view from the Ith on: one job of N");
+  sub.add_flag(
+      "--resume", o.resume,
+      "Leave out the views whose pictures an earlier run with --resume and the\nsame options has left");
   sub.option_defaults()->group("Options");
 }
 
@@ -82,6 +110,7 @@ void check(const RenderOptions& o) {
     fail("--show {}: the GPU's blend tells it, which --reference-until blend leaves out",
          show_choices[o.output.show].name);
   }
+  check_parts(o);
   check(o.context);
 }
 

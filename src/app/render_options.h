@@ -1,12 +1,16 @@
 #pragma once
 // The options of `binosplat render` and of the preview.
 
+#include <string>
+#include <vector>
+
 #include "app/camera_options.h"
 #include "app/context_options.h"
 #include "app/drawing_options.h"
 #include "app/output_options.h"
 #include "app/rig_options.h"
 #include "app/scene_options.h"
+#include "app/shard.h"
 
 namespace binosplat::app {
 
@@ -17,6 +21,9 @@ struct RenderOptions {
   DrawingOptions drawing;
   ContextOptions context;
   OutputOptions output;
+  Shard shard;                     // of the views
+  bool resume = false;             // what is there of this run is not drawn again
+  std::vector<std::string> given;  // options_given(), for resume
 };
 
 /// Adds all of them to the sub-command; `options` must outlive the parsing. Values that cannot be understood

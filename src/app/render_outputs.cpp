@@ -67,17 +67,22 @@ ExrOptions exr_options(const OutputOptions& options, const Notes& notes) {
   return {options.exr_half.value_or(true), options.exr_display.value_or(false), options.background, notes};
 }
 
-void write(const OutputOptions& options, const OutputPlan& plan, const fs::path& path, const Picture& picture,
-           const Notes& notes, std::vector<std::string>& written) {
+void write(const OutputOptions& options, const OutputPlan& plan, const std::string& path,
+           const Picture& picture, const Notes& notes) {
   const Uninterrupted hold;
-  if (plan.png) {
-    written.push_back(path.string() + ".png");
-    save_png(written.back(), composite(picture, options.background), options.bits.value_or(8), notes);
-  }
-  if (plan.exr) {
-    written.push_back(path.string() + ".exr");
-    save_exr(written.back(), picture, exr_options(options, notes));
-  }
+  if (plan.png)
+    save_png(path + ".png", composite(picture, options.background), options.bits.value_or(8), notes);
+  if (plan.exr) save_exr(path + ".exr", picture, exr_options(options, notes));
+}
+
+// The files of a shot without their endings: one for each eye, or one for both.
+std::vector<std::string> bases_of(const OutputPlan& plan, const Shot& shot) {
+  const std::string base = plan.folder.empty() ? plan.file : plan.folder / shot.stem;
+  if (plan.layout != LAYOUT_SEPARATE) return {base};
+  std::vector<std::string> bases;
+  for (const Eye& eye : shot.eyes)
+    bases.push_back(plan.folder.empty() || eye.side.empty() ? base : base + "_" + eye.side);
+  return bases;
 }
 
 OutputPlan plan_video(const OutputOptions& options, bool one_picture, const fs::path& output) {
@@ -153,13 +158,16 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   const fs::path output =
       options.output.empty() ? default_folder(render.scene.name) : fs::path(options.output);
   const bool video = is_video(output);
+  const std::string extension = lower_extension(output);
+  const bool file = extension == ".png" || extension == ".exr";
+  if ((video || file) && (!render.shard.all() || render.resume))
+    fail("--shard and --resume are for a folder of pictures, and -o {} is one file: name a folder",
+         output.string());
   OutputPlan plan;
   if (video) plan = plan_video(options, one_picture, output);
   plan.fps = tour ? tour_fps(options.fps, video) : options.fps;
   if (video) return plan;
   plan.exr = options.exr_half.has_value();
-  const std::string extension = lower_extension(output);
-  const bool file = extension == ".png" || extension == ".exr";
   if (options.fps && !tour) fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
   if (!file && names_a_file(output)) {
@@ -233,30 +241,35 @@ Image frame_of(const OutputPlan& plan, const Background& background, const std::
   return composite(stereo::lay_out(plan.layout, pictures[0], pictures[1], background), background);
 }
 
+std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot) {
+  std::vector<std::string> files;
+  for (const std::string& base : bases_of(plan, shot)) {
+    if (plan.png) files.push_back(base + ".png");
+    if (plan.exr) files.push_back(base + ".exr");
+  }
+  return files;
+}
+
 std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
                                        const OutputPlan& plan, const Shot& shot, const stereo::Shown& shown) {
   const std::vector<Picture>& pictures = shown.pictures;
-  std::vector<std::string> written;
-  const fs::path base = plan.folder.empty() ? plan.file : plan.folder / shot.stem;
+  const std::vector<std::string> bases = bases_of(plan, shot);
   if (plan.layout == LAYOUT_SEPARATE) {
-    for (std::size_t k = 0; k < shot.eyes.size(); ++k) {
-      const std::string& side = shot.eyes[k].side;
-      const fs::path path = plan.folder.empty() || side.empty() ? base : fs::path(base.string() + "_" + side);
-      write(options, plan, path, pictures[k], notes_of(scene, options, shot, side, shown.most), written);
-    }
-    return written;
+    for (std::size_t k = 0; k < bases.size(); ++k)
+      write(options, plan, bases[k], pictures[k],
+            notes_of(scene, options, shot, shot.eyes[k].side, shown.most));
+    return files_of(plan, shot);
   }
   Notes notes = notes_of(scene, options, shot, "left, right", shown.most);
   notes["binosplatLayout"] = layout_choices[plan.layout].name;
   if (plan.layout == LAYOUT_MULTI_VIEW) {
     const Uninterrupted hold;
-    written.push_back(base.string() + ".exr");
-    save_exr(written.back(), pictures[0], pictures[1], exr_options(options, notes));
+    save_exr(bases[0] + ".exr", pictures[0], pictures[1], exr_options(options, notes));
   } else {
-    write(options, plan, base, stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background),
-          notes, written);
+    write(options, plan, bases[0], stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background),
+          notes);
   }
-  return written;
+  return files_of(plan, shot);
 }
 
 }  // namespace binosplat::app

@@ -46,6 +46,9 @@ std::unique_ptr<Video> open_video(const OutputPlan& plan, const std::vector<Shot
 /// A shot's pictures as a frame of the video.
 Image frame_of(const OutputPlan& plan, const Background& background, const std::vector<Picture>& pictures);
 
+/// The files that a shot becomes in the plan's folder, or in its file.
+std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot);
+
 /// Writes what is shown of a shot of the scene, of its eyes in their order, and returns the files' names.
 std::vector<std::string> write_outputs(const std::string& scene, const OutputOptions& options,
                                        const OutputPlan& plan, const Shot& shot, const stereo::Shown& shown);

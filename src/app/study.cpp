@@ -181,7 +181,7 @@ ExitCode study_scene(const StudyOptions& options) {
     return ExitCode::done;
   }
   const Studied studied = open(options);
-  const auto context = open_context(options.context);
+  const auto context = open_context_for_all("study", kind == Kind::rules, options.context);
   if (kind == Kind::stability) study_stability(*context, options, studied);
   if (kind == Kind::turn) study_turn(*context, options, studied);
   if (kind == Kind::rules) save(options, rules(*context, options, studied), {});

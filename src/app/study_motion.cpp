@@ -242,7 +242,7 @@ void study_motion(const StudyOptions& options) {
   const std::vector<study::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
   const std::vector<Variant> rules = rules_for(options);
-  const auto context = open_context(options.context);
+  const auto context = open_context_for_all("study", true, options.context);
   study::MotionStudy study{.device = context->renderer(),
                            .scene = options.scene.name,
                            .gaussians = driven.model->count(),

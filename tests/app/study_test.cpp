@@ -156,6 +156,8 @@ TEST_F(AnalysesCommand, LeavesAPageAndItsNumbers) {
   EXPECT_EQ(json.at("systems").size(), 6u);
   EXPECT_NE(test::read_text(out + "/report.html").find("Pairs removed (table IV)"), std::string::npos);
   EXPECT_NE(outcome.out.find("Where the time goes"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.err.find("study may take long and keeps nothing until it is done"), std::string::npos)
+      << outcome.err;
 }
 
 TEST_F(AnalysesCommand, DropsNeedPhotosOfTheirViews) {

@@ -1,0 +1,32 @@
+#pragma once
+// render --resume: what an earlier run of the same kind has drawn is left as it is.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "app/cli.h"
+#include "app/render_options.h"
+#include "app/render_outputs.h"
+#include "app/shots.h"
+
+namespace binosplat::app {
+
+/// The options given on the command line, as text, in an order of their own: all but those on which no
+/// picture depends, so that the runs of an array may differ in them.
+std::vector<std::string> options_given(const CLI::App& sub);
+
+/// What tells a run from others whose pictures have the same names: options, and the content of what is
+/// drawn. `shots` are those of all shards.
+nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraList& list, double near_plane,
+                                   const std::vector<Shot>& shots);
+
+/// Takes the shots off whose files are all in the folder, and says how many these are. That they are of this
+/// run is told by a file beside them, which the first run writes. Throws Error where it is of another run,
+/// and where there are files and none that tells of them.
+void leave_out_drawn(const OutputPlan& plan, const nlohmann::ordered_json& run, std::vector<Shot>& shots);
+
+/// For runs that draw all: what they leave in the folder is not what the file there tells of.
+void forget_run(const OutputPlan& plan);
+
+}  // namespace binosplat::app
