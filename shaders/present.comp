@@ -29,8 +29,10 @@ vec4 pixel_at(uvec2 at) {
     return vec4(layout_mix(kind, over(colours[first + pixel]).rgb, over(colours[second + pixel]).rgb), 1.0);
   uint start = (from.eye == EYE_LEFT ? first : second) + pixel;
   vec4 colour = vec4(0.0);
-  for (uint k = 0u; k < from.columns; ++k) colour += colours[start + k];
-  return over(colour / float(from.columns));
+  for (uint row = 0u; row < from.rows; ++row) {
+    for (uint k = 0u; k < from.columns; ++k) colour += colours[start + row * width + k];
+  }
+  return over(colour / float(from.columns * from.rows));
 }
 
 void main() {

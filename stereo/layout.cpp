@@ -22,6 +22,10 @@ glm::ivec2 layout_size(int layout, const glm::ivec2& eye) {
   if (layout == LAYOUT_HALF_WIDTH && eye.x % 2 != 0) {
     fail("--layout half-width: pictures of {} px cannot be halved; choose an even width with --size", eye.x);
   }
+  if (layout == LAYOUT_HALF_HEIGHT && eye.y % 2 != 0) {
+    fail("--layout half-height: pictures {} px high cannot be halved; choose an even height with --size",
+         eye.y);
+  }
   return eye;
 }
 
@@ -56,12 +60,15 @@ Picture lay_out(int layout, const Picture& left, const Picture& right, const Bac
       }
       glm::vec4 colour(0.0f);
       float z_sum = 0.0f;
-      for (std::size_t k = at; k < at + from.columns; ++k) {
-        colour += eyes[from.eye]->colour[k];
-        z_sum += eyes[from.eye]->z_sum[k];
+      for (std::size_t row = at; row < at + std::size_t{from.rows} * width; row += width) {
+        for (std::size_t k = row; k < row + from.columns; ++k) {
+          colour += eyes[from.eye]->colour[k];
+          z_sum += eyes[from.eye]->z_sum[k];
+        }
       }
-      out.colour[to] = colour / static_cast<float>(from.columns);
-      out.z_sum[to] = z_sum / static_cast<float>(from.columns);
+      const auto of = static_cast<float>(from.columns * from.rows);
+      out.colour[to] = colour / of;
+      out.z_sum[to] = z_sum / of;
     }
   }
   return out;

@@ -44,11 +44,12 @@
 #define LAYOUT_CROSS_EYED 4
 #define LAYOUT_HALF_WIDTH 5
 #define LAYOUT_OVER_UNDER 6
-#define LAYOUT_ROWS 7
-#define LAYOUT_COLUMNS 8
-#define LAYOUT_ANAGLYPH 9
-#define LAYOUT_HALF_COLOUR 10
-#define LAYOUT_GREY 11
+#define LAYOUT_HALF_HEIGHT 7
+#define LAYOUT_ROWS 8
+#define LAYOUT_COLUMNS 9
+#define LAYOUT_ANAGLYPH 10
+#define LAYOUT_HALF_COLOUR 11
+#define LAYOUT_GREY 12
 
 // --show: what of a frame is shown. Those from SHOW_ALPHAS on are what the blend comes by.
 #define SHOW_PICTURE 0
@@ -123,6 +124,7 @@ inline constexpr Choice layout_choices[] = {
     {"cross-eyed", "side by side, swapped: for eyes that cross"},
     {"half-width", "parallel, each squeezed to half its width: 3D televisions"},
     {"over-under", "the left eye's picture above the right one's"},
+    {"half-height", "over-under, each squeezed to half its height: 3D televisions"},
     {"rows", "left and right row by row, the left eye's first: polarised screens"},
     {"columns", "the same column by column"},
     {"anaglyph", "for red-cyan glasses, by Dubois's least squares"},

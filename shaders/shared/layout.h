@@ -23,13 +23,14 @@ using std::pow;
 #define EYE_RIGHT 1u
 #define EYE_BOTH 2u
 
-// Where a pixel comes from: the mean of `columns` pixels of an eye from (x, y) to the right, or of both eyes,
-// mixed.
+// Where a pixel comes from: the mean of `columns` x `rows` pixels of an eye from (x, y) to the right and down, or
+// of both eyes, mixed.
 struct LayoutSource {
   uint eye;  // EYE_
   uint x;
   uint y;
   uint columns;
+  uint rows;
 };
 
 // The source of pixel (x, y) of the picture, rows from the top, for eyes of width x height px.
@@ -39,6 +40,7 @@ SHARED_FUNCTION LayoutSource layout_source(uint kind, uint x, uint y, uint width
   from.x = x;
   from.y = y;
   from.columns = 1u;
+  from.rows = 1u;
   if (kind == uint(LAYOUT_PARALLEL) || kind == uint(LAYOUT_CROSS_EYED)) {
     from.eye = (x >= width) == (kind == uint(LAYOUT_PARALLEL)) ? EYE_RIGHT : EYE_LEFT;
     from.x = x >= width ? x - width : x;
@@ -50,6 +52,11 @@ SHARED_FUNCTION LayoutSource layout_source(uint kind, uint x, uint y, uint width
   } else if (kind == uint(LAYOUT_OVER_UNDER)) {
     from.eye = y >= height ? EYE_RIGHT : EYE_LEFT;
     from.y = y >= height ? y - height : y;
+  } else if (kind == uint(LAYOUT_HALF_HEIGHT)) {
+    uint middle = height / 2u;
+    from.eye = y >= middle ? EYE_RIGHT : EYE_LEFT;
+    from.y = 2u * (y >= middle ? y - middle : y);
+    from.rows = 2u;
   } else if (kind == uint(LAYOUT_ROWS)) {
     from.eye = y % 2u;
   } else if (kind == uint(LAYOUT_COLUMNS)) {

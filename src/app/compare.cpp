@@ -124,10 +124,11 @@ ExitCode compare(const CompareOptions& options) {
                             measure::largest_difference(a, b)};
   print(options, found, a);
   if (!options.difference.empty()) {
-    const double gain = measure::difference_gain(found.largest.max);
+    const double gain = measure::difference_gain(measure::common_error(a, b));
     const Uninterrupted hold;
     save_png(options.difference, measure::difference_picture(a, b, gain));
-    fmt::print("difference     {} (times {})\n", options.difference, gain);
+    fmt::print("difference     {} (times {}: white is {:.4g} of 255 and more)\n", options.difference, gain,
+               255.0 / gain);
   }
   if (!options.json.empty()) save_json(options.json, to_json(options, found, a));
   if (options.min_psnr && !(found.psnr >= *options.min_psnr)) {
@@ -153,7 +154,9 @@ void add_compare(CLI::App& program, Command& command) {
          "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)")
       ->check(positive)
       ->type_name("MB");
-  sub->add_option("--difference", options->difference, "Write the absolute error, amplified, as PNG")
+  sub->add_option(
+         "--difference", options->difference,
+         "Write the absolute error as PNG, amplified so that one value in a\nthousand is white at most")
       ->type_name("FILE");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
   sub->footer(

@@ -21,8 +21,8 @@ namespace {
 constexpr const char* run_name = "render-run.json";
 
 // Where it is drawn and which part of it, and what is believed of files.
-constexpr const char* no_matter[] = {"--output",  "--shard",  "--resume",
-                                     "--backend", "--device", "--max-memory"};
+constexpr const char* no_matter[] = {"--output", "--shard",      "--resume", "--backend",
+                                     "--device", "--max-memory", "--quiet"};
 
 std::string views_key(const std::vector<Shot>& shots) {
   std::vector<Camera> cameras;

@@ -38,6 +38,7 @@ std::string stereo_mode(int layout) {
     case LAYOUT_CROSS_EYED:
       return "right_left";
     case LAYOUT_OVER_UNDER:
+    case LAYOUT_HALF_HEIGHT:
       return "top_bottom";
     case LAYOUT_ROWS:
       return "row_interleaved_lr";

@@ -145,9 +145,20 @@ double share_beyond(const Image& a, const Image& b, double limit) {
   return static_cast<double>(beyond) / static_cast<double>(a.data.size());
 }
 
-double difference_gain(double largest) {
-  if (!(largest > 0.0) || std::isinf(largest)) return 1.0;
-  return std::exp2(std::floor(-std::log2(largest)));
+double common_error(const Image& a, const Image& b) {
+  require_comparable(a, b);
+  std::vector<float> errors(a.data.size());
+  for (std::size_t k = 0; k < errors.size(); ++k)
+    errors[k] = static_cast<float>(absolute_error(a.data[k], b.data[k]));
+  const auto at =
+      errors.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(errors.size() - 1));
+  std::nth_element(errors.begin(), at, errors.end());
+  return *at > 0.0f ? *at : *std::max_element(at, errors.end());
+}
+
+double difference_gain(double error) {
+  if (!(error > 0.0) || std::isinf(error)) return 1.0;
+  return std::exp2(std::floor(-std::log2(error)));
 }
 
 Image difference_picture(const Image& a, const Image& b, double gain) {

@@ -36,9 +36,13 @@ Difference largest_difference(const Image& a, const Image& b);
 /// Share of the channels, 0 to 1, whose absolute error exceeds `limit`; values as they are.
 double share_beyond(const Image& a, const Image& b, double limit);
 
-/// The gain that makes a difference picture readable: the largest power of two that keeps `largest` at or
-/// below 1, and 1 for equal pictures.
-double difference_gain(double largest);
+/// The absolute error that all but one in a thousand of the values keep below, whatever a few pixels do; the
+/// largest where fewer than that differ at all.
+double common_error(const Image& a, const Image& b);
+
+/// The gain that makes a difference picture readable: the largest power of two that keeps `error` at or below
+/// 1, and 1 for equal pictures.
+double difference_gain(double error);
 
 /// Absolute error times `gain`, clamped to 1: grey or RGB. An error of alpha is shown in all three channels.
 Image difference_picture(const Image& a, const Image& b, double gain);

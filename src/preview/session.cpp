@@ -96,6 +96,8 @@ glm::ivec2 Session::eye_size() const {
       return {framebuffer_.x / 2, framebuffer_.y};
     case LAYOUT_HALF_WIDTH:
       return {framebuffer_.x / 2 * 2, framebuffer_.y};
+    case LAYOUT_HALF_HEIGHT:
+      return {framebuffer_.x, framebuffer_.y / 2 * 2};
     case LAYOUT_OVER_UNDER:
       return {framebuffer_.x, framebuffer_.y / 2};
     default:

@@ -171,6 +171,20 @@ TEST(Difference, ShareBeyondALimit) {
   EXPECT_EQ(share_beyond(a, a, 0.0), 0.0);
 }
 
+TEST(Difference, CommonErrorIsNotOfAFewPixels) {
+  Image a = filled(100, 100, 1, 0.5f), b = filled(100, 100, 1, 0.51f);
+  for (int x = 0; x < 9; ++x) b.at(x, 0, 0) = 1.0f;
+  EXPECT_NEAR(common_error(a, b), 0.01, 1e-6);
+  EXPECT_EQ(difference_gain(common_error(a, b)), 64.0);
+  EXPECT_EQ(difference_gain(largest_difference(a, b).max), 2.0) << "the largest one hides all others";
+  for (int x = 0; x < 20; ++x) b.at(x, 1, 0) = 1.0f;
+  EXPECT_NEAR(common_error(a, b), 0.5, 1e-6);
+  Image c = a;
+  c.at(3, 3, 0) = 0.75f;
+  EXPECT_NEAR(common_error(a, c), 0.25, 1e-6) << "one pixel that differs is all there is to show";
+  EXPECT_EQ(common_error(a, a), 0.0);
+}
+
 TEST(Difference, PictureWithAGain) {
   EXPECT_EQ(difference_gain(0.0), 1.0);
   EXPECT_EQ(difference_gain(1.0), 1.0);

@@ -19,9 +19,9 @@ namespace {
 
 using LayOut = std::function<Picture(int layout, const Picture& left, const Picture& right)>;
 
-const std::vector<int> all_layouts = {LAYOUT_PARALLEL,   LAYOUT_CROSS_EYED,  LAYOUT_HALF_WIDTH,
-                                      LAYOUT_OVER_UNDER, LAYOUT_ROWS,        LAYOUT_COLUMNS,
-                                      LAYOUT_ANAGLYPH,   LAYOUT_HALF_COLOUR, LAYOUT_GREY};
+const std::vector<int> all_layouts = {
+    LAYOUT_PARALLEL, LAYOUT_CROSS_EYED, LAYOUT_HALF_WIDTH, LAYOUT_OVER_UNDER,  LAYOUT_HALF_HEIGHT,
+    LAYOUT_ROWS,     LAYOUT_COLUMNS,    LAYOUT_ANAGLYPH,   LAYOUT_HALF_COLOUR, LAYOUT_GREY};
 
 Picture over_black(int layout, const Picture& left, const Picture& right) {
   return lay_out(layout, left, right, glm::vec3(0.0f));
@@ -56,6 +56,8 @@ Seen seen(int layout, const Picture& picture, int w, int h) {
       return {centre(picture, {w, 0, w, h}), centre(picture, {0, 0, w, h})};
     case LAYOUT_HALF_WIDTH:
       return {2 * centre(picture, {0, 0, w / 2, h}) + 0.5, 2 * centre(picture, {w / 2, 0, w / 2, h}) + 0.5};
+    case LAYOUT_HALF_HEIGHT:
+      return {centre(picture, {0, 0, w, h / 2}), centre(picture, {0, h / 2, w, h / 2})};
     case LAYOUT_OVER_UNDER:
       return {centre(picture, {0, 0, w, h}), centre(picture, {0, h, w, h})};
     case LAYOUT_ROWS:
@@ -174,6 +176,21 @@ TEST(Layout, HalfWidthIsTheMeanOfTwoColumns) {
   }
 }
 
+TEST(Layout, HalfHeightIsTheMeanOfTwoRows) {
+  const Picture left = random_picture(3, 8, 1), right = random_picture(3, 8, 2);
+  const Picture out = lay_out(LAYOUT_HALF_HEIGHT, left, right, std::nullopt);
+  ASSERT_EQ(out.height, 8);
+  for (std::size_t y = 0; y < 8; ++y) {
+    for (std::size_t x = 0; x < 3; ++x) {
+      const Picture& eye = y < 4 ? left : right;
+      const std::size_t at = 2 * (y % 4) * 3 + x, to = y * 3 + x;
+      EXPECT_LT(glm::length(out.colour[to] - 0.5f * (eye.colour[at] + eye.colour[at + 3])), 1e-6f);
+      EXPECT_GT(glm::length(out.colour[to] - eye.colour[at]), 1e-6f) << "every other row goes unnoticed";
+      EXPECT_NEAR(out.z_sum[to], 0.5f * (eye.z_sum[at] + eye.z_sum[at + 3]), 1e-6);
+    }
+  }
+}
+
 TEST(Layout, AnaglyphsAreWhatTheirSourcesSay) {
   const auto mixed = [](int layout, const glm::vec3& left, const glm::vec3& right) {
     return shared::layout_mix(static_cast<shared::uint>(layout), left, right);
@@ -214,6 +231,7 @@ TEST(Layout, WhatCannotBeIsRefused) {
                                  {"--layout parallel", "6 x 4", "6 x 5", "separate"}));
   EXPECT_TRUE(test::fails_saying([&] { lay_out(LAYOUT_GREY, a, a, {}); }, {"grey", "--background"}));
   EXPECT_TRUE(test::fails_saying([&] { lay_out(LAYOUT_HALF_WIDTH, odd, odd, {}); }, {"5 px", "even width"}));
+  EXPECT_TRUE(test::fails_saying([&] { lay_out(LAYOUT_HALF_HEIGHT, b, b, {}); }, {"5 px", "even height"}));
 }
 
 }  // namespace
