@@ -8,6 +8,15 @@ install(TARGETS binosplat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET binosplat_view)
   install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)  # ./demo builds without it
 endif()
+if(TARGET binosplat_python)
+  # Where this Python looks for modules, below the prefix: of a Debian package Debian's own place.
+  execute_process(
+    COMMAND ${Python_EXECUTABLE} -c
+            "import sysconfig as s; print(s.get_path('platlib', 'deb_system' if 'deb_system' in s.get_scheme_names() else 'posix_prefix', {'base': '.', 'platbase': '.'}))"
+    OUTPUT_VARIABLE python_modules OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  install(TARGETS binosplat_python LIBRARY DESTINATION ${python_modules} COMPONENT python
+          OPTIONAL)  # ./demo builds without it
+endif()
 install(TARGETS ${rooms} EXPORT binosplat_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/binosplat)
 install(EXPORT binosplat_targets NAMESPACE binosplat:: FILE binosplatTargets.cmake DESTINATION ${package})
@@ -33,7 +42,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Opened at run time: a GPU's driver or Mesa. And for programs that link to the libraries, the headers of theirs.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, pkg-config, libegl-dev, libgl-dev, libglm-dev, libfmt-dev, \
 libopenexr-dev, libpng-dev, libturbojpeg0-dev, libwebp-dev, libzip-dev, libzstd-dev, zlib1g-dev, libtbb-dev, nlohmann-json3-dev, libosmesa6")
 include(CPack)

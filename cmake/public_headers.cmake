@@ -1,10 +1,10 @@
 # cmake -DROOT=... -DOUT=... -P: the headers of all rooms but the programs' own to OUT/binosplat/ROOM, with includes of
 # "room/name.h" as "binosplat/room/name.h".
 file(GLOB rooms RELATIVE ${ROOT}/src ${ROOT}/src/*)
-list(REMOVE_ITEM rooms app demo preview)
+list(REMOVE_ITEM rooms app demo preview python)
 file(REMOVE_RECURSE ${OUT}/binosplat)
 file(GLOB_RECURSE headers ${ROOT}/src/*.h ${ROOT}/stereo/*.h ${ROOT}/shaders/shared/*.h)
-list(FILTER headers EXCLUDE REGEX "/src/(app|demo|preview)/")
+list(FILTER headers EXCLUDE REGEX "/src/(app|demo|preview|python)/")
 list(JOIN rooms "|" names)
 foreach(header ${headers})
   file(RELATIVE_PATH name ${ROOT} ${header})

@@ -11,8 +11,7 @@
 #include "app/command.h"
 #include "app/option_checks.h"
 #include "formats/image_file.h"
-#include "measure/flip.h"
-#include "measure/metrics.h"
+#include "measure/comparison.h"
 #include "study/fields.h"
 
 namespace binosplat::app {
@@ -33,12 +32,7 @@ struct CompareOptions {
   std::string json;
 };
 
-struct Comparison {
-  double psnr = 0.0;
-  double ssim = 0.0;
-  double flip = 0.0;
-  measure::Difference largest;
-};
+using measure::Comparison;
 
 /// What --max-memory says; three quarters of the machine's memory by themselves.
 PictureLimit limit_of(const CompareOptions& options) {
@@ -48,14 +42,7 @@ PictureLimit limit_of(const CompareOptions& options) {
   return {static_cast<std::uint64_t>(std::min(most, 1e18)), bytes_per_pixel, "; --max-memory allows more"};
 }
 
-// Grey as three equal channels, so that it can be compared with colour.
-Image as_colour(const Image& grey) {
-  Image colour(grey.width, grey.height, 3);
-  for (std::size_t k = 0; k < colour.data.size(); ++k) colour.data[k] = grey.data[k / 3];
-  return colour;
-}
-
-void make_comparable(const CompareOptions& options, Image& a, Image& b) {
+void check_comparable(const CompareOptions& options, const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height) {
     fail("{} is {} x {} px and {} is {} x {}: only pictures of one size can be compared", options.a, a.width,
          a.height, options.b, b.width, b.height);
@@ -65,8 +52,6 @@ void make_comparable(const CompareOptions& options, Image& a, Image& b) {
     fail("{} has alpha and {} has none: draw both with the same --background", first ? options.a : options.b,
          first ? options.b : options.a);
   }
-  if (a.channels < b.channels) a = as_colour(a);
-  if (b.channels < a.channels) b = as_colour(b);
 }
 
 const char* channel_name(const Image& image, int channel) {
@@ -115,13 +100,9 @@ ExitCode compare(const CompareOptions& options) {
   const PictureLimit limit = limit_of(options);
   Image a = load_image(options.a, limit);
   Image b = load_image(options.b, limit);
-  make_comparable(options, a, b);
-  // What a screen shows: an EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
-  a = measure::clamped(a);
-  b = measure::clamped(b);
-  const Comparison found = {measure::psnr(a, b), measure::ssim(a, b),
-                            measure::flip(a, b, options.pixels_per_degree),
-                            measure::largest_difference(a, b)};
+  check_comparable(options, a, b);
+  measure::make_shown(a, b);
+  const Comparison found = measure::compare(a, b, options.pixels_per_degree);
   print(options, found, a);
   if (!options.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));

@@ -10,16 +10,6 @@ namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
-std::optional<fs::path> find_view_photo(const fs::path& folder, const std::string& view) {
-  if (fs::is_regular_file(folder / view)) return folder / view;
-  for (const std::string& name : {view, stem_of(view)}) {
-    for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
-      if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
-    }
-  }
-  return std::nullopt;
-}
-
 Image load_view_photo(const fs::path& file, const Camera& camera) {
   Image photo = load_image(file);
   if (photo.channels != 3 || photo.width != camera.width || photo.height != camera.height)

@@ -14,11 +14,7 @@
 
 namespace binosplat::app {
 
-/// The file of a view's photo in a folder: by the view's name as it stands, or with a picture's ending.
-std::optional<std::filesystem::path> find_view_photo(const std::filesystem::path& folder,
-                                                     const std::string& view);
-
-/// Reads it. Throws Error unless it is RGB in the camera's size.
+/// Reads a view's photo. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
 
 /// The photos of a folder for a fit; none where `photos` is empty.

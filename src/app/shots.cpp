@@ -1,7 +1,6 @@
 #include "app/shots.h"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 
 #include "app/load_scene.h"
@@ -49,21 +48,12 @@ std::vector<Choice> all_choices(const std::vector<Camera>& cameras, bool pairs) 
   return choices;
 }
 
-[[noreturn]] void fail_unknown(const std::string& name, const CameraList& list, const char* option) {
-  constexpr std::size_t shown = 8;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(shown, list.cameras.size()); ++i)
-    names += "\n  " + list.cameras[i].name;
-  if (list.cameras.size() > shown) names += fmt::format("\n  and {} more", list.cameras.size() - shown);
-  fail("{} {}: {} has no camera of this name. It has:{}", option, name, list.source, names);
-}
-
 Choice choose(const std::string& name, const CameraList& list, bool mono, const char* option) {
   const auto exact =
       std::find_if(list.cameras.begin(), list.cameras.end(), [&](const Camera& c) { return c.name == name; });
   if (exact != list.cameras.end()) return {name, {*exact}};
   const auto eyes = stereo::find_eyes(list.cameras, name);
-  if (!eyes) fail_unknown(name, list, option);
+  if (!eyes) fail_no_camera(fmt::format("{} {}", option, name), list.source, list.cameras);
   if (mono) fail("--view {0} is a pair of eyes: with --mono name one of them, {0}_left or {0}_right", name);
   return {name, {(*eyes)[0], (*eyes)[1]}};
 }
@@ -156,18 +146,6 @@ void learn_beside(const std::string& scene, Known& known) {
 }
 
 }  // namespace
-
-std::string stem_of(std::string name) {
-  std::string lower = name;
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const char* ending : {".png", ".jpg", ".jpeg"}) {
-    if (ends_with(lower, ending)) name.resize(name.size() - std::string(ending).size());
-  }
-  std::replace(name.begin(), name.end(), '/', '_');
-  if (name.empty()) name = "view";
-  if (name[0] == '.') name[0] = '_';
-  return name;
-}
 
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
                           const std::optional<SavedPose>& saved) {

@@ -8,6 +8,7 @@
 #include "app/rig_options.h"
 #include "app/scene_options.h"
 #include "formats/pose_file.h"
+#include "formats/view_files.h"
 #include "scene/camera.h"
 #include "scene/framing.h"
 #include "scene/model.h"
@@ -22,9 +23,6 @@ struct Eye {
   Camera camera;
   shared::View view;
 };
-
-/// A view's name as a file's: trainers' names may have folders, and the endings of the photos.
-std::string stem_of(std::string name);
 
 /// What one frame draws.
 struct Shot {

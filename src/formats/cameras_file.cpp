@@ -162,6 +162,14 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path) {
   return cameras;
 }
 
+void fail_no_camera(const std::string& asked, const std::string& source, std::span<const Camera> cameras) {
+  constexpr std::size_t shown = 8;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(shown, cameras.size()); ++i) names += "\n  " + cameras[i].name;
+  if (cameras.size() > shown) names += fmt::format("\n  and {} more", cameras.size() - shown);
+  fail("{}: {} has no camera of this name. It has:{}", asked, source, names);
+}
+
 nlohmann::ordered_json camera_json(const Camera& camera) {
   nlohmann::ordered_json rotation = nlohmann::json::array();
   for (int row = 0; row < 3; ++row)

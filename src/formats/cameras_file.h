@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "scene/camera.h"
@@ -21,6 +23,10 @@ namespace binosplat {
 /// kept to the digit. Names that occur twice are kept with a warning. Throws Error naming the file, the
 /// camera's number in the list and its key; for broken JSON the line and byte.
 std::vector<Camera> load_cameras(const std::filesystem::path& path);
+
+/// Throws Error: `source` has no camera of the name that was `asked` for, and names some that it has.
+[[noreturn]] void fail_no_camera(const std::string& asked, const std::string& source,
+                                 std::span<const Camera> cameras);
 
 /// A camera as an object of such a list, with its principal point, and its time (0 where it has none).
 nlohmann::ordered_json camera_json(const Camera& camera);

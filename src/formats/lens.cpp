@@ -23,7 +23,11 @@ std::string rotation_fault(const glm::dmat3& columns) {
   const glm::dmat3 square = glm::transpose(columns) * columns;
   double largest = 0;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) largest = std::max(largest, std::abs(square[i][j] - (i == j ? 1.0 : 0.0)));
+    for (int j = 0; j < 3; ++j) {
+      const double off = std::abs(square[i][j] - (i == j ? 1.0 : 0.0));
+      if (!std::isfinite(off)) return "its numbers must be finite";
+      largest = std::max(largest, off);
+    }
   }
   if (!(largest <= 1e-3))
     return fmt::format("the columns must be orthogonal and of length 1; they are off by {:.3g}", largest);

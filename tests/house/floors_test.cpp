@@ -38,6 +38,8 @@ const std::map<std::string, std::set<std::string>> may_see = {
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"preview",
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
+    {"python",
+     {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"app",
      {"demo", "preview", "study", "stereo", "measure", "render", "primitives", "gl", "reference", "formats",
       "scene", "base", "shared"}},

@@ -95,6 +95,7 @@ TEST(Install, HeadersNameNobodyElsesRooms) {
   EXPECT_GT(headers, 50);
   EXPECT_FALSE(fs::exists(folder / "include/binosplat/app")) << "the programs' own";
   EXPECT_FALSE(fs::exists(folder / "include/binosplat/preview")) << "the programs' own";
+  EXPECT_FALSE(fs::exists(folder / "include/binosplat/python")) << "the module's own";
   EXPECT_TRUE(fs::exists(folder / "include/binosplat/shared/axes.h"));
 }
 
@@ -111,6 +112,12 @@ TEST(Install, PackagesHoldAProgramThatRuns) {
     ASSERT_TRUE(succeeds(folder, (folder / program).string() + " --version")) << program;
     EXPECT_EQ(test::read_text(folder / "said"), "binosplat 0.1.0\n");
   }
+#ifdef BINOSPLAT_PYTHON
+  ASSERT_TRUE(succeeds(folder, "PYTHONPATH=" + folder.path().string() +
+                                   "/deb/usr/lib/python3/dist-packages " BINOSPLAT_PYTHON
+                                   " -c 'import binosplat; print(binosplat.__file__)'"));
+  EXPECT_NE(test::read_text(folder / "said").find("/deb/usr/lib/"), std::string::npos);
+#endif
   ASSERT_TRUE(succeeds(folder, "dpkg-deb -f " + folder.path().string() + "/packages/*.deb Depends"));
   EXPECT_NE(test::read_text(folder / "said").find("libopenexr"), std::string::npos);
   EXPECT_EQ(test::read_text(folder / "said").find("mesa"), std::string::npos) << "drags Mesa along";

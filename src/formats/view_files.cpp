@@ -1,0 +1,33 @@
+#include "formats/view_files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+namespace binosplat {
+
+namespace fs = std::filesystem;
+
+std::string stem_of(std::string name) {
+  std::string lower = name;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const std::string_view ending : {".png", ".jpg", ".jpeg"}) {
+    if (lower.size() > ending.size() && lower.ends_with(ending)) name.resize(name.size() - ending.size());
+  }
+  std::replace(name.begin(), name.end(), '/', '_');
+  if (name.empty()) name = "view";
+  if (name[0] == '.') name[0] = '_';
+  return name;
+}
+
+std::optional<fs::path> find_view_photo(const fs::path& folder, const std::string& view) {
+  if (fs::is_regular_file(folder / view)) return folder / view;
+  for (const std::string& name : {view, stem_of(view)}) {
+    for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
+      if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,140 @@
+// Pictures as arrays: from files, and how far two are apart.
+
+#include <memory>
+#include <utility>
+
+#include "base/error.h"
+#include "formats/image_file.h"
+#include "measure/comparison.h"
+#include "python/module.h"
+
+namespace binosplat::python {
+
+namespace {
+
+using measure::Comparison;
+
+template <typename T>
+bool holds(const py::array& array) {
+  return py::isinstance<py::array_t<T>>(array);
+}
+
+template <typename T>
+void fill(Image& image, const py::array& array, float white) {
+  if (!holds<T>(array)) return;
+  const auto dense = py::array_t<T, py::array::c_style>::ensure(array);
+  if (!dense) throw py::error_already_set();
+  for (std::size_t k = 0; k < image.data.size(); ++k)
+    image.data[k] = static_cast<float>(dense.data()[k]) / white;
+}
+
+/// A picture of the array's shape, all zeros.
+Image empty_image(const py::array& array, const std::string& name) {
+  constexpr double most_pixels = 2147483648.0;
+  const auto side = [&](py::ssize_t axis) { return array.ndim() > axis ? array.shape(axis) : 1; };
+  const bool is_picture = (array.ndim() == 2 || array.ndim() == 3) &&
+                          (side(2) == 1 || side(2) == 3 || side(2) == 4) &&
+                          static_cast<double>(side(0)) * static_cast<double>(side(1)) < most_pixels &&
+                          side(0) < most_pixels && side(1) < most_pixels;
+  if (!is_picture) {
+    fail(
+        "{}: an array of shape {} is no picture: expected (height, width) or (height, width, channels) with "
+        "1, 3 or 4 channels",
+        name, std::string(py::str(array.attr("shape"))));
+  }
+  return {static_cast<int>(side(1)), static_cast<int>(side(0)), static_cast<int>(side(2))};
+}
+
+Comparison compare(const py::object& a, const py::object& b, double pixels_per_degree) {
+  Image first = image_of(a, "a"), second = image_of(b, "b");
+  const py::gil_scoped_release release;
+  measure::make_shown(first, second);
+  return measure::compare(first, second, pixels_per_degree);
+}
+
+std::string describe(const Comparison& found) {
+  return fmt::format("Comparison(psnr={:.4f}, ssim={:.6f}, flip={:.6f}, largest_error={:.6f})", found.psnr,
+                     found.ssim, found.flip, found.largest.max);
+}
+
+}  // namespace
+
+py::array array_of(Image&& image) {
+  auto owner = std::make_unique<Image>(std::move(image));
+  std::vector<py::ssize_t> shape = {owner->height, owner->width};
+  if (owner->channels != 1) shape.push_back(owner->channels);
+  const float* const data = owner->data.data();
+  const py::capsule keep(owner.get(), [](void* kept) { delete static_cast<Image*>(kept); });
+  static_cast<void>(owner.release());
+  return py::array_t<float>(shape, data, keep);
+}
+
+Image image_of(const py::object& picture, const std::string& name) {
+  const py::array array = py::array::ensure(picture);
+  if (!array) throw py::type_error(name + ": expected an array");
+  if (!holds<float>(array) && !holds<double>(array) && !holds<std::uint8_t>(array) &&
+      !holds<std::uint16_t>(array)) {
+    throw py::type_error(fmt::format("{}: pictures are arrays of float32, float64, uint8 or uint16, not {}",
+                                     name, std::string(py::str(array.dtype()))));
+  }
+  Image image = empty_image(array, name);
+  fill<float>(image, array, 1.0f);
+  fill<double>(image, array, 1.0f);
+  fill<std::uint8_t>(image, array, 255.0f);
+  fill<std::uint16_t>(image, array, 65535.0f);
+  return image;
+}
+
+void add_images(py::module_& module) {
+  module.def(
+      "load_image",
+      [](const std::filesystem::path& path) {
+        Image image;
+        {
+          const py::gil_scoped_release release;
+          image = load_image(path);
+        }
+        return array_of(std::move(image));
+      },
+      py::arg("path"),
+      "A PNG, JPEG or OpenEXR as display-referred float32, white 1: (height, width) of grey,\n"
+      "(height, width, 3) of RGB, (height, width, 4) with straight alpha. Raises InputError.");
+  module.def(
+      "save_png",
+      [](const std::filesystem::path& path, const py::object& picture, int bits) {
+        if (bits != 8 && bits != 16) fail("bits {}: expected 8 or 16", bits);
+        const Image image = image_of(picture, "picture");
+        const py::gil_scoped_release release;
+        save_png(path, image, bits);
+      },
+      py::arg("path"), py::arg("picture"), py::arg("bits") = 8,
+      "Writes a picture of 1, 3 or 4 channels, of 8 or 16 bits; the file is there whole or not at all.\n"
+      "Raises InputError.");
+  module.def(
+      "quantised",
+      [](const py::object& picture) { return array_of(quantised(image_of(picture, "picture"))); },
+      py::arg("picture"), "The picture as 8 bits keep it: round(255 clip(v, 0, 1)) / 255, as float32.");
+
+  py::class_<Comparison>(module, "Comparison", "By how much two pictures differ.")
+      .def_readonly("psnr", &Comparison::psnr, "dB; inf for equal pictures, -inf where one holds a NaN.")
+      .def_readonly("ssim", &Comparison::ssim,
+                    "At most 1, that of equal pictures; nan for pictures below 11 x 11 px or with a NaN.")
+      .def_readonly("flip", &Comparison::flip, "Mean of FLIP's map, 0 to 1; nan where one holds a NaN.")
+      .def_property_readonly(
+          "largest_error", [](const Comparison& c) { return c.largest.max; },
+          "Of a channel, absolute, of white 1.")
+      .def_property_readonly(
+          "at",
+          [](const Comparison& c) { return py::make_tuple(c.largest.y, c.largest.x, c.largest.channel); },
+          "Row, column and channel of the largest error.")
+      .def("__repr__", &describe);
+  module.def("compare", &compare, py::arg("a"), py::arg("b"),
+             py::arg("ppd") = measure::flip_pixels_per_degree,
+             "What `binosplat compare` says of two pictures of one size, arrays of (height, width) or\n"
+             "(height, width, 1, 3 or 4): float with white 1, uint8 or uint16. Values are clamped to\n"
+             "0 to 1 and not rounded (see quantised); grey counts as colour beside colour. ppd: pixels per\n"
+             "degree that the viewer has, 1 to 1000, for FLIP. Raises InputError for shapes that do not go\n"
+             "together, TypeError for other types of numbers.");
+}
+
+}  // namespace binosplat::python

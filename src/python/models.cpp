@@ -1,0 +1,57 @@
+// Models from files.
+
+#include <memory>
+
+#include "formats/model_file.h"
+#include "python/module.h"
+#include "scene/axes.h"
+#include "scene/framing.h"
+#include "scene/model.h"
+
+namespace binosplat::python {
+
+namespace {
+
+std::shared_ptr<Model> load(const std::filesystem::path& path, const std::optional<int>& lod,
+                            const std::optional<std::size_t>& appearance,
+                            const std::optional<std::string>& axes, const std::optional<bool>& antialiased) {
+  if (axes) world_from_axes(*axes);
+  const py::gil_scoped_release release;
+  auto model = std::make_shared<Model>(load_model(path, {lod, appearance, {}}));
+  model->axes = axes.value_or(model->axes);
+  model->antialiased = antialiased.value_or(model->antialiased);
+  return model;
+}
+
+}  // namespace
+
+void add_models(py::module_& module) {
+  py::class_<Model, std::shared_ptr<Model>>(module, "Model", "A model in memory, as load_model() read it.")
+      .def_readonly("name", &Model::name)
+      .def_readonly("format", &Model::format, "Of its file, in words.")
+      .def_property_readonly("count", &Model::count, "Gaussians; anchors of Scaffold-GS.")
+      .def_readonly("degree", &Model::degree, "Of the spherical harmonics, 0 to 3.")
+      .def_readonly("left_out", &Model::left_out, "Gaussians of the file that are not finite.")
+      .def_readonly("axes", &Model::axes, "Where its x, y and z point: R or L, U or D, F or B.")
+      .def_readonly("antialiased", &Model::antialiased, "Whether it was trained with anti-aliasing.")
+      .def_property_readonly(
+          "order", [](const Model& m) { return order_choices[m.perspective.order].name; },
+          "What it was trained to be sorted by, and is unless draw() is told otherwise.")
+      .def_property_readonly(
+          "projection", [](const Model& m) { return projection_choices[m.perspective.projection].name; },
+          "Likewise, what a ray sees of a Gaussian.")
+      .def_property_readonly(
+          "near", [](const Model& m) { return near_for(m); },
+          "The near plane, in world units, that suits cameras made up for it: 0.2, less where it is tiny.")
+      .def("__repr__", [](const Model& m) {
+        return fmt::format("<binosplat.Model {}: {} Gaussians, degree {}>", m.name, m.count(), m.degree);
+      });
+  module.def("load_model", &load, py::arg("path"), py::kw_only(), py::arg("lod") = py::none(),
+             py::arg("appearance") = py::none(), py::arg("axes") = py::none(),
+             py::arg("antialiased") = py::none(),
+             "Reads a model of any format that `binosplat render` takes, a file or its folder; what it is,\n"
+             "its content decides. lod: level of detail of a streamed SOG, 0 the finest. appearance: of\n"
+             "Scaffold-GS. axes, antialiased: where the file is wrong about them. Raises InputError.");
+}
+
+}  // namespace binosplat::python

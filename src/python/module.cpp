@@ -1,0 +1,69 @@
+// import binosplat: models, cameras and frames, with pictures as NumPy arrays.
+
+#include "python/module.h"
+
+#include <array>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace binosplat::python {
+
+namespace {
+
+// The exceptions' types, by ExitCode; the base for those that have none of their own. Never freed, as types
+// of a module.
+std::array<PyObject*, 5> error_types{};
+
+PyObject* add_error(py::module_& module, const char* name, const char* help, const py::tuple& bases) {
+  const std::string full = std::string("binosplat.") + name;
+  PyObject* const type = PyErr_NewExceptionWithDoc(full.c_str(), help, bases.ptr(), nullptr);
+  if (type == nullptr) throw py::error_already_set();
+  module.add_object(name, py::reinterpret_borrow<py::object>(type));
+  return type;
+}
+
+void translate(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(std::move(thrown));
+  } catch (const Error& error) {
+    // Texts quote names of files, which need not be UTF-8.
+    const std::string_view text = error.what();
+    const auto words = py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
+    PyErr_SetObject(error_types[static_cast<std::size_t>(error.code())], words.ptr());
+  }
+}
+
+}  // namespace
+
+void add_errors(py::module_& module) {
+  PyObject* const base = add_error(module, "Error", "What binosplat itself says is wrong.",
+                                   py::make_tuple(py::reinterpret_borrow<py::object>(PyExc_Exception)));
+  error_types.fill(base);
+  const auto add = [&](ExitCode code, const char* name, const char* help, PyObject* python_s) {
+    error_types[static_cast<std::size_t>(code)] =
+        add_error(module, name, help,
+                  py::make_tuple(py::reinterpret_borrow<py::object>(base),
+                                 py::reinterpret_borrow<py::object>(python_s)));
+  };
+  add(ExitCode::bad_input, "InputError", "A file, an array or a setting that cannot be used.",
+      PyExc_ValueError);
+  add(ExitCode::no_gl, "OpenGLError", "No usable OpenGL, or the GPU was reset.", PyExc_RuntimeError);
+  add(ExitCode::out_of_memory, "OutOfMemory", "No room on the GPU, or for a picture.", PyExc_MemoryError);
+  py::register_exception_translator(translate);
+}
+
+}  // namespace binosplat::python
+
+PYBIND11_MODULE(binosplat, module) {
+  using namespace binosplat::python;
+  module.doc() =
+      "3D Gaussian Splatting models as pictures for one eye or both, drawn by OpenGL compute shaders.";
+  module.attr("__version__") = BINOSPLAT_VERSION;
+  add_errors(module);
+  add_images(module);
+  add_models(module);
+  add_cameras(module);
+  add_renderer(module);
+}

@@ -1,0 +1,151 @@
+"""Models, cameras and rigs: what files and numbers become, and what is refused."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+
+import binosplat
+
+
+def test_a_model_says_what_it_is(model):
+    assert model.count == 300 and model.degree == 0 and model.left_out == 0
+    assert model.axes == "RDF" and not model.antialiased and 0 < model.near <= 0.2
+    assert (model.order, model.projection) == ("depth", "affine")
+    assert "300 Gaussians" in repr(model)
+
+
+def test_files_that_are_no_models_are_refused(scene, tmp_path):
+    (tmp_path / "empty.ply").write_bytes(b"")
+    (tmp_path / "text.ply").write_text("no model")
+    (tmp_path / "cut.ply").write_bytes((scene / "model.ply").read_bytes()[:5000])
+    for name, words in {"missing.ply": "cannot read", "empty.ply": "is not a model", "text.ply":
+                        "is not a model", "cut.ply": "cut.ply", "": "is a folder without a model"}.items():
+        with pytest.raises(binosplat.InputError) as raised:
+            binosplat.load_model(tmp_path / name)
+        assert words in str(raised.value) and str(tmp_path) in str(raised.value)
+    with pytest.raises(binosplat.InputError, match="cannot read /no/\ufffd.ply"):
+        binosplat.load_model(os.fsdecode(b"/no/\xff.ply"))
+    with pytest.raises(binosplat.InputError, match="has no levels of detail"):
+        binosplat.load_model(scene / "model.ply", lod=1)
+    with pytest.raises(binosplat.InputError, match="axes 'XYZ': expected three letters"):
+        binosplat.load_model(scene / "model.ply", axes="XYZ")
+
+
+def test_axes_turn_what_is_drawn(scene, renderer, cameras):
+    turned = binosplat.load_model(scene / "model.ply", axes="LUF")
+    with binosplat.Renderer(turned, backend="surfaceless") as other:
+        upside_down = other.draw(cameras["front"]).colour[::-1, ::-1]
+    expected = renderer.draw(cameras["front"]).colour
+    np.testing.assert_allclose(upside_down, expected, atol=1e-4)
+    assert not np.allclose(upside_down[::-1], expected, atol=0.05)
+
+
+def test_cameras_by_number_and_by_name(scene, cameras):
+    assert len(cameras) == 4
+    assert [camera.name for camera in cameras] == ["front", "side", "pair_left", "pair_right"]
+    assert cameras[-1].name == "pair_right" and cameras[1].name == "side"
+    side = cameras["side"]
+    assert (side.width, side.height, side.fx, side.fy, side.cx, side.cy) == (72, 48, 60, 60, 36, 24)
+    np.testing.assert_array_equal(side.position, [0.5, 0, 0])
+    np.testing.assert_array_equal(side.rotation, np.eye(3))
+    assert binosplat.find_cameras(scene / "model.ply") == scene / "cameras.json"
+    with pytest.raises(IndexError):
+        cameras[4]
+    with pytest.raises(binosplat.InputError) as raised:
+        cameras["back"]
+    assert str(raised.value).startswith("back: ") and "has no camera of this name" in str(raised.value)
+    assert "pair_left" in str(raised.value)
+
+
+def test_files_that_list_no_cameras_are_refused(tmp_path):
+    (tmp_path / "broken.json").write_text('[{"img_name": "a"')
+    (tmp_path / "short.json").write_text('[{"img_name": "a"}]')
+    for name, words in {"missing.json": "cannot read", "broken.json": "broken.json", "short.json":
+                        "key 'width': is missing", "": "is a folder without cameras.json"}.items():
+        with pytest.raises(binosplat.InputError) as raised:
+            binosplat.load_cameras(tmp_path / name)
+        assert words in str(raised.value)
+    assert binosplat.find_cameras(tmp_path / "model.ply") is None
+
+
+def test_a_camera_by_numbers_is_that_of_the_file(renderer, cameras, tmp_path):
+    turn = np.array([[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]])  # towards x: its columns are the camera's axes
+    entry = {"img_name": "turned", "width": 40, "height": 30, "position": [-2, 0.1, 0], "rotation":
+             turn.tolist(), "fx": 35, "fy": 36, "cx": 21, "cy": 14}
+    (tmp_path / "cameras.json").write_text(json.dumps([entry]))
+    listed = renderer.draw(binosplat.load_cameras(tmp_path)[0]).colour
+    numbers = {"fy": 36, "cx": 21, "cy": 14, "position": [-2, 0.1, 0]}
+    made = renderer.draw(binosplat.Camera(40, 30, 35, rotation=turn, **numbers)).colour
+    assert listed.any() and np.array_equal(made, listed)
+    transposed = renderer.draw(binosplat.Camera(40, 30, 35, rotation=turn.T, **numbers)).colour
+    assert not np.array_equal(transposed, listed)
+
+
+@pytest.mark.parametrize("numbers, words", [
+    ({"width": 0}, "a picture of 0 x 48 px cannot be drawn"),
+    ({"width": 100000, "height": 100000}, "cannot be drawn"),
+    ({"fx": -1}, "focal lengths of -1"),
+    ({"cx": float("nan")}, "the principal point nan"),
+    ({"position": (0, 0, float("inf"))}, "position 0, 0, inf: expected finite numbers"),
+    ({"rotation": 2 * np.eye(3)}, "the columns must be orthogonal and of length 1"),
+    ({"rotation": np.diag([1, 1, -1])}, "it mirrors"),
+    ({"rotation": np.full((3, 3), np.nan)}, "rotation nan, nan, nan: expected finite numbers"),
+])
+def test_numbers_that_make_no_camera_are_refused(numbers, words):
+    with pytest.raises(binosplat.InputError) as raised:
+        binosplat.Camera(**{"width": 72, "height": 48, "fx": 60, **numbers})
+    assert words in str(raised.value)
+
+
+def test_arrays_of_other_shapes_are_no_poses():
+    for numbers in ({"position": (0, 0)}, {"rotation": np.eye(4)}, {"rotation": np.zeros(9)}):
+        with pytest.raises(TypeError):
+            binosplat.Camera(72, 48, 60, **numbers)
+
+
+def test_look_at_frames_what_it_looks_at(renderer, model):
+    camera = binosplat.look_at((0, 0, 0), (0, 0, 4), 72, 48, fov=45)
+    np.testing.assert_allclose(camera.rotation, np.eye(3), atol=1e-12)
+    assert camera.fy == pytest.approx(24 / np.tan(np.radians(22.5)))
+    assert (renderer.draw(binosplat.frame(model, 32, 24), near=model.near).transmittance < 0.5).any()
+    upside_down = binosplat.frame(model, 32, 24, up=(0, 1, 0))
+    assert upside_down.rotation[1, 1] < 0 < binosplat.frame(model, 32, 24).rotation[1, 1]
+    for arguments in (((0, 0, 0), (0, 0, 0)), ((0, 0, 0), (0, 1, 0))):
+        with pytest.raises(binosplat.InputError):
+            binosplat.look_at(*arguments, 72, 48)
+    with pytest.raises(binosplat.InputError, match="fov 180"):
+        binosplat.look_at((0, 0, 0), (0, 0, 1), 72, 48, fov=180)
+    with pytest.raises(binosplat.InputError, match="0 x 24 px"):
+        binosplat.frame(model, 0, 24)
+
+
+def test_resized_keeps_the_vertical_field_of_view(cameras):
+    large = cameras["front"].resized(200, 96)
+    assert (large.width, large.height, large.fx, large.fy, large.cx) == (200, 96, 120, 120, 100)
+    with pytest.raises(binosplat.InputError):
+        large.resized(-1, 3)
+
+
+def test_the_eyes_of_a_rig(cameras):
+    left, right = binosplat.Rig(cameras["front"], ipd=0.1, units_per_metre=2, convergence=3).eyes
+    np.testing.assert_allclose([left.position[0], right.position[0]], [-0.1, 0.1])
+    np.testing.assert_allclose([left.cx, right.cx], [35, 37])
+    for wrong, words in (({"ipd": -1}, "--ipd -1: expected metres"), ({"convergence": 0}, "--convergence 0"),
+                         ({"cant": 90}, "--cant 90"), ({"units_per_metre": 0}, "--units-per-metre 0")):
+        with pytest.raises(binosplat.InputError) as raised:
+            binosplat.Rig(cameras["front"], **wrong)
+        assert words in str(raised.value)
+
+
+def test_cameras_of_nerfstudio_are_moved_into_its_training(tmp_path):
+    rows = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
+    frame = {"file_path": "a", "transform_matrix": [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3]]}
+    (tmp_path / "transforms.json").write_text(
+        json.dumps({"w": 64, "h": 48, "fl_x": 50, "frames": [frame]})
+    )
+    (tmp_path / "dataparser_transforms.json").write_text(json.dumps({"transform": rows, "scale": 0.5}))
+    file = tmp_path / "transforms.json"
+    assert list(binosplat.load_cameras(file)[0].position) == [1, 2, 3]
+    assert list(binosplat.load_cameras(file, tmp_path / "splat.ply")[0].position) == [0.5, 1, 1.5]

@@ -1,0 +1,176 @@
+"""What draw() leaves: the program's pictures, bit for bit, for every setting."""
+
+import numpy as np
+import pytest
+
+import binosplat
+
+BACKEND = ["--backend", "surfaceless"]
+
+
+def same(a, b):
+    return a.shape == b.shape and a.dtype == b.dtype and np.array_equal(a, b)
+
+
+def test_a_picture_is_three_arrays(renderer, cameras):
+    picture = renderer.draw(cameras["front"])
+    assert picture.colour.shape == (48, 72, 3)
+    assert picture.transmittance.shape == picture.depth.shape == (48, 72)
+    for array in (picture.colour, picture.transmittance, picture.depth):
+        assert array.dtype == np.float32 and array.flags.c_contiguous and array.flags.writeable
+    seen = picture.transmittance < 0.5
+    assert seen.any() and not seen.all()
+    assert np.isinf(picture.depth[~seen]).all()
+    assert (picture.depth[seen] > 2).all() and (picture.depth[seen] < 6).all()
+    assert picture.report["pairs"] > 0 and picture.report["total_ms"] > 0
+    assert "blend" in picture.report["stages_ms"]
+
+
+def test_the_background_is_seen_through_what_is_transmitted(renderer, cameras):
+    black = renderer.draw(cameras["front"])
+    red = renderer.draw(cameras["front"], background=(1, 0, 0))
+    expected = black.colour + black.transmittance[..., None] * np.float32([1, 0, 0])
+    np.testing.assert_allclose(red.colour, expected, atol=1e-6)
+    assert not same(red.colour, black.colour)
+
+
+SETTINGS = [
+    ({}, []),
+    ({"tolerance": 0.5}, ["--tolerance", "0.5"]),
+    ({"tolerance": 20, "th": "peripheral"}, ["--tolerance", "20", "--th", "peripheral"]),
+    ({"quality": 30}, ["--quality", "30"]),
+    ({"order": "distance", "projection": "tangent"}, ["--order", "distance", "--projection", "tangent"]),
+    ({"tiles": "aabb"}, ["--tiles", "aabb"]),
+    ({"near": 4.5}, ["--near", "4.5"]),
+]
+
+
+@pytest.mark.parametrize("settings, options", SETTINGS)
+def test_it_is_the_program_s_picture(renderer, cameras, scene, program, tmp_path, settings, options):
+    program("render", scene / "model.ply", "--view", "side", "--mono", "--exr", "float", "--exr-encoding",
+            "display", "-o", tmp_path / "p.exr", *options, *BACKEND)
+    expected = binosplat.load_image(tmp_path / "p.exr")
+    assert same(renderer.draw(cameras["side"], **settings).colour, expected)
+    # A setting that had no effect would pass the line above: each changes bits.
+    other = {} if settings else {"tolerance": 0.5}
+    assert not same(renderer.draw(cameras["side"], **other).colour, expected)
+
+
+def test_half_precision_is_the_program_s(model, cameras, scene, program, tmp_path):
+    program("render", scene / "model.ply", "--view", "side", "--mono", "--exr", "float", "--exr-encoding",
+            "display", "-o", tmp_path / "p.exr", "--precision", "half", *BACKEND)
+    expected = binosplat.load_image(tmp_path / "p.exr")
+    for precision in ("half", "full"):
+        with binosplat.Renderer(model, backend="surfaceless", precision=precision) as renderer:
+            assert same(renderer.draw(cameras["side"]).colour, expected) == (precision == "half")
+
+
+def test_a_rig_is_the_program_s_pair(renderer, cameras, scene, program, tmp_path):
+    program("render", scene / "model.ply", "--view", "front", "--ipd", "0.2", "--convergence", "3", "--bits",
+            "16", "-o", tmp_path, *BACKEND)
+    expected = [binosplat.load_image(tmp_path / f"front_{side}.png") for side in ("left", "right")]
+
+    def drawn(**rig):
+        for picture in renderer.draw(binosplat.Rig(cameras["front"], **rig)):
+            binosplat.save_png(tmp_path / "drawn.png", picture.colour, bits=16)
+            yield binosplat.load_image(tmp_path / "drawn.png")
+
+    assert all(map(same, drawn(ipd=0.2, convergence=3), expected))
+    for other in ({"ipd": 0.2}, {"ipd": 0.1, "convergence": 3}):
+        assert not any(map(same, drawn(**other), expected))
+    assert not same(*expected)
+
+
+def test_eyes_at_one_place_are_the_camera_itself(renderer, cameras):
+    one = renderer.draw(cameras["front"], near=4.5).colour
+    assert all(same(eye.colour, one) for eye in renderer.draw(binosplat.Rig(cameras["front"], ipd=0), near=4.5))
+    assert not same(renderer.draw(cameras["front"]).colour, one)
+
+
+def test_a_pair_of_given_eyes_is_each_eye_drawn_alone(renderer, cameras):
+    left, right = cameras["pair_left"], cameras["pair_right"]
+    pair = renderer.draw(binosplat.Rig.of_eyes(left, right))
+    assert same(pair[0].colour, renderer.draw(left).colour)
+    assert same(pair[1].colour, renderer.draw(right).colour)
+    assert not same(pair[0].colour, pair[1].colour)
+
+
+def test_a_picture_depends_on_nothing_drawn_before_but_when_it_follows(model, cameras):
+    fast = {"tolerance": 2, "transmittance": "last"}
+    with binosplat.Renderer(model, backend="surfaceless") as renderer:
+        first = renderer.draw(cameras["front"], **fast)
+        assert not first.report["remembered"]
+        assert same(renderer.draw(cameras["front"], **fast).colour, first.colour)
+        following = renderer.draw(cameras["front"], **fast, follow=True)
+        assert following.report["remembered"]
+        assert not same(following.colour, first.colour)
+
+
+def test_frames_that_follow_are_those_of_a_path(model, cameras, scene, program, tmp_path):
+    program("render", scene / "model.ply", "--path", scene / "cameras.json", "--mono", "--exr", "float",
+            "--exr-encoding", "display", "-o", tmp_path, "--quality", "30", *BACKEND)
+    expected = [binosplat.load_image(tmp_path / f"{camera.name}.exr") for camera in cameras]
+    with binosplat.Renderer(model, backend="surfaceless") as renderer:
+        following = [renderer.draw(camera, quality=30, follow=True).colour for camera in cameras]
+        single = [renderer.draw(camera, quality=30).colour for camera in cameras]
+    assert all(map(same, following, expected))
+    assert not all(map(same, single, expected))
+
+
+def test_osmesa_draws_the_same(model, renderer, cameras):
+    with binosplat.Renderer(model, backend="osmesa") as other:
+        assert "OSMesa" in other.device and "surfaceless" in renderer.device
+        picture = other.draw(cameras["front"]).colour
+        assert same(picture, renderer.draw(cameras["front"]).colour)
+        assert not same(picture, renderer.draw(cameras["side"]).colour)
+
+
+def test_a_quality_is_what_was_asked_for(renderer, cameras):
+    exact = binosplat.quantised(renderer.draw(cameras["front"]).colour)
+    drawn = renderer.draw(cameras["front"], quality=35)
+    psnr = binosplat.compare(binosplat.quantised(drawn.colour), exact).psnr
+    assert 34.5 < psnr < 40
+    assert abs(drawn.report["quality"] - psnr) < 0.5
+
+
+WRONG = [
+    ({"quality": -1}, "quality -1: expected dB, above zero"),
+    ({"quality": 40, "tolerance": 1}, "tolerance with quality: each chooses the tolerance"),
+    ({"th": "squared"}, "th squared needs tolerance or quality"),
+    ({"th": "tau", "tolerance": 1}, "tolerance has no effect with th tau, which is exact"),
+    ({"th": "peripheral", "tolerance": float("nan")}, "tolerance nan: expected zero or more"),
+    ({"order": "size"}, "order: 'size' is not one of depth, distance"),
+    ({"projection": "flat"}, "projection: 'flat' is not one of affine, tangent"),
+    ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
+    ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs a table"),
+    ({"transmittance": "last"}, "transmittance has no effect with th tau"),
+    ({"decode": "cyclopean"}, "decode cyclopean: this is no Scaffold-GS model"),
+    ({"near": 0}, "near 0: expected world units above zero"),
+    ({"background": (0, 0, 2)}, "background: expected three numbers from 0 to 1"),
+]
+
+
+@pytest.mark.parametrize("settings, words", WRONG)
+def test_wrong_settings_are_refused(renderer, cameras, settings, words):
+    with pytest.raises(binosplat.InputError) as raised:
+        renderer.draw(cameras["front"], **settings)
+    assert words in str(raised.value)
+    assert isinstance(raised.value, binosplat.Error) and isinstance(raised.value, ValueError)
+
+
+def test_what_is_no_view_is_refused(renderer):
+    for view in (None, "front", 3):
+        with pytest.raises(TypeError):
+            renderer.draw(view)
+    for no_model in (None, "model.ply"):
+        with pytest.raises(TypeError):
+            binosplat.Renderer(no_model)
+        with pytest.raises(TypeError):
+            binosplat.frame(no_model, 32, 24)
+
+
+def test_pictures_without_room_are_refused_and_the_next_is_drawn(renderer, cameras):
+    with pytest.raises(binosplat.OutOfMemory) as raised:
+        renderer.draw(cameras["front"].resized(40000, 40000))
+    assert isinstance(raised.value, MemoryError) and "MiB" in str(raised.value)
+    assert renderer.draw(cameras["front"]).colour.any()

@@ -1,0 +1,134 @@
+"""Pictures as arrays: files, comparisons, and the example of docs/python.md."""
+
+import json
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import binosplat
+
+
+@pytest.fixture()
+def pictures():
+    random = np.random.default_rng(3)
+    a = random.integers(0, 256, (24, 20, 3), dtype=np.uint8)
+    b = np.clip(a + random.integers(-20, 21, a.shape), 0, 255).astype(np.uint8)
+    return a, b
+
+
+@pytest.mark.parametrize("ppd", [67, 30])
+def test_compare_is_the_program_s(pictures, program, tmp_path, ppd):
+    a, b = pictures
+    binosplat.save_png(tmp_path / "a.png", a)
+    binosplat.save_png(tmp_path / "b.png", b)
+    program("compare", tmp_path / "a.png", tmp_path / "b.png", "--ppd", ppd, "--json", tmp_path / "c.json")
+    said = json.loads((tmp_path / "c.json").read_text())
+    expected = (said["psnr_db"], said["ssim"], said["flip"], said["largest_error"]["value"])
+
+    def found(a, b, **options):
+        c = binosplat.compare(a, b, **options)
+        return c.psnr, c.ssim, c.flip, c.largest_error
+
+    assert found(a, b, ppd=ppd) == expected
+    for name in ("float32", "float64", "uint16"):
+        white = 65535 if name == "uint16" else 1
+        as_type = [(np.float32(x) / 255 * white).astype(name) for x in (a, b)]
+        assert found(*as_type, ppd=ppd) == expected, name
+    row, column, channel = binosplat.compare(a, b).at
+    assert (column, row) == (said["largest_error"]["x"], said["largest_error"]["y"])
+    assert "red green blue".split()[channel] == said["largest_error"]["channel"]
+    # What must differ: other pictures, and for FLIP another viewer.
+    assert found(a, b[::-1], ppd=ppd)[0] != expected[0]
+    assert found(a, b, ppd=ppd + 20)[2] != expected[2]
+
+
+def test_equal_pictures_and_grey_beside_colour(pictures):
+    a, _ = pictures
+    same = binosplat.compare(a, a)
+    assert same.psnr == np.inf and same.ssim == 1 and same.flip == 0 and same.largest_error == 0
+    grey = a[..., 0]
+    assert binosplat.compare(grey, np.dstack([grey] * 3)).psnr == np.inf
+    assert binosplat.compare(grey[..., None], a).psnr < 30
+    assert binosplat.compare(a[:, ::-1], a[:, ::-1].copy()).psnr == np.inf  # strides
+    assert np.isnan(binosplat.compare(a[:5], a[:5]).ssim)
+    assert "psnr=inf" in repr(same)
+
+
+@pytest.mark.parametrize("shape", [(), (5,), (24, 20, 2), (24, 20, 5), (2, 24, 20, 3), (0, 20, 3)])
+def test_other_shapes_are_refused(pictures, shape):
+    with pytest.raises(binosplat.InputError):
+        binosplat.compare(np.zeros(shape, np.float32), np.zeros(shape, np.float32))
+
+
+def test_pictures_that_do_not_go_together_are_refused(pictures):
+    a, b = pictures
+    for other, words in ((b[:-1], "pictures of 20 x 24 and 20 x 23 px cannot be compared"),
+                         (np.zeros((24, 20, 4), np.uint8), "pictures of 3 and 4 channels cannot be compared")):
+        with pytest.raises(binosplat.InputError) as raised:
+            binosplat.compare(a, other)
+        assert words in str(raised.value)
+    with pytest.raises(binosplat.InputError):
+        binosplat.compare(a, b, ppd=0)
+    huge = np.broadcast_to(np.zeros(1, np.float32), (1 << 20, 1 << 20))  # takes no memory itself
+    with pytest.raises(binosplat.InputError, match="is no picture"):
+        binosplat.compare(huge, huge)
+
+
+@pytest.mark.parametrize("wrong", ["complex64", "int64", "bool", "float16", "object", ">f4", "U3"])
+def test_other_types_are_refused(pictures, wrong):
+    with pytest.raises(TypeError, match="arrays of float32"):
+        binosplat.compare(np.zeros((4, 4)).astype(wrong), np.zeros((4, 4)))
+    for no_array in (None, "a.png"):
+        with pytest.raises(TypeError):
+            binosplat.quantised(no_array)
+
+
+def test_files_hold_what_was_saved(pictures, tmp_path):
+    a, _ = pictures
+    binosplat.save_png(tmp_path / "a.png", a)
+    assert np.array_equal(binosplat.load_image(tmp_path / "a.png"), np.float32(a) / np.float32(255))
+    exact = np.float32([[0.3, 0.7], [-1, 2]])
+    binosplat.save_png(tmp_path / "b.png", exact)
+    assert np.array_equal(binosplat.load_image(tmp_path / "b.png"), binosplat.quantised(exact))
+    binosplat.save_png(tmp_path / "b.png", exact, bits=16)
+    assert not np.array_equal(binosplat.load_image(tmp_path / "b.png"), binosplat.quantised(exact))
+    with pytest.raises(binosplat.InputError, match="bits 12"):
+        binosplat.save_png(tmp_path / "b.png", exact, bits=12)
+    (tmp_path / "broken.png").write_bytes((tmp_path / "a.png").read_bytes()[:100])
+    for name in ("broken.png", "missing.png", ""):
+        with pytest.raises(binosplat.InputError, match=re.escape(str(tmp_path))):
+            binosplat.load_image(tmp_path / name)
+
+
+def test_the_example_of_the_document(scene, renderer, cameras, tmp_path, capsys, monkeypatch):
+    text = Path(os.environ["BINOSPLAT_SOURCE_DIR"], "docs/python.md").read_text()
+    example = re.search(r"```python\n# evaluate\.py.*?\n(.*?)```", text, re.S).group(1)
+    assert len(example.splitlines()) == 10
+    for name in ("model.ply", "cameras.json"):
+        (tmp_path / name).write_bytes((scene / name).read_bytes())
+    monkeypatch.setattr("sys.argv", ["evaluate.py", str(tmp_path / "model.ply")])
+    (tmp_path / "images").mkdir()
+    pixels = 72 * 48
+
+    def said(wrong_pixels):
+        """What it prints of two photos of which one has so many pixels that are off by 51 of 255."""
+        for name, count in (("front", 1), ("side", wrong_pixels)):
+            photo = binosplat.quantised(renderer.draw(cameras[name]).colour)
+            flat = photo.reshape(-1, 3)[:count]
+            flat += np.where(flat > 0.5, -0.2, 0.2).astype(np.float32)
+            binosplat.save_png(tmp_path / "images" / f"{name}.png", photo)
+        exec(compile(example, "evaluate.py", "exec"), {})
+        line = capsys.readouterr().out
+        assert line.startswith("2 photos: [")
+        return [float(number) for number in line[line.index("[") + 1:line.index("]")].split()]
+
+    def psnr(count):
+        return -10 * np.log10(0.2**2 * count / pixels)
+
+    for count in (1, 100):
+        mean = said(count)
+        assert mean[0] == pytest.approx((psnr(1) + psnr(count)) / 2, abs=1e-3)
+        assert 0.5 < mean[1] < 1 and 0 < mean[2] < 0.1

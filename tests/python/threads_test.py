@@ -1,0 +1,124 @@
+"""A Renderer from other threads, several at a time, closed, forgotten and forked."""
+
+import ctypes
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import binosplat
+
+
+def test_any_thread_may_draw(renderer, cameras):
+    expected = {name: renderer.draw(cameras[name]).colour for name in ("front", "side")}
+    assert not np.array_equal(expected["front"], expected["side"])
+    wrong = []
+
+    def draw(name):
+        for _ in range(3):
+            if not np.array_equal(renderer.draw(cameras[name]).colour, expected[name]):
+                wrong.append(name)
+
+    threads = [threading.Thread(target=draw, args=(name,)) for name in ("front", "side") * 2]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_the_caller_s_thread_has_no_context_of_it(renderer, cameras):
+    egl = ctypes.CDLL("libEGL.so.1")
+    egl.eglGetCurrentContext.restype = ctypes.c_void_p
+    renderer.draw(cameras["front"])
+    assert not egl.eglGetCurrentContext()  # one of the caller's would be current still
+
+
+def test_errors_reach_the_thread_that_asked(renderer, cameras):
+    raised = []
+
+    def draw():
+        try:
+            renderer.draw(cameras["front"].resized(40000, 40000))
+        except binosplat.OutOfMemory as error:
+            raised.append(error)
+
+    thread = threading.Thread(target=draw)
+    thread.start()
+    thread.join()
+    assert len(raised) == 1
+
+
+def test_renderers_live_side_by_side(model, cameras):
+    with binosplat.Renderer(model, backend="surfaceless") as a:
+        with binosplat.Renderer(model, backend="surfaceless", precision="half") as b:
+            one, other = a.draw(cameras["front"]), b.draw(cameras["front"])
+            assert not np.array_equal(one.colour, other.colour)
+            assert np.array_equal(a.draw(cameras["front"]).colour, one.colour)
+
+
+def test_a_closed_renderer_says_so(model, cameras):
+    renderer = binosplat.Renderer(model, backend="surfaceless")
+    picture = renderer.draw(cameras["front"])
+    renderer.close()
+    renderer.close()
+    with pytest.raises(binosplat.InputError, match="this Renderer is closed"):
+        renderer.draw(cameras["front"])
+    assert picture.colour.any()  # outlives it
+
+
+@pytest.mark.parametrize("options, words", [
+    ({"backend": "vulkan"}, "backend: 'vulkan' is not one of auto, device, surfaceless, osmesa"),
+    ({"backend": "surfaceless", "device": 0}, "device 0: backend surfaceless has none"),
+    ({"device": -1}, "device -1: devices are numbered from 0"),
+    ({"backend": "device", "device": 1000}, "--device 1000: EGL offers"),
+    ({"precision": "quarter"}, "precision: 'quarter' is not one of full, half"),
+])
+def test_what_there_is_not_is_no_renderer(model, options, words):
+    with pytest.raises(binosplat.InputError) as raised:
+        binosplat.Renderer(model, **options)
+    assert words in str(raised.value)
+
+
+def python(code, *arguments):
+    return subprocess.run([sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True,
+                          timeout=120)
+
+
+OPENED = """
+import builtins, os, sys, binosplat
+model = binosplat.load_model(sys.argv[1])
+camera = binosplat.frame(model, 32, 24)
+renderer = binosplat.Renderer(model, backend="surfaceless")
+renderer.draw(camera)
+"""
+
+
+@pytest.mark.parametrize("how", ["", "builtins.kept = renderer", "del model", "raise SystemExit(0)"])
+def test_python_ends_well_with_a_renderer_open(scene, how):
+    ended = python(OPENED + how, scene / "model.ply")
+    assert ended.returncode == 0, ended.stderr
+
+
+FORKED = OPENED + """
+child = os.fork()
+if child == 0:
+    said = []
+    for attempt in (lambda: renderer.draw(camera), lambda: binosplat.Renderer(model)):
+        try:
+            attempt()
+        except binosplat.InputError as error:
+            said.append("before this process was forked" in str(error))
+    del renderer
+    os._exit(0 if said == [True, True] else 1)
+status = os.waitpid(child, 0)[1]
+renderer.draw(camera)  # the parent's still works
+sys.exit(os.WEXITSTATUS(status))
+"""
+
+
+def test_a_forked_process_is_told_that_it_cannot(scene):
+    ended = python(FORKED, scene / "model.ply")
+    assert ended.returncode == 0, ended.stderr
