@@ -27,7 +27,7 @@ void remember(uint gaussian, uint v, bool projected, bool drawn, Splat splat) {
 #if TH != TH_TAU
   if (projected && !drawn) {
     splat.colour.w = visible_level(splat.opacity);
-    left_out = touches_a_tile(splat, views[v]);
+    left_out = !is_wide(splat) && touches_a_tile(splat, views[v]);  // wide ones may be out of sight
   }
 #endif
   float aged = frame.remembers == 0u ? 1.0 : min(1.0, float(BOUND_AGEING) * bounds[v * frame.gaussian_count + gaussian]);

@@ -23,8 +23,8 @@ using std::pow;
 #define EYE_RIGHT 1u
 #define EYE_BOTH 2u
 
-// Where a pixel comes from: the mean of `columns` x `rows` pixels of an eye from (x, y) to the right and down, or
-// of both eyes, mixed.
+// Where a pixel comes from: the mean of `columns` x `rows` pixels of an eye from (x, y) to the right and
+// down, or of both eyes, mixed.
 struct LayoutSource {
   uint eye;  // EYE_
   uint x;

@@ -116,6 +116,7 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
     fail("{}: there is no such command and no such model{}\n  see: binosplat --help", words[0],
          suggestion(words[0], commands));
+  if (std::find(words.begin(), words.end(), "--quiet") != words.end()) set_quiet(true);
   words.insert(words.begin(), has_display() && has_preview() ? "view" : "render");
   log_info("no command: binosplat {} {}", words[0], words[1]);
   return words;

@@ -137,7 +137,7 @@ void add_compare(CLI::App& program, Command& command) {
       ->type_name("MB");
   sub->add_option(
          "--difference", options->difference,
-         "Write the absolute error as PNG, amplified so that one value in a\nthousand is white at most")
+         "Write the absolute error as PNG, amplified so that about one value\nin a thousand is white")
       ->type_name("FILE");
   sub->add_option("--json", options->json, "Write everything printed as JSON")->type_name("FILE");
   sub->footer(

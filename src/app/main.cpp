@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", "binosplat " BINOSPLAT_VERSION);
   program.require_subcommand(1);
   program.footer(epilogue);
+  binosplat::app::add_quiet(program);
   binosplat::app::Command command;
   binosplat::app::add_render(program, command);
   binosplat::app::add_view(program, command);
@@ -71,7 +72,10 @@ int run(int argc, char** argv) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {
     const auto chosen = program.get_subcommands();
-    if (chosen.empty()) return end(ExitCode::bad_input, binosplat::app::explain(program, "binosplat", error));
+    const bool before_it =
+        dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !program.remaining(false).empty();
+    if (chosen.empty() || before_it)
+      return end(ExitCode::bad_input, binosplat::app::explain(program, "binosplat", error));
     return end(ExitCode::bad_input,
                binosplat::app::explain(*chosen.front(), "binosplat " + chosen.front()->get_name(), error));
   } catch (const Error& error) {

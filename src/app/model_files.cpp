@@ -22,7 +22,8 @@ fs::path model_file(const std::string& scene) {
   std::error_code ignored;
   if (!fs::is_directory(scene, ignored)) return scene;
   const std::vector<fs::path> found = models_in(scene);
-  return found.size() == 1 ? found[0] : fs::path();
+  // A SOG's meta.json is not the model, but names its files.
+  return found.size() == 1 && found[0].extension() != ".json" ? found[0] : fs::path();
 }
 
 void refuse_scaffold(const Model& model, const std::string& scene) {

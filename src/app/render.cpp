@@ -84,6 +84,11 @@ render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const Cam
                                       {.order = settings.order, .projection = settings.projection});
 }
 
+bool is_empty(const Picture& picture) {
+  return std::all_of(picture.colour.begin(), picture.colour.end(),
+                     [](const glm::vec4& c) { return c.a == 1.0f; });
+}
+
 // What is drawn, and by what.
 struct Work {
   OutputPlan plan;
@@ -109,6 +114,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
                                        report.model.axes, settings);
   const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
+  bool all_empty = true;
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
   std::size_t done = 0;
   for (Shot& shot : work.shots) {
@@ -125,6 +131,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
       progress.update(++done);
     }
     const std::vector<Picture> pictures = frame.read_pictures();
+    all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
     if (output.detail_report)
       drawn.levels->finest_psnr = work.followed->against_finest(context, views, pictures, of_shot);
     drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
@@ -136,8 +143,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     drawn.photo_psnr = photo_psnr(work.photos, output.backdrop(), drawn.shot, pictures[0]);
   }
   if (video) video->finish();
-  const auto is_empty = [](const Drawn& drawn) { return drawn.report.visible == 0; };
-  if (std::all_of(report.drawn.begin(), report.drawn.end(), is_empty))
+  if (all_empty && !drawing.reference_until && !report.drawn.empty())
     log_warning("the pictures are empty: {}",
                 why_empty(report.model, report.drawn[0].shot, report.near_plane));
 }

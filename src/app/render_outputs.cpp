@@ -157,9 +157,10 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   const bool one_picture = render.rig.one_picture(), tour = render.camera.tour.has_value();
   const fs::path output =
       options.output.empty() ? default_folder(render.scene.name) : fs::path(options.output);
-  const bool video = is_video(output);
+  const bool named = !options.output.empty();  // else it is a folder, however its model is called
+  const bool video = named && is_video(output);
   const std::string extension = lower_extension(output);
-  const bool file = extension == ".png" || extension == ".exr";
+  const bool file = named && (extension == ".png" || extension == ".exr");
   if ((video || file) && (!render.shard.all() || render.resume))
     fail("--shard and --resume are for a folder of pictures, and -o {} is one file: name a folder",
          output.string());
@@ -170,7 +171,7 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   plan.exr = options.exr_half.has_value();
   if (options.fps && !tour) fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
-  if (!file && names_a_file(output)) {
+  if (named && !file && names_a_file(output)) {
     fail(
         "-o {}: pictures are written as .png or .exr, videos as .mp4, .mov, .mkv or .webm; for a folder of "
         "that "
@@ -187,7 +188,7 @@ OutputPlan plan_outputs(const RenderOptions& render) {
     check_output(output / "picture");
     plan.folder = output;
   }
-  plan.layout = plan_layout(options, one_picture, extension == ".png", extension == ".exr");
+  plan.layout = plan_layout(options, one_picture, file && extension == ".png", file && extension == ".exr");
   if (plan.layout == LAYOUT_MULTI_VIEW) {
     plan.png = false;
     plan.exr = true;

@@ -11,8 +11,9 @@ namespace {
 double parse_ipd(const std::string& text) {
   constexpr double most = 1.0;
   double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const std::string unit(end, text.data() + text.size());
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data() + (text.starts_with("+") ? 1 : 0), last, value);
+  const std::string unit(end, last);
   if (error != std::errc() || !std::isfinite(value))
     fail("--ipd {}: expected metres, or a number with a unit, as in 0.064, 64mm or 3m", text);
   if (unit == "mm") return 1e-3 * value;

@@ -117,8 +117,8 @@ Known known_of(const std::optional<SavedPose>& saved) {
 }
 
 // What the cameras beside a model tell of those that are made up.
-void learn(const CameraList& list, Known& known) {
-  const auto capture = capture_of(list.cameras);
+void learn(const CameraList& list, const CameraOptions& camera, Known& known) {
+  const auto capture = capture_of(list.cameras, camera.up ? camera.up : known.up);
   if (!capture) return;
   if (!known.up) known.up = capture->up;
   known.around = capture->around;
@@ -134,14 +134,14 @@ std::vector<Camera> cameras_for(const std::string& scene, const std::string& fil
 }
 
 // Cameras are made up all the same where those beside the model cannot be read.
-void learn_beside(const std::string& scene, Known& known) {
+void learn_beside(const std::string& scene, const CameraOptions& camera, Known& known) {
   const auto found = find_cameras(scene);
   if (!found) return;
   note_input(*found);
   try {
-    learn({found->string(), cameras_for(scene, found->string())}, known);
+    learn({found->string(), cameras_for(scene, found->string())}, camera, known);
   } catch (const Error& error) {
-    log_warning("{}; what is up is taken from nowhere but --up", error.what());
+    log_warning("{}; cameras are made up without them", error.what());
   }
 }
 
@@ -152,7 +152,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   const std::vector<Camera> built_in = built_in_cameras(scene);
   Known known = known_of(saved);
   if (camera.made_up()) {
-    if (built_in.empty()) learn_beside(scene.name, known);
+    if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, camera, known);
     return {.known = known};
   }
   std::string file = camera.path.empty() ? camera.file : camera.path;
@@ -168,7 +168,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.listed = !list.cameras.empty();
   list.path = camera.along_path();
   list.known = known;
-  if (built_in.empty()) learn(list, list.known);
+  if (built_in.empty()) learn(list, camera, list.known);
   if (list.listed && (camera.up || camera.fov)) {
     fail(
         "--up and --fov are for cameras that are made up: {} has cameras; use --eye and --at, or --orbit, "

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <random>
 #include <system_error>
 
 #include "base/error.h"
@@ -34,7 +35,8 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   }
 
   temporary_ = target_;
-  temporary_ += fmt::format(".part-{}", getpid());
+  // Processes of one number may share a disk, in containers or on several machines.
+  temporary_ += fmt::format(".part-{}-{:08x}", getpid(), std::random_device()());
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (file_ == nullptr) fail_to_write();
 }

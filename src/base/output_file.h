@@ -12,10 +12,10 @@ namespace binosplat {
 
 class OutputFile {
  public:
-  /// Creates the folders above `path` where they are missing and opens PATH.part-PID in the same folder. A
-  /// symbolic link is followed. Throws Error naming the path and the reason: a file stands where a folder is
-  /// needed, no permission, or the path names something that is not a regular file (a folder, a device) or
-  /// an input of the run (base/inputs.h).
+  /// Creates the folders above `path` where they are missing and opens PATH.part-PID-RANDOM in the same
+  /// folder. A symbolic link is followed. Throws Error naming the path and the reason: a file stands where a
+  /// folder is needed, no permission, or the path names something that is not a regular file (a folder, a
+  /// device) or an input of the run (base/inputs.h).
   explicit OutputFile(const std::filesystem::path& path);
 
   /// Removes the temporary file unless it was committed.

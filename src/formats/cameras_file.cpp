@@ -118,23 +118,10 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
   return std::nullopt;
 }
 
-std::vector<Camera> load_any(const std::filesystem::path& path) {
+std::vector<Camera> load_any(const std::filesystem::path& named) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    const auto found = cameras_in(path);
-    if (!found) {
-      fail(
-          "{} is a folder without cameras.json, transforms.json or a COLMAP reconstruction (cameras.bin and "
-          "images.bin, or .txt)",
-          path.string());
-    }
-    return std::filesystem::is_directory(*found, ignored) ? load_colmap(*found) : load_any(*found);
-  }
-  const std::string stem = path.stem().string();
-  if ((stem == "images" || stem == "cameras") && path.extension() != ".json" &&
-      is_colmap(path.parent_path())) {
-    return load_colmap(path.parent_path());
-  }
+  const std::filesystem::path path = resolve_cameras(named);
+  if (std::filesystem::is_directory(path, ignored)) return load_colmap(path);
   const MappedFile file(path);
   const json root = parse_json(path.string(), as_text(file.bytes()));
   if (is_transforms(root)) return load_transforms(path, root);
@@ -147,6 +134,21 @@ std::vector<Camera> load_any(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    if (const auto found = cameras_in(path)) return *found;
+    fail(
+        "{} is a folder without cameras.json, transforms.json or a COLMAP reconstruction (cameras.bin and "
+        "images.bin, or .txt)",
+        path.string());
+  }
+  const std::string stem = path.stem().string();
+  const bool of_colmap =
+      (stem == "images" || stem == "cameras") && path.extension() != ".json" && is_colmap(path.parent_path());
+  return of_colmap ? path.parent_path() : path;
+}
 
 std::vector<Camera> load_cameras(const std::filesystem::path& path) {
   std::vector<Camera> cameras = load_any(path);

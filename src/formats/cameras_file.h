@@ -18,6 +18,10 @@
 
 namespace binosplat {
 
+/// What load_cameras() reads: a JSON file, or the folder of a COLMAP reconstruction. `path` may be that, a
+/// folder that holds it, or a file of a reconstruction. Throws Error for a folder without cameras.
+std::filesystem::path resolve_cameras(const std::filesystem::path& path);
+
 /// Reads all cameras, at least one, of a file or of a folder that holds such files, also in sparse/0 below
 /// it. In file order, COLMAP's by name. Rotations must be orthonormal within 1e-3 with determinant +1 and are
 /// kept to the digit. Names that occur twice are kept with a warning. Throws Error naming the file, the

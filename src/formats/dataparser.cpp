@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/mapped_file.h"
-#include "formats/colmap.h"
+#include "formats/cameras_file.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
 #include "formats/lens.h"
@@ -44,10 +44,11 @@ double read_scale(const JsonValue& value) {
 
 // What ns-process-data did to the poses before it wrote them; nothing for COLMAP's own. `is_moved` is false
 // where they are in no world that a dataparser knows.
-Similarity applied(const fs::path& cameras_file, bool& is_moved) {
+Similarity applied(const fs::path& cameras, bool& is_moved) {
   std::error_code ignored;
   is_moved = true;
-  if (is_colmap(cameras_file) || is_colmap(cameras_file.parent_path())) return {};
+  const fs::path cameras_file = resolve_cameras(cameras);
+  if (fs::is_directory(cameras_file, ignored)) return {};
   const MappedFile file(cameras_file);
   const nlohmann::json root = parse_json(cameras_file.string(), as_text(file.bytes()));
   is_moved = is_transforms(root);

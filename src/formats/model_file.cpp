@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
+#include <charconv>
+#include <cstdint>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -31,12 +32,15 @@ constexpr const char* known =
 std::optional<fs::path> latest_of_gsplat(const fs::path& folder) {
   std::error_code ignored;
   fs::path found;
-  unsigned long long latest = 0;
+  std::uint64_t latest = 0;
   for (const auto& entry : fs::directory_iterator(folder / "ply", ignored)) {
-    unsigned long long n = 0;
-    const std::string name = entry.path().filename().string();
-    if (std::sscanf(name.c_str(), "point_cloud_%llu.ply", &n) != 1 || (!found.empty() && n < latest))
+    const std::string stem = entry.path().stem().string(), before = "point_cloud_";
+    if (!stem.starts_with(before) || entry.path().extension() != ".ply" || !entry.is_regular_file(ignored))
       continue;
+    std::uint64_t n = 0;
+    const char* const end = stem.data() + stem.size();
+    const auto [last, error] = std::from_chars(stem.data() + before.size(), end, n);
+    if (error != std::errc() || last != end || (!found.empty() && n < latest)) continue;
     latest = n;
     found = entry.path();
   }

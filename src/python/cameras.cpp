@@ -194,7 +194,8 @@ void add_list(py::module_& module) {
         return cameras;
       },
       py::arg("path"), py::arg("model") = py::none(),
-      "Reads cameras.json, transforms.json or a COLMAP reconstruction, by their file or folder. With the path\n"
+      "Reads cameras.json, transforms.json or a COLMAP reconstruction, by their file or folder. With the "
+      "path\n"
       "of a model that nerfstudio trained, they are moved into the world of its training\n"
       "(dataparser_transforms.json). Raises InputError.");
   module.def("find_cameras", &find_cameras, py::arg("model"),

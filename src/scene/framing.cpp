@@ -159,7 +159,8 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
 
 }  // namespace
 
-std::optional<Capture> capture_of(std::span<const Camera> cameras) {
+std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& wanted) {
+  if (wanted && !cameras.empty()) return Capture{*wanted, around_of(cameras, glm::normalize(*wanted))};
   glm::dvec3 sum{0.0};
   for (const Camera& camera : cameras) sum -= camera.rotation[1];
   constexpr double common = 0.3;

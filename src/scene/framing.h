@@ -32,8 +32,8 @@ struct Capture {
   std::optional<Around> around;
 };
 
-/// Nothing for no cameras, and for those that have no common up.
-std::optional<Capture> capture_of(std::span<const Camera> cameras);
+/// Nothing for no cameras, and for those that have no common up, unless `up` says what is up.
+std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up = {});
 
 /// A camera that looks at the densest part of the model from slightly above, so far away that the part fills
 /// the picture, and from the side where the least stands in the way. A few far outliers change nothing.

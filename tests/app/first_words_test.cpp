@@ -1,5 +1,7 @@
 // What a new user types first, right or wrong: the program does what is meant, or says what was not.
 
+#include <cmath>
+
 #include "app/scene.h"
 
 namespace binosplat {
@@ -75,6 +77,7 @@ TEST_F(FirstWords, EmptyPicturesAreExplained) {
   EXPECT_NE(said({"--view", "front", "--near", "50"}).find("nearer than --near 50"), std::string::npos);
   EXPECT_NE(said({"--view", "front", "--ipd", "500m"}).find("the eyes are 500 m apart"), std::string::npos);
   EXPECT_EQ(said({"--view", "front"}).find("empty"), std::string::npos);
+  EXPECT_EQ(said({"--view", "front", "--reference-until", "project"}).find("empty"), std::string::npos);
 }
 
 TEST_F(FirstWords, OutputsAreWhatTheirEndingsSay) {
@@ -98,6 +101,22 @@ TEST_F(FirstWords, ModelsOfOneNameLeaveTheirPicturesApart) {
   EXPECT_TRUE(good(run({"render", "garden", "--size", "36x24"})));
   for (const char* name : {"garden_iteration_7000", "fox", "bike", "garden"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name / "framed_left.png")) << name;
+}
+
+TEST_F(FirstWords, AModelsNameIsNoEnding) {
+  std::filesystem::copy(model, folder / "scan.new.ply");
+  std::filesystem::copy(model, folder / "clip.mp4.ply");
+  for (const char* name : {"scan.new", "clip.mp4"}) {
+    EXPECT_TRUE(good(run({"render", std::string(name) + ".ply", "--size", "36x24"})));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / name / "front_left.png")) << name;
+  }
+}
+
+TEST_F(FirstWords, OptionsBeforeTheCommand) {
+  EXPECT_TRUE(ended(run({"--foo", "render", "model.ply"}), 2, "--foo: binosplat has no such option"));
+  const Outcome quiet = run({"--quiet", "render", "model.ply", "--mono", "--size", "36x24", "-o", out});
+  EXPECT_TRUE(good(quiet));
+  EXPECT_EQ(quiet.err, "");
 }
 
 TEST_F(FirstWords, QuietIsQuiet) {
@@ -127,6 +146,12 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
   const Outcome outcome =
       render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out, "--json", folder / "r.json"});
   EXPECT_TRUE(ended(outcome, 0, "--orbit: around what the cameras beside"));
+  const nlohmann::json drawn = nlohmann::json::parse(test::read_text(folder / "r.json"))["views"];
+  ASSERT_EQ(drawn.size(), 4u);
+  for (const nlohmann::json& view : drawn) {
+    const auto at = view["eyes"][0]["position"].get<std::vector<double>>();
+    EXPECT_NEAR(std::hypot(at[0], at[1], at[2] - 4.0), 4.0, 1e-5) << view.dump();
+  }
   test::write_text(folder / "cameras.json", "no cameras");
   EXPECT_TRUE(ended(render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out}), 0, "warning"));
 }

@@ -82,6 +82,31 @@ TEST_F(Dataparser, MovesCamerasOfColmap) {
   EXPECT_TRUE(is_trained(moved(folder.path())[0]));
 }
 
+TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
+  const json list = {{{"img_name", "a"},
+                      {"width", 64},
+                      {"height", 48},
+                      {"position", {1, 2, 3}},
+                      {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                      {"fx", 50},
+                      {"fy", 50}}};
+  const glm::dmat3 world = applied * pose;
+  json file = {{"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows(applied, applied_shift)}};
+  file["frames"] = {{{"file_path", "a.png"},
+                     {"transform_matrix",
+                      rows(glm::dmat3(world[0], -world[1], -world[2]), applied * place + applied_shift)}}};
+  fs::create_directories(folder / "data");
+  write_text(folder / "data/transforms.json", file.dump());
+  EXPECT_TRUE(is_trained(moved(folder / "data")[0])) << "the folder stands for its transforms.json";
+  // A reconstruction in the same folder says nothing of files that are none of its own.
+  for (const char* name : {"cameras.bin", "images.bin"}) write_text(folder / "data" / name, "");
+  EXPECT_TRUE(is_trained(moved(folder / "data/transforms.json")[0]));
+  write_text(folder / "data/cameras.json", list.dump());
+  std::vector<Camera> cameras = load_cameras(folder / "data/cameras.json");
+  EXPECT_FALSE(
+      move_into_training(folder / "dataparser_transforms.json", folder / "data/cameras.json", cameras));
+}
+
 TEST_F(Dataparser, LeavesCamerasThatAreToldInTheModelsWorld) {
   const json list = {{{"img_name", "a"},
                       {"width", 64},
@@ -139,6 +164,9 @@ TEST(ModelsIn, AFolderIsTheModelThatItsTrainerLeft) {
   EXPECT_TRUE(
       test::fails_saying([&] { load_model(folder.path()); }, {"2 models", "Garden.PLY", "other.spz"}));
   add("ply/point_cloud_6999.ply");
+  add("ply/point_cloud_90000.json");
+  add("ply/point_cloud_80000.ply.part");
+  fs::create_directories(folder / "ply/point_cloud_70000.ply");
   add("ply/point_cloud_29999.ply");
   EXPECT_EQ(models_in(folder.path()), Paths{folder / "ply/point_cloud_29999.ply"});
   add("point_cloud/iteration_30000/point_cloud.ply");

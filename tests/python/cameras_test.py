@@ -21,7 +21,7 @@ def test_files_that_are_no_models_are_refused(scene, tmp_path):
     (tmp_path / "text.ply").write_text("no model")
     (tmp_path / "cut.ply").write_bytes((scene / "model.ply").read_bytes()[:5000])
     for name, words in {"missing.ply": "cannot read", "empty.ply": "is not a model", "text.ply":
-                        "is not a model", "cut.ply": "cut.ply", "": "is a folder without a model"}.items():
+                        "is not a model", "cut.ply": "cut.ply", "": "is a folder with 3 models"}.items():
         with pytest.raises(binosplat.InputError) as raised:
             binosplat.load_model(tmp_path / name)
         assert words in str(raised.value) and str(tmp_path) in str(raised.value)
