@@ -91,7 +91,7 @@ fs::path find_ffmpeg() {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path candidate = fs::path(folder.empty() ? "." : folder) / "ffmpeg";
+    fs::path candidate = fs::path(folder.empty() ? "." : folder) / "ffmpeg";
     if (access(candidate.c_str(), X_OK) == 0 && fs::is_regular_file(candidate)) return candidate;
   }
   fail(

@@ -159,8 +159,8 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
 
 }  // namespace
 
-std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& wanted) {
-  if (wanted && !cameras.empty()) return Capture{*wanted, around_of(cameras, glm::normalize(*wanted))};
+std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up) {
+  if (up && !cameras.empty()) return Capture{*up, around_of(cameras, glm::normalize(*up))};
   glm::dvec3 sum{0.0};
   for (const Camera& camera : cameras) sum -= camera.rotation[1];
   constexpr double common = 0.3;
@@ -171,8 +171,8 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
   glm::dmat3 across(near);
   for (const Camera& camera : cameras)
     across += glm::outerProduct(camera.rotation[0], camera.rotation[0]) / static_cast<double>(cameras.size());
-  const glm::dvec3 up = glm::normalize(glm::inverse(across) * sum);
-  return Capture{up, around_of(cameras, up)};
+  const glm::dvec3 found = glm::normalize(glm::inverse(across) * sum);
+  return Capture{found, around_of(cameras, found)};
 }
 
 std::vector<Camera> orbit(const Model& model, int count, int width, int height, double fov_degrees,

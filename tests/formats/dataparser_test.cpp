@@ -30,6 +30,15 @@ glm::dmat3 turn(double degrees, const glm::dvec3& axis) {
   return glm::dmat3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), axis));
 }
 
+// INRIA's cameras.json of one.
+const json list = {{{"img_name", "a"},
+                    {"width", 64},
+                    {"height", 48},
+                    {"position", {1, 2, 3}},
+                    {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                    {"fx", 50},
+                    {"fy", 50}}};
+
 struct Dataparser : testing::Test {
   TempFolder folder;
   // A pose in COLMAP's world, what ns-process-data made of it, and the training's.
@@ -83,13 +92,6 @@ TEST_F(Dataparser, MovesCamerasOfColmap) {
 }
 
 TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
-  const json list = {{{"img_name", "a"},
-                      {"width", 64},
-                      {"height", 48},
-                      {"position", {1, 2, 3}},
-                      {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-                      {"fx", 50},
-                      {"fy", 50}}};
   const glm::dmat3 world = applied * pose;
   json file = {{"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows(applied, applied_shift)}};
   file["frames"] = {{{"file_path", "a.png"},
@@ -108,13 +110,6 @@ TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
 }
 
 TEST_F(Dataparser, LeavesCamerasThatAreToldInTheModelsWorld) {
-  const json list = {{{"img_name", "a"},
-                      {"width", 64},
-                      {"height", 48},
-                      {"position", {1, 2, 3}},
-                      {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-                      {"fx", 50},
-                      {"fy", 50}}};
   write_text(folder / "cameras.json", list.dump());
   std::vector<Camera> cameras = load_cameras(folder / "cameras.json");
   EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", folder / "cameras.json", cameras));
