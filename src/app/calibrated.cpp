@@ -20,17 +20,20 @@ render::FrameSettings exact(render::FrameSettings settings) {
 
 }  // namespace
 
-CalibratedSettings::CalibratedSettings(const DrawingOptions& options, const Model& model) {
-  if (options.calibration.empty()) return;
-  calibration_ = study::load_calibration(options.calibration);
+CalibratedSettings::CalibratedSettings(const DrawingOptions& options) : file_(options.calibration) {
+  if (file_.empty()) return;
+  calibration_ = study::load_calibration(file_);
   const render::FrameSettings asked = settings_of(options);
   if (!study::calibrated(*calibration_, asked, calibration_->focal))
-    fail("--calibration {} has no entry for --th {} --transmittance {}", options.calibration,
-         th_choices[asked.th].name, transmittance_choices[asked.transmittance].name);
-  other_model_ = !study::is_of(*calibration_, model);
+    fail("--calibration {} has no entry for --th {} --transmittance {}", file_, th_choices[asked.th].name,
+         transmittance_choices[asked.transmittance].name);
+}
+
+void CalibratedSettings::check_model(const Model& model) {
+  other_model_ = calibration_ && !study::is_of(*calibration_, model);
   if (other_model_)
-    log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly",
-                options.calibration, calibration_->model_name, calibration_->gaussians);
+    log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly", file_,
+                calibration_->model_name, calibration_->gaussians);
 }
 
 render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSettings settings) const {

@@ -2,6 +2,7 @@
 // --calibration: which settings a shot is drawn with.
 
 #include <optional>
+#include <string>
 
 #include "app/drawing_options.h"
 #include "app/shots.h"
@@ -12,15 +13,18 @@ namespace binosplat::app {
 
 class CalibratedSettings {
  public:
-  /// Reads the options' file, if they name one; it must have an entry for what they ask for (else: Error). A
-  /// file of another model is not gone by: a warning says so.
-  CalibratedSettings(const DrawingOptions& options, const Model& model);
+  /// Reads the options' file, if they name one; it must have an entry for what they ask for (else: Error).
+  explicit CalibratedSettings(const DrawingOptions& options);
+
+  /// A file of another model is not gone by: a warning says so. To be called before of().
+  void check_model(const Model& model);
 
   /// `settings` with the file's tolerance and light by depth; as they are without a file. Exact for a shot
   /// that is far from the calibrated views, and for another model: a warning says so.
   render::FrameSettings of(const Shot& shot, render::FrameSettings settings) const;
 
  private:
+  std::string file_;
   std::optional<study::Calibration> calibration_;
   bool other_model_ = false;
 };

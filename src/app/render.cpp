@@ -92,6 +92,7 @@ bool is_empty(const Picture& picture) {
 // What is drawn, and by what.
 struct Work {
   OutputPlan plan;
+  CalibratedSettings calibrated;
   CameraList list;
   std::vector<Shot> shots;
   std::string photos;  // a folder; empty: none
@@ -109,7 +110,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
   const auto gpu_model = std::make_shared<render::GpuModel>(context, report.model, settings.precision);
   render::Frame frame(gpu_model);
   stereo::Show show(gpu_model);
-  const CalibratedSettings calibrated(drawing, report.model);
+  work.calibrated.check_model(report.model);
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
     settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
                                        report.model.axes, settings);
@@ -123,7 +124,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    const render::FrameSettings of_shot = calibrated.of(drawn.shot, settings);
+    const render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
     if (work.followed) drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < drawing.frames; ++n) {
       drawn.report = frame.draw(views, of_shot, workings);
@@ -198,8 +199,9 @@ void take_what_is_left(const RenderOptions& o, double near_plane, Work& work) {
 ExitCode render(const RenderOptions& o) {
   check(o);
   std::unique_ptr<gl::Context> context;  // outlives what draws with it
-  Work work{.plan = plan_outputs(o)};
+  Work work{.plan = plan_outputs(o), .calibrated = CalibratedSettings(o.drawing)};
   work.list = find_list(o, work.plan);
+  check_views(o.camera.views, o.rig.mono, work.list);
   work.photos = photos_folder(o.output.photos, work.list);
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;

@@ -260,6 +260,11 @@ std::vector<shared::View> views_of(const Shot& shot) {
   return views;
 }
 
+void check_views(const std::vector<std::string>& views, bool mono, const CameraList& list) {
+  if (!list.listed || list.path || views == all_views) return;
+  for (const std::string& name : views) choose(name, list, mono, "--view");
+}
+
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
                                    const CameraList& list, const char* option) {
   std::vector<Camera> cameras;

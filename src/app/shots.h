@@ -103,6 +103,10 @@ inline const std::vector<std::string>& views_or_all(const std::vector<std::strin
   return views.empty() ? all_views : views;
 }
 
+/// Throws Error for a view that a list in a file does not have, as make_shots() does, but before the model is
+/// read.
+void check_views(const std::vector<std::string>& views, bool mono, const CameraList& list);
+
 /// The cameras of the views by name, or all where none is named, as they are drawn without a rig. Throws
 /// Error for a view that is not there; it names `option` and some that are.
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,

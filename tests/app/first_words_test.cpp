@@ -70,6 +70,14 @@ TEST_F(FirstWords, EyesApartHaveAUnit) {
   EXPECT_DOUBLE_EQ(ipd("2m"), 2.0);
 }
 
+TEST_F(FirstWords, CheapChecksComeBeforeTheModelIsRead) {
+  test::write_text(model, "no model");
+  EXPECT_TRUE(ended(render({"--view", "nobody", "-o", out}), 2, "has no camera of this name"));
+  EXPECT_TRUE(ended(render({"--calibration", "nosuch.json", "-o", out}), 2, "cannot read nosuch.json"));
+  EXPECT_TRUE(ended(render({"--orbit", "2", "--fov", "190", "-o", out}), 2, "between 0 and 180"));
+  EXPECT_TRUE(ended(render({"--view", "front", "-o", out}), 2, "model.ply is not a model"));
+}
+
 TEST_F(FirstWords, EmptyPicturesAreExplained) {
   EXPECT_NE(said({"--eye", "0,0,0", "--at", "0,0,-4"}).find("view camera looks away from the model"),
             std::string::npos);
