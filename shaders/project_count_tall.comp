@@ -2,8 +2,8 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Stage 1, project, last part: the pairs of splats of many rows and of wide ones, which project.comp left aside. A work group takes TALL_EACH
-// of them and its invocations share their rows, so that none waits for the one with the tallest.
+// Stage 1, project, last part: the pairs of splats of many rows and of wide ones, which project.comp left aside. A work group
+// takes TALL_EACH of them and its invocations share their rows, so that none waits for the one with the tallest.
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"

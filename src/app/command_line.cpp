@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "formats/plausible.h"
 #include "gl/program_cache.h"
 
@@ -89,7 +90,7 @@ void note(const std::string& value) {
 void note_pictures_in(const std::string& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string ending = CLI::detail::to_lower(entry.path().extension().string());
+    const std::string ending = lowered_ending(entry.path());
     if (ending == ".jpg" || ending == ".jpeg" || ending == ".png") note_input(entry.path());
   }
 }
@@ -123,9 +124,14 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
 }
 
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {
+  // Words before a sub-command are not its own.
+  const bool has_extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  const auto chosen = command.get_subcommands();
+  if (!chosen.empty() && !(has_extras && command.remaining_size() > 0))
+    return explain(*chosen.front(), name + " " + chosen.front()->get_name(), error);
   std::string text = error.what();
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
-    const std::vector<std::string> extras = command.remaining(true);
+  if (has_extras) {
+    const std::vector<std::string> extras = command.remaining();
     const auto option = std::find_if(extras.begin(), extras.end(),
                                      [](const std::string& word) { return word.starts_with("-"); });
     if (option == extras.end()) {

@@ -16,7 +16,7 @@ void check_arguments(int argc, const char* const* argv);
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
 /// What a command line that cannot be parsed is told: what is wrong, what may be meant, and where to look;
-/// `name` is the (sub-)command's whole name.
+/// `name` is the command's whole name, to which that of the sub-command comes where the mistake is its own.
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error);
 
 /// Where the disk of the user's caches is full, drivers are told to keep no shaders there: they write into

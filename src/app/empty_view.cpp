@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "scene/axes.h"
 #include "scene/summary.h"
 

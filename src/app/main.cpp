@@ -71,13 +71,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {
-    const auto chosen = program.get_subcommands();
-    const bool before_it =
-        dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !program.remaining(false).empty();
-    if (chosen.empty() || before_it)
-      return end(ExitCode::bad_input, binosplat::app::explain(program, "binosplat", error));
-    return end(ExitCode::bad_input,
-               binosplat::app::explain(*chosen.front(), "binosplat " + chosen.front()->get_name(), error));
+    return end(ExitCode::bad_input, binosplat::app::explain(program, "binosplat", error));
   } catch (const Error& error) {
     return end(error.code(), error.what());
   } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "app/tour.h"
+#include "base/text.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
 #include "stereo/layout.h"
@@ -16,12 +17,6 @@ namespace binosplat::app {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 // What a picture's file says of how it was drawn: a stereo picture is right only at its scale.
 Notes notes_of(const std::string& scene, const OutputOptions& options, const Shot& shot,
@@ -114,7 +109,7 @@ double frames_a_second(const std::vector<Shot>& shots) {
 
 // Whether a path's ending, as in .gif or .jp2, is one of a file; not .2 and .v2, which folders have.
 bool names_a_file(const fs::path& path) {
-  const std::string ending = lower_extension(path);
+  const std::string ending = lowered_ending(path);
   std::error_code ignored;
   if (ending.size() < 3 || ending.size() > 5 || fs::is_directory(path, ignored)) return false;
   const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
@@ -159,7 +154,7 @@ OutputPlan plan_outputs(const RenderOptions& render) {
       options.output.empty() ? default_folder(render.scene.name) : fs::path(options.output);
   const bool named = !options.output.empty();  // else it is a folder, however its model is called
   const bool video = named && is_video(output);
-  const std::string extension = lower_extension(output);
+  const std::string extension = lowered_ending(output);
   const bool file = named && (extension == ".png" || extension == ".exr");
   if ((video || file) && (!render.shard.all() || render.resume))
     fail("--shard and --resume are for a folder of pictures, and -o {} is one file: name a folder",
@@ -173,9 +168,8 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
   if (named && !file && names_a_file(output)) {
     fail(
-        "-o {}: pictures are written as .png or .exr, videos as .mp4, .mov, .mkv or .webm; for a folder of "
-        "that "
-        "name, make it first",
+        "-o {}: pictures are written as .png or .exr, videos as .mp4, .mov, .mkv or .webm; for a folder "
+        "of that name, make it first",
         output.string());
   }
   if (file) {

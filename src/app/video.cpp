@@ -16,18 +16,13 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string ending(const fs::path& path) {
-  std::string text = path.extension().string();
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // Matroska's StereoMode; empty: mono, or none for this layout.
 std::string stereo_mode(int layout) {
@@ -70,7 +65,7 @@ std::vector<std::string> arguments_for(const fs::path& target, const fs::path& t
                           mixed ? "yuv444p" : "yuv420p")});
   more({"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1", "-color_range",
         "tv"});
-  if (ending(target) == ".webm") {
+  if (lowered_ending(target) == ".webm") {
     more({"-c:v", "libvpx-vp9", "-crf", "18", "-b:v", "0"});
   } else {
     more({"-c:v", "libx264", "-crf", "16"});
@@ -83,7 +78,7 @@ std::vector<std::string> arguments_for(const fs::path& target, const fs::path& t
 }  // namespace
 
 bool is_video(const fs::path& path) {
-  const std::string text = ending(path);
+  const std::string text = lowered_ending(path);
   return text == ".mp4" || text == ".mov" || text == ".mkv" || text == ".webm";
 }
 

@@ -1,12 +1,9 @@
 #include "formats/dataparser.h"
 
-#include <cmath>
-
 #include "base/mapped_file.h"
 #include "formats/cameras_file.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
-#include "formats/lens.h"
 #include "formats/transforms.h"
 
 namespace binosplat {
@@ -16,26 +13,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // p' = scale (rotation p + shift).
-struct Similarity {
-  glm::dmat3 rotation{1.0};
-  glm::dvec3 shift{0.0};
+struct Similarity : RigidTransform {
   double scale = 1.0;
 };
-
-// Three rows of four numbers.
-Similarity read_rows(const JsonValue& rows) {
-  if (rows.size() != 3 && rows.size() != 4)
-    rows.fail_here("expected 3 or 4 rows of 4 numbers, found {} rows", rows.size());
-  Similarity to;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const JsonValue row = rows.at(i).list_of(4);
-    const int r = static_cast<int>(i);
-    for (std::size_t j = 0; j < 3; ++j) to.rotation[static_cast<int>(j)][r] = row.at(j).number();
-    to.shift[r] = row.at(3).number();
-  }
-  if (const std::string fault = rotation_fault(to.rotation); !fault.empty()) rows.fail_here("{}", fault);
-  return to;
-}
 
 double read_scale(const JsonValue& value) {
   if (!(value.number() > 0.0)) value.fail_here("expected a number above 0");
@@ -56,7 +36,7 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
   const JsonValue value(cameras_file.string(), root);
   Similarity done;
   if (value.has("applied_transform")) {
-    done = read_rows(value.at("applied_transform"));
+    done = {read_rows(value.at("applied_transform"))};
   } else if (fs::exists(cameras_file.parent_path() / "colmap/sparse/0", ignored)) {
     // Files from before the key was written.
     done.rotation = glm::dmat3(0, 1, 0, 1, 0, 0, 0, 0, -1);
@@ -86,8 +66,7 @@ bool move_into_training(const fs::path& dataparser, const fs::path& cameras_file
   const MappedFile file(dataparser);
   const nlohmann::json root = parse_json(dataparser.string(), as_text(file.bytes()));
   const JsonValue value(dataparser.string(), root);
-  Similarity to = read_rows(value.at("transform"));
-  to.scale = read_scale(value.at("scale"));
+  const Similarity to{read_rows(value.at("transform")), read_scale(value.at("scale"))};
   for (Camera& camera : cameras) {
     const glm::dvec3 p = glm::transpose(before.rotation) * (camera.position / before.scale - before.shift);
     camera.position = to.scale * (to.rotation * p + to.shift);

@@ -1,13 +1,13 @@
 #include "formats/model_file.h"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
-#include <cstdint>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/numbers.h"
+#include "base/text.h"
 #include "formats/content.h"
 #include "formats/gltf.h"
 #include "formats/json_file.h"
@@ -28,31 +28,30 @@ namespace fs = std::filesystem;
 constexpr const char* known =
     "a ply, spz, .splat, .ksplat, glTF, or a SOG (meta.json, lod-meta.json or .sog)";
 
-/// gsplat's ply/point_cloud_N.ply of the largest N.
-std::optional<fs::path> latest_of_gsplat(const fs::path& folder) {
+/// Of the files folder/BEFORE N AFTER, or of those of the name `inside` in such folders, the one of the
+/// largest N.
+std::optional<fs::path> latest(const fs::path& folder, std::string_view before, std::string_view after,
+                               const fs::path& inside = {}) {
   std::error_code ignored;
-  fs::path found;
-  std::uint64_t latest = 0;
-  for (const auto& entry : fs::directory_iterator(folder / "ply", ignored)) {
-    const std::string stem = entry.path().stem().string(), before = "point_cloud_";
-    if (!stem.starts_with(before) || entry.path().extension() != ".ply" || !entry.is_regular_file(ignored))
-      continue;
-    std::uint64_t n = 0;
-    const char* const end = stem.data() + stem.size();
-    const auto [last, error] = std::from_chars(stem.data() + before.size(), end, n);
-    if (error != std::errc() || last != end || (!found.empty() && n < latest)) continue;
-    latest = n;
-    found = entry.path();
+  std::optional<fs::path> found;
+  unsigned largest = 0;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    std::string_view left = name;
+    if (!left.starts_with(before)) continue;
+    left.remove_prefix(before.size());
+    const auto n = take_number(left);
+    const fs::path file = inside.empty() ? entry.path() : entry.path() / inside;
+    if (!n || left != after || (found && *n < largest) || !fs::is_regular_file(file, ignored)) continue;
+    largest = *n;
+    found = file;
   }
-  return found.empty() ? std::nullopt : std::optional(found);
+  return found;
 }
 
 /// Whether a file is a model by its name, and not the points that a training begins with.
 bool is_named_as_model(const fs::path& path) {
-  std::string ending = path.extension().string(), name = path.filename().string();
-  for (std::string* text : {&ending, &name})
-    std::transform(text->begin(), text->end(), text->begin(),
-                   [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lowered_ending(path), name = lowered(path.filename().string());
   for (const char* points : {"input.ply", "points3d.ply", "sparse_pc.ply", "sparse.ply"}) {
     if (name == points) return false;
   }
@@ -148,8 +147,12 @@ std::vector<fs::path> models_in(const fs::path& folder) {
   for (const char* name : {"lod-meta.json", "meta.json"}) {
     if (fs::is_regular_file(folder / name, ignored)) return {folder / name};
   }
-  if (const auto ply = find_point_cloud(folder)) return {*ply};
-  if (const auto ply = latest_of_gsplat(folder)) return {*ply};
+  const fs::path clouds = folder / "point_cloud", ply = "point_cloud.ply";
+  for (const fs::path& file : {folder / ply, clouds / ply}) {
+    if (fs::is_regular_file(file, ignored)) return {file};
+  }
+  if (const auto file = latest(clouds, "iteration_", "", ply)) return {*file};
+  if (const auto file = latest(folder / "ply", "point_cloud_", ".ply")) return {*file};
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     if (is_named_as_model(entry.path()) && fs::is_regular_file(entry.path(), ignored))

@@ -1,11 +1,11 @@
 #include "formats/model_output.h"
 
 #include <algorithm>
-#include <cctype>
 #include <new>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "formats/model_file.h"
 #include "formats/model_writers.h"
 
@@ -60,8 +60,7 @@ std::string written_endings() {
 }
 
 std::optional<ModelFormat> model_format_of(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string name = lowered(path.filename().string());
   std::optional<ModelFormat> found;  // .compressed.ply ends in .ply, too
   std::size_t longest = 0;
   for (std::size_t k = 0; k < std::size(written_formats); ++k) {

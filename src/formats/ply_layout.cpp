@@ -1,12 +1,12 @@
 #include "formats/ply_layout.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <string>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 
 namespace binosplat {
 
@@ -77,9 +77,8 @@ bool has_bytes(const PlyElement& vertices, std::string_view name) {
 
 bool is_antialiased(const PlyHeader& header, bool unless_said) {
   bool antialiased = unless_said;
-  for (std::string comment : header.comments) {
-    std::transform(comment.begin(), comment.end(), comment.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
+  for (const std::string& line : header.comments) {
+    const std::string comment = lowered(line);
     if (comment.find("splatrendermode:") != std::string::npos)
       antialiased = comment.find("mip") != std::string::npos;
     if (comment.find("antialiased ") != std::string::npos)

@@ -1,8 +1,5 @@
 #include "formats/scaffold_file.h"
 
-#include <charconv>
-#include <optional>
-
 #include "base/error.h"
 #include "formats/scaffold_anchors.h"
 #include "formats/torch_file.h"
@@ -14,16 +11,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t direction = 3;
-
-// N of a folder's name iteration_N.
-std::optional<std::uint64_t> iteration_of(const std::string& name) {
-  const std::string_view start = "iteration_";
-  if (!name.starts_with(start)) return std::nullopt;
-  std::uint64_t n = 0;
-  const auto [end, error] = std::from_chars(name.data() + start.size(), name.data() + name.size(), n);
-  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return n;
-}
 
 fs::path beside(const fs::path& ply, const char* name) { return ply.parent_path() / name; }
 
@@ -116,24 +103,6 @@ void load_bank(const fs::path& ply, Scaffold& scaffold) {
 bool is_scaffold(const PlyHeader& header) {
   const PlyElement* vertices = header.find("vertex");
   return vertices != nullptr && vertices->find("f_anchor_feat_0") != nullptr;
-}
-
-std::optional<fs::path> find_point_cloud(const fs::path& folder) {
-  const char* const name = "point_cloud.ply";
-  std::error_code ignored;
-  for (const fs::path& candidate : {folder / name, folder / "point_cloud" / name}) {
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
-  }
-  fs::path found;
-  std::uint64_t latest = 0;
-  for (const auto& entry : fs::directory_iterator(folder / "point_cloud", ignored)) {
-    const auto n = iteration_of(entry.path().filename().string());
-    if (!n || (!found.empty() && *n < latest) || !fs::is_regular_file(entry.path() / name, ignored)) continue;
-    latest = *n;
-    found = entry.path() / name;
-  }
-  if (found.empty()) return std::nullopt;
-  return found;
 }
 
 std::shared_ptr<Scaffold> load_scaffold(const fs::path& ply) {

@@ -11,7 +11,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "formats/ply_header.h"
 #include "scene/scaffold.h"
@@ -20,10 +19,6 @@ namespace binosplat {
 
 /// Whether a ply file holds anchors of Scaffold-GS: property f_anchor_feat_0.
 bool is_scaffold(const PlyHeader& header);
-
-/// The ply of a trained model's folder: point_cloud.ply in it, in its point_cloud/, or in the
-/// point_cloud/iteration_N of the largest N; nothing where there is none.
-std::optional<std::filesystem::path> find_point_cloud(const std::filesystem::path& folder);
 
 /// Reads anchors and networks. Anchors with values that are not finite are left out and counted. Throws
 /// Error naming the file, and what was expected: a network missing or of other sizes than K and F ask for, a

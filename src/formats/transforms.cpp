@@ -7,7 +7,6 @@
 
 #include "base/log.h"
 #include "formats/image_file.h"
-#include "formats/json_file.h"
 #include "formats/lens.h"
 
 namespace binosplat {
@@ -99,20 +98,10 @@ class Frame {
   }
 
   void read_pose(Camera& camera) const {
-    const JsonValue rows = frame_.at("transform_matrix");
-    if (rows.size() != 3 && rows.size() != 4)
-      rows.fail_here("expected 3 or 4 rows of 4 numbers, found {} rows", rows.size());
-    glm::dmat3 axes;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const JsonValue row = rows.at(i).list_of(4);
-      const int r = static_cast<int>(i);
-      for (std::size_t j = 0; j < 3; ++j) axes[static_cast<int>(j)][r] = row.at(j).number();
-      camera.position[r] = row.at(3).number();
-    }
+    const auto [axes, position] = read_rows(frame_.at("transform_matrix"));
     // OpenGL's y is up and its z backwards.
     camera.rotation = glm::dmat3(axes[0], -axes[1], -axes[2]);
-    if (const std::string fault = rotation_fault(camera.rotation); !fault.empty())
-      rows.fail_here("{}", fault);
+    camera.position = position;
   }
 
   const fs::path& path_;
@@ -121,6 +110,20 @@ class Frame {
 };
 
 }  // namespace
+
+RigidTransform read_rows(const JsonValue& rows) {
+  if (rows.size() != 3 && rows.size() != 4)
+    rows.fail_here("expected 3 or 4 rows of 4 numbers, found {} rows", rows.size());
+  RigidTransform to;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const JsonValue row = rows.at(i).list_of(4);
+    const int r = static_cast<int>(i);
+    for (std::size_t j = 0; j < 3; ++j) to.rotation[static_cast<int>(j)][r] = row.at(j).number();
+    to.shift[r] = row.at(3).number();
+  }
+  if (const std::string fault = rotation_fault(to.rotation); !fault.empty()) rows.fail_here("{}", fault);
+  return to;
+}
 
 bool is_transforms(const nlohmann::json& root) { return root.is_object() && root.contains("frames"); }
 

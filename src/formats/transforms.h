@@ -2,15 +2,24 @@
 // Cameras as instant-ngp, nerfstudio and Blender's NeRF scenes have them: transforms.json.
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "formats/json_file.h"
 #include "scene/camera.h"
 
 namespace binosplat {
 
 /// Whether a JSON file is one.
 bool is_transforms(const nlohmann::json& root);
+
+/// Three rows of four numbers, or four rows of which the last is not read: p' = rotation p + shift.
+struct RigidTransform {
+  glm::dmat3 rotation{1.0};
+  glm::dvec3 shift{0.0};
+};
+
+/// Throws Error for other rows, and for what is no rotation.
+RigidTransform read_rows(const JsonValue& rows);
 
 /// Reads the frames in file order; a camera's name is its file_path. Poses are camera-to-world with OpenGL's
 /// axes, as stored: what nerfstudio applied to them (applied_transform) stays. The size, fl_x, fl_y, cx and

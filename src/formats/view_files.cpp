@@ -1,16 +1,16 @@
 #include "formats/view_files.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
+
+#include "base/text.h"
 
 namespace binosplat {
 
 namespace fs = std::filesystem;
 
 std::string stem_of(std::string name) {
-  std::string lower = name;
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = lowered(name);
   for (const std::string_view ending : {".png", ".jpg", ".jpeg"}) {
     if (lower.size() > ending.size() && lower.ends_with(ending)) name.resize(name.size() - ending.size());
   }

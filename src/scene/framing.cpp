@@ -16,7 +16,7 @@ constexpr double elevation_degrees = 15.0;
 /// More Gaussians than this tell no more about what stands in the way.
 constexpr std::size_t sample_count = 200000;
 
-double median(std::vector<double> values) {
+double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -160,7 +160,7 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
 }  // namespace
 
 std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::optional<glm::dvec3>& up) {
-  if (up && !cameras.empty()) return Capture{*up, around_of(cameras, glm::normalize(*up))};
+  if (up && !cameras.empty()) return Capture{glm::normalize(*up), around_of(cameras, glm::normalize(*up))};
   glm::dvec3 sum{0.0};
   for (const Camera& camera : cameras) sum -= camera.rotation[1];
   constexpr double common = 0.3;
