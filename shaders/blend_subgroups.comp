@@ -19,6 +19,7 @@ layout(local_size_x = 32, local_size_y = BLOCKS) in;
 shared uint reached[ROUND];                    // of the batch: a bit a block
 shared uint own_lists[BLOCKS][ROUND + AHEAD];  // by block: those of the batch that reach it
 shared uint blocks_done;
+OF_TILE vec2 corner;                           // the tile's first pixel
 
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
 
@@ -76,7 +77,7 @@ void main() {
   uvec2 block = uvec2(gl_SubgroupID % BLOCKS_ACROSS, gl_SubgroupID / BLOCKS_ACROSS);
   uvec2 in_tile = block * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT) + uvec2(lane % BLOCK_WIDTH, lane / BLOCK_WIDTH * COLUMN);
   begin_pixels(in_tile);
-  vec2 corner = vec2(first_pixel - in_tile);
+  corner = vec2(first_pixel - in_tile);
   if (self == 0u) stage_nothing(ROUND);
   if (self == 0u) blocks_done = 0u;
   bool ended = false;  // of the block

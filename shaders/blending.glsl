@@ -57,17 +57,22 @@ shared vec4 batch_across[BATCH];  // a, u, 2 b, s
 shared vec4 batch_down[BATCH];    // v, c, with the tangent projection -log2(sigma), and 0: one address finds all three
 shared vec4 batch_colour[BATCH];  // rgb, depth
 
+// What holds for all of a tile: with the tangent projection there are too few registers for it. All write the same.
+#if PROJECTION == PROJECTION_TANGENT
+#define OF_TILE shared
+OF_TILE float farthest;  // the largest |d|^2
+float nearness[COLUMN];  // of each pixel: 1 / |d|^2
+#else
+#define OF_TILE
+#endif
+OF_TILE vec2 middle;  // of its cell
+
 uvec2 first_pixel;  // of the column
 float column;       // from the middle of the cell
 float row[COLUMN];  // of each pixel, as well
-vec2 middle;        // of the cell
 uint size;          // splats of the batch
 vec3 colour[COLUMN];
 float z_sum[COLUMN];
-#if PROJECTION == PROJECTION_TANGENT
-float nearness[COLUMN];  // 1 / |d|^2
-float farthest;          // the largest |d|^2 of the tile
-#endif
 float transmittance[COLUMN];  // 0 once the pixel is done,
 float least[COLUMN];          // and this -T; until then the T that the blend stops at
 

@@ -32,13 +32,17 @@ bool by_subgroups(const gl::Context& context, const FrameShape& shape, const Var
 const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
                            Lists lists) {
   const bool is_long = lists == Lists::of_long;
-  const char* name = by_subgroups(context, shape, variant) ? "blend_subgroups.comp" : "blend.comp";
+  const bool subgroups = by_subgroups(context, shape, variant);
+  const char* name = subgroups ? "blend_subgroups.comp" : "blend.comp";
+  // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
+  const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
+  const int ahead = is_long ? 8 : is_tangent && subgroups ? 3 : 4;
   gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
                          {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
                          {"PROBED", shape.probe ? "1" : "0"},
                          {"LISTS", std::to_string(static_cast<int>(lists))},
                          {"COLUMN", is_long ? "1" : "2"},
-                         {"AHEAD", is_long ? "8" : "4"},
+                         {"AHEAD", std::to_string(ahead)},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"RECORDS", variant.records ? "1" : "0"},
                          {"SUMS", std::to_string(variant.sums)},
