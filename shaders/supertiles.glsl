@@ -25,6 +25,13 @@ uint count_of(uint coverage) {
 
 uint supertiles_across(View view) { return (view.tiles_x + uint(SUPERTILE_SIDE - 1)) / uint(SUPERTILE_SIDE); }
 
+// The number of the tile in a column and row.
+uint tile_number(uvec2 tile, View view) {
+  uvec2 supertile = tile / uint(SUPERTILE_SIDE), within = tile % uint(SUPERTILE_SIDE);
+  uint nth = view.supertile_offset + supertile.y * supertiles_across(view) + supertile.x;
+  return nth * SUPERTILE_TILES + within.y * uint(SUPERTILE_SIDE) + within.x;
+}
+
 // The column and row of a tile by its number.
 uvec2 tile_of(uint tile, View view) {
   uint supertile = tile / SUPERTILE_TILES - view.supertile_offset;

@@ -88,6 +88,13 @@ struct Splat {
   vec4 colour;    // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by
 };
 
+// A ray of a picture of its own, by where it meets a view's.
+struct PlacedRay {
+  vec2 pixel;  // of the view; (0, 0) is the centre of the first
+  uint place;  // in its own picture, row by row
+  uint unused;
+};
+
 // What a frame counts on the GPU, read back after it. An overflow bit says that a buffer was too small for
 // the number wanted; the frame is then drawn again with larger ones. Counts stop at COUNT_MAX instead of
 // wrapping.
@@ -137,6 +144,7 @@ static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, toleran
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
+static_assert(sizeof(PlacedRay) == 16 && offsetof(PlacedRay, place) == 8);
 static_assert(sizeof(Counters) == 76 && offsetof(Counters, long_x) == 44 && offsetof(Counters, tall_x) == 60);
 static_assert(sizeof(DispatchArguments) == 48 && offsetof(DispatchArguments, threads_x) == 8 &&
               offsetof(DispatchArguments, sort_x) == 32);

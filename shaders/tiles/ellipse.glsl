@@ -9,7 +9,7 @@ bool ellipse_touches(Outline outline, float rho, vec2 low, vec2 high) {
 }
 
 float lowest_level(Outline outline, View view, out vec2 at) {
-  return lowest_level(outline, vec2(0.0), vec2(view.width - 1u, view.height - 1u), at);
+  return lowest_level(outline, vec2(-REACH), vec2(view.width - 1u, view.height - 1u) + REACH, at);
 }
 
 // What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.

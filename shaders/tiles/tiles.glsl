@@ -9,14 +9,25 @@
 
 #include "projection.glsl"
 #include "supertiles.glsl"
+
+// How far from a pixel's centre a splat may be seen: with BETWEEN also where only rays between pixels meet it (blend_rays.comp).
+#ifndef BETWEEN
+#define BETWEEN 0
+#endif
+#if BETWEEN
+#define REACH 0.5
+#else
+#define REACH 0.0
+#endif
+
 #include "tiles/places.glsl"
 #include "tiles/level.glsl"
 
 // First and one-past-last tile along an axis for pixels [low, high] from where the first tile begins; beyond the grid is cut
 // off. Clamped as floats, since int() of a huge float is anything.
 uvec2 tile_span(float low, float high, uint pitch, uint tiles) {
-  float first = clamp(ceil((low - float(TILE_SIZE - 1)) / float(pitch)), 0.0, float(tiles));
-  float last = clamp(floor(high / float(pitch)), -1.0, float(tiles) - 1.0);
+  float first = clamp(ceil((low - float(TILE_SIZE - 1) - REACH) / float(pitch)), 0.0, float(tiles));
+  float last = clamp(floor((high + REACH) / float(pitch)), -1.0, float(tiles) - 1.0);
   return uvec2(uint(first), max(uint(first), uint(last + 1.0)));
 }
 
@@ -30,11 +41,11 @@ uvec2 tile_rows(float low, float high, View view) {
   return tile_span(low - float(shift.y), high - float(shift.y), tile_pitch(view), view.tiles_y);
 }
 
-// The first and the last pixel centre of a tile, the last one clipped to the picture.
-vec2 tile_low(uvec2 tile, View view) { return vec2(tile_corner(tile, view)); }
+// The first and the last pixel centre of a tile, or what can be seen beyond, the last one clipped to the picture.
+vec2 tile_low(uvec2 tile, View view) { return vec2(tile_corner(tile, view)) - REACH; }
 
 vec2 tile_high(uvec2 tile, View view) {
-  return vec2(min(tile_corner(tile, view) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u)));
+  return vec2(min(tile_corner(tile, view) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u))) + REACH;
 }
 
 // C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
@@ -58,7 +69,12 @@ vec2 level_extent(Outline outline) {
 // Whether that box holds the centre of a pixel of the picture: a splat between centres is seen by none.
 bool holds_a_centre(Outline outline, View view, vec2 extent) {
   if (outline.level < RHO_NONE) return false;
-  precise vec2 nearest = clamp(round(outline.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u));
+  vec2 first = vec2(-REACH), last = vec2(view.width - 1u, view.height - 1u) + REACH;
+#if BETWEEN
+  precise vec2 nearest = clamp(outline.mean, first, last);
+#else
+  precise vec2 nearest = clamp(round(outline.mean), first, last);
+#endif
   precise vec2 d = abs(from_middle(outline, nearest));
   return d.x <= extent.x && d.y <= extent.y;
 }

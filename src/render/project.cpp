@@ -102,7 +102,8 @@ gl::Defines pair_defines(const FrameShape& shape) {
                          {"ANTIALIASED", shape.antialiased ? "1" : "0"},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"OFFSETS", std::to_string(shape.offset_count)},
-                         {"ORDER", std::to_string(shape.perspective.order)}};
+                         {"ORDER", std::to_string(shape.perspective.order)},
+                         {"BETWEEN", s.between ? "1" : "0"}};
   add_projection(defines, shape.perspective.projection);
   if (shape.kernel_px2 != KERNEL_PX2)
     defines.emplace_back("KERNEL_PX2", fmt::format("{:.9g}", shape.kernel_px2));

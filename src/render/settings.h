@@ -59,6 +59,8 @@ struct FrameSettings {
   /// px: 8, 16 or 32, on which an exact picture does not depend.
   int tile_size = TILE_SIZE_DEFAULT;
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
+  /// With the lists of TILES_ELLIPSE: what is seen between the centres of pixels only, too (ray_blend.h).
+  bool between = false;
   glm::vec3 background{0.0f};      // behind the scene, for the probe only: the pictures are without
 };
 

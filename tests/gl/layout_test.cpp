@@ -118,6 +118,11 @@ TEST(Layout, GaussianAndSplatAreWhereTheDriverPutsThem) {
   EXPECT_EQ(driver_offsets("Splat"), splat);
 }
 
+TEST(Layout, PlacedRayIsWhereTheDriverPutsIt) {
+  const Offsets ray = {AT(PlacedRay, pixel), AT(PlacedRay, place), AT(PlacedRay, unused), STRIDE(PlacedRay)};
+  EXPECT_EQ(driver_offsets("PlacedRay"), ray);
+}
+
 TEST(Layout, AnchorIsWhereTheDriverPutsIt) {
   const Offsets anchor = {AT(Anchor, position), AT(Anchor, rotation), AT(Anchor, offset_scale),
                           AT(Anchor, scale), STRIDE(Anchor)};

@@ -1,0 +1,69 @@
+// The blend (docs/method.md 3) along single rays, which need not meet centres of pixels: one invocation a ray, by the list of the
+// tile that it meets. Those lists are made with BETWEEN.
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/axes.h"
+#include "shared/grid.glsl"
+#include "projection.glsl"
+#include "supertiles.glsl"
+#include "splats.glsl"  // binding 12
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
+layout(std430, binding = 2) readonly buffer Values { uint values[]; };
+layout(std430, binding = 3) readonly buffer Rays { PlacedRay rays[]; };
+layout(std430, binding = 4) writeonly buffer Colours { vec4 colours[]; };  // C, and T left
+layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
+layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
+uniform uint ray_count;
+uniform uint view_index;
+
+// Splats in the inner of two loops: drivers without a GPU end a loop of too many rounds.
+#define ROUNDS 1024u
+
+void main() {
+  if (thread_index() >= ray_count) return;
+  PlacedRay ray = rays[thread_index()];
+  View view = views[view_index];
+  uvec2 nearest = uvec2(clamp(floor(ray.pixel + 0.5), vec2(0.0), vec2(view.width - 1u, view.height - 1u)));
+  uint tile = tile_number(nearest / uint(TILE_SIZE), view);
+  uint begin = ranges[2u * tile], end = ranges[2u * tile + 1u];
+  vec3 colour = vec3(0.0);
+  float z_sum = 0.0;
+  float transmittance = 1.0;
+  bool is_done = false;
+#if PROJECTION == PROJECTION_TANGENT
+  vec2 slope = (ray.pixel + 0.5 - view.lens.zw) / view.lens.xy;
+  float nearness = 1.0 / (1.0 + dot(slope, slope));
+#else
+  float nearness = 1.0;
+#endif
+  uint at = begin;
+  for (uint batch = begin; batch < end && !is_done; batch += ROUNDS) {
+    for (; at < min(end, batch + ROUNDS); ++at) {
+      Splat splat = SPLAT(values[at]);
+      vec2 d = ray.pixel - splat.mean;
+      // By the Cholesky factor of the conic, which keeps it positive.
+      float root = sqrt(splat.conic.x);
+      float across = root * d.x + splat.conic.y / root * d.y;
+      float down = d.y / (abs(splat.conic.w) * root);
+      float q = (across * across + down * down) * nearness;
+      float alpha = min(float(ALPHA_MAX), splat.opacity * exp(-0.5 * q));
+      if (!(alpha >= float(ALPHA_MIN))) continue;
+      float left = transmittance * (1.0 - alpha);
+      if (left < float(TRANSMITTANCE_MIN)) {
+        is_done = true;
+        break;
+      }
+      float weight = transmittance * alpha;
+      colour += weight * splat.colour.rgb;
+      z_sum += weight * abs(splat.depth);
+      transmittance = left;
+    }
+  }
+  if (!is_done && at < end) atomicAdd(counters.loop_cut, 1u);
+  colours[ray.place] = vec4(colour, transmittance);
+  z_sums[ray.place] = z_sum;
+}

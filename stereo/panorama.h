@@ -1,0 +1,58 @@
+#pragma once
+// What an eye sees of all that lies ahead, as VR180 has it: half a sphere as an equirectangular picture, each
+// pixel along its own ray.
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/image.h"
+#include "gl/buffer.h"
+#include "render/ray_blend.h"
+#include "scene/camera.h"
+
+namespace binosplat::stereo {
+
+/// Pixels of a degree at most, and what a player can show: 45 px.
+constexpr int panorama_side_most = 8192;
+
+/// The direction of pixel (i, j) of a panorama, `side` px wide and high, in the eye's frame (x right, y down,
+/// z forward): longitude from -90 to 90 degrees with i, latitude from 90 to -90 with j.
+glm::dvec3 panorama_ray(int side, int i, int j);
+
+class Panorama {
+ public:
+  /// The model's context must be current in every call. Throws Error for a side that is odd, below 2 or above
+  /// panorama_side_most.
+  Panorama(std::shared_ptr<render::GpuModel> model, int side);
+
+  /// Draws what one eye or two see from their places, which their cameras say with the directions; the lenses
+  /// of these do not matter. By distance and with the tangent projection whatever the settings say, of which
+  /// those of exact_of() count; sorted from the point between the eyes. The near plane, world units, is a
+  /// distance. What is told is the sum over five views. Throws as render::RayBlend does.
+  render::FrameReport draw(std::span<const Camera> eyes, double near_plane,
+                           const render::FrameSettings& settings = {});
+
+  /// The pictures of the eyes drawn last; z_sum is of distances.
+  std::vector<Picture> read_pictures() const;
+
+  /// One of the five pinhole views in which an eye's rays are: ahead, to the right, to the left, up, down.
+  Camera face(const Camera& eye, std::size_t nth) const;
+
+ private:
+  struct Pixels {
+    explicit Pixels(gl::Context& context) : colours(context, "panorama"), z_sums(context, "its distances") {}
+    gl::Buffer colours;  // vec4
+    gl::Buffer z_sums;   // float
+  };
+
+  int side_;
+  render::RayBlend blend_;
+  std::vector<std::unique_ptr<gl::Buffer>> rays_;  // PlacedRay, by face
+  std::vector<std::uint32_t> ray_counts_;
+  std::vector<std::unique_ptr<Pixels>> pixels_;  // by eye
+  std::size_t eyes_ = 0;                         // drawn last
+};
+
+}  // namespace binosplat::stereo

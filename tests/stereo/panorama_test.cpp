@@ -1,0 +1,143 @@
+// Half a sphere around each eye: every pixel against a picture of its own, drawn by a camera turned another way.
+
+#include "stereo/panorama.h"
+
+#include <gtest/gtest.h>
+
+#include "measure/rays.h"
+#include "render/faulty_shaders.h"
+#include "render/support.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+
+namespace binosplat {
+namespace {
+
+using stereo::Panorama;
+
+constexpr int side = 40;
+constexpr double near_plane = 0.05;
+
+// Gaussians on all sides, small ones among them, which few rays meet.
+Model around(std::uint32_t seed, int count) {
+  test::Uniform uniform(seed);
+  Model model;
+  model.name = "around";
+  for (int i = 0; i < count; ++i) {
+    const double z = uniform(-1, 1), angle = uniform(0, 6.2831853), across = std::sqrt(1 - z * z);
+    const double distance = std::exp(uniform(-0.5, 2.0));
+    const glm::vec3 place(distance * across * std::cos(angle), distance * across * std::sin(angle),
+                          distance * z);
+    const auto scale = [&] { return static_cast<float>(distance * std::exp(uniform(-6.5, -2.0))); };
+    test::add(model, place, glm::vec3(scale(), scale(), scale()), static_cast<float>(uniform(0.2, 1)),
+              glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)),
+              glm::vec4(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
+  }
+  return model;
+}
+
+std::array<Camera, 2> eyes() {
+  Camera head = test::front_camera(side, side, 20);
+  head.position = {0.1, -0.2, 0.05};
+  head.rotation = measure::turned(head, glm::normalize(glm::dvec3(1, 2, 3)), 0.4).rotation;
+  return stereo::make_rig(head, {.ipd = 0.1, .near_plane = near_plane}).cameras;
+}
+
+std::vector<Picture> drawn(const Model& model, const std::vector<Camera>& of_eyes) {
+  Panorama panorama(std::make_shared<render::GpuModel>(test::gl_context(), model), side);
+  panorama.draw(of_eyes, near_plane);
+  return panorama.read_pictures();
+}
+
+// Of an eye by itself: each ray in one of four cameras that look around it, none of which a face is.
+Picture expected(const Model& model, const Camera& eye) {
+  render::Frame frame(test::gl_context(), model);
+  Picture picture(side, side);
+  std::vector<bool> is_seen(picture.colour.size());
+  for (const glm::dvec2& turn :
+       {glm::dvec2(-0.8, -0.7), glm::dvec2(0.8, -0.7), glm::dvec2(-0.8, 0.7), glm::dvec2(0.8, 0.7)}) {
+    Camera camera = measure::turned(measure::turned(eye, {0, 1, 0}, turn.x), {1, 0, 0}, turn.y);
+    camera.fx = camera.fy = side / 3.14159265358979;
+    camera.width = camera.height = 4 * side;
+    camera.cx = camera.cy = 2.0 * side;
+    std::vector<glm::dvec2> pixels;
+    std::vector<std::size_t> places;
+    for (std::size_t k = 0; k < is_seen.size(); ++k) {
+      const glm::dvec3 ray =
+          eye.rotation * stereo::panorama_ray(side, static_cast<int>(k % side), static_cast<int>(k / side));
+      const glm::dvec2 at = measure::pixel_of(camera, ray);
+      if (is_seen[k] || !measure::is_inside(camera, at)) continue;
+      is_seen[k] = true;
+      pixels.push_back(at);
+      places.push_back(k);
+    }
+    const auto colours =
+        measure::colours_at(frame, camera, pixels,
+                            {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}, near_plane);
+    for (std::size_t n = 0; n < places.size(); ++n)
+      picture.colour[places[n]] = glm::vec4(colours[n], 0.0f);
+  }
+  EXPECT_TRUE(std::all_of(is_seen.begin(), is_seen.end(), [](bool seen) { return seen; }));
+  return picture;
+}
+
+double psnr(const Picture& a, const Picture& b) { return measure::psnr(on_black(a), on_black(b)); }
+
+TEST(Panoramas, ShowAlongEachRayWhatAnyCameraShowsThere) {
+  const Model model = around(7, 1500);
+  const Picture wanted = expected(model, eyes()[1]);
+  EXPECT_GE(psnr(drawn(model, {eyes()[1]})[0], wanted), 100.0);
+  EXPECT_LE(psnr(drawn(model, {eyes()[0]})[0], wanted), 40.0) << "the other eye's place";
+  {
+    const test::FaultyShaders faulty("tiles/tiles.glsl", "#define REACH 0.5", "#define REACH 0.0");
+    EXPECT_LE(psnr(drawn(model, {eyes()[1]})[0], wanted), 80.0) << "what lies between pixels' centres is lost";
+  }
+  {
+    const test::FaultyShaders faulty("blend_rays.comp", "nearness = 1.0 / (1.0 + dot(slope, slope))",
+                                     "nearness = 1.0");
+    EXPECT_LE(psnr(drawn(model, {eyes()[1]})[0], wanted), 40.0) << "projected otherwise";
+  }
+}
+
+TEST(Panoramas, HaveAWholeSphereOfRaysAhead) {
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) {
+      const glm::dvec3 ray = stereo::panorama_ray(side, i, j);
+      EXPECT_NEAR(glm::length(ray), 1.0, 1e-12);
+      EXPECT_GT(ray.z, 0.0);
+    }
+  }
+  EXPECT_LT(stereo::panorama_ray(side, 0, side / 2).x, -0.99) << "the left edge is to the left";
+  EXPECT_LT(stereo::panorama_ray(side, side / 2, 0).y, -0.99) << "the upper edge is up";
+}
+
+TEST(Panoramas, ShowBothEyesAtOnce) {
+  const Model model = around(8, 800);
+  const auto [left, right] = eyes();
+  const std::vector<Picture> both = drawn(model, {left, right});
+  ASSERT_EQ(both.size(), 2U);
+  // Sorted from the point between them, each is nearly what it is by itself.
+  EXPECT_GE(psnr(both[0], expected(model, left)), 50.0);
+  EXPECT_GE(psnr(both[1], expected(model, right)), 50.0);
+  EXPECT_LE(psnr(both[0], expected(model, right)), 28.0);
+}
+
+TEST(Panoramas, TellDistances) {
+  Model model;
+  for (const glm::vec3& place : {glm::vec3(0, 0, 3), glm::vec3(2, 0, 0.05), glm::vec3(0, -4, 0.05)})
+    test::add(model, place, glm::vec3(0.4f), 0.99f, glm::vec3(1.0f));
+  const Picture picture = drawn(model, {test::front_camera(side, side, 20)})[0];
+  const Image depth = depth_map(picture);
+  EXPECT_NEAR(depth.at(side / 2, side / 2, 0), 3.0, 0.01);
+  EXPECT_NEAR(depth.at(side - 1, side / 2, 0), 2.0, 0.01);
+  EXPECT_NEAR(depth.at(side / 2, 0, 0), 4.0, 0.01);
+}
+
+TEST(Panoramas, RefuseSizesThatAreNone) {
+  const auto model = std::make_shared<render::GpuModel>(test::gl_context(), around(9, 10));
+  EXPECT_TRUE(test::fails_saying([&] { Panorama(model, 41); }, {"41 x 41", "even"}));
+  EXPECT_TRUE(test::fails_saying([&] { Panorama(model, 0); }, {"from 2 to"}));
+}
+
+}  // namespace
+}  // namespace binosplat
