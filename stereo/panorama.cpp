@@ -18,7 +18,7 @@ struct Face {
   glm::dvec2 low, high;
 };
 
-const std::array<Face, 5> faces = {{
+const std::array<Face, panorama_faces> faces = {{
     {glm::dmat3(1.0), {-1, -1}, {1, 1}},
     {{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}}, {-1, -1}, {0, 1}},
     {{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {0, -1}, {1, 1}},
@@ -63,13 +63,25 @@ glm::dvec3 panorama_ray(int side, int i, int j) {
           std::cos(latitude) * std::cos(longitude)};
 }
 
+Camera panorama_face(int side, const Camera& eye, std::size_t nth) {
+  const Face& face = faces[nth];
+  Camera camera = eye;
+  camera.rotation = eye.rotation * face.axes;
+  camera.fx = camera.fy = focal(side);
+  camera.width = face_pixels(side, face.low.x, face.high.x);
+  camera.height = face_pixels(side, face.low.y, face.high.y);
+  camera.cx = -face.low.x * camera.fx;
+  camera.cy = -face.low.y * camera.fy;
+  return camera;
+}
+
 Panorama::Panorama(std::shared_ptr<render::GpuModel> model, int side)
     : side_(side), blend_(std::move(model)) {
   if (side < 2 || side > panorama_side_most || side % 2 != 0)
     fail("a panorama of {0} x {0} px: expected an even number from 2 to {1}", side, panorama_side_most);
   std::array<std::vector<shared::PlacedRay>, faces.size()> rays;
   std::array<Camera, faces.size()> cameras;
-  for (std::size_t nth = 0; nth < faces.size(); ++nth) cameras[nth] = face({}, nth);
+  for (std::size_t nth = 0; nth < faces.size(); ++nth) cameras[nth] = panorama_face(side, {}, nth);
   for (int j = 0; j < side; ++j) {
     for (int i = 0; i < side; ++i) {
       const glm::dvec3 ray = panorama_ray(side, i, j);
@@ -87,18 +99,6 @@ Panorama::Panorama(std::shared_ptr<render::GpuModel> model, int side)
   }
 }
 
-Camera Panorama::face(const Camera& eye, std::size_t nth) const {
-  const Face& face = faces[nth];
-  Camera camera = eye;
-  camera.rotation = eye.rotation * face.axes;
-  camera.fx = camera.fy = focal(side_);
-  camera.width = face_pixels(side_, face.low.x, face.high.x);
-  camera.height = face_pixels(side_, face.low.y, face.high.y);
-  camera.cx = -face.low.x * camera.fx;
-  camera.cy = -face.low.y * camera.fy;
-  return camera;
-}
-
 render::FrameReport Panorama::draw(std::span<const Camera> eyes, double near_plane,
                                    const render::FrameSettings& settings) {
   render::FrameSettings steady = settings;
@@ -112,10 +112,11 @@ render::FrameReport Panorama::draw(std::span<const Camera> eyes, double near_pla
   for (std::size_t nth = 0; nth < faces.size(); ++nth) {
     std::vector<shared::View> views;
     if (eyes_ == 2) {
-      const EyePair pair = rig_from_eyes(face(eyes[0], nth), face(eyes[1], nth), near_plane);
+      const EyePair pair =
+          rig_from_eyes(panorama_face(side_, eyes[0], nth), panorama_face(side_, eyes[1], nth), near_plane);
       views.assign(pair.views.begin(), pair.views.end());
     } else {
-      views.push_back(make_view(face(eyes[0], nth), near_plane));
+      views.push_back(make_view(panorama_face(side_, eyes[0], nth), near_plane));
     }
     add(blend_.set_views(views, steady), report);
     for (std::uint32_t v = 0; v < eyes_; ++v) {

@@ -14,12 +14,16 @@
 
 namespace binosplat::stereo {
 
-/// Pixels of a degree at most, and what a player can show: 45 px.
+/// px: more than any player shows.
 constexpr int panorama_side_most = 8192;
 
 /// The direction of pixel (i, j) of a panorama, `side` px wide and high, in the eye's frame (x right, y down,
 /// z forward): longitude from -90 to 90 degrees with i, latitude from 90 to -90 with j.
 glm::dvec3 panorama_ray(int side, int i, int j);
+
+/// The pinhole views that hold an eye's rays between them: ahead, to the right, to the left, up, down.
+constexpr std::size_t panorama_faces = 5;
+Camera panorama_face(int side, const Camera& eye, std::size_t nth);
 
 class Panorama {
  public:
@@ -36,9 +40,6 @@ class Panorama {
 
   /// The pictures of the eyes drawn last; z_sum is of distances.
   std::vector<Picture> read_pictures() const;
-
-  /// One of the five pinhole views in which an eye's rays are: ahead, to the right, to the left, up, down.
-  Camera face(const Camera& eye, std::size_t nth) const;
 
  private:
   struct Pixels {

@@ -152,11 +152,17 @@ Camera camera_from_fov(std::string name, const glm::dvec3& position, const glm::
 
 Camera apply_preset(const Camera& head, std::string_view preset) {
   if (preset == "preview") return resized(head, 1280, 720);
-  if (preset != "headset") fail("--preset {}: expected preview or headset", preset);
   Camera camera = head;
-  camera.width = 3660;
-  camera.height = 3200;
-  camera.fx = camera.fy = 0.5 * camera.width / std::tan(glm::radians(50.0));
+  if (preset == "headset") {
+    camera.width = 3660;
+    camera.height = 3200;
+    camera.fx = camera.fy = 0.5 * camera.width / std::tan(glm::radians(50.0));
+  } else if (preset == "vr180") {
+    camera.width = camera.height = 2048;
+    camera.fx = camera.fy = camera.width / glm::radians(180.0);
+  } else {
+    fail("--preset {}: expected preview, headset or vr180", preset);
+  }
   camera.cx = 0.5 * camera.width;
   camera.cy = 0.5 * camera.height;
   return camera;

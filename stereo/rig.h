@@ -63,7 +63,8 @@ Camera camera_from_fov(std::string name, const glm::dvec3& position, const glm::
                        const Fov& fov, int width, int height);
 
 /// The head camera with the size and lens of `--preset`: "preview" is 1,280 x 720 an eye and keeps the
-/// vertical field of view; "headset" is 3,660 x 3,200 an eye, 100 degrees across, square pixels, centred.
+/// vertical field of view; "headset" is 3,660 x 3,200 an eye, 100 degrees across, square pixels, centred;
+/// "vr180" has the size of a panorama, 2,048 x 2,048 an eye, and a pixel in the middle as wide as one of it.
 /// Pose, name and time are kept.
 Camera apply_preset(const Camera& head, std::string_view preset);
 

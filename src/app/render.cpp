@@ -20,6 +20,7 @@
 #include "app/resume.h"
 #include "app/shots.h"
 #include "app/tour.h"
+#include "app/vr180.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/cameras_file.h"
@@ -59,11 +60,12 @@ std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& bac
 
 // What the model takes on the GPU, and the shot that takes most.
 render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& model,
-                                 const std::vector<Shot>& shots) {
+                                 const std::vector<Shot>& shots, std::optional<double> vr180_near) {
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
   render::MemoryNeeds most;
   for (const Shot& shot : shots) {
-    const auto needs = render::memory_needs(render::make_shape(views_of(shot), settings, model));
+    const auto needs = vr180_near ? vr180_memory(shot, model, *vr180_near)
+                                  : render::memory_needs(render::make_shape(views_of(shot), settings, model));
     most = {needs.model, std::max(most.frame, needs.frame)};
   }
   return most;
@@ -114,6 +116,8 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
     settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
                                        report.model.axes, settings);
+  std::optional<stereo::Panorama> panorama;
+  if (work.plan.vr180) panorama.emplace(gpu_model, work.shots[0].eyes[0].camera.width);
   const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
   bool all_empty = true;
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
@@ -127,15 +131,16 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     const render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
     if (work.followed) drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < drawing.frames; ++n) {
-      drawn.report = frame.draw(views, of_shot, workings);
+      drawn.report = panorama ? draw(*panorama, drawn.shot, report.model.axes, report.near_plane)
+                              : frame.draw(views, of_shot, workings);
       report.times.add(drawn.report);
       progress.update(++done);
     }
-    const std::vector<Picture> pictures = frame.read_pictures();
+    const std::vector<Picture> pictures = panorama ? panorama->read_pictures() : frame.read_pictures();
     all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
     if (output.detail_report)
       drawn.levels->finest_psnr = work.followed->against_finest(context, views, pictures, of_shot);
-    drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
+    if (!panorama) drawn.comfort = comfort_of(drawn.shot, report.options.camera.lens.headset(), pictures[0]);
     const stereo::Shown shown = show.make(output.show, frame, views, pictures, of_shot, output.background);
     drawn.most_shown = shown.most;
     if (video) video->add(frame_of(work.plan, output.background, shown.pictures));
@@ -215,6 +220,7 @@ ExitCode render(const RenderOptions& o) {
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list, model);
+  if (work.plan.vr180) level(work.list.cameras, up_of(o.camera, work.list.known));
   work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
   check_shots(work.plan, work.shots);
   if (!work.photos.empty()) check_photos(work.photos, work.shots);
@@ -223,7 +229,9 @@ ExitCode render(const RenderOptions& o) {
   if (work.followed) work.followed->bring(model, views_of(work.shots[0]));
 
   context = open_context(o.context);
-  RenderReport report{o, model, *context, near_plane, memory_needs(settings, model, work.shots), {}, {}};
+  const auto vr180_near = work.plan.vr180 ? std::optional(near_plane) : std::nullopt;
+  RenderReport report{o,  model, *context, near_plane, memory_needs(settings, model, work.shots, vr180_near),
+                      {}, {}};
   print_needs(report.needs);
   draw_all(*context, work, model, report);
   print(report);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/tour.h"
+#include "app/vr180.h"
 #include "base/error.h"
 
 namespace binosplat::app {
@@ -81,6 +82,7 @@ void add_picture_options(CLI::App& sub, RenderOptions& o) {
 
 void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o);
+  add_vr180_option(sub, o.camera.lens);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
   add_shard_option(sub, o.shard, "Draw every Nth view from the Ith on: one job of N");
@@ -111,6 +113,7 @@ void check(const RenderOptions& o) {
          show_choices[o.output.show].name);
   }
   check_parts(o);
+  check_vr180(o);
   check(o.context);
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "app/tour.h"
+#include "app/vr180.h"
 #include "base/text.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
@@ -72,7 +73,7 @@ void write(const OutputOptions& options, const OutputPlan& plan, const std::stri
 
 // The files of a shot without their endings: one for each eye, or one for both.
 std::vector<std::string> bases_of(const OutputPlan& plan, const Shot& shot) {
-  const std::string base = plan.folder.empty() ? plan.file : plan.folder / shot.stem;
+  const std::string base = plan.folder.empty() ? plan.file : plan.folder / (shot.stem + plan.suffix);
   if (plan.layout != LAYOUT_SEPARATE) return {base};
   std::vector<std::string> bases;
   for (const Eye& eye : shot.eyes)
@@ -162,6 +163,7 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   OutputPlan plan;
   if (video) plan = plan_video(options, one_picture, output);
   plan.fps = tour ? tour_fps(options.fps, video) : options.fps;
+  plan.vr180 = render.camera.lens.vr180();
   if (video) return plan;
   plan.exr = options.exr_half.has_value();
   if (options.fps && !tour) fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
@@ -195,6 +197,7 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   }
   if (options.exr_display && !plan.exr) fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
   if (!options.json.empty()) check_output(options.json);
+  if (plan.vr180) plan_vr180(render, plan);
   return plan;
 }
 
@@ -228,7 +231,7 @@ std::unique_ptr<Video> open_video(const OutputPlan& plan, const std::vector<Shot
   const Camera& eye = shots[0].eyes[0].camera;
   const glm::ivec2 size = stereo::layout_size(plan.layout, {eye.width, eye.height});
   return std::make_unique<Video>(plan.video, size.x, size.y, plan.fps ? *plan.fps : frames_a_second(shots),
-                                 plan.layout);
+                                 plan.layout, plan.vr180);
 }
 
 Image frame_of(const OutputPlan& plan, const Background& background, const std::vector<Picture>& pictures) {

@@ -24,6 +24,8 @@ struct OutputPlan {
   std::optional<double> fps;     // of the video or the tour; none: by the path's times
   bool png = true;
   bool exr = false;
+  std::string suffix;  // of files in the folder
+  bool vr180 = false;
 };
 
 /// Frames a second of videos, where nothing says otherwise.

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "app/mp4_spherical.h"
 #include "base/error.h"
 #include "base/text.h"
 
@@ -94,9 +95,10 @@ fs::path find_ffmpeg() {
       "with -o for one picture a frame");
 }
 
-Video::Video(const fs::path& path, int width, int height, double frames_a_second, int layout)
+Video::Video(const fs::path& path, int width, int height, double frames_a_second, int layout, bool vr180)
     : target_(path),
       temporary_(temporary_beside(path)),
+      vr180_layout_(vr180 ? std::optional(layout) : std::nullopt),
       unfinished_(temporary_),
       said_(std::tmpfile(), &std::fclose) {
   if (path.has_parent_path()) {
@@ -180,6 +182,7 @@ void Video::finish() {
   const pid_t ended = waitpid(ffmpeg_, &status, 0);
   ffmpeg_ = -1;
   if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_with_what_it_said();
+  if (vr180_layout_) mark_half_sphere(temporary_, *vr180_layout_);
   std::error_code error;
   fs::rename(temporary_, target_, error);
   if (error) fail("cannot write {}: {}", target_.string(), error.message());

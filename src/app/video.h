@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,10 @@ class Video {
   /// Starts ffmpeg: H.264 of a quality at which losses are hard to see, VP9 in .webm. Matroska's files
   /// say which layout the pictures are in. Colours are stored at half resolution, as players expect, except
   /// in layouts whose neighbouring pixels belong to different eyes. A picture of odd size is given another
-  /// row or column.
-  Video(const std::filesystem::path& path, int width, int height, double frames_a_second, int layout);
+  /// row or column. With `vr180` .mp4 and .mov say that each eye's picture is half a sphere
+  /// (mp4_spherical.h).
+  Video(const std::filesystem::path& path, int width, int height, double frames_a_second, int layout,
+        bool vr180 = false);
   ~Video();
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
@@ -43,6 +46,7 @@ class Video {
   [[noreturn]] void fail_with_what_it_said();
 
   std::filesystem::path target_, temporary_;
+  std::optional<int> vr180_layout_;
   Unfinished unfinished_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> said_;  // ffmpeg's standard error
   int pictures_ = -1;                                     // socket to its standard input

@@ -1,4 +1,5 @@
-// Half a sphere around each eye: every pixel against a picture of its own, drawn by a camera turned another way.
+// Half a sphere around each eye: every pixel against a picture of its own, drawn by a camera turned another
+// way.
 
 #include "stereo/panorama.h"
 
@@ -71,11 +72,9 @@ Picture expected(const Model& model, const Camera& eye) {
       pixels.push_back(at);
       places.push_back(k);
     }
-    const auto colours =
-        measure::colours_at(frame, camera, pixels,
-                            {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}, near_plane);
-    for (std::size_t n = 0; n < places.size(); ++n)
-      picture.colour[places[n]] = glm::vec4(colours[n], 0.0f);
+    const auto colours = measure::colours_at(
+        frame, camera, pixels, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT}, near_plane);
+    for (std::size_t n = 0; n < places.size(); ++n) picture.colour[places[n]] = glm::vec4(colours[n], 0.0f);
   }
   EXPECT_TRUE(std::all_of(is_seen.begin(), is_seen.end(), [](bool seen) { return seen; }));
   return picture;
@@ -90,7 +89,8 @@ TEST(Panoramas, ShowAlongEachRayWhatAnyCameraShowsThere) {
   EXPECT_LE(psnr(drawn(model, {eyes()[0]})[0], wanted), 40.0) << "the other eye's place";
   {
     const test::FaultyShaders faulty("tiles/tiles.glsl", "#define REACH 0.5", "#define REACH 0.0");
-    EXPECT_LE(psnr(drawn(model, {eyes()[1]})[0], wanted), 80.0) << "what lies between pixels' centres is lost";
+    EXPECT_LE(psnr(drawn(model, {eyes()[1]})[0], wanted), 80.0)
+        << "what lies between pixels' centres is lost";
   }
   {
     const test::FaultyShaders faulty("blend_rays.comp", "nearness = 1.0 / (1.0 + dot(slope, slope))",

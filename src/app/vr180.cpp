@@ -1,0 +1,93 @@
+#include "app/vr180.h"
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "scene/axes.h"
+
+namespace binosplat::app {
+
+namespace {
+
+// What has no meaning where all rays are drawn exactly, each along its own way.
+constexpr const char* refused[] = {
+    "--fov",         "--convergence", "--cant",      "--order",   "--projection",
+    "--tiles",       "--th",          "--tolerance", "--quality", "--transmittance",
+    "--calibration", "--show",        "--frames",    "--detail",  "--reference-until",
+    "--photos",      "--precision",   "--decode"};
+
+std::vector<Camera> eyes_of(const Shot& shot, const std::string& axes) {
+  std::vector<Camera> eyes;
+  for (const Eye& eye : shot.eyes) eyes.push_back(into_axes(eye.camera, axes));
+  return eyes;
+}
+
+}  // namespace
+
+void add_vr180_option(CLI::App& sub, Lens& lens) {
+  sub.add_flag_callback(
+         "--vr180", [&lens] { lens.preset = "vr180"; },
+         "All that lies ahead of each eye, 180 degrees wide and high\n(equirectangular, 2048 x 2048 px an "
+         "eye, "
+         "or --size), level, for players of\nVR180: .png, or .mp4 and .mov that say so")
+      ->group("Cameras")
+      ->excludes("--preset");
+}
+
+void check_vr180(const RenderOptions& o) {
+  if (!o.camera.lens.vr180()) return;
+  for (const std::string& given : o.given) {
+    for (const char* const name : refused) {
+      if (given.substr(0, given.find(' ')) == name)
+        fail("--vr180 draws exactly, and along rays of its own: leave {} out", name);
+    }
+  }
+  if (const auto& size = o.camera.lens.size; size && (size->x != size->y || size->x % 2 != 0)) {
+    fail("--size {0}x{1} with --vr180: expected an even number of pixels twice, for one 2880x2880", size->x,
+         size->y);
+  }
+  const int layout = o.output.layout.value_or(LAYOUT_PARALLEL);
+  if (layout != LAYOUT_PARALLEL && layout != LAYOUT_OVER_UNDER && layout != LAYOUT_SEPARATE)
+    fail("--vr180 with --layout {}: players know parallel and over-under", layout_choices[layout].name);
+  const std::string ending = lowered_ending(o.output.output);
+  if (ending == ".mkv" || ending == ".webm")
+    fail("-o {}: only .mp4 and .mov can be told to be VR180 here", o.output.output);
+}
+
+void plan_vr180(const RenderOptions& o, OutputPlan& plan) {
+  if (!o.output.layout && !o.rig.one_picture() && !plan.exr) plan.layout = LAYOUT_PARALLEL;
+  if (plan.folder.empty()) return;
+  plan.suffix = plan.layout == LAYOUT_PARALLEL     ? "_180_LR"
+                : plan.layout == LAYOUT_OVER_UNDER ? "_180_TB"
+                                                   : "_180";
+}
+
+void level(std::vector<Camera>& cameras, const glm::dvec3& up) {
+  const glm::dvec3 down = -glm::normalize(up);
+  for (Camera& camera : cameras) {
+    // Where it looks straight up or down, its own right.
+    glm::dvec3 right = glm::cross(down, camera.rotation[2]);
+    if (glm::length(right) < 1e-3) right = camera.rotation[0] - glm::dot(camera.rotation[0], down) * down;
+    right = glm::normalize(right);
+    camera.rotation = glm::dmat3(right, down, glm::cross(right, down));
+  }
+}
+
+render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double near_plane) {
+  const int side = shot.eyes[0].camera.width;
+  std::vector<shared::View> views;
+  for (const Camera& eye : eyes_of(shot, model.axes))
+    views.push_back(make_view(stereo::panorama_face(side, eye, 0), near_plane));
+  render::MemoryNeeds needs = render::memory_needs(render::make_shape(views, {}, model));
+  // A ray's place, and its colour and distance for each eye.
+  needs.frame += std::int64_t{side} * side * (16 + 20 * static_cast<std::int64_t>(views.size()));
+  return needs;
+}
+
+render::FrameReport draw(stereo::Panorama& panorama, const Shot& shot, const std::string& axes,
+                         double near_plane) {
+  return panorama.draw(eyes_of(shot, axes), near_plane);
+}
+
+}  // namespace binosplat::app

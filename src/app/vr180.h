@@ -1,0 +1,32 @@
+#pragma once
+// `render --vr180`: what lies ahead of each eye as players of VR180 show it.
+
+#include "app/cli.h"
+#include "app/render_options.h"
+#include "app/render_outputs.h"
+#include "app/shots.h"
+#include "render/memory.h"
+#include "stereo/panorama.h"
+
+namespace binosplat::app {
+
+void add_vr180_option(CLI::App& sub, Lens& lens);
+
+/// Throws Error for options that do not go with --vr180, where it is given.
+void check_vr180(const RenderOptions& options);
+
+/// Pictures as players look for them: both eyes in one, and names in a folder that say what they are.
+void plan_vr180(const RenderOptions& options, OutputPlan& plan);
+
+/// Turns cameras about their places so that the horizon is level, as one who wears a headset holds his head:
+/// each keeps looking where it did, seen from above.
+void level(std::vector<Camera>& cameras, const glm::dvec3& up);
+
+/// What one shot's largest face and the panoramas take on the GPU.
+render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double near_plane);
+
+/// The pictures of the shot's eyes, in the model's axes.
+render::FrameReport draw(stereo::Panorama& panorama, const Shot& shot, const std::string& axes,
+                         double near_plane);
+
+}  // namespace binosplat::app

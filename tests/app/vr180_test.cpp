@@ -1,0 +1,86 @@
+// render --vr180: what files say of themselves, how heads are held, and what is refused.
+
+#include <cmath>
+#include <cstdlib>
+
+#include "app/scene.h"
+#include "formats/image_file.h"
+
+namespace binosplat {
+namespace {
+
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::write_text;
+
+struct Vr180 : test::SceneTest {
+  // A head that looks 37 degrees down, and two more beside it.
+  Vr180() {
+    nlohmann::json cameras;
+    for (int k = 0; k < 3; ++k) {
+      cameras.push_back(test::camera_json("v" + std::to_string(k), 0.2 * k));
+      cameras.back()["rotation"] = {{1, 0, 0}, {0, 0.8, 0.6}, {0, -0.6, 0.8}};
+    }
+    write_text(folder / "cameras.json", cameras.dump());
+  }
+};
+
+TEST_F(Vr180, PutsBothEyesIntoAFileWhoseNameSaysSo) {
+  ASSERT_TRUE(good(render({"--vr180", "--size", "32x32", "-o", out, "--json", folder / "run.json"})));
+  const Image both = load_image(out + "/v0_180_LR.png");
+  EXPECT_EQ(both.width, 64);
+  EXPECT_EQ(both.height, 32);
+  ASSERT_TRUE(good(render({"--vr180", "--size", "32x32", "-o", out, "--layout", "over-under"})));
+  EXPECT_EQ(load_image(out + "/v0_180_TB.png").height, 64);
+  ASSERT_TRUE(good(render({"--vr180", "--size", "32x32", "-o", out, "--mono"})));
+  EXPECT_EQ(load_image(out + "/v0_180.png").width, 32);
+}
+
+TEST_F(Vr180, HoldsTheHeadLevel) {
+  ASSERT_TRUE(good(render({"--eye", "0,-1,0", "--at", "0,2,4", "--vr180", "--size", "32x32", "-o", out,
+                           "--json", folder / "run.json"})));
+  const auto view = nlohmann::json::parse(test::read_text(folder / "run.json")).at("views").at(0);
+  for (const auto& eye : view.at("eyes")) {
+    const auto forward = eye.at("axes").at("z_forward").get<std::vector<double>>();
+    const auto down = eye.at("axes").at("y_down").get<std::vector<double>>();
+    EXPECT_NEAR(forward.at(1), 0.0, 1e-12);
+    EXPECT_NEAR(forward.at(2), 1.0, 1e-12) << "looks another way";
+    EXPECT_NEAR(down.at(1), 1.0, 1e-12);
+  }
+}
+
+TEST_F(Vr180, TellsPlayersWhatAVideoIs) {
+  if (std::system("ffprobe -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  const auto facts = [&](const std::string& file, const std::string& layout) {
+    EXPECT_TRUE(good(
+        render({"--vr180", "--size", "32x32", "--view", "all", "-o", folder / file, "--layout", layout})));
+    const std::string said = folder / "said";
+    const std::string command =
+        "ffprobe -v error -count_frames -show_streams " + (folder / file).string() + " > " + said;
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return test::read_text(said);
+  };
+  const std::string aside = facts("aside.mp4", "parallel"), above = facts("above.mov", "over-under");
+  for (const char* fact :
+       {"nb_read_frames=3", "projection=tiled equirectangular", "type=side by side", "width=64"})
+    EXPECT_NE(aside.find(fact), std::string::npos) << fact << " is not in " << aside;
+  for (const char* fact : {"nb_read_frames=3", "projection=tiled equirectangular", "type=top and bottom"})
+    EXPECT_NE(above.find(fact), std::string::npos) << fact << " is not in " << above;
+}
+
+TEST_F(Vr180, RefusesWhatHasNoMeaningForIt) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& text) {
+    arguments.push_back("--vr180");
+    return ended(render(arguments), 2, text);
+  };
+  EXPECT_TRUE(refused({"--quality", "40"}, "leave --quality out"));
+  EXPECT_TRUE(refused({"--order", "depth"}, "leave --order out"));
+  EXPECT_TRUE(refused({"--size", "32x30"}, "an even number of pixels twice"));
+  EXPECT_TRUE(refused({"--layout", "anaglyph"}, "parallel and over-under"));
+  EXPECT_TRUE(refused({"-o", folder / "a.webm"}, "only .mp4 and .mov"));
+  EXPECT_TRUE(refused({"--preset", "headset"}, "--preset"));
+}
+
+}  // namespace
+}  // namespace binosplat
