@@ -38,8 +38,8 @@ TEST_F(Vr180, PutsBothEyesIntoAFileWhoseNameSaysSo) {
 }
 
 TEST_F(Vr180, HoldsTheHeadLevel) {
-  ASSERT_TRUE(good(render({"--eye", "0,-1,0", "--at", "0,2,4", "--vr180", "--size", "32x32", "-o", out,
-                           "--json", folder / "run.json"})));
+  ASSERT_TRUE(good(render({"--eye", "0,-1,0", "--at", "0,2,4", "--up", "0,-1,0", "--vr180", "--size", "32x32",
+                           "-o", out, "--json", folder / "run.json"})));
   const auto view = nlohmann::json::parse(test::read_text(folder / "run.json")).at("views").at(0);
   for (const auto& eye : view.at("eyes")) {
     const auto forward = eye.at("axes").at("z_forward").get<std::vector<double>>();
