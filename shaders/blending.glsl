@@ -180,6 +180,9 @@ void blend(uint at[AHEAD]) {
 #if RECORDS || SUMS != SUMS_NONE
       if (weight > 0.0) measure(at[k], p, weight);
       transmittance[p] -= weight;
+#elif SHOW == SHOW_MEDIAN_DEPTH
+      transmittance[p] -= weight;
+      if (told[p] < 0.0 && weight > 0.0 && transmittance[p] < 1.0 - float(COVERAGE_FOR_DEPTH)) told[p] = c.a;
 #endif
       precise float r = fma(weight, c.r, colour[p].r);
       precise float g = fma(weight, c.g, colour[p].g);
@@ -304,7 +307,7 @@ void begin_pixels(uvec2 in_tile) {
     picture[p] *= uintBitsToFloat(scale);
 #endif
 #if SHOW != SHOW_PICTURE
-    told[p] = 0.0;
+    told[p] = SHOW == SHOW_MEDIAN_DEPTH ? -1.0 : 0.0;
 #endif
   }
 }
@@ -319,6 +322,8 @@ void write_pixels() {
     told[p] = float(end - begin);
 #elif SHOW == SHOW_LIGHT
     told[p] = left < 1.0 ? told[p] / (1.0 - left) : -1.0;
+#elif SHOW == SHOW_MEDIAN_DEPTH && PROJECTION == PROJECTION_TANGENT
+    told[p] *= sqrt(nearness[p]);  // of a distance
 #endif
 #if SHOW != SHOW_PICTURE
     shown[to] = told[p];

@@ -61,6 +61,7 @@
 #define SHOW_VISIBLE 6
 #define SHOW_PAIRS 7
 #define SHOW_LIGHT 8
+#define SHOW_MEDIAN_DEPTH 9
 
 // What a GPU does at best (shaders/floors.comp).
 #define FLOOR_BYTES 0
@@ -142,6 +143,7 @@ inline constexpr Choice show_choices[] = {
     {"visible", "those of them that it blends"},
     {"pairs", "Gaussians in the list of the pixel's tile"},
     {"light", "max(T), the most light that reaches a Gaussian: the mean of those seen"},
+    {"median-depth", "view depth by which half of the light is gone, world units"},
 };
 
 }  // namespace binosplat

@@ -56,6 +56,9 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
   choose<bool>(sub, "--exr-encoding", o.exr_display,
                "Scene-linear light, or display values as in PNG (linear)",
                {{"linear", false}, {"display", true}});
+  choose<Depth>(sub, "--exr-depth", o.exr_depth,
+                "Z of OpenEXR: the mean of what is seen, or by which half of it is (mean)",
+                {{"mean", Depth::mean}, {"median", Depth::median}});
   sub.add_option(
          "--photos", o.photos,
          "Print PSNR against DIR/NAME.jpg or .png, or the photos found beside\nthe cameras; with --mono")

@@ -136,7 +136,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
       report.times.add(drawn.report);
       progress.update(++done);
     }
-    const std::vector<Picture> pictures = panorama ? panorama->read_pictures() : frame.read_pictures();
+    const std::vector<Picture> pictures = panorama ? panorama->read_pictures() : frame.read_pictures(output.exr_depth);
     all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
     if (output.detail_report)
       drawn.levels->finest_psnr = work.followed->against_finest(context, views, pictures, of_shot);

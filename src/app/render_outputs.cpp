@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
+#include "formats/vr_photo.h"
 #include "stereo/layout.h"
 
 namespace binosplat::app {
@@ -29,6 +30,7 @@ Notes notes_of(const std::string& scene, const OutputOptions& options, const Sho
   if (!side.empty()) notes["binosplatEye"] = side;
   if (most_shown)
     notes["binosplatShow"] = fmt::format("{}, 0 to {}", show_choices[options.show].name, *most_shown);
+  if (options.exr_depth == Depth::median) notes["binosplatDepth"] = "median";
   if (shot.ipd) notes["binosplatIpdMetres"] = fmt::format("{}", *shot.ipd);
   return notes;
 }
@@ -156,7 +158,8 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   const bool named = !options.output.empty();  // else it is a folder, however its model is called
   const bool video = named && is_video(output);
   const std::string extension = lowered_ending(output);
-  const bool file = named && (extension == ".png" || extension == ".exr");
+  const bool vr_photo = named && render.camera.lens.vr180() && (extension == ".jpg" || extension == ".jpeg");
+  const bool file = named && (extension == ".png" || extension == ".exr" || vr_photo);
   if ((video || file) && (!render.shard.all() || render.resume))
     fail("--shard and --resume are for a folder of pictures, and -o {} is one file: name a folder",
          output.string());
@@ -178,7 +181,8 @@ OutputPlan plan_outputs(const RenderOptions& render) {
     check_output(output);
     plan.file = output.parent_path() / output.stem();
     plan.png = extension == ".png";
-    plan.exr = plan.exr || !plan.png;
+    plan.vr_photo = vr_photo;
+    plan.exr = plan.exr || extension == ".exr";
   } else {
     // A name in the folder stands for all of them.
     check_output(output / "picture");
@@ -196,6 +200,8 @@ OutputPlan plan_outputs(const RenderOptions& render) {
          show_choices[options.show].name);
   }
   if (options.exr_display && !plan.exr) fail("--exr-encoding is for OpenEXR: add --exr half or --exr float");
+  if (options.exr_depth == Depth::median && !plan.exr)
+    fail("--exr-depth is for OpenEXR: add --exr half or --exr float");
   if (!options.json.empty()) check_output(options.json);
   if (plan.vr180) plan_vr180(render, plan);
   return plan;
@@ -244,6 +250,7 @@ std::vector<std::string> files_of(const OutputPlan& plan, const Shot& shot) {
   for (const std::string& base : bases_of(plan, shot)) {
     if (plan.png) files.push_back(base + ".png");
     if (plan.exr) files.push_back(base + ".exr");
+    if (plan.vr_photo) files.push_back(base + ".jpg");
   }
   return files;
 }
@@ -252,6 +259,12 @@ std::vector<std::string> write_outputs(const std::string& scene, const OutputOpt
                                        const OutputPlan& plan, const Shot& shot, const stereo::Shown& shown) {
   const std::vector<Picture>& pictures = shown.pictures;
   const std::vector<std::string> bases = bases_of(plan, shot);
+  if (plan.vr_photo) {
+    const Uninterrupted hold;
+    save_vr_photo(bases[0] + ".jpg", composite(pictures[0], options.background),
+                  composite(pictures[1], options.background));
+    return files_of(plan, shot);
+  }
   if (plan.layout == LAYOUT_SEPARATE) {
     for (std::size_t k = 0; k < bases.size(); ++k)
       write(options, plan, bases[k], pictures[k],

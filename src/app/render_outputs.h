@@ -26,6 +26,7 @@ struct OutputPlan {
   bool exr = false;
   std::string suffix;  // of files in the folder
   bool vr180 = false;
+  bool vr_photo = false;  // both eyes in a .jpg (formats/vr_photo.h)
 };
 
 /// Frames a second of videos, where nothing says otherwise.

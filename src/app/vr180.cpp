@@ -12,10 +12,10 @@ namespace {
 
 // What has no meaning where all rays are drawn exactly, each along its own way.
 constexpr const char* refused[] = {
-    "--fov",         "--convergence", "--cant",      "--order",   "--projection",
-    "--tiles",       "--th",          "--tolerance", "--quality", "--transmittance",
-    "--calibration", "--show",        "--frames",    "--detail",  "--reference-until",
-    "--photos",      "--precision",   "--decode"};
+    "--fov",         "--convergence", "--cant",      "--order",    "--projection",
+    "--tiles",       "--th",          "--tolerance", "--quality",  "--transmittance",
+    "--calibration", "--show",        "--frames",    "--detail",   "--reference-until",
+    "--photos",      "--precision",   "--decode",    "--exr-depth"};
 
 std::vector<Camera> eyes_of(const Shot& shot, const std::string& axes) {
   std::vector<Camera> eyes;
@@ -30,7 +30,7 @@ void add_vr180_option(CLI::App& sub, Lens& lens) {
          "--vr180", [&lens] { lens.preset = "vr180"; },
          "All that lies ahead of each eye, 180 degrees wide and high\n(equirectangular, 2048 x 2048 px an "
          "eye, "
-         "or --size), level, for players of\nVR180: .png, or .mp4 and .mov that say so")
+         "or --size), level, for players of\nVR180: .png, or .vr.jpg, .mp4 and .mov that say so")
       ->group("Cameras")
       ->excludes("--preset");
 }
@@ -56,6 +56,12 @@ void check_vr180(const RenderOptions& o) {
 }
 
 void plan_vr180(const RenderOptions& o, OutputPlan& plan) {
+  if (plan.vr_photo && (o.rig.one_picture() || o.output.layout || !o.output.background)) {
+    fail(
+        "-o {}: a VR photo holds both eyes, each by itself and opaque: leave --mono, --only, --layout and "
+        "--background none out",
+        o.output.output);
+  }
   if (!o.output.layout && !o.rig.one_picture() && !plan.exr) plan.layout = LAYOUT_PARALLEL;
   if (plan.folder.empty()) return;
   plan.suffix = plan.layout == LAYOUT_PARALLEL     ? "_180_LR"

@@ -57,7 +57,8 @@ class Renderer {
     thread_->run([this] { on_gpu_.reset(); });
   }
 
-  Drawn draw(const std::vector<shared::View>& views, render::FrameSettings settings, bool follow) {
+  Drawn draw(const std::vector<shared::View>& views, render::FrameSettings settings, Depth depth,
+             bool follow) {
     settings.precision = precision_;
     return thread_->run([&] {
       if (!on_gpu_) fail("this Renderer is closed");
@@ -65,7 +66,7 @@ class Renderer {
       if (!follow) frame.start_over();
       Drawn drawn;
       drawn.report = frame.draw(views, settings);
-      for (const Picture& picture : frame.read_pictures())
+      for (const Picture& picture : frame.read_pictures(depth))
         drawn.views.push_back(images_of(picture, settings.background));
       return drawn;
     });
@@ -147,7 +148,7 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
                 const std::optional<std::string>& th, const std::string& transmittance,
                 const std::optional<std::string>& order, const std::optional<std::string>& projection,
                 const std::string& tiles, const std::string& decode, const std::array<float, 3>& background,
-                double near_plane, bool follow) {
+                double near_plane, const std::string& depth, bool follow) {
   if (!(near_plane > 0.0 && std::isfinite(near_plane)))
     fail("near {}: expected world units above zero", near_plane);
   if (quality && !(*quality > 0.0f)) fail("quality {}: expected dB, above zero", *quality);
@@ -163,11 +164,13 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
   settings.decode = find_choice("decode", decode, decode_choices);
   settings.background = {background[0], background[1], background[2]};
   check(settings, given, renderer.model().scaffold != nullptr);
+  static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
+  const auto which = static_cast<Depth>(find_choice("depth", depth, depths));
   const auto views = views_of(view, renderer.model().axes, near_plane);
   Drawn drawn;
   {
     const py::gil_scoped_release release;
-    drawn = renderer.draw(views, settings, follow);
+    drawn = renderer.draw(views, settings, which, follow);
   }
   const py::dict report = dict_of(drawn.report);
   py::list pictures;
@@ -187,7 +190,8 @@ constexpr const char* draw_help =
     "Gaussian is taken to get, 'one' or, with follow, 'last'. order: 'depth' or 'distance', projection:\n"
     "'affine' or 'tangent' (None: as the model was trained). tiles: 'ellipse', 'snug', 'all' (exact),\n"
     "'aabb' or 'obb'. decode: of Scaffold-GS, 'eyes' or, with a Rig, 'cyclopean'. background: RGB behind\n"
-    "the scene. near: nothing nearer is drawn, world units. follow: this is the next frame of a path,\n"
+    "the scene. near: nothing nearer is drawn, world units. depth: 'mean' of what is seen, or 'median',\n"
+    "by which half of it is. follow: this is the next frame of a path,\n"
     "which goes by what the one before measured; else the picture depends on nothing drawn before.\n\n"
     "May be called from any thread; pictures of one Renderer are drawn one after the other.\n"
     "Raises InputError for settings that contradict each other, OutOfMemory.";
@@ -201,9 +205,10 @@ void add_renderer(py::module_& module) {
                     "what Gaussians overshoot is not clamped.")
       .def_readonly("transmittance", &DrawnPicture::transmittance,
                     "(height, width) float32: the share of the background's light that is left, 1 - alpha.")
-      .def_readonly("depth", &DrawnPicture::depth,
-                    "(height, width) float32: mean depth along the view's axis, world units; inf where\n"
-                    "alpha is at most 0.5.")
+      .def_readonly(
+          "depth", &DrawnPicture::depth,
+          "(height, width) float32: depth along the view's axis, world units, by draw(depth=); inf where\n"
+          "alpha is at most 0.5.")
       .def_readonly(
           "report", &DrawnPicture::report,
           "Of the frame, a dict: total_ms and stages_ms (GPU times), visible, pairs, tolerance and\n"
@@ -219,7 +224,7 @@ void add_renderer(py::module_& module) {
            py::arg("tolerance") = py::none(), py::arg("th") = py::none(), py::arg("transmittance") = "one",
            py::arg("order") = py::none(), py::arg("projection") = py::none(), py::arg("tiles") = "ellipse",
            py::arg("decode") = "eyes", py::arg("background") = std::array<float, 3>{},
-           py::arg("near") = near_default, py::arg("follow") = false, draw_help)
+           py::arg("near") = near_default, py::arg("depth") = "mean", py::arg("follow") = false, draw_help)
       .def_property_readonly("device", &Renderer::device, "What it draws with.")
       .def("close", &Renderer::close, py::call_guard<py::gil_scoped_release>(),
            "Gives the GPU's memory back; it is also given back with the last reference, and by `with`.")

@@ -72,8 +72,10 @@ class Frame {
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
                          const Workings& workings = {}, const std::optional<Probe>& probe = {});
 
-  /// The pictures of the last frame drawn, one a view.
-  std::vector<Picture> read_pictures();
+  /// The pictures of the last frame drawn, one a view. Instead of the mean of what is seen their depth may be
+  /// the median, at which T falls below a half: z_sum is then (1 - T) times that, and the lists are walked
+  /// again. Throws Error for the median where something else stood in for the blend.
+  std::vector<Picture> read_pictures(Depth depth = Depth::mean);
 
   /// The next frame goes by nothing that earlier ones measured, as a first one does.
   void forget() { history_.forget(); }
@@ -90,8 +92,9 @@ class Frame {
   std::vector<MeasuredGaussian> read_measured(std::uint32_t v) const;
 
   /// What the last frame's blend came by in each pixel, one image of one channel a view: SHOW_ALPHAS to
-  /// SHOW_LIGHT of shared/axes.h; below 0 where there is nothing to tell. Walks the frame's lists again.
-  /// Throws Error after a frame whose blend something else stood in for: its lists never get to the GPU.
+  /// SHOW_MEDIAN_DEPTH of shared/axes.h; below 0 where there is nothing to tell. Walks the frame's lists
+  /// again. Throws Error after a frame whose blend something else stood in for: its lists never get to the
+  /// GPU.
   std::vector<Image> read_shown(int what);
 
   const std::shared_ptr<GpuModel>& model() const { return model_; }

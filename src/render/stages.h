@@ -34,7 +34,7 @@ void find_long_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameB
 /// The pictures; and, for a transmittance that is measured, the most that each splat counted for.
 void blend(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers);
 
-/// What the blend of the same lists comes by in each pixel, into `shown`: SHOW_ALPHAS to SHOW_LIGHT of
+/// What the blend of the same lists comes by in each pixel, into `shown`: SHOW_ALPHAS to SHOW_MEDIAN_DEPTH of
 /// shared/axes.h. The pictures stay.
 void show(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, int what);
 

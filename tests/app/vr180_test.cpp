@@ -5,6 +5,7 @@
 
 #include "app/scene.h"
 #include "formats/image_file.h"
+#include "measure/metrics.h"
 
 namespace binosplat {
 namespace {
@@ -67,6 +68,53 @@ TEST_F(Vr180, TellsPlayersWhatAVideoIs) {
     EXPECT_NE(aside.find(fact), std::string::npos) << fact << " is not in " << aside;
   for (const char* fact : {"nb_read_frames=3", "projection=tiled equirectangular", "type=top and bottom"})
     EXPECT_NE(above.find(fact), std::string::npos) << fact << " is not in " << above;
+}
+
+// The parts of a VR photo: what XMP says of it, and what it holds in 64 KiB pieces.
+struct Photo {
+  std::string said, held;
+
+  explicit Photo(const std::string& file) {
+    const std::string bytes = test::read_text(file);
+    const auto byte = [&](std::size_t at) {
+      return static_cast<std::size_t>(static_cast<unsigned char>(bytes.at(at)));
+    };
+    const std::string plain("http://ns.adobe.com/xap/1.0/\0", 29),
+        more("http://ns.adobe.com/xmp/extension/\0", 35);
+    for (std::size_t at = 2; byte(at) == 0xff && byte(at + 1) != 0xda;
+         at += 2 + 256 * byte(at + 2) + byte(at + 3)) {
+      const std::string content = bytes.substr(at + 4, 256 * byte(at + 2) + byte(at + 3) - 2);
+      if (content.rfind(plain, 0) == 0) said = content.substr(plain.size());
+      if (content.rfind(more, 0) != 0) continue;
+      EXPECT_NE(said.find(content.substr(more.size(), 32)), std::string::npos) << "names another whole";
+      held += content.substr(more.size() + 40);
+    }
+  }
+};
+
+TEST_F(Vr180, WritesVrPhotosThatHoldBothEyes) {
+  const std::string file = folder / "both.vr.jpg", eyes = folder / "eyes";
+  ASSERT_TRUE(good(render({"--vr180", "--size", "256x256", "-o", file})));
+  ASSERT_TRUE(good(render({"--vr180", "--size", "256x256", "-o", eyes, "--layout", "separate"})));
+  const Photo photo(file);
+  for (const char* fact : {"ProjectionType=\"equirectangular\"", "CroppedAreaImageWidthPixels=\"256\"",
+                           "FullPanoWidthPixels=\"512\"", "CroppedAreaLeftPixels=\"128\""})
+    EXPECT_NE(photo.said.find(fact), std::string::npos) << fact << " is not in " << photo.said;
+  const std::string mark = "GImage:Data=\"";
+  const std::size_t begin = photo.held.find(mark) + mark.size(), end = photo.held.find('"', begin);
+  write_text(folder / "right.base64", photo.held.substr(begin, end - begin));
+  ASSERT_EQ(std::system(
+                ("base64 -d " + (folder / "right.base64").string() + " > " + (folder / "right.jpg").string())
+                    .c_str()),
+            0);
+  const Image left = load_image(file), right = load_image(folder / "right.jpg");
+  const Image drawn_left = load_image(eyes + "/v0_180_left.png"),
+              drawn_right = load_image(eyes + "/v0_180_right.png");
+  EXPECT_GE(measure::psnr(left, drawn_left), 38.0);
+  EXPECT_GE(measure::psnr(right, drawn_right), 38.0);
+  EXPECT_LE(measure::psnr(right, drawn_left), 36.0) << "swapped eyes go unnoticed";
+  EXPECT_TRUE(ended(render({"--vr180", "--mono", "-o", file}), 2, "holds both eyes"));
+  EXPECT_TRUE(ended(render({"-o", file}), 2, "pictures are written as .png"));
 }
 
 TEST_F(Vr180, RefusesWhatHasNoMeaningForIt) {

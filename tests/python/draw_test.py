@@ -26,6 +26,15 @@ def test_a_picture_is_three_arrays(renderer, cameras):
     assert "blend" in picture.report["stages_ms"]
 
 
+def test_the_median_depth_is_one_that_is_there(renderer, cameras):
+    mean, median = (renderer.draw(cameras["front"], depth=depth) for depth in ("mean", "median"))
+    assert same(mean.colour, median.colour)
+    seen = mean.transmittance < 0.5
+    assert np.array_equal(np.isinf(median.depth), np.isinf(mean.depth))
+    apart = np.abs(median.depth - mean.depth)[seen]
+    assert 0 < np.median(apart) < 0.5
+
+
 def test_the_background_is_seen_through_what_is_transmitted(renderer, cameras):
     black = renderer.draw(cameras["front"])
     red = renderer.draw(cameras["front"], background=(1, 0, 0))
@@ -140,6 +149,7 @@ WRONG = [
     ({"th": "tau", "tolerance": 1}, "tolerance has no effect with th tau, which is exact"),
     ({"th": "peripheral", "tolerance": float("nan")}, "tolerance nan: expected zero or more"),
     ({"order": "size"}, "order: 'size' is not one of depth, distance"),
+    ({"depth": "mode"}, "depth: 'mode' is not one of mean, median"),
     ({"projection": "flat"}, "projection: 'flat' is not one of affine, tangent"),
     ({"tiles": "round"}, "tiles: 'round' is not one of aabb, ellipse"),
     ({"transmittance": "depth", "tolerance": 1}, "transmittance depth: needs a table"),

@@ -155,7 +155,7 @@ TEST(Lists, OfSeveralTilesAreShownAlike) {
     render::Frame frame(test::gl_context(), model);
     frame.draw(two_views(), {.th = TH_SQUARED, .tolerance = 0.5f}, {.supertile_side = supertile_side});
     std::vector<std::vector<float>> all;
-    for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what)
+    for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what)
       for (const Image& image : frame.read_shown(what)) all.push_back(image.data);
     return all;
   };

@@ -31,12 +31,24 @@ struct ShowTest : testing::Test {
     light = reference::measure_transmittance(splats, lists, view);
   }
 
+  double median_depth(std::span<const std::uint32_t> list, int x, int y) const {
+    double depth = -1.0;
+    reference::blend_pixel(splats, list, x, y, {},
+                           [&](std::uint32_t i, double alpha, const auto& before, auto verdict) {
+                             const bool is_half = before.transmittance * (1.0 - alpha) < 0.5;
+                             if (verdict == reference::Verdict::blended && is_half && depth < 0.0)
+                               depth = reference::depth_at(splats[i], x, y);
+                           });
+    return depth;
+  }
+
   double expected(int what, int x, int y) const {
     const auto list = lists.at_pixel(x, y);
     if (what == SHOW_PAIRS) return static_cast<double>(list.size());
     const reference::PixelTrace trace = reference::trace(splats, list, x, y);
     if (what == SHOW_ALPHAS) return static_cast<double>(trace.walked);
     if (what == SHOW_VISIBLE) return static_cast<double>(trace.visible);
+    if (what == SHOW_MEDIAN_DEPTH) return median_depth(list, x, y);
     double sum = 0.0;
     const auto blended = reference::blend_pixel(
         splats, list, x, y, {}, [&](std::uint32_t i, double alpha, const auto& before, auto verdict) {
@@ -58,11 +70,11 @@ struct ShowTest : testing::Test {
 
 TEST_F(ShowTest, TellsWhatTheReferenceCounts) {
   frame.draw(std::vector{view}, {}, test::given(render::Stage::ranges));
-  for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what) {
+  for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) {
     const Image told = frame.read_shown(what).at(0);
     // Rounding turns an alpha at tau or an early stop in a few pixels.
     EXPECT_LE(differing(told, what), 0.002) << show_choices[what].name;
-    for (int other = SHOW_ALPHAS; other <= SHOW_LIGHT; ++other) {
+    for (int other = SHOW_ALPHAS; other <= SHOW_MEDIAN_DEPTH; ++other) {
       if (other == what) continue;
       EXPECT_GT(differing(told, other), 0.05) << show_choices[other].name << " goes unnoticed";
     }
@@ -77,7 +89,7 @@ TEST_F(ShowTest, LeavesPicturesAndMemoryAsTheyAre) {
   for (int n = 0; n < 3; ++n) {
     frame.draw(views, settings);
     other.draw(views, settings);
-    for (int what = SHOW_ALPHAS; what <= SHOW_LIGHT; ++what) frame.read_shown(what);
+    for (int what = SHOW_ALPHAS; what <= SHOW_MEDIAN_DEPTH; ++what) frame.read_shown(what);
   }
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], other.read_pictures()[0]));
 }

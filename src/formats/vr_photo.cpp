@@ -1,0 +1,113 @@
+#include "formats/vr_photo.h"
+
+#include <turbojpeg.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "base/output_file.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr int jpeg_quality = 95;
+
+std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
+  std::vector<unsigned char> bytes(image.data.size());
+  std::transform(image.data.begin(), image.data.end(), bytes.begin(), [](float v) {
+    return static_cast<unsigned char>(std::lround(255.0f * (v > 0.0f ? std::min(v, 1.0f) : 0.0f)));
+  });
+  const std::unique_ptr<void, decltype(&tjDestroy)> encoder(tjInitCompress(), &tjDestroy);
+  unsigned char* made = nullptr;
+  unsigned long size = 0;
+  const bool good = encoder && tjCompress2(encoder.get(), bytes.data(), image.width, 0, image.height,
+                                           TJPF_RGB, &made, &size, TJSAMP_444, jpeg_quality, 0) == 0;
+  const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(made, &tjFree);
+  if (!good) fail("cannot write {}: {}", path.string(), tjGetErrorStr2(encoder.get()));
+  return {reinterpret_cast<const char*>(made), size};
+}
+
+std::string base64(std::string_view bytes) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t have = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t three = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      three = three << 8 | (k < have ? static_cast<unsigned char>(bytes[at + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += k <= have ? digits[three >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+std::string number(std::uint32_t value, int bytes) {
+  std::string out;
+  while (bytes-- > 0) out += static_cast<char>(value >> (8 * bytes));
+  return out;
+}
+
+std::string app1(const std::string& content) {
+  return "\xff\xe1" + number(static_cast<std::uint32_t>(content.size() + 2), 2) + content;
+}
+
+std::string described(const std::string& attributes) {
+  return "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
+         "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description rdf:about=\"\" " +
+         attributes + "/></rdf:RDF></x:xmpmeta>";
+}
+
+// What readers find at once.
+std::string packet(int side, const std::string& rest) {
+  return app1(
+      std::string("http://ns.adobe.com/xap/1.0/") + '\0' +
+      described(fmt::format("xmlns:GPano=\"http://ns.google.com/photos/1.0/panorama/\" "
+                            "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
+                            "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" "
+                            "GPano:ProjectionType=\"equirectangular\" GPano:CroppedAreaLeftPixels=\"{0}\" "
+                            "GPano:CroppedAreaTopPixels=\"0\" GPano:CroppedAreaImageWidthPixels=\"{1}\" "
+                            "GPano:CroppedAreaImageHeightPixels=\"{1}\" GPano:FullPanoWidthPixels=\"{2}\" "
+                            "GPano:FullPanoHeightPixels=\"{1}\" GPano:InitialViewHeadingDegrees=\"180\" "
+                            "GImage:Mime=\"image/jpeg\" xmpNote:HasExtendedXMP=\"{3}\"",
+                            side / 2, side, 2 * side, rest)));
+}
+
+// What is too long for one segment of 64 KiB, in many that name the whole.
+std::string extension(const std::string& whole, const std::string& name) {
+  constexpr std::size_t part = 65000;
+  std::string segments;
+  for (std::size_t at = 0; at < whole.size(); at += part) {
+    segments += app1(std::string("http://ns.adobe.com/xmp/extension/") + '\0' + name +
+                     number(static_cast<std::uint32_t>(whole.size()), 4) +
+                     number(static_cast<std::uint32_t>(at), 4) + whole.substr(at, part));
+  }
+  return segments;
+}
+
+}  // namespace
+
+void save_vr_photo(const std::filesystem::path& path, const Image& left, const Image& right) {
+  const std::string first = jpeg_of(path, left);
+  const std::string rest =
+      described("xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" GImage:Data=\"" +
+                base64(jpeg_of(path, right)) + "\"");
+  const XXH128_hash_t hash = XXH3_128bits(rest.data(), rest.size());
+  const std::string name = fmt::format("{:016X}{:016X}", hash.high64, hash.low64);
+  // After the marks of a JPEG and of JFIF, as cameras have it.
+  const std::size_t jfif_end =
+      4U + (static_cast<unsigned char>(first[4]) << 8) + static_cast<unsigned char>(first[5]);
+  OutputFile file(path);
+  file.write(first.substr(0, jfif_end) + packet(left.width, name) + extension(rest, name) +
+             first.substr(jfif_end));
+  file.commit();
+}
+
+}  // namespace binosplat

@@ -1,0 +1,17 @@
+#pragma once
+// VR photos (.vr.jpg), as Google's VR180 cameras leave them and headsets' galleries know them: a JPEG of the
+// left eye whose XMP says that it is half a sphere and holds the right eye's JPEG (GPano and GImage,
+// developers. google.com/vr/reference/cardboard-camera-vr-photo-format). Readers that do not know XMP show
+// the left eye.
+
+#include <filesystem>
+
+#include "base/image.h"
+
+namespace binosplat {
+
+/// Writes two equirectangular pictures, of one size, of 180 degrees across and down, RGB. Throws Error naming
+/// the file.
+void save_vr_photo(const std::filesystem::path& path, const Image& left, const Image& right);
+
+}  // namespace binosplat
