@@ -33,8 +33,8 @@ struct OutputOptions {
 /// Adds all of them; `options` must outlive the parsing.
 void add_output_options(CLI::App& sub, OutputOptions& options);
 
-/// Those of them that a window has, too: --layout, --show and --background.
-void add_look_options(CLI::App& sub, OutputOptions& options);
+/// Those of them that a window has, too: --layout, --show and --background. A window has no multi-view.
+void add_look_options(CLI::App& sub, OutputOptions& options, bool in_window);
 
 /// --photos of commands that look for none beside the cameras.
 CLI::Option* add_photos_option(CLI::App& sub, std::string& photos,

@@ -1,6 +1,7 @@
 #include "app/render_options.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
 
 #include "app/tour.h"
 #include "base/error.h"
@@ -68,19 +69,24 @@ void check_parts(const RenderOptions& o) {
     fail("--json and --photos tell of all views, and --resume leaves out those that are there: choose");
 }
 
+// What a window that goes where its user goes does not do.
+constexpr std::array render_only = {"--mono",    "--only",   "--preset",      "--orbit",
+                                    "--path",    "--frames", "--calibration", "--reference-until",
+                                    "--backend", "--device"};
+
 // All but what is done with the pictures.
-void add_picture_options(CLI::App& sub, RenderOptions& o) {
+void add_picture_options(CLI::App& sub, RenderOptions& o, bool in_window) {
   add_scene_options(sub, o.scene);
   add_camera_options(sub, o.camera);
   add_rig_options(sub, o.rig);
-  add_drawing_options(sub, o.drawing);
+  add_drawing_options(sub, o.drawing, in_window);
   add_context_options(sub, o.context);
 }
 
 }  // namespace
 
 void add_options(CLI::App& sub, RenderOptions& o) {
-  add_picture_options(sub, o);
+  add_picture_options(sub, o, false);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
   add_shard_option(sub, o.shard, "Draw every Nth view from the Ith on: one job of N");
@@ -91,11 +97,19 @@ void add_options(CLI::App& sub, RenderOptions& o) {
 }
 
 void add_view_options(CLI::App& sub, RenderOptions& o) {
-  add_picture_options(sub, o);
-  add_look_options(sub, o.output);
+  add_picture_options(sub, o, true);
+  add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
   sub.option_defaults()->group("Options");
+  sub.get_option("--size")->description("Pixels of the window (1280x720, or more where displays are dense)");
+  sub.get_option("--view")->description("The camera to start at, by name (the first)");
+  for (const char* name : render_only) sub.get_option(name)->group("");  // understood, but in no help
+  sub.parse_complete_callback([&sub] {
+    for (const char* name : render_only) {
+      if (sub.count(name) > 0) fail("{} is for `binosplat render`: leave it out", name);
+    }
+  });
 }
 
 void check(const RenderOptions& o) {

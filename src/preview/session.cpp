@@ -47,14 +47,29 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
 void choose_threshold(render::FrameSettings& settings, int th) {
   settings.th = th;
   settings.tolerance = static_cast<float>(render::threshold_rules[th].careful_tolerance);
+  settings.quality = 0.0f;
+}
+
+void choose_quality(render::FrameSettings& settings, std::optional<float> db) {
+  // The rule that costs least at equal error (docs/method.md 8), unless one was chosen.
+  if (!db || render::is_exact(settings.th)) choose_threshold(settings, db ? TH_SQUARED : TH_TAU);
+  settings.quality = db.value_or(0.0f);
 }
 
 void make_consistent(Choices& choices) {
   render::FrameSettings& s = choices.settings;
   const render::ThresholdRule& rule = render::threshold_rules[s.th];
-  if (rule.exact) s.tolerance = 0.0f;
+  if (rule.exact) s.quality = 0.0f;
+  if (rule.exact || s.quality > 0.0f) s.tolerance = 0.0f;
   if (!render::takes(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
   s.background = choices.background;
+}
+
+int next_divisor(int divisor, double ms) {
+  constexpr int most = 4;
+  // No picture is more than four times as large as the next smaller one.
+  if (ms < moving_ms / 4.0) return std::max(1, divisor - 1);
+  return ms > moving_ms ? std::min(most, divisor + 1) : divisor;
 }
 
 Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
@@ -70,6 +85,18 @@ Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras,
       presenter_(context),
       show_(frame_.model()),
       shown_colours_(context, "pixels to show") {}
+
+Session::~Session() { context_.gl().DeleteFramebuffers(1, &smaller_framebuffer_); }
+
+void Session::move() {
+  moving_ = true;
+  change();
+}
+
+void Session::rest() {
+  moving_ = false;
+  if (divisor_ > 1) change();
+}
 
 void Session::change() {
   make_consistent(choices);
@@ -89,24 +116,25 @@ void Session::step_camera(int by) {
   change();
 }
 
-glm::ivec2 Session::eye_size() const {
+glm::ivec2 Session::eye_size(int divisor) const {
+  const glm::ivec2 all = framebuffer_ / divisor;
   switch (choices.layout) {
     case LAYOUT_PARALLEL:
     case LAYOUT_CROSS_EYED:
-      return {framebuffer_.x / 2, framebuffer_.y};
+      return {all.x / 2, all.y};
     case LAYOUT_HALF_WIDTH:
-      return {framebuffer_.x / 2 * 2, framebuffer_.y};
+      return {all.x / 2 * 2, all.y};
     case LAYOUT_HALF_HEIGHT:
-      return {framebuffer_.x, framebuffer_.y / 2 * 2};
+      return {all.x, all.y / 2 * 2};
     case LAYOUT_OVER_UNDER:
-      return {framebuffer_.x, framebuffer_.y / 2};
+      return {all.x, all.y / 2};
     default:
-      return framebuffer_;
+      return all;
   }
 }
 
-Camera Session::head_camera() const {
-  const glm::ivec2 size = eye_size();
+Camera Session::head_camera(int divisor) const {
+  const glm::ivec2 size = eye_size(divisor);
   return resized(head.camera(), size.x, size.y);
 }
 
@@ -140,18 +168,26 @@ void Session::replace(Model model) {
 std::vector<shared::View> Session::views() {
   const glm::ivec2 size = eye_size();
   if (size.x < 1 || size.y < 1) return {};
-  const Camera camera = head_camera();
-  eyes_ = stereo::make_rig(camera, choices.rig).cameras;
+  return views_of(head_camera());
+}
+
+std::vector<shared::View> Session::views_of(const Camera& camera) {
   const auto drawn = stereo::make_rig(into_axes(camera, model_.axes), choices.rig).views;
   return {drawn.begin(), drawn.end()};
 }
 
 bool Session::draw() {
-  const glm::ivec2 size = eye_size();
+  const bool interlaced = choices.layout == LAYOUT_ROWS || choices.layout == LAYOUT_COLUMNS;  // never scaled
+  const bool shrinks = moving_ && !interlaced && !reports_.empty();
+  const int divisor = shrinks ? next_divisor(divisor_, reports_.back().total_ms) : 1;
+  const glm::ivec2 size = eye_size(divisor);
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
   --pending_;
   try {
-    const std::vector<shared::View> asked = views();
+    const Camera camera = head_camera(divisor);
+    const std::vector<shared::View> asked = views_of(camera);
+    eyes_ = stereo::make_rig(camera, choices.rig).cameras;
+    divisor_ = divisor;
     reports_.push_back(frame_.draw(asked, choices.settings));
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
@@ -174,10 +210,23 @@ void Session::present() {
   const glm::ivec2 size =
       stereo::layout_size(shown_layout_, {static_cast<int>(eye.width), static_cast<int>(eye.height)});
   stereo::Target target;
-  target.y = std::max(0, framebuffer_.y - size.y);
+  if (divisor_ == 1) {
+    target.y = std::max(0, framebuffer_.y - size.y);
+  } else {
+    if (smaller_framebuffer_ == 0) context_.gl().CreateFramebuffers(1, &smaller_framebuffer_);
+    if (!smaller_ || !smaller_->is(GL_RGBA8, size.x, size.y)) {
+      smaller_ = std::make_unique<gl::Texture>(context_, GL_RGBA8, size.x, size.y);
+      context_.gl().NamedFramebufferTexture(smaller_framebuffer_, GL_COLOR_ATTACHMENT0, smaller_->id(), 0);
+    }
+    target.texture = smaller_->id();
+  }
   const gl::Buffer& colours = shown_.pictures.empty() ? frame_.colours() : shown_colours_;
   const auto draw = [&](std::size_t first, int layout) {
     presenter_.draw(colours, drawn_, first, layout, target, choices.background);
+    if (divisor_ > 1) {
+      context_.gl().BlitNamedFramebuffer(smaller_framebuffer_, 0, 0, 0, size.x, size.y, 0, 0, framebuffer_.x,
+                                         framebuffer_.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    }
   };
   if (shown_layout_ != LAYOUT_QUAD_BUFFER) return draw(0, shown_layout_);
   context_.gl().DrawBuffer(GL_BACK_LEFT);
@@ -187,7 +236,14 @@ void Session::present() {
   context_.gl().DrawBuffer(GL_BACK);  // both
 }
 
+// What is read of a picture is read of a whole one.
+void Session::draw_at_rest() {
+  rest();
+  draw();
+}
+
 void Session::focus(const glm::ivec2& pixel) {
+  draw_at_rest();
   if (frames_drawn_ == 0) return;
   const shared::View& eye = drawn_[0];
   const auto layout = static_cast<shared::uint>(shown_layout_);
@@ -203,6 +259,7 @@ void Session::focus(const glm::ivec2& pixel) {
 }
 
 std::string Session::save_picture(bool exr) {
+  draw_at_rest();
   const std::vector<Picture> pictures = frame_.read_pictures();
   const auto path = free_name(folder_, exr ? ".exr" : ".png");
   if (exr) {
@@ -238,6 +295,7 @@ void Session::save_pose(const std::filesystem::path& path) const {
 }
 
 double Session::psnr_against_exact() {
+  draw_at_rest();
   const std::vector<Picture> shown = frame_.read_pictures();
   const std::vector<Picture> right = show_.exact(views(), choices.settings);
   return measure::psnr(shown, right, choices.background);

@@ -4,10 +4,12 @@
 
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "gl/texture.h"
 #include "preview/navigator.h"
 #include "render/frame.h"
 #include "scene/model.h"
@@ -30,9 +32,19 @@ struct Choices {
 /// Another rule, with the tolerance at which a search would begin.
 void choose_threshold(render::FrameSettings& settings, int th);
 
+/// So many dB against the exact pictures; none: exact.
+void choose_quality(render::FrameSettings& settings, std::optional<float> db);
+
 /// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no tolerance
-/// without one, and so on (docs/method.md 5).
+/// without one, and so on (docs/method.md 5); and of a quality rather than a tolerance.
 void make_consistent(Choices& choices);
+
+/// While the head moves, pictures of a fraction of the size are drawn where a frame takes longer than this.
+constexpr double moving_ms = 30.0;
+
+/// By what both sides of the next picture are divided while the head moves, 1 to 4, after a frame that was
+/// divided by `divisor` and took `ms`. Goes back only where the larger picture would be in time, too.
+int next_divisor(int divisor, double ms);
 
 class Session {
  public:
@@ -40,6 +52,9 @@ class Session {
   /// through, not empty. `folder` is where pictures and paths are saved.
   Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
           Choices wanted, std::filesystem::path folder);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
   Navigator head;
   Choices choices;
@@ -50,6 +65,13 @@ class Session {
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
   /// settled.
   void change();
+  /// The same while the head is under way: frames may be smaller, until it rests.
+  void move();
+  /// Draws in full what was drawn smaller while the head moved.
+  void rest();
+  bool moving() const { return moving_; }
+  /// By what the sides of the last picture were divided.
+  int divisor() const { return divisor_; }
   /// What is shown of it changes, not what is drawn.
   void change_show() { pending_ = std::max(pending_, 1); }
   /// What points upwards in the picture now is up in the world.
@@ -58,6 +80,8 @@ class Session {
   void resize(const glm::ivec2& framebuffer);
   /// Goes on to the next camera, or back.
   void step_camera(int by);
+  /// Back to the camera, with its own field of view.
+  void reset_view() { step_camera(0); }
   const std::string& camera_name() const { return cameras_[camera_].name; }
 
   /// Draws a frame if anything changed; false if nothing did, or there is nothing to draw into. What goes
@@ -90,8 +114,10 @@ class Session {
   std::vector<shared::View> views();
 
  private:
-  glm::ivec2 eye_size() const;
-  Camera head_camera() const;
+  glm::ivec2 eye_size(int divisor = 1) const;
+  Camera head_camera(int divisor = 1) const;
+  std::vector<shared::View> views_of(const Camera& camera);
+  void draw_at_rest();
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;
@@ -106,6 +132,10 @@ class Session {
   stereo::Shown shown_;       // in place of the frame's own pictures; none: those
   gl::Buffer shown_colours_;  // as the frame's colours
   glm::ivec2 framebuffer_{0};
+  bool moving_ = false;
+  int divisor_ = 1;                       // of the last frame drawn
+  std::unique_ptr<gl::Texture> smaller_;  // a frame that is shown enlarged
+  std::uint32_t smaller_framebuffer_ = 0;
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn, as are
   std::vector<shared::View> drawn_;     // its views as the frame has them

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,8 +27,8 @@ struct Opened {
 };
 
 struct WindowSettings {
-  glm::ivec2 size{1280, 720};    // px
-  std::filesystem::path folder;  // for pictures and paths
+  std::optional<glm::ivec2> size;  // px; none: what suits the display
+  std::filesystem::path folder;    // for pictures and paths
   std::filesystem::path
       shader_folder;  // empty: the embedded shaders; else they are read again when they change
 };

@@ -42,11 +42,27 @@ TEST(View, BadOptionsEndBeforeAnyWindow) {
       return testing::AssertionSuccess();
     return ended(outcome, 2, said);
   };
-  EXPECT_TRUE(refused({"--mono"}, "binosplat render"));
+  for (const char* option : {"--mono", "--preset=headset", "--orbit=3", "--frames=2", "--backend=device"}) {
+    const std::string text = option;
+    EXPECT_TRUE(refused({text}, text.substr(0, text.find('=')) + " is for `binosplat render`"));
+  }
+  EXPECT_TRUE(refused({"--transmittance", "depth"}, "--transmittance"));
+  EXPECT_TRUE(refused({"--view", "a", "--view", "b"}, "--view a b"));
   EXPECT_TRUE(refused({"--layout", "multi-view"}, "multi-view"));
   EXPECT_TRUE(refused({"--show", "colour"}, "--show"));
   EXPECT_TRUE(refused({"--th", "squared"}, "--tolerance"));
   EXPECT_TRUE(refused({"--no-such-option"}, "--no-such-option"));
+}
+
+TEST(View, HelpHasKeysAndNoOptionThatIsRefused) {
+  if (!is_built()) GTEST_SKIP() << "the preview is not built";
+  const Outcome outcome = test::run_program({"view", "--help"});
+  ASSERT_TRUE(good(outcome));
+  for (const char* said : {"--layout", "Escape", "F12", "full screen"})
+    EXPECT_NE(outcome.out.find(said), std::string::npos) << said;
+  for (const char* refused :
+       {"--mono", "--only", "--preset", "--path", "--calibration", "--device", "multi-view"})
+    EXPECT_EQ(outcome.out.find(refused), std::string::npos) << refused;
 }
 
 /// A display without a screen, and hands on it.
@@ -133,6 +149,7 @@ bool same(const Image& a, const Image& b) {
 TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   Program program = view();
   ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");  // the picture takes the whole window
   key("F12");
   ASSERT_TRUE(says(program, "saved", 1));
   key("k");
@@ -173,6 +190,7 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
 TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
   Program program = view();
   ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");  // the picture takes the whole window
   hands("search --name binosplat windowsize --sync 500 300");
   key("F12");
   ASSERT_TRUE(says(program, "saved", 1));
@@ -188,6 +206,7 @@ TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
 TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
   Program program = view({"--tolerance", "0.5"});
   ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");  // the picture takes the whole window
   key("k");
   ASSERT_TRUE(says(program, "saved", 1));
   const std::vector<std::string> names = {"split", "difference", "disagreement", "depth", "alphas"};
@@ -266,6 +285,7 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
   };
   Program program = start(out, {});
   ASSERT_TRUE(says(program, ": 250 Gaussians")) << "the coarsest at first";
+  key("F1");
   ASSERT_TRUE(says(program, "levels of 1000 Gaussians"));
   key("F12");
   ASSERT_TRUE(says(program, "saved", 1));
@@ -284,6 +304,7 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
 
   Program far_away = start(folder / "far", {"--detail", "1e6"});
   ASSERT_TRUE(says(far_away, ": 250 Gaussians"));
+  key("F1");
   key("F12");
   ASSERT_TRUE(says(far_away, "saved"));
   const Outcome outcome = leave(far_away);

@@ -1,6 +1,7 @@
 // binosplat-view: the preview as a program of its own, so that the other one needs no window system's
 // libraries. `binosplat view` starts it.
 
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -16,6 +17,7 @@
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "preview/keys.h"
 #include "preview/window.h"
 
 namespace binosplat::app {
@@ -26,18 +28,16 @@ namespace fs = std::filesystem;
 
 void check_view(const RenderOptions& o) {
   check(o);
-  const bool of_render = o.rig.one_picture() || o.camera.orbit || !o.camera.path.empty() ||
-                         o.camera.views.size() > 1 || o.drawing.frames > 1 || o.drawing.reference_until ||
-                         o.drawing.quality || !o.drawing.calibration.empty() ||
-                         o.context.backend != gl::Backend::automatic || o.context.device >= 0;
-  if (of_render) {
-    fail(
-        "--mono, --only, --frames, --orbit, --path, --reference-until, --quality, --calibration, --backend, "
-        "--device and more than one --view are for `binosplat render`");
-  }
-  if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) fail("--transmittance depth is for `binosplat render`");
-  if (o.output.layout == LAYOUT_MULTI_VIEW)
-    fail("--layout multi-view is for OpenEXR files of `binosplat render`");
+  if (o.camera.views.size() > 1)
+    fail("--view {}: the window starts at one camera, and goes on to the next with N: name one",
+         fmt::join(o.camera.views, " "));
+}
+
+std::string keys_text() {
+  std::string text = "Keys and buttons in the window:\n";
+  for (const preview::KeyHelp& key : preview::key_help)
+    text += fmt::format("  {:<15}{}\n", key.keys, key.what);
+  return text;
 }
 
 preview::Choices choices_of(const RenderOptions& o) {
@@ -121,7 +121,7 @@ void view(const RenderOptions& o) {
   const fs::path folder = o.output.output.empty() ? default_folder(o.scene.name) : fs::path(o.output.output);
   check_output(folder / "picture");
   preview::WindowSettings window;
-  window.size = o.camera.lens.size.value_or(window.size);
+  window.size = o.camera.lens.size;
   window.folder = folder;
   window.shader_folder = o.context.shader_dir;
   preview::run(open({o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
@@ -142,6 +142,7 @@ int run(int argc, char** argv) {
     add_view_options(program, options);
     add_max_memory(program);
     add_quiet(program);
+    program.footer(keys_text());
     check_arguments(argc, argv);
     program.parse(argc, argv);
     note_inputs(program);
