@@ -33,9 +33,10 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
                  "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
                  "NAME_right")
       ->type_name("NAME");
-  sub.add_option(
-         "--path", o.path,
-         "cameras.json whose cameras are frames of one path: each goes by\nwhat the last one measured")
+  sub.add_option("--path", o.path,
+                 "cameras.json of one path: of keys, as `view` saves them, or of its\nframes; each frame "
+                 "goes by what "
+                 "the last one measured")
       ->type_name("FILE");
   three("--eye", o.eye, "Camera position instead, in world units");
   three("--at", o.at, "What it looks at");

@@ -48,7 +48,9 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
          "(out/SCENE)")
       ->type_name("DIR|FILE");
   add_look_options(sub, o, false);
-  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30) or of a tour")
+  sub.add_option(
+         "--fps", o.fps,
+         "Frames a second of a tour, of a way through keys (30), or of a video\n(by the path's times, or 30)")
       ->type_name("N")
       ->check(positive);
   choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});

@@ -17,7 +17,7 @@ struct OutputOptions {
   std::string output;         // a folder or a file; empty: default_folder()
   std::optional<int> layout;  // LAYOUT_ of shared/axes.h; none: by what `output` names
   int show = SHOW_PICTURE;    // SHOW_
-  std::optional<double> fps;  // of a tour, or of a video; none: by the path's times
+  std::optional<double> fps;  // of a path, or of a video; none: by the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
   std::optional<bool> exr_half;     // OpenEXR, too, as half or float

@@ -178,7 +178,9 @@ CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
     return *pose;
   }
   CameraList list = listed_cameras(o.scene, o.camera, saved);
-  return o.camera.tour ? go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list)) : list;
+  if (o.camera.tour) return go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list));
+  if (!o.camera.path.empty()) return go_along_path(o.camera, plan.fps, !plan.video.empty(), std::move(list));
+  return list;
 }
 
 // Leaves the shots that this run is to draw.
@@ -249,6 +251,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
       "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
+      "  binosplat render garden.ply --path out/garden/cameras.json --seconds 10 -o keys.mp4\n"
       "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, sub, &command] {

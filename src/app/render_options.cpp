@@ -25,10 +25,14 @@ void check_cameras(const CameraOptions& o, const OutputOptions& output, bool fra
   }
   if (o.tour && !output.photos.empty())
     fail("--photos with --tour: between the cameras no photos were taken");
-  if (o.seconds && !o.tour) fail("--seconds is for --tour: how much of it is drawn");
+  if (o.seconds && !o.along_path())
+    fail("--seconds is for --tour, how much of it is drawn, and for --path, how long its way takes");
+  if (o.keys && (o.path.empty() || o.seconds))
+    fail("--keys draws the keys of --path FILE alone: name that, and leave --seconds out");
   if (!o.path.empty() && (others || !o.file.empty())) {
     fail(
-        "--path names its own cameras, each drawn once: leave --cameras, --view, --eye, --orbit and --frames "
+        "--path names its own cameras, each frame drawn once: leave --cameras, --view, --eye, --orbit and "
+        "--frames "
         "out");
   }
   if (o.fov && o.lens.headset())

@@ -149,7 +149,8 @@ fs::path default_folder(const std::string& scene) {
 
 OutputPlan plan_outputs(const RenderOptions& render) {
   const OutputOptions& options = render.output;
-  const bool one_picture = render.rig.one_picture(), tour = render.camera.tour.has_value();
+  const bool one_picture = render.rig.one_picture(), tour = render.camera.tour.has_value(),
+             along_path = render.camera.along_path();
   const fs::path output =
       options.output.empty() ? default_folder(render.scene.name) : fs::path(options.output);
   const bool named = !options.output.empty();  // else it is a folder, however its model is called
@@ -164,7 +165,8 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   plan.fps = tour ? tour_fps(options.fps, video) : options.fps;
   if (video) return plan;
   plan.exr = options.exr_half.has_value();
-  if (options.fps && !tour) fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
+  if (options.fps && !along_path)
+    fail("--fps is for videos, --tour and --path: -o FILE.mp4, .mov, .mkv or .webm");
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
   if (named && !file && names_a_file(output)) {
     fail(

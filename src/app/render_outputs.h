@@ -21,7 +21,7 @@ struct OutputPlan {
   std::filesystem::path file;    // without its ending
   int layout = LAYOUT_SEPARATE;  // LAYOUT_ of shared/axes.h; separate in `file`: a single eye's
   std::filesystem::path video;   // of all shots, instead of files
-  std::optional<double> fps;     // of the video or the tour; none: by the path's times
+  std::optional<double> fps;     // of the video or the path; none: by the path's times
   bool png = true;
   bool exr = false;
 };
