@@ -25,7 +25,7 @@ inline constexpr KeyHelp key_help[] = {
     {"F5", "read the model again"},
     {"F9", "save the pose beside the model"},
     {"F11, F12", "save an OpenEXR of both eyes, a PNG"},
-    {"K", "add a key to the path"},
+    {"K, Space", "add a key to the path, play the path"},
     {"Escape", "leave full screen, or end"},
 };
 

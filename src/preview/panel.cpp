@@ -136,6 +136,30 @@ bool Panel::draw_view(Session& session) {
   return changed;
 }
 
+void Panel::draw_path(Session& session) {
+  const std::vector<Camera>& keys = session.keys.keys();
+  if (ImGui::Button("add key (K)")) requests.add_key();
+  if (keys.size() > 1) {
+    ImGui::SameLine();
+    if (ImGui::Button(playing ? "stop (Space)" : "play (Space)")) requests.play();
+  }
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    ImGui::PushID(static_cast<int>(k));
+    const std::string name = fmt::format("{}, {:.1f} s", keys[k].name, *keys[k].time);
+    if (ImGui::Button("go")) session.go_to(keys[k]);
+    ImGui::SameLine();
+    const bool moved = ImGui::Button("move here");
+    ImGui::SameLine();
+    const bool deleted = ImGui::Button("delete");
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
+    ImGui::PopID();
+    if (deleted) return requests.delete_key(k);
+    if (moved) requests.move_key(k);
+  }
+  if (!keys.empty()) ImGui::TextWrapped("%s", session.keys.file().c_str());
+}
+
 void Panel::draw_open() {
   const bool entered =
       ImGui::InputTextWithHint("file", "a model's path", &file_, ImGuiInputTextFlags_EnterReturnsTrue);
@@ -189,6 +213,7 @@ void Panel::draw(Session& session) {
   if (ImGui::Button("full screen (F)")) requests.full_screen();
   draw_speed(session.reports(), frames_a_second);
   draw_controls(session);
+  if (ImGui::CollapsingHeader("path", ImGuiTreeNodeFlags_DefaultOpen)) draw_path(session);
   if (ImGui::CollapsingHeader("open", ImGuiTreeNodeFlags_DefaultOpen)) draw_open();
   if (ImGui::CollapsingHeader("accuracy")) draw_accuracy(session);
   if (ImGui::CollapsingHeader("times")) draw_times(session.reports());

@@ -11,13 +11,15 @@ namespace binosplat::preview {
 
 /// What buttons ask of the window.
 struct Requests {
-  std::function<void()> save_pose, full_screen;
+  std::function<void()> save_pose, full_screen, add_key, play;
+  std::function<void(std::size_t key)> move_key, delete_key;
   std::function<void(const std::string& file)> open;
 };
 
 struct Panel {
   bool open = true;
   bool walking = false;
+  bool playing = false;
   bool stereo_window = false;  // LAYOUT_QUAD_BUFFER may be chosen
   Requests requests;
   std::optional<double> frames_a_second;  // as they were shown last while the head moved
@@ -34,6 +36,7 @@ struct Panel {
   void draw_controls(Session& session);
   bool draw_view(Session& session);
   void draw_open();
+  void draw_path(Session& session);
   void draw_accuracy(Session& session);
 
   std::string file_;  // that is typed, to be opened

@@ -1,11 +1,8 @@
 #include "preview/session.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/output_file.h"
-#include "formats/cameras_file.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
 #include "formats/pose_file.h"
@@ -33,13 +30,6 @@ double depth_ahead(const Model& model, const Camera& of_world) {
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::nth_element(depths.begin(), middle, depths.end());
   return *middle;
-}
-
-std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& ending) {
-  for (int n = 1;; ++n) {
-    auto path = folder / fmt::format("preview_{:03}{}", n, ending);
-    if (!std::filesystem::exists(path)) return path;
-  }
 }
 
 }  // namespace
@@ -74,7 +64,8 @@ int next_divisor(int divisor, double ms) {
 
 Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
                  Choices wanted, std::filesystem::path folder)
-    : head(cameras.at(0), up, depth_ahead(model, cameras[0])),
+    : keys(folder),
+      head(cameras.at(0), up, depth_ahead(model, cameras[0])),
       choices(std::move(wanted)),
       context_(context),
       model_(std::move(model)),
@@ -112,7 +103,11 @@ void Session::resize(const glm::ivec2& framebuffer) {
 void Session::step_camera(int by) {
   const int count = static_cast<int>(cameras_.size());
   camera_ = static_cast<std::size_t>(((static_cast<int>(camera_) + by) % count + count) % count);
-  head = Navigator(cameras_[camera_], up_, depth_ahead(model_, cameras_[camera_]));
+  go_to(cameras_[camera_]);
+}
+
+void Session::go_to(const Camera& camera) {
+  head = Navigator(camera, up_, depth_ahead(model_, camera));
   change();
 }
 
@@ -261,7 +256,7 @@ void Session::focus(const glm::ivec2& pixel) {
 std::string Session::save_picture(bool exr) {
   draw_at_rest();
   const std::vector<Picture> pictures = frame_.read_pictures();
-  const auto path = free_name(folder_, exr ? ".exr" : ".png");
+  const auto path = free_name(folder_, "preview", exr ? ".exr" : ".png");
   if (exr) {
     save_exr(path, pictures[0], pictures[1], {.half = false, .background = choices.background});
   } else {
@@ -274,18 +269,14 @@ std::string Session::save_picture(bool exr) {
   return path.string();
 }
 
-std::string Session::save_camera(double seconds) {
-  Camera camera = head_camera();
-  camera.name = fmt::format("key_{:03}", path_.size());
-  camera.time = path_.empty() ? 0.0 : std::max(seconds, *path_.back().time + 1e-3);
-  path_.push_back(camera);
-  nlohmann::ordered_json list = nlohmann::json::array();
-  for (const Camera& key : path_) list.push_back(camera_json(key));
-  const auto path = folder_ / "cameras.json";
-  OutputFile file(path);
-  file.write(list.dump(2) + "\n");
-  file.commit();
-  return path.string();
+std::string Session::add_key() {
+  keys.add(head_camera());
+  return keys.file().string();
+}
+
+std::string Session::move_key(std::size_t k) {
+  keys.replace(k, head_camera());
+  return keys.file().string();
 }
 
 void Session::save_pose(const std::filesystem::path& path) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gl/texture.h"
+#include "preview/key_list.h"
 #include "preview/navigator.h"
 #include "render/frame.h"
 #include "scene/model.h"
@@ -49,13 +50,14 @@ int next_divisor(int divisor, double ms);
 class Session {
  public:
   /// Uploads; the context is current here and in every call. `cameras` are where to start and what to step
-  /// through, not empty. `folder` is where pictures and paths are saved.
+  /// through, not empty. `folder` is where pictures and keys are saved.
   Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
           Choices wanted, std::filesystem::path folder);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  KeyList keys;
   Navigator head;
   Choices choices;
 
@@ -81,7 +83,7 @@ class Session {
   /// Goes on to the next camera, or back.
   void step_camera(int by);
   /// Back to the camera, with its own field of view.
-  void reset_view() { step_camera(0); }
+  void reset_view() { go_to(cameras_[camera_]); }
   const std::string& camera_name() const { return cameras_[camera_].name; }
 
   /// Draws a frame if anything changed; false if nothing did, or there is nothing to draw into. What goes
@@ -94,9 +96,12 @@ class Session {
   void focus(const glm::ivec2& pixel);
   /// Writes what is shown as PNG, or both eyes with depth as multi-view OpenEXR; returns the file's name.
   std::string save_picture(bool exr);
-  /// Adds the head to a path that `render --path` replays, and writes it: cameras.json with times in s from
-  /// the first on. Returns its name.
-  std::string save_camera(double seconds);
+  // The keys of the path that `render --path` goes along; those that change them return the file's name.
+  std::string add_key();
+  /// To where the head is.
+  std::string move_key(std::size_t k);
+  /// Puts the head where a key is, or any camera.
+  void go_to(const Camera& camera);
   /// Writes head, up, scale and the eyes' distance to where they are found again (formats/pose_file.h).
   void save_pose(const std::filesystem::path& path) const;
   /// PSNR of what is drawn against the exact frame, dB, over both eyes.
@@ -142,7 +147,6 @@ class Session {
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
   std::deque<render::FrameReport> reports_;
-  std::vector<Camera> path_;
   std::string trouble_;
 };
 

@@ -47,8 +47,12 @@ Window::Window(const Choices& choices, const WindowSettings& settings,
     context_->set_shader_folder(settings_.shader_folder);
     shaders_changed_ = newest(settings_.shader_folder);
   }
-  panel_.requests = {.save_pose = [this] { save(GLFW_KEY_F9); },
+  panel_.requests = {.save_pose = [this] { save([this] { return save_pose(); }); },
                      .full_screen = [this] { key(GLFW_KEY_F, 0); },
+                     .add_key = [this] { save([this] { return session_->add_key(); }); },
+                     .play = [this] { play_or_stop(); },
+                     .move_key = [this](std::size_t k) { save([&] { return session_->move_key(k); }); },
+                     .delete_key = [this](std::size_t k) { delete_key(k); },
                      .open = [this](const std::string& file) { open_file(file); }};
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
@@ -81,6 +85,7 @@ void Window::run() {
     reload_shaders();
     if (session_ && announced_) {
       go();
+      play();
       if (session_->moving() && glfwGetTime() - moved_at_ > seconds_to_rest) session_->rest();
       follow_levels();
       if (draw()) {
@@ -102,7 +107,7 @@ void Window::run() {
 // At rest nothing is drawn: only input, a model that is being read, a message that goes, or shaders that are
 // watched, end the wait.
 void Window::wait() {
-  if (ui_frames_ > 0 || going()) return glfwPollEvents();
+  if (ui_frames_ > 0 || going() || playing_) return glfwPollEvents();
   drawn_at_.reset();
   std::optional<double> seconds = messages_.next_change(glfwGetTime());
   const auto at_most = [&](double most) { seconds = std::min(seconds.value_or(most), most); };
@@ -128,17 +133,21 @@ void Window::take_loaded() {
     Choices choices = session_ ? session_->choices : choices_;
     auto cameras = next_.cameras(model, choices);
     std::optional<Navigator> head;
+    std::optional<KeyList> keys;
     if (session_ && again_) {
       head = session_->head;
+      keys = session_->keys;
       choices = session_->choices;
     }
     session_.reset();  // its memory first
     log_info("{}: {} Gaussians", next_.name, model.count());
     scene_ = std::move(next_);
     session_ = std::make_unique<Session>(*context_, std::move(model), std::move(cameras), scene_.up, choices,
-                                         settings_.folder);
+                                         scene_.folder);
     announced_ = false;
+    playing_.reset();
     if (head) session_->head = *head;
+    if (keys) session_->keys = *keys;
     glfwSetWindowTitle(window_, ("binosplat - " + scene_.name).c_str());
   } catch (const Error& error) {
     if (!session_) throw;
@@ -215,6 +224,7 @@ void Window::show() {
     if (!session_->trouble().empty()) messages.push_back({session_->trouble(), true});
     if (!announced_)
       messages.push_back({"drawing the first picture: the driver may have to build its shaders"});
+    panel_.playing = playing_.has_value();
     panel_.draw(*session_);
   }
   if (loading_.valid()) {

@@ -16,6 +16,7 @@ namespace binosplat::preview {
 struct Opened {
   std::string name;
   glm::dvec3 up{0.0, -1.0, 0.0};    // the world's
+  std::filesystem::path folder;     // for its pictures and keys
   std::filesystem::path pose_file;  // where its pose is saved; empty: nowhere
   std::function<Model()> load;
   /// Where to start and what to step through, for the model; not empty. Sets what of the choices follows from
@@ -28,7 +29,6 @@ struct Opened {
 
 struct WindowSettings {
   std::optional<glm::ivec2> size;  // px; none: what suits the display
-  std::filesystem::path folder;    // for pictures and paths
   std::filesystem::path
       shader_folder;  // empty: the embedded shaders; else they are read again when they change
 };

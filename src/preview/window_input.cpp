@@ -45,6 +45,7 @@ glm::dvec3 Window::direction() const {
 
 void Window::moved() {
   moved_at_ = glfwGetTime();
+  playing_.reset();
   session_->move();
 }
 
@@ -163,16 +164,45 @@ void Window::key_of_scene(int key, int by) {
     tell(fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
   }
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
-  save(key);
+  if (key == GLFW_KEY_SPACE) play_or_stop();
+  if (key == GLFW_KEY_K) save([this] { return session_->add_key(); });
+  if (key == GLFW_KEY_F9) save([this] { return save_pose(); });
+  if (key == GLFW_KEY_F11 || key == GLFW_KEY_F12)
+    save([&] { return session_->save_picture(key == GLFW_KEY_F11); });
 }
 
-void Window::save(int key) {
-  if (key != GLFW_KEY_F12 && key != GLFW_KEY_F11 && key != GLFW_KEY_K && key != GLFW_KEY_F9) return;
+void Window::play_or_stop() {
+  if (playing_) return playing_.reset();
+  try {
+    playing_.emplace(session_->keys.keys());
+    playing_since_ = glfwGetTime();
+  } catch (const Error& error) {
+    tell(error.what(), true);
+  }
+}
+
+// By the keys' times, however many frames come of it.
+void Window::play() {
+  if (!playing_) return;
+  moved_at_ = glfwGetTime();
+  const double at = moved_at_ - playing_since_;
+  session_->go_to(playing_->at(std::min(at, playing_->seconds())));
+  session_->move();
+  if (at >= playing_->seconds()) playing_.reset();
+}
+
+void Window::delete_key(std::size_t k) {
+  save([&] {
+    session_->keys.remove(k);
+    return session_->keys.file().string();
+  });
+}
+
+// Tells which file was written, or why not.
+void Window::save(const std::function<std::string()>& write) {
   try {
     draw();  // what has changed since the last frame, the size among it
-    const std::string file = key == GLFW_KEY_F9  ? save_pose()
-                             : key == GLFW_KEY_K ? session_->save_camera(glfwGetTime())
-                                                 : session_->save_picture(key == GLFW_KEY_F11);
+    const std::string file = write();
     tell("saved " + file);
     log_info("saved {}", file);
   } catch (const Error& error) {

@@ -14,6 +14,7 @@
 #include "preview/messages.h"
 #include "preview/panel.h"
 #include "preview/window.h"
+#include "scene/key_path.h"
 
 namespace binosplat::preview {
 
@@ -55,7 +56,10 @@ class Window {
   void read_again();
   void key(int key, int mods);
   void key_of_scene(int key, int by);
-  void save(int key);
+  void play_or_stop();
+  void play();
+  void delete_key(std::size_t k);
+  void save(const std::function<std::string()>& write);
   std::string save_pose() const;
 
   Choices choices_;
@@ -73,6 +77,8 @@ class Window {
   bool announced_ = false;  // that the first frame of what is shown takes longer
   std::future<Model> loading_, levels_;
   double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0, moved_at_ = 0.0;
+  std::optional<KeyPath> playing_;
+  double playing_since_ = 0.0;
   std::optional<double> drawn_at_;    // the last frame, where the next may follow at once
   std::deque<double> frame_seconds_;  // between the last frames that did
   glm::dvec2 cursor_{0.0};

@@ -180,11 +180,45 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   ASSERT_TRUE(says(program, "saved", 6));
   EXPECT_FALSE(same(picture(4), picture(3))) << "nothing moved";
   EXPECT_TRUE(same(picture(4), rendered("key_001", "300x400", approximate)));
-  ASSERT_TRUE(
-      good(render({"--path", out + "/cameras.json", "-o", folder / "replayed", "--layout", "parallel"})));
-  EXPECT_TRUE(fs::exists(folder / "replayed/key_001.png"));
+  ASSERT_TRUE(good(render(
+      {"--path", out + "/cameras.json", "--fps", "2", "-o", folder / "replayed", "--layout", "parallel"})));
+  EXPECT_TRUE(same(picture(1), load_image(folder / "replayed/path_00000.png"))) << "it begins elsewhere";
+  EXPECT_TRUE(fs::exists(folder / "replayed/path_00004.png")) << "there are two seconds between keys";
 
   EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, KeysArePlayedAndGoneOnWith) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 1));
+  hands("keydown w sleep 0.5 keyup w");
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 2));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 3));
+  key("space");
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  key("space");
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 4));
+  EXPECT_FALSE(same(picture(1), picture(2))) << "the way back to the first key was not gone";
+  key("space");
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 5));
+  EXPECT_TRUE(same(picture(1), picture(3))) << "the way does not end at the last key";
+  EXPECT_EQ(leave(program).code, 0);
+
+  Program next = view();
+  ASSERT_TRUE(says(next, "2 keys of a path"));
+  ASSERT_TRUE(says(next, "Gaussians"));
+  key("k");
+  ASSERT_TRUE(says(next, "saved"));
+  EXPECT_EQ(leave(next).code, 0);
+  ASSERT_TRUE(good(render({"--path", out + "/cameras.json", "--keys", "-o", folder / "keys"})));
+  EXPECT_TRUE(fs::exists(folder / "keys/key_002_left.png"));
 }
 
 TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {

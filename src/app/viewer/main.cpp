@@ -52,6 +52,7 @@ preview::Choices choices_of(const RenderOptions& o) {
 
 // What is opened, and what goes for files that are dropped on the window, too.
 struct Wanted {
+  fs::path folder;
   SceneOptions scene;
   CameraOptions camera;
   RigOptions rig;
@@ -91,6 +92,8 @@ preview::Opened open(const Wanted& wanted) {
   const auto pose = saved_camera(scene, camera, saved);
   preview::Opened opened;
   opened.name = scene.name;
+  opened.folder = wanted.folder;
+  check_output(opened.folder / "picture");
   opened.up = up_of(camera, list.known);
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
   opened.load = [scene = scene] { return load_scene(scene); };
@@ -118,16 +121,19 @@ preview::Opened open(const Wanted& wanted) {
 
 void view(const RenderOptions& o) {
   check_view(o);
-  const fs::path folder = o.output.output.empty() ? default_folder(o.scene.name) : fs::path(o.output.output);
-  check_output(folder / "picture");
+  const fs::path folder = o.output.output;
   preview::WindowSettings window;
   window.size = o.camera.lens.size;
-  window.folder = folder;
   window.shader_folder = o.context.shader_dir;
-  preview::run(open({o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
-               [metre = o.rig.units_per_metre](const std::string& file) {
-                 return open({{.name = file}, {}, {.units_per_metre = metre}, {}});
-               });
+  // What is saved of another model lies apart.
+  const auto open_other = [folder, metre = o.rig.units_per_metre](const std::string& file) {
+    const fs::path own = default_folder(file);
+    return open(
+        {folder.empty() ? own : folder / own.filename(), {.name = file}, {}, {.units_per_metre = metre}, {}});
+  };
+  const fs::path first = folder.empty() ? default_folder(o.scene.name) : folder;
+  preview::run(open({first, o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
+               open_other);
 }
 
 int end(ExitCode code, const std::string& text) {
