@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -29,6 +31,7 @@
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/scaffold.h"
+#include "stereo/comfort.h"
 
 namespace binosplat::app {
 
@@ -84,9 +87,35 @@ render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const Cam
                                       {.order = settings.order, .projection = settings.projection});
 }
 
+std::optional<double> finite(const std::optional<double>& metres) {
+  return metres && std::isfinite(*metres) ? metres : std::nullopt;
+}
+
 bool is_empty(const Picture& picture) {
   return std::all_of(picture.colour.begin(), picture.colour.end(),
                      [](const glm::vec4& c) { return c.a == 1.0f; });
+}
+
+// Whether pictures are for a screen whose distance no option says: both eyes in one, and not for a headset.
+bool seeks_screen(const RenderOptions& o, const OutputPlan& plan, const Shot& first) {
+  const bool flat = plan.layout != LAYOUT_SEPARATE && plan.layout != LAYOUT_MULTI_VIEW;
+  return flat && !o.rig.convergence && o.rig.cant.value_or(0.0) == 0.0 && !o.camera.lens.headset() &&
+         !first.given_eyes;
+}
+
+// That distance, in metres: what suits the first view of the run, whichever part of it is drawn here; nothing
+// where that shows nothing.
+std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
+                                  const Shot& first) {
+  frame.draw(std::array{first.eyes[0].view},
+             {.order = settings.order, .projection = settings.projection, .precision = settings.precision});
+  const auto metres = stereo::suitable_convergence({first.eyes[0].camera, first.eyes[1].camera},
+                                                   frame.read_pictures()[0], first.units_per_metre);
+  frame.start_over();
+  if (metres)
+    log_info("convergence {:.3g} m, which suits what {} shows (--convergence METRES for another, or inf)",
+             *metres, first.name);
+  return metres;
 }
 
 // What is drawn, and by what.
@@ -95,7 +124,8 @@ struct Work {
   CalibratedSettings calibrated;
   CameraList list;
   std::vector<Shot> shots;
-  std::string photos;  // a folder; empty: none
+  std::optional<Shot> screen;  // what tells how far the screen is, where no option does
+  std::string photos;          // a folder; empty: none
   std::optional<FollowedLevels> followed;
 };
 
@@ -114,6 +144,10 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
   if (settings.transmittance == TRANSMITTANCE_DEPTH && drawing.calibration.empty())
     settings.depth_table = depth_table(frame, report.options.camera.lens, work.list, report.near_plane,
                                        report.model.axes, settings);
+  if (work.screen) report.convergence = find_screen(frame, settings, *work.screen);
+  if (work.screen && report.convergence) {
+    for (Shot& shot : work.shots) converge(shot, *report.convergence);
+  }
   const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
   bool all_empty = true;
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
@@ -220,12 +254,15 @@ ExitCode render(const RenderOptions& o) {
   work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
   check_shots(work.plan, work.shots);
   if (!work.photos.empty()) check_photos(work.photos, work.shots);
+  if (seeks_screen(o, work.plan, work.shots[0])) work.screen = work.shots[0];
   take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
   if (work.followed) work.followed->bring(model, views_of(work.shots[0]));
 
   context = open_context(o.context);
-  RenderReport report{o, model, *context, near_plane, memory_needs(settings, model, work.shots), {}, {}};
+  RenderReport report{
+      o,  model, *context, near_plane, memory_needs(settings, model, work.shots), finite(o.rig.convergence),
+      {}, {}};
   print_needs(report.needs);
   draw_all(*context, work, model, report);
   print(report);

@@ -1,6 +1,7 @@
 #include "app/shots.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "app/load_scene.h"
@@ -248,10 +249,19 @@ stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, doub
   settings.ipd = rig.ipd.value_or(known.ipd.value_or(settings.ipd));
   settings.units_per_metre =
       rig.units_per_metre.value_or(known.units_per_metre.value_or(settings.units_per_metre));
-  settings.convergence = rig.convergence;
+  if (rig.convergence != std::numeric_limits<double>::infinity()) settings.convergence = rig.convergence;
   settings.cant_degrees = rig.cant.value_or(settings.cant_degrees);
   settings.near_plane = near_plane;
   return settings;
+}
+
+void converge(Shot& shot, double metres) {
+  if (shot.given_eyes || shot.eyes.size() != 2) return;
+  for (Eye& eye : shot.eyes) {
+    const double shift = 0.5 * eye.camera.fx * *shot.ipd / metres;
+    eye.camera.cx += eye.side == "left" ? -shift : shift;
+    set_lens(eye.view, eye.camera);
+  }
 }
 
 std::vector<shared::View> views_of(const Shot& shot) {

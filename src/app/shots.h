@@ -92,6 +92,9 @@ bool take_metre_of_cameras(const SceneOptions& scene, const RigOptions& rig, Cam
 /// What there is of a rig. `near_plane` in world units.
 stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane = near_default);
 
+/// Brings the screen of eyes that look infinitely far to so many metres. Not of eyes that the cameras give.
+void converge(Shot& shot, double metres);
+
 /// What a frame draws of a shot.
 std::vector<shared::View> views_of(const Shot& shot);
 

@@ -42,7 +42,8 @@ bool factor_slider(const char* label, double& value, double least, double most, 
   return true;
 }
 
-bool draw_rig(stereo::RigSettings& rig) {
+bool draw_rig(Choices& choices) {
+  stereo::RigSettings& rig = choices.rig;
   bool changed = false;
   float ipd = static_cast<float>(1000.0 * rig.ipd);
   if (ImGui::SliderFloat("eyes apart", &ipd, 0.0f, 200.0f, "%.1f mm")) {
@@ -50,12 +51,14 @@ bool draw_rig(stereo::RigSettings& rig) {
     changed = true;
   }
   changed |= factor_slider("units a metre", rig.units_per_metre, 0.01, 100.0, "%.3f");
+  const auto before = rig.convergence;
   bool converges = rig.convergence.has_value();
   if (ImGui::Checkbox("convergence", &converges)) {
     rig.convergence = converges ? std::optional(2.0) : std::nullopt;
     changed = true;
   }
   if (rig.convergence) changed |= factor_slider("at", *rig.convergence, 0.2, 50.0, "%.2f m");
+  if (rig.convergence != before) choices.seeks_screen = false;  // for the next model, too
   return changed;
 }
 
@@ -192,7 +195,7 @@ void Panel::draw_controls(Session& session) {
   if (shown) session.change_show();
   changed |= draw_quality(c.settings);
   if (ImGui::CollapsingHeader("view", ImGuiTreeNodeFlags_DefaultOpen)) changed |= draw_view(session);
-  if (ImGui::CollapsingHeader("eyes", ImGuiTreeNodeFlags_DefaultOpen)) changed |= draw_rig(c.rig);
+  if (ImGui::CollapsingHeader("eyes", ImGuiTreeNodeFlags_DefaultOpen)) changed |= draw_rig(c);
   if (changed) {
     session.change();
     psnr.reset();

@@ -9,6 +9,7 @@
 #include "measure/metrics.h"
 #include "scene/axes.h"
 #include "shared/layout.h"
+#include "stereo/comfort.h"
 #include "stereo/layout.h"
 
 namespace binosplat::preview {
@@ -75,7 +76,10 @@ Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras,
       frame_(context, model_, choices.settings.precision),
       presenter_(context),
       show_(frame_.model()),
-      shown_colours_(context, "pixels to show") {}
+      shown_colours_(context, "pixels to show"),
+      seeks_screen_(choices.seeks_screen) {
+  if (seeks_screen_) choices.rig.convergence.reset();
+}
 
 Session::~Session() { context_.gl().DeleteFramebuffers(1, &smaller_framebuffer_); }
 
@@ -196,7 +200,17 @@ bool Session::draw() {
   }
   if (reports_.size() > reports_kept) reports_.pop_front();
   ++frames_drawn_;
+  if (seeks_screen_ && shown_layout_ != LAYOUT_SEPARATE) find_screen();
   return true;
+}
+
+// Once: a screen that moved with the head would make heads swim.
+void Session::find_screen() {
+  seeks_screen_ = false;
+  if (choices.rig.convergence || choices.rig.cant_degrees != 0.0) return;
+  screen_found_ = stereo::suitable_convergence(eyes_, frame_.read_pictures()[0], choices.rig.units_per_metre);
+  choices.rig.convergence = screen_found_;
+  if (screen_found_) change();
 }
 
 void Session::present() {

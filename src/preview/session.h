@@ -28,6 +28,7 @@ struct Choices {
   render::FrameSettings settings;
   stereo::RigSettings rig;
   glm::vec3 background{0.0f};
+  bool seeks_screen = false;  // rig.convergence is to suit what a model's first picture shows
 };
 
 /// Another rule, with the tolerance at which a search would begin.
@@ -113,6 +114,8 @@ class Session {
   std::optional<double> most_shown() const { return shown_.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
+  /// The convergence that suited the first picture, in m, where that was asked for.
+  const std::optional<double>& screen_found() const { return screen_found_; }
   const Model& model() const { return model_; }
 
   /// What the next frame draws, left eye first; none before there is a size to draw in.
@@ -123,6 +126,7 @@ class Session {
   Camera head_camera(int divisor = 1) const;
   std::vector<shared::View> views_of(const Camera& camera);
   void draw_at_rest();
+  void find_screen();
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;
@@ -148,6 +152,8 @@ class Session {
   std::size_t frames_drawn_ = 0;
   std::deque<render::FrameReport> reports_;
   std::string trouble_;
+  bool seeks_screen_;
+  std::optional<double> screen_found_;
 };
 
 }  // namespace binosplat::preview

@@ -195,7 +195,17 @@ bool Window::draw() {
   const auto across = static_cast<float>(std::max(1, window.x));
   size.x -= static_cast<int>(panel_.width(across) * static_cast<float>(size.x) / across);
   session_->resize(size);
-  return session_->draw();
+  const bool known = session_->screen_found().has_value();
+  const bool drawn = session_->draw();
+  if (!known && session_->screen_found()) {
+    const std::string text = fmt::format(
+        "convergence {:.3g} m, which suits what is seen (--convergence METRES for "
+        "another, or inf)",
+        *session_->screen_found());
+    log_info("{}", text);
+    tell(text);
+  }
+  return drawn;
 }
 
 // Only frames that follow one another tell how many come a second.

@@ -95,7 +95,9 @@ struct ViewOnADisplay : test::SceneTest {
   }
 
   Program view(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"view", model, "-o", out, "--size", "600x400"};
+    std::vector<std::string> arguments = {
+        "view",    model,           "-o", out, "--size",
+        "600x400", "--convergence", "inf"};  // none that goes by what is seen
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Program(arguments, {.variables = {{"DISPLAY", display}}});
   }
@@ -134,8 +136,9 @@ struct ViewOnADisplay : test::SceneTest {
   /// The same pose as `render` draws it.
   Image rendered(const std::string& key, const std::string& size,
                  const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"--cameras", out + "/cameras.json",  "--view", key, "--size", size,
-                                          "-o",        folder / "rendered.png"};
+    std::vector<std::string> arguments = {
+        "--cameras", out + "/cameras.json",   "--view",        key,  "--size", size,
+        "-o",        folder / "rendered.png", "--convergence", "inf"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_TRUE(good(render(arguments)));
     return load_image(folder / "rendered.png");
@@ -180,8 +183,8 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   ASSERT_TRUE(says(program, "saved", 6));
   EXPECT_FALSE(same(picture(4), picture(3))) << "nothing moved";
   EXPECT_TRUE(same(picture(4), rendered("key_001", "300x400", approximate)));
-  ASSERT_TRUE(good(render(
-      {"--path", out + "/cameras.json", "--fps", "2", "-o", folder / "replayed", "--layout", "parallel"})));
+  ASSERT_TRUE(good(render({"--path", out + "/cameras.json", "--fps", "2", "-o", folder / "replayed",
+                           "--layout", "parallel", "--convergence", "inf"})));
   EXPECT_TRUE(same(picture(1), load_image(folder / "replayed/path_00000.png"))) << "it begins elsewhere";
   EXPECT_TRUE(fs::exists(folder / "replayed/path_00004.png")) << "there are two seconds between keys";
 
@@ -271,12 +274,12 @@ TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
   ASSERT_TRUE(says(program, "saved", 2));
   EXPECT_EQ(leave(program).code, 0);
 
-  const Outcome outcome = render({"-o", folder / "again.png"});
+  const Outcome outcome = render({"-o", folder / "again.png", "--convergence", "inf"});
   ASSERT_TRUE(good(outcome));
   EXPECT_NE(outcome.err.find("model.binosplat.json"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("pose saved there"), std::string::npos) << outcome.err;
   EXPECT_TRUE(same(picture(1), load_image(folder / "again.png")));
-  ASSERT_TRUE(good(render({"-o", folder / "other.png", "--units-per-metre", "1"})));
+  ASSERT_TRUE(good(render({"-o", folder / "other.png", "--convergence", "inf", "--units-per-metre", "1"})));
   EXPECT_FALSE(same(picture(1), load_image(folder / "other.png"))) << "the saved scale changes nothing";
 
   Program again = view();
@@ -313,7 +316,8 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
   REQUIRE_FIXTURES(fixtures);
   const std::string scene = fixtures / "sog/st-lod";
   const auto start = [&](const std::string& to, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"view", scene, "-o", to, "--size", "600x400"};
+    std::vector<std::string> arguments = {"view",    scene,           "-o", to, "--size",
+                                          "600x400", "--convergence", "inf"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Program(arguments, {.variables = {{"DISPLAY", display}}});
   };
@@ -329,7 +333,7 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
   const auto drawn = [&](const std::string& level) {
     const Outcome outcome =
         test::run_program({"render", scene, "--cameras", out + "/cameras.json", "--view", "key_000", "--size",
-                           "300x400", "--lod", level, "-o", folder / "level.png"});
+                           "300x400", "--lod", level, "-o", folder / "level.png", "--convergence", "inf"});
     EXPECT_TRUE(good(outcome));
     return load_image(folder / "level.png");
   };

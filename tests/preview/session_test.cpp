@@ -105,6 +105,32 @@ TEST_F(SessionTest, AtRestAPictureIsWhole) {
   EXPECT_EQ(session.divisor(), 1);
 }
 
+TEST_F(SessionTest, TheScreenStandsWhereItSuitsTheFirstPicture) {
+  picture();
+  EXPECT_FALSE(session.screen_found()) << "nobody asked for one";
+  EXPECT_FALSE(session.choices.rig.convergence);
+  Choices seeking = coarse;
+  seeking.seeks_screen = true;
+  seeking.layout = LAYOUT_SEPARATE;
+  Session other(test::gl_context(), test::random_model(9, 400, 0, 0.6), {test::front_camera(64, 40, 55.0)},
+                glm::dvec3(0, -1, 0), seeking, folder.path());
+  other.resize({128, 40});
+  other.draw();
+  EXPECT_FALSE(other.screen_found()) << "one eye has no screen";
+  other.choices.layout = LAYOUT_PARALLEL;
+  other.change();
+  other.draw();
+  ASSERT_TRUE(other.screen_found());
+  EXPECT_EQ(other.choices.rig.convergence, other.screen_found());
+  EXPECT_TRUE(other.draw()) << "it is not shown";
+  // It stays where it is, wherever the head goes and whatever is chosen.
+  other.head.dolly(0.5);
+  other.choices.rig.convergence.reset();
+  other.change();
+  other.draw();
+  EXPECT_FALSE(other.choices.rig.convergence);
+}
+
 TEST_F(SessionTest, TheViewIsWidenedAndReset) {
   const Image before = picture();
   const double fov = session.head.fov();

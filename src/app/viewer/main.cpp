@@ -47,6 +47,7 @@ preview::Choices choices_of(const RenderOptions& o) {
   choices.settings.background = choices.background = o.output.backdrop();
   choices.rig = rig_settings(o.rig, {});  // until the model tells
   choices.show = o.output.show;
+  choices.seeks_screen = !o.rig.convergence;
   return choices;
 }
 
