@@ -148,7 +148,7 @@ void Panel::draw_path(Session& session) {
   }
   for (std::size_t k = 0; k < keys.size(); ++k) {
     ImGui::PushID(static_cast<int>(k));
-    const std::string name = fmt::format("{}, {:.1f} s", keys[k].name, *keys[k].time);
+    const std::string name = fmt::format("{}: {:.1f} s", k, *keys[k].time);
     if (ImGui::Button("go")) session.go_to(keys[k]);
     ImGui::SameLine();
     const bool moved = ImGui::Button("move here");

@@ -45,7 +45,6 @@ glm::dvec3 Window::direction() const {
 
 void Window::moved() {
   moved_at_ = glfwGetTime();
-  playing_.reset();
   session_->move();
 }
 
@@ -176,18 +175,22 @@ void Window::play_or_stop() {
   try {
     playing_.emplace(session_->keys.keys());
     playing_since_ = glfwGetTime();
+    session_->go_to(playing_->at(0.0));
+    played_ = session_->head.camera();
   } catch (const Error& error) {
     tell(error.what(), true);
   }
 }
 
-// By the keys' times, however many frames come of it.
+// By the keys' times, however many frames come of it, until hands move the head.
 void Window::play() {
   if (!playing_) return;
-  moved_at_ = glfwGetTime();
-  const double at = moved_at_ - playing_since_;
+  const Camera& head = session_->head.camera();
+  if (head.position != played_.position || head.rotation != played_.rotation) return playing_.reset();
+  const double at = glfwGetTime() - playing_since_;
   session_->go_to(playing_->at(std::min(at, playing_->seconds())));
-  session_->move();
+  played_ = session_->head.camera();
+  moved();
   if (at >= playing_->seconds()) playing_.reset();
 }
 

@@ -78,6 +78,7 @@ class Window {
   std::future<Model> loading_, levels_;
   double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0, moved_at_ = 0.0;
   std::optional<KeyPath> playing_;
+  Camera played_;  // where that has brought the head
   double playing_since_ = 0.0;
   std::optional<double> drawn_at_;    // the last frame, where the next may follow at once
   std::deque<double> frame_seconds_;  // between the last frames that did
