@@ -150,7 +150,7 @@ void learn_beside(const std::string& scene, const CameraOptions& camera, Known& 
 // What the model tells where no cameras do. Returns what cameras go by that are made up, for the log.
 std::string learn_from(const Model& model, const SceneOptions& scene, const CameraOptions& camera,
                        Known& known) {
-  if (known.around) return "around what the cameras beside it look at";
+  if (known.around) return "around what the cameras beside it look at (--eye and --at for other places)";
   const std::optional<glm::dvec3> up = camera.up ? camera.up : known.up;
   const auto ground = is_built_in(scene.name) ? std::nullopt : find_ground(model, up);
   std::string place = "from outside";
@@ -237,7 +237,7 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
     list.cameras = {look_at(*camera.eye, *camera.at, up, fov, made_up_width, made_up_height)};
   } else if (camera.orbit) {
     list.source = "--orbit";
-    log_info("--orbit: {}", how);
+    log_info("going around {}: {}", scene.name, how);
     list.cameras = orbit(model, *camera.orbit, made_up_width, made_up_height, fov, up, known.around);
   } else {
     log_info("no cameras beside {}: {}", scene.name, how);

@@ -144,7 +144,7 @@ class Window {
     try {
       Model model = loading_.get();
       Choices choices = session_ ? session_->choices : choices_;
-      auto cameras = next_.cameras(model, choices);
+      Start start = next_.start(model, choices);
       std::optional<Navigator> head;
       if (session_ && again_) {
         head = session_->head;
@@ -153,7 +153,7 @@ class Window {
       session_.reset();  // its memory first
       log_info("{}: {} Gaussians", next_.name, model.count());
       scene_ = std::move(next_);
-      session_ = std::make_unique<Session>(*context_, std::move(model), std::move(cameras), scene_.up,
+      session_ = std::make_unique<Session>(*context_, std::move(model), std::move(start.cameras), start.up,
                                            choices, settings_.folder);
       if (head) session_->head = *head;
       glfwSetWindowTitle(window_, ("binosplat - " + scene_.name).c_str());

@@ -18,7 +18,7 @@ namespace binosplat {
 namespace {
 
 /// More Gaussians than this tell no more.
-constexpr std::size_t sample_count = 100000;
+constexpr std::size_t sample_count = 50000;
 /// Flat is what is at most so thick beside its second axis; of less opacity it is air.
 constexpr float flat = 0.3f, opaque = 0.5f;
 /// Fewer flat Gaussians say nothing.
