@@ -28,7 +28,7 @@ struct Map {
     return cell.x >= 0 && cell.y >= 0 && cell.x < side && cell.y < side;
   }
   static std::size_t index(const glm::ivec2& cell) {
-    return static_cast<std::size_t>(cell.y * side + cell.x);
+    return static_cast<std::size_t>(cell.y) * side + static_cast<std::size_t>(cell.x);
   }
   bool taken(const glm::ivec2& cell) const { return cover[index(cell)] > covered; }
   bool stands(const glm::ivec2& cell) const {
