@@ -40,7 +40,9 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
       ->type_name("FILE");
   three("--eye", o.eye, "Camera position instead, in world units");
   three("--at", o.at, "What it looks at");
-  three("--up", o.up, "What is up in the picture (0,-1,0); for --eye, --orbit and\nmodels without cameras");
+  three("--up", o.up,
+        "What is up in the picture (as the cameras stand, or else found in\nthe model); for --eye, --orbit "
+        "and models without cameras");
   sub.add_option("--fov", o.fov, "Vertical field of view of such cameras (60)")
       ->type_name("DEGREES")
       ->check(below_half_turn);

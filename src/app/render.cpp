@@ -248,6 +248,7 @@ ExitCode render(const RenderOptions& o) {
   }
   Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget);
   log_model(o.scene.name, o.drawing.decode, model);
+  if (o.rig.units_per_metre) work.list.known.units_per_metre = o.rig.units_per_metre;
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list, model);

@@ -39,7 +39,7 @@ struct Known {
   std::optional<double> units_per_metre;  // world units
   std::optional<double> ipd;              // m
   std::optional<glm::dvec3> up;           // the world's
-  std::optional<Capture::Around> around;  // what the cameras beside the model stand around
+  std::optional<Capture::Around> around;  // what to stand around
 };
 
 /// Where cameras come from, for the log, and which they are.
@@ -65,8 +65,8 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
                                        const std::optional<SavedPose>& saved);
 
 /// Cameras made up from --eye, --orbit or the model: level, and on the orbit around, as those beside the
-/// model.
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const Known& known,
+/// model, or by what the model itself tells (scene/ground.h), which the list then knows; says which.
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, Known known,
                            const Model& model);
 
 /// --up, or what is known.

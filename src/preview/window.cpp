@@ -131,7 +131,7 @@ void Window::take_loaded() {
   try {
     Model model = loading_.get();
     Choices choices = session_ ? session_->choices : choices_;
-    auto cameras = next_.cameras(model, choices);
+    Start start = next_.start(model, choices);
     std::optional<Navigator> head;
     std::optional<KeyList> keys;
     if (session_ && again_) {
@@ -142,7 +142,7 @@ void Window::take_loaded() {
     session_.reset();  // its memory first
     log_info("{}: {} Gaussians", next_.name, model.count());
     scene_ = std::move(next_);
-    session_ = std::make_unique<Session>(*context_, std::move(model), std::move(cameras), scene_.up, choices,
+    session_ = std::make_unique<Session>(*context_, std::move(model), std::move(start.cameras), start.up, choices,
                                          scene_.folder);
     announced_ = false;
     playing_.reset();

@@ -153,7 +153,7 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
   test::write_text(folder / "cameras.json", cameras.dump());
   const Outcome outcome =
       render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out, "--json", folder / "r.json"});
-  EXPECT_TRUE(ended(outcome, 0, "--orbit: around what the cameras beside"));
+  EXPECT_TRUE(ended(outcome, 0, ": around what the cameras beside it look at"));
   const nlohmann::json drawn = nlohmann::json::parse(test::read_text(folder / "r.json"))["views"];
   ASSERT_EQ(drawn.size(), 4u);
   for (const nlohmann::json& view : drawn) {
@@ -162,6 +162,30 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
   }
   test::write_text(folder / "cameras.json", "no cameras");
   EXPECT_TRUE(ended(render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out}), 0, "warning"));
+}
+
+TEST_F(FirstWords, WithoutCamerasOneStandsOnTheGround) {
+  std::filesystem::remove(folder / "cameras.json");
+  EXPECT_NE(said({"--size", "36x24"}).find("from outside; up is 0.00,-1.00,0.00, since nothing in it tells"),
+            std::string::npos);
+  test::save_ply(model, test::floor_model());
+  const auto drawn = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--mono", "--size", "36x24", "--json", folder / "r.json"});
+    const std::string text = said(arguments);
+    const auto view = nlohmann::json::parse(test::read_text(folder / "r.json"))["views"][0]["eyes"][0];
+    return std::pair(text, view["position"][2].get<double>());
+  };
+  const auto [text, height] = drawn({});
+  EXPECT_NE(text.find("from 1.6 units above the ground (--eye and --at for another place); up is"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("0.00,1.00, by the surfaces in it (--up for another)"), std::string::npos) << text;
+  EXPECT_NEAR(height, 1.6, 0.1);
+  EXPECT_NEAR(drawn({"--units-per-metre", "0.5"}).second, 0.8, 0.1);
+  EXPECT_NEAR(drawn({"--orbit", "3"}).second, 1.6, 0.1);
+  const auto [other, above] = drawn({"--up", "0,-1,0"});
+  EXPECT_NE(other.find("from outside"), std::string::npos) << other;
+  EXPECT_EQ(other.find("up is"), std::string::npos) << "it was said: " << other;
 }
 
 }  // namespace

@@ -128,7 +128,8 @@ TEST_F(Video, WhatDoesNotGoTogetherIsRefused) {
   EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--exr", "half"}), 2, "is a video"));
   EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--background", "none"}), 2, "no alpha"));
   EXPECT_TRUE(ended(render({"--path", path, "-o", video, "--layout", "separate"}), 2, "must be a folder"));
-  EXPECT_TRUE(ended(render({"--path", path, "-o", out, "--fps", "10"}), 2, "has frames, each drawn as it is"));
+  EXPECT_TRUE(
+      ended(render({"--path", path, "-o", out, "--fps", "10"}), 2, "has frames, each drawn as it is"));
   nlohmann::json other = test::camera_json("b", 0.1);
   other["width"] = 80;
   write_text(path, nlohmann::json({test::camera_json("a", 0), other}).dump());

@@ -290,6 +290,19 @@ TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
   EXPECT_TRUE(same(picture(1), picture(2)));
 }
 
+TEST_F(ViewOnADisplay, UpThatIsFoundIsSaved) {
+  std::filesystem::remove(folder / "cameras.json");
+  test::save_ply(model, test::floor_model());
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F9");
+  ASSERT_TRUE(says(program, "saved", 1));
+  EXPECT_EQ(leave(program).code, 0);
+  const auto pose = nlohmann::json::parse(test::read_text(folder / "model.binosplat.json"))[0];
+  EXPECT_NEAR(pose["up"][2].get<double>(), 1.0, 1e-3) << pose.dump();
+  EXPECT_NEAR(pose["position"][2].get<double>(), 1.6, 0.1) << pose.dump();
+}
+
 TEST_F(ViewOnADisplay, AFailedLoadIsToldAndTheOldSceneStays) {
   Program program = view();
   ASSERT_TRUE(says(program, "Gaussians"));

@@ -89,25 +89,25 @@ preview::Opened open(const Wanted& wanted) {
   const SceneOptions& scene = wanted.scene;
   const CameraOptions& camera = wanted.camera;
   const auto saved = find_saved(scene);
-  const CameraList list = listed_cameras(scene, camera, saved);
+  CameraList list = listed_cameras(scene, camera, saved);
+  if (wanted.rig.units_per_metre) list.known.units_per_metre = wanted.rig.units_per_metre;
   const auto pose = saved_camera(scene, camera, saved);
   preview::Opened opened;
   opened.name = scene.name;
   opened.folder = wanted.folder;
   check_output(opened.folder / "picture");
-  opened.up = up_of(camera, list.known);
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
   opened.load = [scene = scene] { return load_scene(scene); };
   follow_levels(wanted, opened);
-  opened.cameras = [wanted, list, pose](const Model& model, preview::Choices& choices) {
+  opened.start = [wanted, list, pose](const Model& model, preview::Choices& choices) {
     const CameraOptions& o = wanted.camera;
     const stereo::RigSettings found =
         rig_settings(wanted.rig, list.known, near_plane_of(o, pose ? *pose : list, model));
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;
-    std::vector<Camera> cameras =
-        list.listed ? list.cameras : made_up_cameras(wanted.scene, o, list.known, model).cameras;
+    const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);
+    std::vector<Camera> cameras = all.cameras;
     if (!o.views.empty()) {
       const auto at =
           std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == o.views[0]; });
@@ -115,7 +115,7 @@ preview::Opened open(const Wanted& wanted) {
       std::rotate(cameras.begin(), at, cameras.end());
     }
     if (pose) cameras.insert(cameras.begin(), pose->cameras[0]);
-    return cameras;
+    return preview::Start{std::move(cameras), up_of(o, all.known)};
   };
   return opened;
 }
