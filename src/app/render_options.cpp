@@ -1,10 +1,12 @@
 #include "app/render_options.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <array>
 
 #include "app/tour.h"
 #include "base/error.h"
+#include "preview/keys.h"
 
 namespace binosplat::app {
 
@@ -78,6 +80,13 @@ constexpr std::array render_only = {"--mono",    "--only",   "--preset",      "-
                                     "--path",    "--frames", "--calibration", "--reference-until",
                                     "--backend", "--device"};
 
+std::string keys_text() {
+  std::string text = "Keys and buttons in the window:\n";
+  for (const preview::KeyHelp& key : preview::key_help)
+    text += fmt::format("  {:<15}{}\n", key.keys, key.what);
+  return text;
+}
+
 // All but what is done with the pictures.
 void add_picture_options(CLI::App& sub, RenderOptions& o, bool in_window) {
   add_scene_options(sub, o.scene);
@@ -109,6 +118,7 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   sub.get_option("--size")->description("Pixels of the window (1280x720, or more where displays are dense)");
   sub.get_option("--view")->description("The camera to start at, by name (the first)");
   for (const char* name : render_only) sub.get_option(name)->group("");  // understood, but in no help
+  sub.footer(keys_text());
   sub.parse_complete_callback([&sub] {
     for (const char* name : render_only) {
       if (sub.count(name) > 0) fail("{} is for `binosplat render`: leave it out", name);

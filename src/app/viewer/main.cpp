@@ -17,7 +17,6 @@
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
-#include "preview/keys.h"
 #include "preview/window.h"
 
 namespace binosplat::app {
@@ -31,13 +30,6 @@ void check_view(const RenderOptions& o) {
   if (o.camera.views.size() > 1)
     fail("--view {}: the window starts at one camera, and goes on to the next with N: name one",
          fmt::join(o.camera.views, " "));
-}
-
-std::string keys_text() {
-  std::string text = "Keys and buttons in the window:\n";
-  for (const preview::KeyHelp& key : preview::key_help)
-    text += fmt::format("  {:<15}{}\n", key.keys, key.what);
-  return text;
 }
 
 preview::Choices choices_of(const RenderOptions& o) {
@@ -149,7 +141,6 @@ int run(int argc, char** argv) {
     add_view_options(program, options);
     add_max_memory(program);
     add_quiet(program);
-    program.footer(keys_text());
     check_arguments(argc, argv);
     program.parse(argc, argv);
     note_inputs(program);
