@@ -46,7 +46,7 @@ bool draw_rig(Choices& choices) {
   stereo::RigSettings& rig = choices.rig;
   bool changed = false;
   float ipd = static_cast<float>(1000.0 * rig.ipd);
-  if (ImGui::SliderFloat("eyes apart", &ipd, 0.0f, 200.0f, "%.1f mm")) {
+  if (ImGui::SliderFloat("ipd", &ipd, 0.0f, 200.0f, "%.1f mm")) {
     rig.ipd = std::max(0.0f, ipd) / 1000.0;
     changed = true;
   }
@@ -88,7 +88,7 @@ bool draw_thresholds(render::FrameSettings& s) {
   }
   // The depth table needs cameras to be measured from: `binosplat render` has it.
   if (render::threshold_rules[s.th].uses_bound)
-    changed |= combo("light", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
+    changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
   return changed;
 }
 
