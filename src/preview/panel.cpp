@@ -125,9 +125,8 @@ bool Panel::draw_view(Session& session) {
   if (ImGui::Button("this is up")) session.set_up();
   ImGui::SameLine();
   if (ImGui::Button("save pose")) requests.save_pose();
+  ImGui::TextWrapped("camera: %s", session.camera_name().c_str());
   ImGui::Checkbox("walk", &walking);
-  ImGui::SameLine();
-  ImGui::TextDisabled("camera: %s", session.camera_name().c_str());
   auto fov = static_cast<float>(glm::degrees(session.head.fov()));
   if (ImGui::SliderFloat("field of view", &fov, 10.0f, 120.0f, "%.0f degrees",
                          ImGuiSliderFlags_AlwaysClamp)) {
@@ -226,24 +225,30 @@ void Panel::draw(Session& session) {
 }
 
 void draw_legend(int show, double most, float width) {
-  const float margin = 0.75f * ImGui::GetFontSize(), height = ImGui::GetFontSize();
-  const float bar = std::max(1.0f, std::min(20.0f * ImGui::GetFontSize(), width - 4.0f * margin));
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float line = ImGui::GetFontSize(), margin = 0.75f * line;
+  const float bar = std::max(1.0f, std::min(20.0f * line, width - 2.0f * (margin + style.WindowPadding.x)));
+  const std::string title = fmt::format("{}: {}", show_choices[show].name, show_choices[show].help);
+  const std::string end = fmt::format("{} and more", most);
+  // Dear ImGui itself would know the size of another text one frame later.
+  const float texts = ImGui::CalcTextSize(title.c_str(), nullptr, false, bar).y;
+  const ImVec2 size = {bar + 2.0f * style.WindowPadding.x,
+                       texts + 2.0f * (line + style.ItemSpacing.y + style.WindowPadding.y)};
   ImGui::SetNextWindowPos({width - margin, ImGui::GetIO().DisplaySize.y - margin}, ImGuiCond_Always, {1, 1});
-  ImGui::Begin("legend", nullptr,
-               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs);
-  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + bar);
-  ImGui::Text("%s: %s", show_choices[show].name, show_choices[show].help);
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("legend", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(style.WindowPadding.x + bar);
+  ImGui::TextUnformatted(title.c_str());
   ImGui::PopTextWrapPos();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   for (float x = 0; x < bar; ++x) {
     const glm::vec3 colour = stereo::map_colour(x / bar);
-    ImGui::GetWindowDrawList()->AddRectFilled({at.x + x, at.y}, {at.x + x + 1.0f, at.y + height},
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x + x, at.y}, {at.x + x + 1.0f, at.y + line},
                                               ImColor(colour.r, colour.g, colour.b));
   }
-  ImGui::Dummy({bar, height});
+  ImGui::Dummy({bar, line});
   ImGui::Text("0");
-  const std::string end = fmt::format("{} and more", most);
-  ImGui::SameLine(ImGui::GetCursorPosX() + bar - ImGui::CalcTextSize(end.c_str()).x);
+  ImGui::SameLine(style.WindowPadding.x + bar - ImGui::CalcTextSize(end.c_str()).x);
   ImGui::TextUnformatted(end.c_str());
   ImGui::End();
 }

@@ -32,8 +32,8 @@ void draw_times(const std::deque<render::FrameReport>& reports) {
   std::vector<double> totals;
   for (const render::FrameReport& report : reports) totals.push_back(report.total_ms);
   const double most = *std::max_element(totals.begin(), totals.end());
-  ImGui::Text("GPU: %.2f ms, median %.2f, p99 %.2f", totals.back(), quantile(totals, 0.5),
-              quantile(totals, 0.99));
+  ImGui::TextWrapped("GPU: %.2f ms, median %.2f, p99 %.2f", totals.back(), quantile(totals, 0.5),
+                     quantile(totals, 0.99));
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = 5.0f * ImGui::GetFontSize();
   ImDrawList* list = ImGui::GetWindowDrawList();

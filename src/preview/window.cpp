@@ -142,8 +142,8 @@ void Window::take_loaded() {
     session_.reset();  // its memory first
     log_info("{}: {} Gaussians", next_.name, model.count());
     scene_ = std::move(next_);
-    session_ = std::make_unique<Session>(*context_, std::move(model), std::move(start.cameras), start.up, choices,
-                                         scene_.folder);
+    session_ = std::make_unique<Session>(*context_, std::move(model), std::move(start.cameras), start.up,
+                                         choices, scene_.folder);
     announced_ = false;
     playing_.reset();
     if (head) session_->head = *head;
