@@ -116,7 +116,7 @@ TEST_F(Layout, AScreenStandsWhereItSuitsTheFirstView) {
   const std::string png = folder / "pair.png";
   const auto draw = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--ipd", "0.1", "--json", folder / "r.json"});
-    const Outcome outcome = render(arguments);
+    Outcome outcome = render(arguments);
     EXPECT_TRUE(good(outcome));
     return outcome;
   };
