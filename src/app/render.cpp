@@ -237,6 +237,7 @@ ExitCode render(const RenderOptions& o) {
   context = open_context(o.context);
   RenderReport report{o, model, *context, near_plane, memory_needs(settings, model, work.shots), {}, {}};
   print_needs(report.needs);
+  if (o.output.output.empty()) claim_folder(work.plan.folder, o.scene.name);
   draw_all(*context, work, model, report);
   print(report);
   if (!o.output.json.empty()) save(o.output.json, report);

@@ -129,6 +129,24 @@ TEST_F(FirstWords, ModelsOfOneNameLeaveTheirPicturesApart) {
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name / "framed_left.png")) << name;
 }
 
+TEST_F(FirstWords, TwoModelsOfOneFileNameDoToo) {
+  for (const char* place : {"a", "b", "c/b"}) {
+    std::filesystem::create_directories(folder / place);
+    std::filesystem::copy(model, folder / place / "garden.ply");
+  }
+  const auto draw = [&](const std::string& file, const std::string& to) {
+    std::filesystem::remove_all(folder / "out" / to / "framed_left.png");
+    EXPECT_TRUE(good(run({"render", file, "--size", "36x24"})));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / to / "framed_left.png")) << file;
+  };
+  for (int round = 0; round < 2; ++round) {
+    draw("a/garden.ply", "garden");
+    draw("b/garden.ply", "b_garden");
+    draw("c/b/garden.ply", "c_b_garden");
+  }
+  EXPECT_EQ(test::read_text(folder / "out/b_garden/model.txt"), (folder / "b/garden.ply").string() + "\n");
+}
+
 TEST_F(FirstWords, AModelsNameIsNoEnding) {
   std::filesystem::copy(model, folder / "scan.new.ply");
   std::filesystem::copy(model, folder / "clip.mp4.ply");
