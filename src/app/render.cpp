@@ -40,7 +40,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
+void check_any_photo(const std::string& folder, const std::vector<Shot>& shots) {
   for (const Shot& shot : shots) {
     if (find_view_photo(folder, shot.name)) return;
   }
@@ -128,6 +128,14 @@ struct Work {
   std::string photos;          // a folder; empty: none
   std::optional<FollowedLevels> followed;
 };
+
+// Of those that are drawn, before the model is read.
+void check_photo_sizes(const RenderOptions& o, const Work& work) {
+  if (work.photos.empty() || !work.list.listed) return;
+  std::vector<Camera> cameras = chosen_cameras(o.camera.views, o.camera.lens, work.list);
+  if (o.camera.views.empty() && !work.list.path) cameras.resize(1);
+  check_photos(work.photos, cameras);
+}
 
 // Draws every shot as often as asked for and writes its last frame.
 void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& report) {
@@ -239,6 +247,7 @@ ExitCode render(const RenderOptions& o) {
   work.list = find_list(o, work.plan);
   check_views(o.camera.views, o.rig.mono, work.list);
   work.photos = photos_folder(o.output.photos, work.list);
+  check_photo_sizes(o, work);
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
   if (o.scene.detail) {
@@ -254,7 +263,7 @@ ExitCode render(const RenderOptions& o) {
   const double near_plane = near_plane_of(o.camera, work.list, model);
   work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
   check_shots(work.plan, work.shots);
-  if (!work.photos.empty()) check_photos(work.photos, work.shots);
+  if (!work.photos.empty()) check_any_photo(work.photos, work.shots);
   if (seeks_screen(o, work.plan, work.shots[0])) work.screen = work.shots[0];
   take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
@@ -265,6 +274,7 @@ ExitCode render(const RenderOptions& o) {
       o,  model, *context, near_plane, memory_needs(settings, model, work.shots), finite(o.rig.convergence),
       {}, {}};
   print_needs(report.needs);
+  if (o.output.output.empty()) claim_folder(work.plan.folder, o.scene.name);
   draw_all(*context, work, model, report);
   print(report);
   if (!o.output.json.empty()) save(o.output.json, report);

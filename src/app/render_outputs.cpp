@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include "app/command.h"
 #include "app/tour.h"
+#include "base/output_file.h"
 #include "base/text.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
@@ -129,12 +131,27 @@ bool tells_nothing(std::string name) {
   return said.contains(name);
 }
 
+// In a folder of pictures, the model that they are of.
+constexpr const char* owner_name = "model.txt";
+
+fs::path path_of(const std::string& scene) {
+  const fs::path path = fs::absolute(scene).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+// Whether pictures of another model lie there.
+bool is_anothers(const fs::path& folder, const fs::path& model) {
+  std::ifstream file(folder / owner_name);
+  std::string owner;
+  return std::getline(file, owner) && owner != model.string();
+}
+
 }  // namespace
 
 fs::path default_folder(const std::string& scene) {
   if (is_built_in(scene)) return fs::path("out") / scene.substr(scene.find(':') + 1);
-  fs::path path = fs::absolute(scene).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();
+  const fs::path model = path_of(scene);
+  fs::path path = model;
   std::error_code ignored;
   std::string name = fs::is_directory(path, ignored) ? path.filename().string() : path.stem().string();
   // A name with a number tells apart what one training saved.
@@ -144,7 +161,21 @@ fs::path default_folder(const std::string& scene) {
     path = path.parent_path();
     name = path.filename().string();
   }
-  return fs::path("out") / (name.empty() ? "model" : name + number);
+  name = name.empty() ? "model" : name + number;
+  // Two models of one name lie in folders of two names, at some height.
+  while (is_anothers(fs::path("out") / name, model) && path.has_relative_path()) {
+    path = path.parent_path();
+    if (path.has_filename()) name = path.filename().string() + "_" + name;
+  }
+  return fs::path("out") / name;
+}
+
+void claim_folder(const fs::path& folder, const std::string& scene) {
+  if (is_built_in(scene)) return;
+  const Uninterrupted hold;
+  OutputFile file(folder / owner_name);
+  file.write(path_of(scene).string() + "\n");
+  file.commit();
 }
 
 OutputPlan plan_outputs(const RenderOptions& render) {

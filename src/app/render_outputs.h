@@ -29,8 +29,12 @@ struct OutputPlan {
 /// Frames a second of videos, where nothing says otherwise.
 constexpr double video_fps = 30.0;
 
-/// Where a scene's files go without -o: out/ and its name.
+/// Where a scene's files go without -o: out/ and its name, with the folders' above it where pictures of
+/// another model lie there (claim_folder).
 std::filesystem::path default_folder(const std::string& scene);
+
+/// Writes down in a folder of pictures which model they are of.
+void claim_folder(const std::filesystem::path& folder, const std::string& scene);
 
 /// From -o, --layout, --exr, --bits and --fps. Throws Error, before any long work, for what cannot be
 /// written.

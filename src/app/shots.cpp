@@ -256,8 +256,10 @@ double near_plane_of(const CameraOptions& camera, const CameraList& list, const 
   return list.near_plane.value_or(list.listed ? near_default : near_for(model));
 }
 
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera) {
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera,
+                     const std::function<void(const CameraList&)>& check) {
   OpenScene opened{.list = listed_cameras(scene, camera)};
+  if (check && opened.list.listed) check(opened.list);
   opened.model = load_scene(scene);
   if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.known, opened.model);
   opened.near_plane = near_plane_of(camera, opened.list, opened.model);

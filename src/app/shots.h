@@ -1,6 +1,7 @@
 #pragma once
 // From the options to what is drawn: the cameras, and the eyes of each.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -82,8 +83,10 @@ struct OpenScene {
   double near_plane = 0.0;  // world units
 };
 
-/// Those listed for the scene, or made up for its model.
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera);
+/// Those listed for the scene, or made up for its model. What is listed goes to `check` before the model is
+/// read.
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera,
+                     const std::function<void(const CameraList&)>& check = {});
 
 /// Where nothing else tells how many units make a metre, the distances of the cameras do (metre_of); whether
 /// they did.
