@@ -47,13 +47,14 @@ Window::Window(const Choices& choices, const WindowSettings& settings,
     context_->set_shader_folder(settings_.shader_folder);
     shaders_changed_ = newest(settings_.shader_folder);
   }
-  panel_.requests = {.save_pose = [this] { save([this] { return save_pose(); }); },
-                     .full_screen = [this] { key(GLFW_KEY_F, 0); },
-                     .add_key = [this] { save([this] { return session_->add_key(); }); },
-                     .play = [this] { play_or_stop(); },
-                     .move_key = [this](std::size_t k) { save([&] { return session_->move_key(k); }); },
-                     .delete_key = [this](std::size_t k) { delete_key(k); },
-                     .open = [this](const std::string& file) { open_file(file); }};
+  panel_.requests = {
+      .save_pose = [this] { save([this] { return save_pose(); }); },
+      .full_screen = [this] { key(GLFW_KEY_F, 0); },
+      .add_key = [this] { save_in_folder([this] { return session_->add_key(); }); },
+      .play = [this] { play_or_stop(); },
+      .move_key = [this](std::size_t k) { save_in_folder([&] { return session_->move_key(k); }); },
+      .delete_key = [this](std::size_t k) { delete_key(k); },
+      .open = [this](const std::string& file) { open_file(file); }};
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   ImGui_ImplGlfw_InitForOpenGL(window_, true);

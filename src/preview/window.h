@@ -22,6 +22,7 @@ struct Start {
 struct Opened {
   std::string name;
   std::filesystem::path folder;     // for its pictures and keys
+  std::function<void()> claim;      // called before each that is written there; may be empty
   std::filesystem::path pose_file;  // where its pose is saved; empty: nowhere
   std::function<Model()> load;
   /// Sets what of the choices follows from the model, too, such as the near plane.

@@ -164,10 +164,10 @@ void Window::key_of_scene(int key, int by) {
   }
   if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
   if (key == GLFW_KEY_SPACE) play_or_stop();
-  if (key == GLFW_KEY_K) save([this] { return session_->add_key(); });
+  if (key == GLFW_KEY_K) save_in_folder([this] { return session_->add_key(); });
   if (key == GLFW_KEY_F9) save([this] { return save_pose(); });
   if (key == GLFW_KEY_F11 || key == GLFW_KEY_F12)
-    save([&] { return session_->save_picture(key == GLFW_KEY_F11); });
+    save_in_folder([&] { return session_->save_picture(key == GLFW_KEY_F11); });
 }
 
 void Window::play_or_stop() {
@@ -195,7 +195,7 @@ void Window::play() {
 }
 
 void Window::delete_key(std::size_t k) {
-  save([&] {
+  save_in_folder([&] {
     session_->keys.remove(k);
     return session_->keys.file().string();
   });
@@ -211,6 +211,13 @@ void Window::save(const std::function<std::string()>& write) {
   } catch (const Error& error) {
     tell(error.what(), true);
   }
+}
+
+void Window::save_in_folder(const std::function<std::string()>& write) {
+  save([&] {
+    if (scene_.claim) scene_.claim();
+    return write();
+  });
 }
 
 std::string Window::save_pose() const {

@@ -60,6 +60,7 @@ class Window {
   void play();
   void delete_key(std::size_t k);
   void save(const std::function<std::string()>& write);
+  void save_in_folder(const std::function<std::string()>& write);
   std::string save_pose() const;
 
   Choices choices_;

@@ -45,7 +45,7 @@ preview::Choices choices_of(const RenderOptions& o) {
 
 // What is opened, and what goes for files that are dropped on the window, too.
 struct Wanted {
-  fs::path folder;
+  fs::path folder;  // for what is saved; empty: default_folder()
   SceneOptions scene;
   CameraOptions camera;
   RigOptions rig;
@@ -87,6 +87,10 @@ preview::Opened open(const Wanted& wanted) {
   preview::Opened opened;
   opened.name = scene.name;
   opened.folder = wanted.folder;
+  if (opened.folder.empty()) {
+    opened.folder = default_folder(scene.name);
+    opened.claim = [folder = opened.folder, name = scene.name] { claim_folder(folder, name); };
+  }
   check_output(opened.folder / "picture");
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
   opened.load = [scene = scene] { return load_scene(scene); };
@@ -120,12 +124,10 @@ void view(const RenderOptions& o) {
   window.shader_folder = o.context.shader_dir;
   // What is saved of another model lies apart.
   const auto open_other = [folder, metre = o.rig.units_per_metre](const std::string& file) {
-    const fs::path own = default_folder(file);
-    return open(
-        {folder.empty() ? own : folder / own.filename(), {.name = file}, {}, {.units_per_metre = metre}, {}});
+    const fs::path own = folder.empty() ? folder : folder / default_folder(file).filename();
+    return open({own, {.name = file}, {}, {.units_per_metre = metre}, {}});
   };
-  const fs::path first = folder.empty() ? default_folder(o.scene.name) : folder;
-  preview::run(open({first, o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
+  preview::run(open({folder, o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
                open_other);
 }
 
