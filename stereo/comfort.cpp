@@ -33,8 +33,12 @@ Sample sample_at(const std::array<Camera, 2>& eyes, const glm::dvec2& pixel, dou
       left.rotation * glm::dvec3((pixel.x - left.cx) / left.fx, (pixel.y - left.cy) / left.fy, 1.0);
   const glm::dvec3 point = left.position + z * ray;
   const glm::dvec2 seen = projected(eyes[1], point);
-  const double at_focus = focus ? angle_at(eyes, left.position + *focus * ray) : 0.0;
-  return {pixel.x - seen.x, angle_at(eyes, point) - at_focus, std::abs(pixel.y - seen.y)};
+  // The left eye sees the point and what is focused on in one pixel, the right one in two. What is infinitely
+  // far lies in one direction from both.
+  const glm::dvec3 focused = (focus ? left.position : eyes[1].position) + focus.value_or(1.0) * ray;
+  const double at_focus = focus ? angle_at(eyes, focused) : 0.0;
+  const double px = projected(eyes[1], focused).x - seen.x;
+  return {px, angle_at(eyes, point) - at_focus, std::abs(pixel.y - seen.y)};
 }
 
 double quantile_of(std::vector<double>& values, double share) {
@@ -73,6 +77,7 @@ std::optional<DisparityRange> disparity_range(const std::array<Camera, 2>& eyes,
   }
   if (px.empty()) return std::nullopt;
   range.near_px = quantile_of(px, 1.0 - left_out);
+  range.middle_px = quantile_of(px, 0.5);
   range.far_px = quantile_of(px, left_out);
   range.near_degrees = quantile_of(degrees, 1.0 - left_out);
   range.far_degrees = quantile_of(degrees, left_out);
@@ -94,6 +99,23 @@ ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Cam
   const double spread = glm::degrees((range.near_px - range.far_px) / eyes[0].fx);
   if (spread > 2.0 * comfortable_degrees) rig.ipd = ipd * 1.98 * comfortable_degrees / spread;
   return rig;
+}
+
+std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, const Picture& left,
+                                           double units_per_metre) {
+  const auto screen = screen_distance(eyes);
+  const auto range = disparity_range(eyes, left, screen);
+  if (!range) return std::nullopt;
+  // A little less than is comfortable, as angles to the sides differ.
+  const double reach = eyes[0].fx * glm::radians(0.99 * comfortable_degrees);
+  const auto [least, most] = std::minmax({range->near_px - reach, range->far_px + reach});
+  const double px = std::clamp(range->middle_px, least, most);
+  const double ipd = glm::length(eyes[1].position - eyes[0].position);
+  const double inverse = px / (eyes[0].fx * ipd) + (screen ? 1.0 / *screen : 0.0);
+  const double metres = 1.0 / (inverse * units_per_metre);
+  if (!(metres > 0.0 && std::isfinite(metres))) return std::nullopt;
+  const double digit = std::pow(10.0, std::floor(std::log10(metres)) - 2.0);
+  return std::round(metres / digit) * digit;
 }
 
 }  // namespace binosplat::stereo

@@ -15,9 +15,11 @@ namespace binosplat::stereo {
 constexpr double comfortable_degrees = 1.0;
 
 /// What lies nearest and farthest in a pair, the outermost hundredth of the pixels at either end left out:
-/// floaters are no part of the scene. Only pixels with a depth count.
+/// floaters are no part of the scene. Only pixels with a depth count. Pixels and degrees are both against
+/// what the eyes focus on, and positive before it.
 struct DisparityRange {
-  double near_px = 0;  // xL - xR; positive is before the plane of zero disparity
+  double near_px = 0;    // xL - xR, less that of what they focus on in the same direction
+  double middle_px = 0;  // half of the pixels lie nearer
   double far_px = 0;
   // The angle between the lines from both eyes, less that at what they focus on in the same direction: what
   // the pictures ask of eyes that see them as the cameras did. Positive is nearer.
@@ -47,5 +49,12 @@ struct ComfortableRig {
 /// With which convergence, and if need be which distance between the eyes, these parallel eyes would be
 /// comfortable: what is nearest and what is farthest equally far from the screen.
 ComfortableRig comfortable_rig(const DisparityRange& range, const std::array<Camera, 2>& eyes);
+
+/// A distance of the screen for parallel eyes, in metres of so many world units: half of the left eye's
+/// picture lies nearer, unless another brings what is nearest or farthest within comfortable_degrees and
+/// leaves the other end there. To three digits, so that an option can say the same. Nothing where no pixel
+/// has a depth, or all that has is infinitely far.
+std::optional<double> suitable_convergence(const std::array<Camera, 2>& eyes, const Picture& left,
+                                           double units_per_metre);
 
 }  // namespace binosplat::stereo

@@ -185,12 +185,23 @@ void check(const BenchOptions& options) {
   check(options.context, "auto");
 }
 
+/// Photos are of single views in their own size.
+void check_photos_of(const BenchPlan& plan, const BenchOptions& options) {
+  const ViewChoice choice{options.camera.views, static_cast<std::size_t>(plan.axes.views)};
+  for (const BenchCase& which : plan.cases) {
+    const CameraList& list = plan.scenes[which.scene].list;
+    if (!options.photos.empty() && which.eyes == 1 && which.size == "own" && list.listed)
+      check_photos(options.photos, photographed_cameras(choice, options.photos, {}, list));
+  }
+}
+
 ExitCode bench(const BenchOptions& options) {
   check(options);
   check_output(fs::path(options.output) / "results.json");
   if (!options.compare.empty()) load_points(options.compare);  // while nothing is lost
   if (!options.merge.empty()) return finish(options, merge(options));
   const BenchPlan plan = make_plan(options);
+  check_photos_of(plan, options);
   const BenchFolder folder(options.output, plan.json);
   measure_all(options, plan, folder);
   return finish(options, folder);

@@ -46,9 +46,12 @@ void print(const study::Calibration& c, const CalibrateOptions& o) {
 ExitCode calibrate(const CalibrateOptions& o) {
   check_target("calibrate", "a target", o.target, o);
   check_output(o.output);
-  const OpenScene scene = open_scene(o.scene, o.camera);
-  const std::vector<study::CalibrationView> views = photographed_views(
-      {o.camera.views, static_cast<std::size_t>(o.views)}, o.photos, o.camera.lens, scene.list);
+  const ViewChoice choice{o.camera.views, static_cast<std::size_t>(o.views)};
+  const OpenScene scene = open_scene(o.scene, o.camera, [&](const CameraList& list) {
+    check_photos(o.photos, photographed_cameras(choice, o.photos, o.camera.lens, list));
+  });
+  const std::vector<study::CalibrationView> views =
+      photographed_views(choice, o.photos, o.camera.lens, scene.list);
   const auto context = open_context_for_all("calibrate", false, o.context);
   Progress progress("calibrating", study::calibrated_settings().size());
   const study::Calibration found =

@@ -33,13 +33,16 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
                  "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
                  "NAME_right")
       ->type_name("NAME");
-  sub.add_option(
-         "--path", o.path,
-         "cameras.json whose cameras are frames of one path: each goes by\nwhat the last one measured")
+  sub.add_option("--path", o.path,
+                 "cameras.json of one path: of keys, as `view` saves them, or of its\nframes; each frame "
+                 "goes by what "
+                 "the last one measured")
       ->type_name("FILE");
   three("--eye", o.eye, "Camera position instead, in world units");
   three("--at", o.at, "What it looks at");
-  three("--up", o.up, "What is up in the picture (0,-1,0); for --eye, --orbit and\nmodels without cameras");
+  three("--up", o.up,
+        "What is up in the picture (as the cameras stand, or else found in\nthe model); for --eye, --orbit "
+        "and models without cameras");
   sub.add_option("--fov", o.fov, "Vertical field of view of such cameras (60)")
       ->type_name("DEGREES")
       ->check(below_half_turn);

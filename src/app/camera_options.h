@@ -23,9 +23,10 @@ struct Lens {
 
 struct CameraOptions {
   std::string file;                // that lists cameras; empty: found beside the model
-  std::string path;                // a file whose cameras are the frames of a path, instead
+  std::string path;                // a file of keys to go through, or of a path's frames, instead
+  bool keys = false;               // of the path: pictures of its keys alone
   std::optional<Motion> tour;      // through the cameras, as a path
-  std::optional<double> seconds;   // of the tour; none: all
+  std::optional<double> seconds;   // of the tour, all where none; or from the first key to the last
   std::vector<std::string> views;  // names, or "all"; empty: what the command draws of itself
   std::optional<glm::dvec3> eye, at, up;
   std::optional<double> fov;  // degrees
@@ -39,7 +40,7 @@ struct CameraOptions {
   bool along_path() const { return tour || !path.empty(); }
 };
 
-/// Adds all but those of a tour (app/tour.h); `options` must outlive the parsing.
+/// Adds all but those of tours and keys (app/tour.h); `options` must outlive the parsing.
 void add_camera_options(CLI::App& sub, CameraOptions& options);
 
 // One of them, for commands that take few.

@@ -6,7 +6,7 @@
 
 namespace binosplat::app {
 
-void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
+void add_drawing_options(CLI::App& sub, DrawingOptions& o, bool in_window) {
   sub.option_defaults()->group("Drawing");
   choose_explained(sub, "--tiles", o.tiles, "Which tiles a Gaussian is drawn in (ellipse)", tiles_choices);
   choose_explained(sub, "--th", o.th,
@@ -24,7 +24,8 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o) {
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,
-                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices);
+                   "The light that reaches a Gaussian, for --th (one)", transmittance_choices,
+                   in_window ? TRANSMITTANCE_DEPTH : -1);
   choose_explained(sub, "--decode", o.decode, "For which eye a Scaffold-GS model makes its Gaussians (eyes)",
                    decode_choices);
   choose_explained(sub, "--order", o.order, "What Gaussians are sorted by (as the model was trained: depth)",

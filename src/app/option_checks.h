@@ -45,10 +45,12 @@ inline const CLI::Validator whole(
 template <typename Value>
 using Words = std::vector<std::pair<std::string, Value>>;
 
-/// The names of a list of shared/axes.h, which stand for their numbers.
-inline Words<int> words_of(std::span<const Choice> choices) {
+/// The names of a list of shared/axes.h, which stand for their numbers; without one that is left out.
+inline Words<int> words_of(std::span<const Choice> choices, int left_out = -1) {
   Words<int> words;
-  for (const Choice& choice : choices) words.emplace_back(choice.name, static_cast<int>(words.size()));
+  for (int k = 0; k < static_cast<int>(choices.size()); ++k) {
+    if (k != left_out) words.emplace_back(choices[static_cast<std::size_t>(k)].name, k);
+  }
   return words;
 }
 
@@ -68,12 +70,14 @@ CLI::Option* choose(CLI::App& sub, const char* option, Into& into, const std::st
       ->type_name(fmt::format("{}", fmt::join(names, "|")));
 }
 
-/// One of a list of shared/axes.h, by its number; the help has a line for each.
+/// One of a list of shared/axes.h, by its number; the help has a line for each but the one that is left out.
 template <typename Into>
 CLI::Option* choose_explained(CLI::App& sub, const char* option, Into& into, std::string help,
-                              std::span<const Choice> choices) {
-  for (const Choice& choice : choices) help += fmt::format("\n  {}: {}", choice.name, choice.help);
-  return choose(sub, option, into, help, words_of(choices));
+                              std::span<const Choice> choices, int left_out = -1) {
+  const Words<int> words = words_of(choices, left_out);
+  for (const auto& [name, k] : words)
+    help += fmt::format("\n  {}: {}", name, choices[static_cast<std::size_t>(k)].help);
+  return choose(sub, option, into, help, words);
 }
 
 /// "1,-2.5,3". Throws Error, naming the option, for anything else.

@@ -19,12 +19,13 @@ Background parse_background(const std::string& text) {
 
 }  // namespace
 
-void add_look_options(CLI::App& sub, OutputOptions& o) {
+void add_look_options(CLI::App& sub, OutputOptions& o, bool in_window) {
   sub.option_defaults()->group("Outputs");
   choose_explained(sub, "--layout", o.layout,
-                   "How both eyes are shown (a folder: separate; FILE.png and videos:\nparallel; FILE.exr: "
-                   "multi-view)",
-                   layout_choices);
+                   in_window ? "How both eyes are shown (parallel)"
+                             : "How both eyes are shown (a folder: separate; FILE.png and videos:\nparallel; "
+                               "FILE.exr: multi-view)",
+                   layout_choices, in_window ? LAYOUT_MULTI_VIEW : -1);
   choose_explained(sub, "--show", o.show,
                    "What is shown in place of the picture; numbers as colours from 0\n(dark) to yellow "
                    "(picture)",
@@ -46,8 +47,10 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
          "FILE.exr with both eyes, or a video of all views:\nFILE.mp4, .mov, .mkv or .webm, by ffmpeg "
          "(out/SCENE)")
       ->type_name("DIR|FILE");
-  add_look_options(sub, o);
-  sub.add_option("--fps", o.fps, "Frames a second of a video (by the path's times, or 30) or of a tour")
+  add_look_options(sub, o, false);
+  sub.add_option(
+         "--fps", o.fps,
+         "Frames a second of a tour, of a way through keys (30), or of a video\n(by the path's times, or 30)")
       ->type_name("N")
       ->check(positive);
   choose<int>(sub, "--bits", o.bits, "Bits a channel of PNG (8)", {{"8", 8}, {"16", 16}});

@@ -17,7 +17,7 @@ struct OutputOptions {
   std::string output;         // a folder or a file; empty: default_folder()
   std::optional<int> layout;  // LAYOUT_ of shared/axes.h; none: by what `output` names
   int show = SHOW_PICTURE;    // SHOW_
-  std::optional<double> fps;  // of a tour, or of a video; none: by the path's times
+  std::optional<double> fps;  // of a path, or of a video; none: by the path's times
   Background background = glm::vec3(0.0f);
   std::optional<int> bits;
   std::optional<bool> exr_half;     // OpenEXR, too, as half or float
@@ -34,8 +34,8 @@ struct OutputOptions {
 /// Adds all of them; `options` must outlive the parsing.
 void add_output_options(CLI::App& sub, OutputOptions& options);
 
-/// Those of them that a window has, too: --layout, --show and --background.
-void add_look_options(CLI::App& sub, OutputOptions& options);
+/// Those of them that a window has, too: --layout, --show and --background. A window has no multi-view.
+void add_look_options(CLI::App& sub, OutputOptions& options, bool in_window);
 
 /// --photos of commands that look for none beside the cameras.
 CLI::Option* add_photos_option(CLI::App& sub, std::string& photos,

@@ -10,12 +10,31 @@ namespace binosplat::app {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+void check_size(const fs::path& file, const glm::ivec2& size, const Camera& camera) {
+  if (size != glm::ivec2(camera.width, camera.height))
+    fail("photo {} has {} x {} px, and its view {} x {} px: draw it in its own size", file.string(), size.x,
+         size.y, camera.width, camera.height);
+}
+
+}  // namespace
+
 Image load_view_photo(const fs::path& file, const Camera& camera) {
   Image photo = load_image(file);
-  if (photo.channels != 3 || photo.width != camera.width || photo.height != camera.height)
-    fail("photo {} has {} x {} px and {} channels; its view has {} x {} px and 3: draw it in its own size",
-         file.string(), photo.width, photo.height, photo.channels, camera.width, camera.height);
+  check_size(file, {photo.width, photo.height}, camera);
+  if (photo.channels != 3)
+    fail("photo {} has {} channels: expected the 3 of RGB", file.string(), photo.channels);
   return photo;
+}
+
+void check_photos(const std::string& photos, std::span<const Camera> cameras) {
+  if (photos.empty()) return;
+  for (const Camera& camera : cameras) {
+    const auto file = find_view_photo(photos, camera.name);
+    const auto size = file ? picture_size(*file) : std::nullopt;
+    if (size) check_size(*file, *size, camera);
+  }
 }
 
 study::PhotoOf photo_finder(const std::string& photos) {
@@ -51,8 +70,8 @@ study::CalibrationView with_photo(const std::string& photos, const Camera& camer
   return view;
 }
 
-std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
-                                                       const Lens& lens, const CameraList& list) {
+std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::string& photos,
+                                         const Lens& lens, const CameraList& list) {
   const std::vector<std::string>& without = choice.without;
   const bool named = !choice.views.empty();
   std::vector<Camera> cameras = chosen_cameras(choice.views, lens, list);
@@ -62,9 +81,18 @@ std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice,
   });
   if (!photos.empty() && cameras.empty() && without.empty())
     fail("--photos {}: there is no photo of any view", photos);
+  if (named) return cameras;
+  std::vector<Camera> spread;
+  for (const std::size_t i : study::spread_evenly(cameras.size(), choice.wanted))
+    spread.push_back(cameras[i]);
+  return spread;
+}
+
+std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+                                                       const Lens& lens, const CameraList& list) {
   std::vector<study::CalibrationView> views;
-  for (const std::size_t i : study::spread_evenly(cameras.size(), named ? cameras.size() : choice.wanted))
-    views.push_back(with_photo(photos, cameras[i]));
+  for (const Camera& camera : photographed_cameras(choice, photos, lens, list))
+    views.push_back(with_photo(photos, camera));
   return views;
 }
 

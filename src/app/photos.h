@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace binosplat::app {
 
 /// Reads a view's photo. Throws Error unless it is RGB in the camera's size.
 Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
+
+/// Throws Error as load_view_photo() does, but by the headers of the cameras' photos alone: quick, before a
+/// model is read. Views without a photo are no error here; no folder, none to check.
+void check_photos(const std::string& photos, std::span<const Camera> cameras);
 
 /// The photos of a folder for a fit; none where `photos` is empty.
 study::PhotoOf photo_finder(const std::string& photos);
@@ -41,7 +46,11 @@ struct ViewChoice {
   std::vector<std::string> without = {};  // those called so are left out
 };
 
-/// With a folder of photos each has its photo, and of all only those count that have one.
+/// The cameras of a choice: with a folder of photos only those count, of all, that have one.
+std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::string& photos,
+                                         const Lens& lens, const CameraList& list);
+
+/// Each with its photo, where there is a folder of them.
 std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
                                                        const Lens& lens, const CameraList& list);
 

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -30,6 +32,7 @@
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/scaffold.h"
+#include "stereo/comfort.h"
 
 namespace binosplat::app {
 
@@ -38,7 +41,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-void check_photos(const std::string& folder, const std::vector<Shot>& shots) {
+void check_any_photo(const std::string& folder, const std::vector<Shot>& shots) {
   for (const Shot& shot : shots) {
     if (find_view_photo(folder, shot.name)) return;
   }
@@ -86,9 +89,35 @@ render::DepthTable depth_table(render::Frame& frame, const Lens& lens, const Cam
                                       {.order = settings.order, .projection = settings.projection});
 }
 
+std::optional<double> finite(const std::optional<double>& metres) {
+  return metres && std::isfinite(*metres) ? metres : std::nullopt;
+}
+
 bool is_empty(const Picture& picture) {
   return std::all_of(picture.colour.begin(), picture.colour.end(),
                      [](const glm::vec4& c) { return c.a == 1.0f; });
+}
+
+// Whether pictures are for a screen whose distance no option says: both eyes in one, and not for a headset.
+bool seeks_screen(const RenderOptions& o, const OutputPlan& plan, const Shot& first) {
+  const bool flat = plan.layout != LAYOUT_SEPARATE && plan.layout != LAYOUT_MULTI_VIEW;
+  return flat && !plan.vr180 && !o.rig.convergence && o.rig.cant.value_or(0.0) == 0.0 &&
+         !o.camera.lens.headset() && !first.given_eyes;
+}
+
+// That distance, in metres: what suits the first view of the run, whichever part of it is drawn here; nothing
+// where that shows nothing.
+std::optional<double> find_screen(render::Frame& frame, const render::FrameSettings& settings,
+                                  const Shot& first) {
+  frame.draw(std::array{first.eyes[0].view},
+             {.order = settings.order, .projection = settings.projection, .precision = settings.precision});
+  const auto metres = stereo::suitable_convergence({first.eyes[0].camera, first.eyes[1].camera},
+                                                   frame.read_pictures()[0], first.units_per_metre);
+  frame.start_over();
+  if (metres)
+    log_info("convergence {:.3g} m, which suits what {} shows (--convergence METRES for another, or inf)",
+             *metres, first.name);
+  return metres;
 }
 
 // What is drawn, and by what.
@@ -97,9 +126,18 @@ struct Work {
   CalibratedSettings calibrated;
   CameraList list;
   std::vector<Shot> shots;
-  std::string photos;  // a folder; empty: none
+  std::optional<Shot> screen;  // what tells how far the screen is, where no option does
+  std::string photos;          // a folder; empty: none
   std::optional<FollowedLevels> followed;
 };
+
+// Of those that are drawn, before the model is read.
+void check_photo_sizes(const RenderOptions& o, const Work& work) {
+  if (work.photos.empty() || !work.list.listed) return;
+  std::vector<Camera> cameras = chosen_cameras(o.camera.views, o.camera.lens, work.list);
+  if (o.camera.views.empty() && !work.list.path) cameras.resize(1);
+  check_photos(work.photos, cameras);
+}
 
 // Draws every shot as often as asked for and writes its last frame.
 void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& report) {
@@ -118,6 +156,10 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
                                        report.model.axes, settings);
   std::optional<stereo::Panorama> panorama;
   if (work.plan.vr180) panorama.emplace(gpu_model, work.shots[0].eyes[0].camera.width);
+  if (work.screen) report.convergence = find_screen(frame, settings, *work.screen);
+  if (work.screen && report.convergence) {
+    for (Shot& shot : work.shots) converge(shot, *report.convergence);
+  }
   const std::unique_ptr<Video> video = open_video(work.plan, work.shots);
   bool all_empty = true;
   Progress progress("drawing", work.shots.size() * static_cast<std::size_t>(drawing.frames));
@@ -136,7 +178,8 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
       report.times.add(drawn.report);
       progress.update(++done);
     }
-    const std::vector<Picture> pictures = panorama ? panorama->read_pictures() : frame.read_pictures(output.exr_depth);
+    const std::vector<Picture> pictures =
+        panorama ? panorama->read_pictures() : frame.read_pictures(output.exr_depth);
     all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
     if (output.detail_report)
       drawn.levels->finest_psnr = work.followed->against_finest(context, views, pictures, of_shot);
@@ -183,7 +226,9 @@ CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
     return *pose;
   }
   CameraList list = listed_cameras(o.scene, o.camera, saved);
-  return o.camera.tour ? go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list)) : list;
+  if (o.camera.tour) return go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list));
+  if (!o.camera.path.empty()) return go_along_path(o.camera, plan.fps, !plan.video.empty(), std::move(list));
+  return list;
 }
 
 // Leaves the shots that this run is to draw.
@@ -208,6 +253,7 @@ ExitCode render(const RenderOptions& o) {
   work.list = find_list(o, work.plan);
   check_views(o.camera.views, o.rig.mono, work.list);
   work.photos = photos_folder(o.output.photos, work.list);
+  check_photo_sizes(o, work);
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
   if (o.scene.detail) {
@@ -217,22 +263,31 @@ ExitCode render(const RenderOptions& o) {
   }
   Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget);
   log_model(o.scene.name, o.drawing.decode, model);
+  if (o.rig.units_per_metre) work.list.known.units_per_metre = o.rig.units_per_metre;
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list, model);
   if (work.plan.vr180) level(work.list.cameras, up_of(o.camera, work.list.known));
   work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
   check_shots(work.plan, work.shots);
-  if (!work.photos.empty()) check_photos(work.photos, work.shots);
+  if (!work.photos.empty()) check_any_photo(work.photos, work.shots);
+  if (seeks_screen(o, work.plan, work.shots[0])) work.screen = work.shots[0];
   take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
   if (work.followed) work.followed->bring(model, views_of(work.shots[0]));
 
   context = open_context(o.context);
   const auto vr180_near = work.plan.vr180 ? std::optional(near_plane) : std::nullopt;
-  RenderReport report{o,  model, *context, near_plane, memory_needs(settings, model, work.shots, vr180_near),
-                      {}, {}};
+  RenderReport report{o,
+                      model,
+                      *context,
+                      near_plane,
+                      memory_needs(settings, model, work.shots, vr180_near),
+                      finite(o.rig.convergence),
+                      {},
+                      {}};
   print_needs(report.needs);
+  if (o.output.output.empty()) claim_folder(work.plan.folder, o.scene.name);
   draw_all(*context, work, model, report);
   print(report);
   if (!o.output.json.empty()) save(o.output.json, report);
@@ -257,6 +312,7 @@ void add_render(CLI::App& program, Command& command) {
       "  binosplat render scan.ply --orbit 24 --preset headset --exr half\n"
       "  binosplat render scan.ply --orbit 120 --layout half-width -o around.mp4\n"
       "  binosplat render garden.ply --tour walk --mono -o walk.mp4\n"
+      "  binosplat render garden.ply --path out/garden/cameras.json --seconds 10 -o keys.mp4\n"
       "  binosplat render garden.ply --view all --shard $I/8 --resume -o out     # on 8 machines\n"
       "  binosplat render garden.ply --tour 0.5,30 --seconds 2 --preset headset --quality 40 -o frames");
   sub->callback([options, sub, &command] {

@@ -1,10 +1,13 @@
 #include "app/render_options.h"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <array>
 
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/error.h"
+#include "preview/keys.h"
 
 namespace binosplat::app {
 
@@ -25,10 +28,14 @@ void check_cameras(const CameraOptions& o, const OutputOptions& output, bool fra
   }
   if (o.tour && !output.photos.empty())
     fail("--photos with --tour: between the cameras no photos were taken");
-  if (o.seconds && !o.tour) fail("--seconds is for --tour: how much of it is drawn");
+  if (o.seconds && !o.along_path())
+    fail("--seconds is for --tour, how much of it is drawn, and for --path, how long its way takes");
+  if (o.keys && (o.path.empty() || o.seconds))
+    fail("--keys draws the keys of --path FILE alone: name that, and leave --seconds out");
   if (!o.path.empty() && (others || !o.file.empty())) {
     fail(
-        "--path names its own cameras, each drawn once: leave --cameras, --view, --eye, --orbit and --frames "
+        "--path names its own cameras, each frame drawn once: leave --cameras, --view, --eye, --orbit and "
+        "--frames "
         "out");
   }
   if (o.fov && o.lens.headset())
@@ -69,19 +76,31 @@ void check_parts(const RenderOptions& o) {
     fail("--json and --photos tell of all views, and --resume leaves out those that are there: choose");
 }
 
+// What a window that goes where its user goes does not do.
+constexpr std::array render_only = {"--mono",    "--only",   "--preset",      "--orbit",
+                                    "--path",    "--frames", "--calibration", "--reference-until",
+                                    "--backend", "--device"};
+
+std::string keys_text() {
+  std::string text = "Keys and buttons in the window:\n";
+  for (const preview::KeyHelp& key : preview::key_help)
+    text += fmt::format("  {:<15}{}\n", key.keys, key.what);
+  return text;
+}
+
 // All but what is done with the pictures.
-void add_picture_options(CLI::App& sub, RenderOptions& o) {
+void add_picture_options(CLI::App& sub, RenderOptions& o, bool in_window) {
   add_scene_options(sub, o.scene);
   add_camera_options(sub, o.camera);
   add_rig_options(sub, o.rig);
-  add_drawing_options(sub, o.drawing);
+  add_drawing_options(sub, o.drawing, in_window);
   add_context_options(sub, o.context);
 }
 
 }  // namespace
 
 void add_options(CLI::App& sub, RenderOptions& o) {
-  add_picture_options(sub, o);
+  add_picture_options(sub, o, false);
   add_vr180_option(sub, o.camera.lens);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
@@ -93,11 +112,20 @@ void add_options(CLI::App& sub, RenderOptions& o) {
 }
 
 void add_view_options(CLI::App& sub, RenderOptions& o) {
-  add_picture_options(sub, o);
-  add_look_options(sub, o.output);
+  add_picture_options(sub, o, true);
+  add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
   sub.option_defaults()->group("Options");
+  sub.get_option("--size")->description("Pixels of the window (1280x720, or more where displays are dense)");
+  sub.get_option("--view")->description("The camera to start at, by name (the first)");
+  for (const char* name : render_only) sub.get_option(name)->group("");  // understood, but in no help
+  sub.footer(keys_text());
+  sub.parse_complete_callback([&sub] {
+    for (const char* name : render_only) {
+      if (sub.count(name) > 0) fail("{} is for `binosplat render`: leave it out", name);
+    }
+  });
 }
 
 void check(const RenderOptions& o) {

@@ -30,7 +30,8 @@ struct RenderOptions {
 /// end it with CLI::ParseError or Error.
 void add_options(CLI::App& sub, RenderOptions& options);
 
-/// Adds those that the preview takes, some of which check_view() of app/viewer refuses.
+/// Adds those that the preview takes; those that only `render` has end the parsing with an Error that names
+/// them. The help ends with the window's keys.
 void add_view_options(CLI::App& sub, RenderOptions& options);
 
 /// Throws Error for options that contradict each other, within a part and between them.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include "app/command.h"
 #include "app/tour.h"
 #include "app/vr180.h"
+#include "base/output_file.h"
 #include "base/text.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
@@ -132,12 +134,27 @@ bool tells_nothing(std::string name) {
   return said.contains(name);
 }
 
+// In a folder of pictures, the model that they are of.
+constexpr const char* owner_name = "model.txt";
+
+fs::path path_of(const std::string& scene) {
+  const fs::path path = fs::absolute(scene).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+// Whether pictures of another model lie there.
+bool is_anothers(const fs::path& folder, const fs::path& model) {
+  std::ifstream file(folder / owner_name);
+  std::string owner;
+  return std::getline(file, owner) && owner != model.string();
+}
+
 }  // namespace
 
 fs::path default_folder(const std::string& scene) {
   if (is_built_in(scene)) return fs::path("out") / scene.substr(scene.find(':') + 1);
-  fs::path path = fs::absolute(scene).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();
+  const fs::path model = path_of(scene);
+  fs::path path = model;
   std::error_code ignored;
   std::string name = fs::is_directory(path, ignored) ? path.filename().string() : path.stem().string();
   // A name with a number tells apart what one training saved.
@@ -147,12 +164,27 @@ fs::path default_folder(const std::string& scene) {
     path = path.parent_path();
     name = path.filename().string();
   }
-  return fs::path("out") / (name.empty() ? "model" : name + number);
+  name = name.empty() ? "model" : name + number;
+  // Two models of one name lie in folders of two names, at some height.
+  while (is_anothers(fs::path("out") / name, model) && path.has_relative_path()) {
+    path = path.parent_path();
+    if (path.has_filename()) name = path.filename().string() + "_" + name;
+  }
+  return fs::path("out") / name;
+}
+
+void claim_folder(const fs::path& folder, const std::string& scene) {
+  if (is_built_in(scene)) return;
+  const Uninterrupted hold;
+  OutputFile file(folder / owner_name);
+  file.write(path_of(scene).string() + "\n");
+  file.commit();
 }
 
 OutputPlan plan_outputs(const RenderOptions& render) {
   const OutputOptions& options = render.output;
-  const bool one_picture = render.rig.one_picture(), tour = render.camera.tour.has_value();
+  const bool one_picture = render.rig.one_picture(), tour = render.camera.tour.has_value(),
+             along_path = render.camera.along_path();
   const fs::path output =
       options.output.empty() ? default_folder(render.scene.name) : fs::path(options.output);
   const bool named = !options.output.empty();  // else it is a folder, however its model is called
@@ -169,7 +201,8 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   plan.vr180 = render.camera.lens.vr180();
   if (video) return plan;
   plan.exr = options.exr_half.has_value();
-  if (options.fps && !tour) fail("--fps is for videos and for --tour: -o FILE.mp4, .mov, .mkv or .webm");
+  if (options.fps && !along_path)
+    fail("--fps is for videos, --tour and --path: -o FILE.mp4, .mov, .mkv or .webm");
   if (options.output == "-") fail("-o -: pictures are files: name one, or a folder");
   if (named && !file && names_a_file(output)) {
     fail(

@@ -21,7 +21,7 @@ struct OutputPlan {
   std::filesystem::path file;    // without its ending
   int layout = LAYOUT_SEPARATE;  // LAYOUT_ of shared/axes.h; separate in `file`: a single eye's
   std::filesystem::path video;   // of all shots, instead of files
-  std::optional<double> fps;     // of the video or the tour; none: by the path's times
+  std::optional<double> fps;     // of the video or the path; none: by the path's times
   bool png = true;
   bool exr = false;
   std::string suffix;  // of files in the folder
@@ -32,8 +32,12 @@ struct OutputPlan {
 /// Frames a second of videos, where nothing says otherwise.
 constexpr double video_fps = 30.0;
 
-/// Where a scene's files go without -o: out/ and its name.
+/// Where a scene's files go without -o: out/ and its name, with the folders' above it where pictures of
+/// another model lie there (claim_folder).
 std::filesystem::path default_folder(const std::string& scene);
+
+/// Writes down in a folder of pictures which model they are of.
+void claim_folder(const std::filesystem::path& folder, const std::string& scene);
 
 /// From -o, --layout, --exr, --bits and --fps. Throws Error, before any long work, for what cannot be
 /// written.

@@ -56,15 +56,22 @@ constexpr double headset_focus_metres = 2.0;
 
 ordered_json comfort_json(const Comfort& comfort) {
   const stereo::DisparityRange& r = comfort.range;
-  return object("near_px", r.near_px, "far_px", r.far_px, "near_degrees", r.near_degrees, "far_degrees",
-                r.far_degrees, "vertical_px", r.vertical_px, "comfortable", stereo::comfortable(r));
+  return object("focus_metres", comfort.focus ? ordered_json(*comfort.focus) : ordered_json(), "near_px",
+                r.near_px, "far_px", r.far_px, "near_degrees", r.near_degrees, "far_degrees", r.far_degrees,
+                "vertical_px", r.vertical_px, "comfortable", stereo::comfortable(r));
+}
+
+// What the eyes focus on.
+std::string focus_text(const Comfort& comfort) {
+  if (!comfort.focus) return "what is infinitely far";
+  return fmt::format("{} at {:.3g} m", comfort.headset ? "a headset's focus" : "the screen", *comfort.focus);
 }
 
 // How the disparities of a pair lie.
 void print_comfort(const Drawn& drawn) {
   const stereo::DisparityRange& r = drawn.comfort->range;
-  fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees{}\n", r.far_px,
-             r.near_px, r.far_degrees, r.near_degrees,
+  fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees, against {}{}\n",
+             r.far_px, r.near_px, r.far_degrees, r.near_degrees, focus_text(*drawn.comfort),
              r.vertical_px > 0.5 ? fmt::format("; vertical up to {:.1f} px", r.vertical_px) : "");
 }
 
@@ -73,25 +80,22 @@ double discomfort(const Drawn& drawn) {
   return std::max(r.near_degrees, -r.far_degrees);
 }
 
-// Warns of the pair that asks most of the eyes, and how many others do.
+// Warns of the pair that asks most of the eyes, and how many others do, of those that options can change.
 void warn_of_discomfort(const std::vector<Drawn>& all) {
   const Drawn* worst = nullptr;
   int others = -1;
   for (const Drawn& drawn : all) {
-    if (!drawn.comfort || stereo::comfortable(drawn.comfort->range)) continue;
+    if (!drawn.comfort || !drawn.comfort->better) continue;
     ++others;
     if (worst == nullptr || discomfort(drawn) > discomfort(*worst)) worst = &drawn;
   }
   if (worst == nullptr) return;
-  std::string instead;
-  if (const auto& better = worst->comfort->better) {
-    instead = fmt::format("; --convergence {:.3g}", better->convergence);
-    if (better->ipd) instead += fmt::format(" --ipd {:.3g}", *better->ipd);
-    instead += " is within";
-  }
-  log_warning("{}{}: disparities beyond {:.0f} degree either way tire most eyes{}", worst->shot.name,
-              others > 0 ? fmt::format(" and {} other view{}", others, others == 1 ? "" : "s") : "",
-              stereo::comfortable_degrees, instead);
+  const stereo::ComfortableRig& better = *worst->comfort->better;
+  log_warning(
+      "{}{}: disparities beyond {:.0f} degree either way tire most eyes; --convergence {:.3g}{} is within",
+      worst->shot.name, others > 0 ? fmt::format(" and {} other view{}", others, others == 1 ? "" : "s") : "",
+      stereo::comfortable_degrees, better.convergence,
+      better.ipd ? fmt::format(" --ipd {:.3g}", *better.ipd) : "");
 }
 
 std::string levels_text(const ShotLevels& levels) {
@@ -138,12 +142,13 @@ void print_levels(const RenderReport& report) {
   fmt::print("\n");
 }
 
-ordered_json view_json(const Drawn& drawn, const RenderOptions& options) {
+ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
+                       const std::optional<double>& convergence) {
   const render::FrameReport& r = drawn.report;
   const DrawingOptions& drawing = options.drawing;
   ordered_json json = object("name", drawn.shot.name, "units_per_metre", drawn.shot.units_per_metre,
-                             "ipd_metres", drawn.shot.ipd, "convergence_metres", options.rig.convergence,
-                             "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
+                             "ipd_metres", drawn.shot.ipd, "convergence_metres", convergence, "cant_degrees",
+                             options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.total_ms, "tile", r.tile_size,
                     "depth_orders", r.order_groups, "drawn_again", r.redrawn, "tolerance",
@@ -201,7 +206,8 @@ std::optional<Comfort> comfort_of(const Shot& shot, bool headset, const Picture&
                                        : stereo::screen_distance(eyes);
   const auto range = stereo::disparity_range(eyes, left, focus);
   if (!range) return std::nullopt;
-  Comfort comfort{*range, {}};
+  Comfort comfort{
+      *range, focus ? std::optional(*focus / shot.units_per_metre) : std::nullopt, canted || headset, {}};
   const bool own_rig = !shot.given_eyes && !canted && !headset;
   if (own_rig && !stereo::comfortable(*range)) {
     comfort.better = stereo::comfortable_rig(*range, eyes);
@@ -279,7 +285,8 @@ void save(const std::filesystem::path& path, const RenderReport& report) {
       object("backend", context.backend(), "renderer", context.renderer(), "opengl", context.version()),
       "settings", settings_json(report));
   json["views"] = ordered_json::array();
-  for (const Drawn& drawn : report.drawn) json["views"].push_back(view_json(drawn, report.options));
+  for (const Drawn& drawn : report.drawn)
+    json["views"].push_back(view_json(drawn, report.options, report.convergence));
   FieldWriter{json}("mean_photo_psnr_db", mean_photo_psnr(report), "frames", report.times.frames(), "stages",
                     ordered_json::array());
   for (const StageTimes::Row& row : report.times.rows())

@@ -39,6 +39,8 @@ class StageTimes {
 /// How a pair's disparities lie, and what to change where they are beyond comfort.
 struct Comfort {
   stereo::DisparityRange range;
+  std::optional<double> focus;                   // m, that the range is against; none: infinitely far
+  bool headset = false;                          // that is its optics', else the screen's
   std::optional<stereo::ComfortableRig> better;  // m; where the range is not comfortable and the rig ours
 };
 
@@ -61,8 +63,9 @@ struct RenderReport {
   const RenderOptions& options;
   const Model& model;
   const gl::Context& context;
-  double near_plane = 0.0;    // world units
-  render::MemoryNeeds needs;  // of the model, and of the view that needs most
+  double near_plane = 0.0;            // world units
+  render::MemoryNeeds needs;          // of the model, and of the view that needs most
+  std::optional<double> convergence;  // m, by an option or because it suits; none: infinitely far
   std::vector<Drawn> drawn;
   StageTimes times;
 };

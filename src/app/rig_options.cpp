@@ -38,8 +38,11 @@ void add_rig_options(CLI::App& sub, RigOptions& o) {
   sub.add_option("--units-per-metre", o.units_per_metre, "World units that make a metre (1)")
       ->type_name("N")
       ->check(positive);
-  sub.add_option("--convergence", o.convergence, "Distance without disparity (infinite)")
-      ->type_name("METRES");
+  sub.add_option("--convergence", o.convergence,
+                 "Distance without disparity, where the screen stands; inf: infinitely\nfar (what suits the "
+                 "first view "
+                 "where one picture has both eyes, as for\nscreens; else inf)")
+      ->type_name("METRES|inf");
   sub.add_option("--cant", o.cant, "Turn each eye outwards (0)")->type_name("DEGREES");
 }
 

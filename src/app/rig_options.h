@@ -12,7 +12,7 @@ struct RigOptions {
   bool mono = false;                  // the camera itself
   std::optional<std::size_t> only;    // one eye of the pair: 0 the left one, 1 the right one
   std::optional<double> ipd;          // m
-  std::optional<double> convergence;  // m
+  std::optional<double> convergence;  // m, or infinite
   std::optional<double> cant;         // degrees
   std::optional<double> units_per_metre;
 

@@ -1,6 +1,8 @@
 #include "app/shots.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "app/load_scene.h"
@@ -18,6 +20,7 @@ namespace {
 
 constexpr int made_up_width = 1280;
 constexpr int made_up_height = 720;
+constexpr double eye_height = 1.6;  // m, of somebody who stands
 
 // A view by name: one camera, a head or itself, or a pair of eyes.
 struct Choice {
@@ -145,6 +148,29 @@ void learn_beside(const std::string& scene, const CameraOptions& camera, Known& 
   }
 }
 
+// What the model tells where no cameras do. Returns what cameras go by that are made up, for the log.
+std::string learn_from(const Model& model, const SceneOptions& scene, const CameraOptions& camera,
+                       Known& known) {
+  if (known.around) return "around what the cameras beside it look at (--eye and --at for other places)";
+  const std::optional<glm::dvec3> up = camera.up ? camera.up : known.up;
+  const auto ground = is_built_in(scene.name) ? std::nullopt : find_ground(model, up);
+  std::string place = "from outside";
+  if (ground) {
+    const Capture capture = capture_of(model, *ground, eye_height * known.units_per_metre.value_or(1.0));
+    known.up = capture.up;
+    known.around = capture.around;
+  }
+  if (known.around) {
+    const double eyes = glm::dot(known.around->middle, ground->up) - *ground->level +
+                        known.around->distance * std::sin(known.around->elevation);
+    place = fmt::format("from {:.2g} units above the ground (--eye and --at for another place)", eyes);
+  }
+  if (up || is_built_in(scene.name)) return place;
+  const glm::dvec3 found = up_of(camera, known);
+  return fmt::format("{}; up is {:.2f},{:.2f},{:.2f}, {} (--up for another)", place, found.x, found.y,
+                     found.z, ground ? "by the surfaces in it" : "since nothing in it tells");
+}
+
 }  // namespace
 
 CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
@@ -201,9 +227,10 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
                     .known = known_of(saved)};
 }
 
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const Known& known,
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, Known known,
                            const Model& model) {
   const double fov = camera.fov.value_or(default_fov_degrees);
+  const std::string how = learn_from(model, scene, camera, known);
   const glm::dvec3 up = up_of(camera, known);
   CameraList list{.source = scene.name, .known = known};
   if (camera.eye) {
@@ -211,11 +238,11 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
     list.cameras = {look_at(*camera.eye, *camera.at, up, fov, made_up_width, made_up_height)};
   } else if (camera.orbit) {
     list.source = "--orbit";
-    if (known.around) log_info("--orbit: around what the cameras beside {} look at", scene.name);
+    log_info("going around {}: {}", scene.name, how);
     list.cameras = orbit(model, *camera.orbit, made_up_width, made_up_height, fov, up, known.around);
   } else {
-    log_info("no cameras beside {}: framing the model", scene.name);
-    list.cameras = {frame_model(model, made_up_width, made_up_height, fov, up)};
+    log_info("no cameras beside {}: {}", scene.name, how);
+    list.cameras = {frame_model(model, made_up_width, made_up_height, fov, up, known.around)};
   }
   return list;
 }
@@ -229,8 +256,10 @@ double near_plane_of(const CameraOptions& camera, const CameraList& list, const 
   return list.near_plane.value_or(list.listed ? near_default : near_for(model));
 }
 
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera) {
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera,
+                     const std::function<void(const CameraList&)>& check) {
   OpenScene opened{.list = listed_cameras(scene, camera)};
+  if (check && opened.list.listed) check(opened.list);
   opened.model = load_scene(scene);
   if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.known, opened.model);
   opened.near_plane = near_plane_of(camera, opened.list, opened.model);
@@ -248,10 +277,19 @@ stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, doub
   settings.ipd = rig.ipd.value_or(known.ipd.value_or(settings.ipd));
   settings.units_per_metre =
       rig.units_per_metre.value_or(known.units_per_metre.value_or(settings.units_per_metre));
-  settings.convergence = rig.convergence;
+  if (rig.convergence != std::numeric_limits<double>::infinity()) settings.convergence = rig.convergence;
   settings.cant_degrees = rig.cant.value_or(settings.cant_degrees);
   settings.near_plane = near_plane;
   return settings;
+}
+
+void converge(Shot& shot, double metres) {
+  if (shot.given_eyes || shot.eyes.size() != 2) return;
+  for (Eye& eye : shot.eyes) {
+    const double shift = 0.5 * eye.camera.fx * *shot.ipd / metres;
+    eye.camera.cx += eye.side == "left" ? -shift : shift;
+    set_lens(eye.view, eye.camera);
+  }
 }
 
 std::vector<shared::View> views_of(const Shot& shot) {

@@ -1,6 +1,7 @@
 #pragma once
 // From the options to what is drawn: the cameras, and the eyes of each.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,7 @@ struct Known {
   std::optional<double> units_per_metre;  // world units
   std::optional<double> ipd;              // m
   std::optional<glm::dvec3> up;           // the world's
-  std::optional<Capture::Around> around;  // what the cameras beside the model stand around
+  std::optional<Capture::Around> around;  // what to stand around
 };
 
 /// Where cameras come from, for the log, and which they are.
@@ -65,8 +66,8 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
                                        const std::optional<SavedPose>& saved);
 
 /// Cameras made up from --eye, --orbit or the model: level, and on the orbit around, as those beside the
-/// model.
-CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, const Known& known,
+/// model, or by what the model itself tells (scene/ground.h), which the list then knows; says which.
+CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, Known known,
                            const Model& model);
 
 /// --up, or what is known.
@@ -82,8 +83,10 @@ struct OpenScene {
   double near_plane = 0.0;  // world units
 };
 
-/// Those listed for the scene, or made up for its model.
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera);
+/// Those listed for the scene, or made up for its model. What is listed goes to `check` before the model is
+/// read.
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera,
+                     const std::function<void(const CameraList&)>& check = {});
 
 /// Where nothing else tells how many units make a metre, the distances of the cameras do (metre_of); whether
 /// they did.
@@ -91,6 +94,9 @@ bool take_metre_of_cameras(const SceneOptions& scene, const RigOptions& rig, Cam
 
 /// What there is of a rig. `near_plane` in world units.
 stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane = near_default);
+
+/// Brings the screen of eyes that look infinitely far to so many metres. Not of eyes that the cameras give.
+void converge(Shot& shot, double metres);
 
 /// What a frame draws of a shot.
 std::vector<shared::View> views_of(const Shot& shot);

@@ -22,7 +22,7 @@ struct SplitOptions {
 void add_split_options(CLI::App& sub, MeasuredOptions& measured, SplitOptions& split, const char* views_help);
 
 /// The cameras that pictures of the scene are of. Throws Error, which names the command, where there are
-/// none.
+/// none, or where their photos differ from them in size.
 CameraList needed_cameras(const std::string& command, const MeasuredOptions& options);
 
 /// How many views are held back at most, of so many that can be and so many cameras.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/measured_options.h"
+#include "app/photos.h"
 #include "app/rig_options.h"
 #include "app/shots.h"
 #include "shared/axes.h"
@@ -15,6 +16,9 @@
 #include "study/page.h"
 
 namespace binosplat::app {
+
+/// Of --turn: as many as suffice for a mean.
+inline const ViewChoice photos_of_a_turn{.views = {}, .wanted = 16};
 
 /// Of --motion.
 struct MotionOptions {

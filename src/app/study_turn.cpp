@@ -27,9 +27,6 @@ study::TurningSettings settings_for(const gl::Context& context, const StudyOptio
   return settings;
 }
 
-/// Of as many views as that suffices for a mean.
-constexpr std::size_t photos_max = 16;
-
 constexpr double metres_a_frame = 1.5 / 90.0;
 
 /// A head that moves is seen in pictures of no more than so many pixels a side: what is compared is not
@@ -61,8 +58,7 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
     views.eyes.assign(eyes.views.begin(), eyes.views.end());
   }
   if (options.photos.empty()) return views;
-  for (const study::CalibrationView& one :
-       photographed_views({.views = {}, .wanted = photos_max}, options.photos, {}, list))
+  for (const study::CalibrationView& one : photographed_views(photos_of_a_turn, options.photos, {}, list))
     views.photos.emplace_back(make_view(into_axes(one.camera, axes), studied.near_plane), *one.photo);
   return views;
 }

@@ -9,6 +9,7 @@
 #include "app/render_outputs.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "scene/key_path.h"
 
 namespace binosplat::app {
 
@@ -54,7 +55,11 @@ void add_tour_options(CLI::App& sub, CameraOptions& o) {
          "--units-per-metre, or else from camera\nto camera, in the median; M,DEG: at other speeds" +
              motions_help())
       ->type_name("calm|walk|fast|M,DEG");
-  sub.add_option("--seconds", o.seconds, "The first S seconds of the tour (all)")
+  sub.add_flag("--keys", o.keys, "Draw the keys of --path alone, and not the way through them");
+  sub.add_option(
+         "--seconds", o.seconds,
+         "The first S seconds of the tour (all); or go through the keys of\n--path in S seconds, at an "
+         "even pace (by their times)")
       ->type_name("S")
       ->check(positive);
 }
@@ -85,6 +90,25 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
            count, list.source, settings.motion.metres_per_second, settings.motion.degrees_per_second,
            list.cameras.size(), static_cast<double>(list.cameras.size()) / fps,
            camera.seconds ? "" : " (--seconds S for the first S of them)");
+  return list;
+}
+
+CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool video,
+                         CameraList list) {
+  const bool keys = !camera.keys && (camera.seconds || are_keys(list.cameras));
+  if (!keys) {
+    if (fps && !video)
+      fail("--fps: {} has frames, each drawn as it is; --seconds S goes through them as keys", list.source);
+    return list;
+  }
+  const KeyPath path(list.cameras, camera.seconds);
+  const double rate = fps.value_or(video_fps);
+  const std::size_t count = list.cameras.size();
+  list.cameras = frames_of(path, rate);
+  log_info("--path: smoothly through the {} keys of {} in {:.3g} s{}: {} frames, {} a second", count,
+           list.source, path.seconds(),
+           camera.seconds ? "" : ", by their times (--seconds S: in S seconds; --keys: they alone)",
+           list.cameras.size(), rate);
   return list;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// render --tour: along the way of a head that goes through a model's cameras.
+// render --tour: along the way of a head that goes through a model's cameras; --path: along keys.
 
 #include "app/camera_options.h"
 #include "app/rig_options.h"
@@ -7,7 +7,7 @@
 
 namespace binosplat::app {
 
-/// Adds --tour and --seconds.
+/// Adds --tour, --keys and --seconds.
 void add_tour_options(CLI::App& sub, CameraOptions& options);
 
 /// --fps, or what fits a tour: 30 for a video, as for others, else 90 as headsets have.
@@ -18,5 +18,10 @@ double tour_fps(const std::optional<double>& fps, bool video);
 /// too. Throws Error where there are not two cameras.
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                       double fps, CameraList list);
+
+/// The frames of a path: of keys (scene/key_path.h), `fps` a second, those on a smooth way through them, and
+/// says so; others are frames as they are. Throws Error for options that need keys where there are none.
+CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool video,
+                         CameraList list);
 
 }  // namespace binosplat::app

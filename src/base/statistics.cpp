@@ -7,9 +7,10 @@
 namespace binosplat {
 
 double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
+  const double rank = std::max(1.0, std::ceil(share * static_cast<double>(values.size())));
+  const auto found = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
+  std::nth_element(values.begin(), found, values.end());
+  return *found;
 }
 
 double mean(const std::vector<double>& values) {

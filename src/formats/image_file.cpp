@@ -46,4 +46,16 @@ void check_room(const std::filesystem::path& path, std::int64_t width, std::int6
                           width, height, bytes / 1'000'000, limit.bytes / 1'000'000, limit.advice));
 }
 
+std::optional<glm::ivec2> picture_size(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  switch (content_of(file.bytes())) {
+    case Content::png:
+      return png_size(file.bytes());
+    case Content::jpeg:
+      return jpeg_size(file.bytes());
+    default:
+      return std::nullopt;
+  }
+}
+
 }  // namespace binosplat

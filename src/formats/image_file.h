@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "base/image.h"
@@ -26,6 +28,10 @@ struct PictureLimit {
 /// alpha. Throws Error naming the file for anything else, for damaged or cut files and, with
 /// ExitCode::out_of_memory and before any is taken, for pictures beyond `limit`.
 Image load_image(const std::filesystem::path& path, const PictureLimit& limit = {});
+
+/// Width and height in px as the header of a PNG or JPEG has them; nothing for other and for broken files, of
+/// which load_image() says what is wrong. Throws Error for a file that cannot be read.
+std::optional<glm::ivec2> picture_size(const std::filesystem::path& path);
 
 /// Writes round(255 clamp(v)), or 65535 for 16 `bits`, of 1, 3 or 4 channels. No gamma is applied: the values
 /// are sRGB as they are, and the file says so.

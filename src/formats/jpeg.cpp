@@ -10,6 +10,16 @@
 
 namespace binosplat {
 
+std::optional<glm::ivec2> jpeg_size(std::span<const std::byte> bytes) {
+  const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
+  glm::ivec2 size{0};
+  int subsampling = 0, colours = 0;
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const bool good = decoder != nullptr && tjDecompressHeader3(decoder.get(), data, bytes.size(), &size.x,
+                                                              &size.y, &subsampling, &colours) == 0;
+  return good ? std::optional(size) : std::nullopt;
+}
+
 Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes,
                 const PictureLimit& limit) {
   const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);

@@ -132,6 +132,16 @@ bool write_image(Writer& writer, const Image& image, int bits) {
 
 }  // namespace
 
+std::optional<glm::ivec2> png_size(std::span<const std::byte> bytes) {
+  constexpr std::size_t at = 16;  // after the signature, and the length and name of the first chunk
+  if (bytes.size() < at + 8) return std::nullopt;
+  const auto number = [&](std::size_t from) {
+    return png_get_uint_32(reinterpret_cast<png_const_bytep>(&bytes[from]));
+  };
+  if (std::max(number(at), number(at + 4)) > PNG_UINT_31_MAX) return std::nullopt;
+  return glm::ivec2(number(at), number(at + 4));
+}
+
 Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes,
                const PictureLimit& limit) {
   Reader reader{path, bytes};

@@ -44,6 +44,14 @@ void Navigator::move(double right, double up, double forward, bool walking) {
 
 void Navigator::dolly(double factor) { camera_.position = target_ + factor * (camera_.position - target_); }
 
+void Navigator::set_fov(double radians) {
+  const double factor = std::tan(0.5 * fov()) / std::tan(0.5 * radians);
+  camera_.fx *= factor;
+  camera_.fy *= factor;
+}
+
+double Navigator::fov() const { return 2.0 * std::atan(0.5 * camera_.height / camera_.fy); }
+
 void Navigator::focus(const Camera& eye, const glm::dvec2& pixel, double depth) {
   const glm::dvec3 ray((pixel.x - eye.cx) / eye.fx, (pixel.y - eye.cy) / eye.fy, 1.0);
   const glm::dvec3 point = eye.position + eye.rotation * (depth * ray);

@@ -25,6 +25,9 @@ class Navigator {
   void move(double right, double up, double forward, bool walking = false);
   /// Towards the target: the distance is multiplied by `factor`.
   void dolly(double factor);
+  /// The vertical angle that the camera sees; pixels stay as square as they were.
+  void set_fov(double radians);
+  double fov() const;
   /// What lies at this depth in a pixel of a camera beside the head (an eye) becomes the target, and is
   /// turned to without being moved to.
   void focus(const Camera& eye, const glm::dvec2& pixel, double depth);

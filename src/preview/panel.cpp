@@ -2,21 +2,17 @@
 
 #include <fmt/core.h>
 #include <imgui.h>
+#include <imgui/imgui_stdlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "base/progress.h"
-#include "base/statistics.h"
+#include "preview/keys.h"
+#include "preview/times.h"
 
 namespace binosplat::preview {
 
 namespace {
-
-constexpr std::array<ImU32, 6> stage_colours = {IM_COL32(86, 156, 214, 255),  IM_COL32(78, 201, 176, 255),
-                                                IM_COL32(220, 205, 121, 255), IM_COL32(206, 145, 120, 255),
-                                                IM_COL32(197, 134, 192, 255), IM_COL32(156, 205, 90, 255)};
 
 // A choice of shared/axes.h, without those that are left out.
 template <std::size_t n>
@@ -36,105 +32,77 @@ bool combo(const char* label, int& value, const Choice (&choices)[n],
   return changed;
 }
 
-bool draw_rig(stereo::RigSettings& rig) {
+// A slider over a double, by factors.
+bool factor_slider(const char* label, double& value, double least, double most, const char* format) {
+  auto number = static_cast<float>(value);
+  if (!ImGui::SliderFloat(label, &number, static_cast<float>(least), static_cast<float>(most), format,
+                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat))
+    return false;
+  value = std::max(0.01 * least, static_cast<double>(number));  // typed numbers go beyond the ends
+  return true;
+}
+
+bool draw_rig(Choices& choices) {
+  stereo::RigSettings& rig = choices.rig;
   bool changed = false;
   float ipd = static_cast<float>(1000.0 * rig.ipd);
-  if (ImGui::SliderFloat("ipd, mm", &ipd, 0.0f, 200.0f, "%.1f")) {
+  if (ImGui::SliderFloat("ipd", &ipd, 0.0f, 200.0f, "%.1f mm")) {
     rig.ipd = std::max(0.0f, ipd) / 1000.0;
     changed = true;
   }
-  float units = static_cast<float>(rig.units_per_metre);
-  if (ImGui::SliderFloat("units a metre", &units, 0.01f, 100.0f, "%.3f", ImGuiSliderFlags_Logarithmic)) {
-    rig.units_per_metre = std::max(0.0001f, units);
-    changed = true;
-  }
+  changed |= factor_slider("units a metre", rig.units_per_metre, 0.01, 100.0, "%.3f");
+  const auto before = rig.convergence;
   bool converges = rig.convergence.has_value();
   if (ImGui::Checkbox("convergence", &converges)) {
     rig.convergence = converges ? std::optional(2.0) : std::nullopt;
     changed = true;
   }
-  if (rig.convergence) {
-    float metres = static_cast<float>(*rig.convergence);
-    ImGui::SameLine();
-    if (ImGui::SliderFloat("m", &metres, 0.2f, 50.0f, "%.2f", ImGuiSliderFlags_Logarithmic)) {
-      rig.convergence = std::max(0.01f, metres);
-      changed = true;
-    }
-  }
+  if (rig.convergence) changed |= factor_slider("at", *rig.convergence, 0.2, 50.0, "%.2f m");
+  if (rig.convergence != before) choices.seeks_screen = false;  // for the next model, too
   return changed;
+}
+
+// The right end of the slider is the exact picture.
+bool draw_quality(render::FrameSettings& s) {
+  constexpr float least = 25.0f, exact = 60.0f;
+  float db = s.quality > 0.0f ? s.quality : exact;
+  const char* const format = s.quality > 0.0f ? "%.0f dB" : render::is_exact(s.th) ? "exact" : "by tolerance";
+  if (!ImGui::SliderFloat("quality", &db, least, exact, format, ImGuiSliderFlags_AlwaysClamp)) return false;
+  choose_quality(s, db < exact ? std::optional(std::round(db)) : std::nullopt);
+  return true;
 }
 
 bool draw_thresholds(render::FrameSettings& s) {
   bool changed = combo("tiles", s.tiles, tiles_choices, {TILES_ALL});
-  if (combo("th", s.th, th_choices)) {
+  if (combo("threshold", s.th, th_choices)) {
     choose_threshold(s, s.th);
     changed = true;
   }
   if (render::is_exact(s.th)) return changed;
-  changed |=
-      ImGui::SliderFloat("tolerance", &s.tolerance, 0.001f, 10.0f, "%.3f", ImGuiSliderFlags_Logarithmic);
-  s.tolerance = std::max(0.0f, s.tolerance);
+  float tolerance = s.tolerance;
+  if (ImGui::SliderFloat("tolerance", &tolerance, 0.001f, 10.0f, s.quality > 0.0f ? "by quality" : "%.3f",
+                         ImGuiSliderFlags_Logarithmic)) {
+    s.tolerance = std::max(0.0f, tolerance);
+    s.quality = 0.0f;
+    changed = true;
+  }
   // The depth table needs cameras to be measured from: `binosplat render` has it.
   if (render::threshold_rules[s.th].uses_bound)
     changed |= combo("transmittance", s.transmittance, transmittance_choices, {TRANSMITTANCE_DEPTH});
   return changed;
 }
 
-// Stage times of the last frames as stacked bars.
-void draw_times(const std::deque<render::FrameReport>& reports) {
-  if (reports.empty()) return;
-  std::vector<double> totals;
-  for (const render::FrameReport& report : reports) totals.push_back(report.total_ms);
-  const double most = *std::max_element(totals.begin(), totals.end());
-  ImGui::Text("%.2f ms, median %.2f, p99 %.2f", totals.back(), quantile(totals, 0.5), quantile(totals, 0.99));
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x, height = 60.0f;
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  const float bar = std::max(1.0f, std::floor(width / 120.0f));
-  const std::size_t bars = std::min(reports.size(), static_cast<std::size_t>(width / bar));
-  for (std::size_t k = 0; k < bars; ++k) {
-    float bottom = at.y + height;
-    const float x = at.x + bar * static_cast<float>(k);
-    const auto& stages = reports[reports.size() - bars + k].stages;
-    for (std::size_t s = 0; s < stages.size(); ++s) {
-      const float top = bottom - static_cast<float>(stages[s].ms / most) * height;
-      list->AddRectFilled({x, top}, {x + bar, bottom}, stage_colours[s % stage_colours.size()]);
-      bottom = top;
-    }
+void draw_keys() {
+  if (!ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) return;
+  ImGui::TableSetupColumn("keys");
+  ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch);
+  for (const KeyHelp& key : key_help) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(key.keys);
+    ImGui::TableNextColumn();
+    ImGui::TextWrapped("%s", key.what);
   }
-  ImGui::Dummy({width, height});
-  for (std::size_t s = 0; s < reports.back().stages.size(); ++s) {
-    const auto& stage = reports.back().stages[s];
-    ImGui::TextColored(ImColor(stage_colours[s % stage_colours.size()]), "%s %.1f", stage.name.c_str(),
-                       stage.ms);
-    if (s % 3 != 2) ImGui::SameLine(120.0f * static_cast<float>(s % 3 + 1));
-  }
-  ImGui::NewLine();
-  const render::FrameReport& last = reports.back();
-  ImGui::TextWrapped("%.2f M pairs, %.2f M Gaussians in view, %.0f MB",
-                     static_cast<double>(last.pairs) * 1e-6, static_cast<double>(last.visible) * 1e-6,
-                     static_cast<double>(last.gpu_bytes) * 1e-6);
-}
-
-// What the colours of a map mean, at the lower right.
-void draw_legend(int show, double most) {
-  constexpr float width = 256.0f, height = 12.0f;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({size.x - 10, size.y - 10}, ImGuiCond_Always, {1, 1});
-  ImGui::Begin("legend", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration);
-  ImGui::Text("%s: %s", show_choices[show].name, show_choices[show].help);
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  for (float x = 0; x < width; ++x) {
-    const glm::vec3 colour = stereo::map_colour(x / (width - 1.0f));
-    ImGui::GetWindowDrawList()->AddRectFilled({at.x + x, at.y}, {at.x + x + 1.0f, at.y + height},
-                                              ImColor(colour.r, colour.g, colour.b));
-  }
-  ImGui::Dummy({width, height});
-  ImGui::Text("0");
-  const std::string end = fmt::format("{} and more", most);
-  ImGui::SameLine(width - ImGui::CalcTextSize(end.c_str()).x);
-  ImGui::TextUnformatted(end.c_str());
-  ImGui::End();
+  ImGui::EndTable();
 }
 
 }  // namespace
@@ -145,15 +113,71 @@ void Panel::next_layout(int& layout, int by) const {
   while (layout == LAYOUT_MULTI_VIEW || (layout == LAYOUT_QUAD_BUFFER && !stereo_window));
 }
 
-// What is shown of the frame; true if that changes.
-bool Panel::draw_show(Choices& c) {
-  bool changed = combo("show", c.show, show_choices);
-  if (c.show == SHOW_SPLIT) {
-    float split = static_cast<float>(c.split);
-    changed |= ImGui::SliderFloat("split", &split, 0.0f, 1.0f, "drawn < %.2f > exact");
-    c.split = std::clamp(split, 0.0f, 1.0f);
+float Panel::width(float window) const {
+  return open ? std::floor(std::min(23.0f * ImGui::GetFontSize(), 0.5f * window)) : 0.0f;
+}
+
+bool Panel::draw_view(Session& session) {
+  Choices& c = session.choices;
+  bool changed = false;
+  if (ImGui::Button("reset view")) session.reset_view();
+  ImGui::SameLine();
+  if (ImGui::Button("this is up")) session.set_up();
+  ImGui::SameLine();
+  if (ImGui::Button("save pose")) requests.save_pose();
+  ImGui::TextWrapped("camera: %s", session.camera_name().c_str());
+  ImGui::Checkbox("walk", &walking);
+  auto fov = static_cast<float>(glm::degrees(session.head.fov()));
+  if (ImGui::SliderFloat("field of view", &fov, 10.0f, 120.0f, "%.0f degrees",
+                         ImGuiSliderFlags_AlwaysClamp)) {
+    session.head.set_fov(glm::radians(static_cast<double>(fov)));
+    changed = true;
   }
+  changed |= factor_slider("near plane", c.rig.near_plane, 0.001, 10.0, "%.3f units");
+  changed |= ImGui::ColorEdit3("background", &c.background.x, ImGuiColorEditFlags_NoInputs);
   return changed;
+}
+
+void Panel::draw_path(Session& session) {
+  const std::vector<Camera>& keys = session.keys.keys();
+  if (ImGui::Button("add key (K)")) requests.add_key();
+  if (keys.size() > 1) {
+    ImGui::SameLine();
+    if (ImGui::Button(playing ? "stop (Space)" : "play (Space)")) requests.play();
+  }
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    ImGui::PushID(static_cast<int>(k));
+    const std::string name = fmt::format("{}: {:.1f} s", k, *keys[k].time);
+    if (ImGui::Button("go")) session.go_to(keys[k]);
+    ImGui::SameLine();
+    const bool moved = ImGui::Button("move here");
+    ImGui::SameLine();
+    const bool deleted = ImGui::Button("delete");
+    ImGui::SameLine();
+    ImGui::TextUnformatted(name.c_str());
+    ImGui::PopID();
+    if (deleted) return requests.delete_key(k);
+    if (moved) requests.move_key(k);
+  }
+  if (!keys.empty()) ImGui::TextWrapped("%s", session.keys.file().c_str());
+}
+
+void Panel::draw_open() {
+  const bool entered =
+      ImGui::InputTextWithHint("file", "a model's path", &file_, ImGuiInputTextFlags_EnterReturnsTrue);
+  if ((ImGui::Button("open") || entered) && !file_.empty()) requests.open(file_);
+  ImGui::SameLine();
+  ImGui::TextDisabled("or drop it on the window");
+}
+
+void Panel::draw_accuracy(Session& session) {
+  if (draw_thresholds(session.choices.settings)) {
+    session.change();
+    psnr.reset();
+  }
+  if (ImGui::Button("PSNR against exact")) psnr = session.psnr_against_exact();
+  if (psnr) ImGui::SameLine();
+  if (psnr) ImGui::Text(std::isinf(*psnr) ? "equal" : "%.2f dB", *psnr);
 }
 
 void Panel::draw_controls(Session& session) {
@@ -161,15 +185,16 @@ void Panel::draw_controls(Session& session) {
   bool changed = stereo_window
                      ? combo("layout", c.layout, layout_choices, {LAYOUT_MULTI_VIEW})
                      : combo("layout", c.layout, layout_choices, {LAYOUT_MULTI_VIEW, LAYOUT_QUAD_BUFFER});
-  changed |= draw_rig(c.rig);
-  changed |= draw_thresholds(c.settings);
-  if (draw_show(c)) session.change_show();
-  changed |= ImGui::ColorEdit3("background", &c.background.x);
-  ImGui::Checkbox("walk (G)", &walking);
-  ImGui::SameLine();
-  if (ImGui::Button("this is up")) session.set_up();
-  ImGui::SameLine();
-  if (ImGui::Button("save pose")) save_pose();
+  bool shown = combo("show", c.show, show_choices);
+  if (c.show == SHOW_SPLIT) {
+    float split = static_cast<float>(c.split);
+    shown |= ImGui::SliderFloat("split", &split, 0.0f, 1.0f, "drawn < %.2f > exact");
+    c.split = std::clamp(split, 0.0f, 1.0f);
+  }
+  if (shown) session.change_show();
+  changed |= draw_quality(c.settings);
+  if (ImGui::CollapsingHeader("view", ImGuiTreeNodeFlags_DefaultOpen)) changed |= draw_view(session);
+  if (ImGui::CollapsingHeader("eyes", ImGuiTreeNodeFlags_DefaultOpen)) changed |= draw_rig(c);
   if (changed) {
     session.change();
     psnr.reset();
@@ -177,44 +202,67 @@ void Panel::draw_controls(Session& session) {
 }
 
 void Panel::draw(Session& session) {
-  if (session.most_shown()) draw_legend(session.choices.show, *session.most_shown());
-  if (!open) {
-    if (!session.trouble().empty()) draw_message(session.trouble());
-    return;
-  }
-  ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSize({370, 560}, ImGuiCond_FirstUseEver);
-  if (ImGui::Begin("binosplat", &open)) {
-    draw_controls(session);
-    draw_times(session.reports());
-    if (ImGui::Button("PSNR against exact")) psnr = session.psnr_against_exact();
-    if (psnr) ImGui::SameLine();
-    if (psnr) ImGui::Text(std::isinf(*psnr) ? "equal" : "%.2f dB", *psnr);
-    ImGui::TextWrapped("%s  %s", session.camera_name().c_str(), message.c_str());
-    if (!session.trouble().empty()) ImGui::TextColored({1, 0.4f, 0.3f, 1}, "%s", session.trouble().c_str());
-    ImGui::TextDisabled(
-        "drag: orbit, right: look, middle: move, wheel: nearer\nWASD QE: go, double click: focus\n"
-        "N P: cameras, L T H V: layout, tiles, th, show\nF12 F11: PNG, EXR, K: key of a path, F9: save pose\n"
-        "F5: read the model again, F1: this");
-  }
+  if (!open) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x - width(size.x), 0.0f});
+  ImGui::SetNextWindowSize({width(size.x), size.y});
+  ImGui::Begin("panel", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoMove);
+  ImGui::PushItemWidth(-8.0f * ImGui::GetFontSize());
+  if (ImGui::Button("hide (F1)")) open = false;
+  ImGui::SameLine();
+  if (ImGui::Button("full screen (F)")) requests.full_screen();
+  draw_speed(session.reports(), frames_a_second);
+  draw_controls(session);
+  if (ImGui::CollapsingHeader("path", ImGuiTreeNodeFlags_DefaultOpen)) draw_path(session);
+  if (ImGui::CollapsingHeader("open", ImGuiTreeNodeFlags_DefaultOpen)) draw_open();
+  if (ImGui::CollapsingHeader("accuracy")) draw_accuracy(session);
+  if (ImGui::CollapsingHeader("times")) draw_times(session.reports());
+  if (ImGui::CollapsingHeader("keys")) draw_keys();
+  ImGui::PopItemWidth();
   ImGui::End();
 }
 
-void draw_loading(const std::string& scene, bool read, double seconds) {
-  ImGui::SetNextWindowPos({10, 10});
-  ImGui::Begin("loading", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar);
-  ImGui::Text("reading %s, %.0f s", scene.c_str(), seconds);
-  ImGui::TextUnformatted(read ? "to the GPU" : latest_progress().c_str());
-  ImGui::End();
-}
-
-void draw_message(const std::string& message) {
-  ImGui::SetNextWindowPos({10, 10});
-  ImGui::Begin("message", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoTitleBar);
-  ImGui::PushTextWrapPos(0.9f * ImGui::GetIO().DisplaySize.x);
-  ImGui::TextUnformatted(message.c_str());
+void draw_legend(int show, double most, float width) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float line = ImGui::GetFontSize(), margin = 0.75f * line;
+  const float bar = std::max(1.0f, std::min(20.0f * line, width - 2.0f * (margin + style.WindowPadding.x)));
+  const std::string title = fmt::format("{}: {}", show_choices[show].name, show_choices[show].help);
+  const std::string end = fmt::format("{} and more", most);
+  // Dear ImGui itself would know the size of another text one frame later.
+  const float texts = ImGui::CalcTextSize(title.c_str(), nullptr, false, bar).y;
+  const ImVec2 size = {bar + 2.0f * style.WindowPadding.x,
+                       texts + 2.0f * (line + style.ItemSpacing.y + style.WindowPadding.y)};
+  ImGui::SetNextWindowPos({width - margin, ImGui::GetIO().DisplaySize.y - margin}, ImGuiCond_Always, {1, 1});
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("legend", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs);
+  ImGui::PushTextWrapPos(style.WindowPadding.x + bar);
+  ImGui::TextUnformatted(title.c_str());
   ImGui::PopTextWrapPos();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  for (float x = 0; x < bar; ++x) {
+    const glm::vec3 colour = stereo::map_colour(x / bar);
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x + x, at.y}, {at.x + x + 1.0f, at.y + line},
+                                              ImColor(colour.r, colour.g, colour.b));
+  }
+  ImGui::Dummy({bar, line});
+  ImGui::Text("0");
+  ImGui::SameLine(style.WindowPadding.x + bar - ImGui::CalcTextSize(end.c_str()).x);
+  ImGui::TextUnformatted(end.c_str());
   ImGui::End();
+}
+
+void set_scale(float scale, float pixels) {
+  ImGuiIO& io = ImGui::GetIO();
+  ImFontConfig config;
+  config.SizePixels = std::floor(13.0f * scale);  // Dear ImGui's own, larger
+  io.Fonts->Clear();
+  io.Fonts->AddFontDefault(&config);
+  io.FontGlobalScale = 1.0f / pixels;
+  ImGui::GetStyle() = ImGuiStyle();
+  ImGui::StyleColorsDark();
+  ImGui::GetStyle().ScaleAllSizes(scale / pixels);
 }
 
 }  // namespace binosplat::preview

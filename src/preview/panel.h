@@ -1,5 +1,5 @@
 #pragma once
-// The preview's widgets (Dear ImGui), over whatever is drawn.
+// The preview's widgets (Dear ImGui), beside the picture.
 
 #include <functional>
 #include <optional>
@@ -9,14 +9,24 @@
 
 namespace binosplat::preview {
 
+/// What buttons ask of the window.
+struct Requests {
+  std::function<void()> save_pose, full_screen, add_key, play;
+  std::function<void(std::size_t key)> move_key, delete_key;
+  std::function<void(const std::string& file)> open;
+};
+
 struct Panel {
   bool open = true;
   bool walking = false;
-  bool stereo_window = false;       // LAYOUT_QUAD_BUFFER may be chosen
-  std::function<void()> save_pose;  // of the button; empty: nowhere to save it
-  std::string message;              // the last thing done, for the user
-  std::optional<double> psnr;       // dB, of the last picture that was compared
+  bool playing = false;
+  bool stereo_window = false;  // LAYOUT_QUAD_BUFFER may be chosen
+  Requests requests;
+  std::optional<double> frames_a_second;  // as they were shown last while the head moved
+  std::optional<double> psnr;             // dB, of the last picture that was compared
 
+  /// How much of a window it takes at the right, both in px: no picture is drawn there. 0 while it is hidden.
+  float width(float window) const;
   /// Between ImGui::NewFrame() and Render().
   void draw(Session& session);
   /// The next of the layouts that may be chosen, or the one before.
@@ -24,14 +34,19 @@ struct Panel {
 
  private:
   void draw_controls(Session& session);
-  bool draw_show(Choices& choices);
+  bool draw_view(Session& session);
+  void draw_open();
+  void draw_path(Session& session);
+  void draw_accuracy(Session& session);
+
+  std::string file_;  // that is typed, to be opened
 };
 
-/// While a model is read, and then handed to the GPU: its name, how far that is (base/progress.h), and how
-/// long it has taken, in s.
-void draw_loading(const std::string& scene, bool read, double seconds);
+/// What the colours of a map mean (stereo/show.h), at the lower right of a picture of that width in px.
+void draw_legend(int show, double most, float width);
 
-/// What could not be done while there is no panel to tell it.
-void draw_message(const std::string& message);
+/// Fonts and widgets for a display of that scale, in a window whose framebuffer has `pixels` px for each of
+/// its own units. Between frames.
+void set_scale(float scale, float pixels);
 
 }  // namespace binosplat::preview

@@ -1,17 +1,15 @@
 #include "preview/session.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "base/output_file.h"
-#include "formats/cameras_file.h"
 #include "formats/exr.h"
 #include "formats/image_file.h"
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
 #include "scene/axes.h"
 #include "shared/layout.h"
+#include "stereo/comfort.h"
 #include "stereo/layout.h"
 
 namespace binosplat::preview {
@@ -35,31 +33,40 @@ double depth_ahead(const Model& model, const Camera& of_world) {
   return *middle;
 }
 
-std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& ending) {
-  for (int n = 1;; ++n) {
-    auto path = folder / fmt::format("preview_{:03}{}", n, ending);
-    if (!std::filesystem::exists(path)) return path;
-  }
-}
-
 }  // namespace
 
 void choose_threshold(render::FrameSettings& settings, int th) {
   settings.th = th;
   settings.tolerance = static_cast<float>(render::threshold_rules[th].careful_tolerance);
+  settings.quality = 0.0f;
+}
+
+void choose_quality(render::FrameSettings& settings, std::optional<float> db) {
+  // The rule that costs least at equal error (docs/method.md 8), unless one was chosen.
+  if (!db || render::is_exact(settings.th)) choose_threshold(settings, db ? TH_SQUARED : TH_TAU);
+  settings.quality = db.value_or(0.0f);
 }
 
 void make_consistent(Choices& choices) {
   render::FrameSettings& s = choices.settings;
   const render::ThresholdRule& rule = render::threshold_rules[s.th];
-  if (rule.exact) s.tolerance = 0.0f;
+  if (rule.exact) s.quality = 0.0f;
+  if (rule.exact || s.quality > 0.0f) s.tolerance = 0.0f;
   if (!render::takes(s.th, s.transmittance)) s.transmittance = TRANSMITTANCE_ONE;
   s.background = choices.background;
 }
 
+int next_divisor(int divisor, double ms) {
+  constexpr int most = 4;
+  // No picture is more than four times as large as the next smaller one.
+  if (ms < moving_ms / 4.0) return std::max(1, divisor - 1);
+  return ms > moving_ms ? std::min(most, divisor + 1) : divisor;
+}
+
 Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
                  Choices wanted, std::filesystem::path folder)
-    : head(cameras.at(0), up, depth_ahead(model, cameras[0])),
+    : keys(folder),
+      head(cameras.at(0), up, depth_ahead(model, cameras[0])),
       choices(std::move(wanted)),
       context_(context),
       model_(std::move(model)),
@@ -69,7 +76,22 @@ Session::Session(gl::Context& context, Model model, std::vector<Camera> cameras,
       frame_(context, model_, choices.settings.precision),
       presenter_(context),
       show_(frame_.model()),
-      shown_colours_(context, "pixels to show") {}
+      shown_colours_(context, "pixels to show"),
+      seeks_screen_(choices.seeks_screen) {
+  if (seeks_screen_) choices.rig.convergence.reset();
+}
+
+Session::~Session() { context_.gl().DeleteFramebuffers(1, &smaller_framebuffer_); }
+
+void Session::move() {
+  moving_ = true;
+  change();
+}
+
+void Session::rest() {
+  moving_ = false;
+  if (divisor_ > 1) change();
+}
 
 void Session::change() {
   make_consistent(choices);
@@ -85,28 +107,33 @@ void Session::resize(const glm::ivec2& framebuffer) {
 void Session::step_camera(int by) {
   const int count = static_cast<int>(cameras_.size());
   camera_ = static_cast<std::size_t>(((static_cast<int>(camera_) + by) % count + count) % count);
-  head = Navigator(cameras_[camera_], up_, depth_ahead(model_, cameras_[camera_]));
+  go_to(cameras_[camera_]);
+}
+
+void Session::go_to(const Camera& camera) {
+  head = Navigator(camera, up_, depth_ahead(model_, camera));
   change();
 }
 
-glm::ivec2 Session::eye_size() const {
+glm::ivec2 Session::eye_size(int divisor) const {
+  const glm::ivec2 all = framebuffer_ / divisor;
   switch (choices.layout) {
     case LAYOUT_PARALLEL:
     case LAYOUT_CROSS_EYED:
-      return {framebuffer_.x / 2, framebuffer_.y};
+      return {all.x / 2, all.y};
     case LAYOUT_HALF_WIDTH:
-      return {framebuffer_.x / 2 * 2, framebuffer_.y};
+      return {all.x / 2 * 2, all.y};
     case LAYOUT_HALF_HEIGHT:
-      return {framebuffer_.x, framebuffer_.y / 2 * 2};
+      return {all.x, all.y / 2 * 2};
     case LAYOUT_OVER_UNDER:
-      return {framebuffer_.x, framebuffer_.y / 2};
+      return {all.x, all.y / 2};
     default:
-      return framebuffer_;
+      return all;
   }
 }
 
-Camera Session::head_camera() const {
-  const glm::ivec2 size = eye_size();
+Camera Session::head_camera(int divisor) const {
+  const glm::ivec2 size = eye_size(divisor);
   return resized(head.camera(), size.x, size.y);
 }
 
@@ -140,18 +167,26 @@ void Session::replace(Model model) {
 std::vector<shared::View> Session::views() {
   const glm::ivec2 size = eye_size();
   if (size.x < 1 || size.y < 1) return {};
-  const Camera camera = head_camera();
-  eyes_ = stereo::make_rig(camera, choices.rig).cameras;
+  return views_of(head_camera());
+}
+
+std::vector<shared::View> Session::views_of(const Camera& camera) {
   const auto drawn = stereo::make_rig(into_axes(camera, model_.axes), choices.rig).views;
   return {drawn.begin(), drawn.end()};
 }
 
 bool Session::draw() {
-  const glm::ivec2 size = eye_size();
+  const bool interlaced = choices.layout == LAYOUT_ROWS || choices.layout == LAYOUT_COLUMNS;  // never scaled
+  const bool shrinks = moving_ && !interlaced && !reports_.empty();
+  const int divisor = shrinks ? next_divisor(divisor_, reports_.back().total_ms) : 1;
+  const glm::ivec2 size = eye_size(divisor);
   if (pending_ == 0 || size.x < 1 || size.y < 1) return false;
   --pending_;
   try {
-    const std::vector<shared::View> asked = views();
+    const Camera camera = head_camera(divisor);
+    const std::vector<shared::View> asked = views_of(camera);
+    eyes_ = stereo::make_rig(camera, choices.rig).cameras;
+    divisor_ = divisor;
     reports_.push_back(frame_.draw(asked, choices.settings));
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
@@ -165,7 +200,17 @@ bool Session::draw() {
   }
   if (reports_.size() > reports_kept) reports_.pop_front();
   ++frames_drawn_;
+  if (seeks_screen_ && shown_layout_ != LAYOUT_SEPARATE) find_screen();
   return true;
+}
+
+// Once: a screen that moved with the head would make heads swim.
+void Session::find_screen() {
+  seeks_screen_ = false;
+  if (choices.rig.convergence || choices.rig.cant_degrees != 0.0) return;
+  screen_found_ = stereo::suitable_convergence(eyes_, frame_.read_pictures()[0], choices.rig.units_per_metre);
+  choices.rig.convergence = screen_found_;
+  if (screen_found_) change();
 }
 
 void Session::present() {
@@ -174,10 +219,23 @@ void Session::present() {
   const glm::ivec2 size =
       stereo::layout_size(shown_layout_, {static_cast<int>(eye.width), static_cast<int>(eye.height)});
   stereo::Target target;
-  target.y = std::max(0, framebuffer_.y - size.y);
+  if (divisor_ == 1) {
+    target.y = std::max(0, framebuffer_.y - size.y);
+  } else {
+    if (smaller_framebuffer_ == 0) context_.gl().CreateFramebuffers(1, &smaller_framebuffer_);
+    if (!smaller_ || !smaller_->is(GL_RGBA8, size.x, size.y)) {
+      smaller_ = std::make_unique<gl::Texture>(context_, GL_RGBA8, size.x, size.y);
+      context_.gl().NamedFramebufferTexture(smaller_framebuffer_, GL_COLOR_ATTACHMENT0, smaller_->id(), 0);
+    }
+    target.texture = smaller_->id();
+  }
   const gl::Buffer& colours = shown_.pictures.empty() ? frame_.colours() : shown_colours_;
   const auto draw = [&](std::size_t first, int layout) {
     presenter_.draw(colours, drawn_, first, layout, target, choices.background);
+    if (divisor_ > 1) {
+      context_.gl().BlitNamedFramebuffer(smaller_framebuffer_, 0, 0, 0, size.x, size.y, 0, 0, framebuffer_.x,
+                                         framebuffer_.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    }
   };
   if (shown_layout_ != LAYOUT_QUAD_BUFFER) return draw(0, shown_layout_);
   context_.gl().DrawBuffer(GL_BACK_LEFT);
@@ -187,7 +245,14 @@ void Session::present() {
   context_.gl().DrawBuffer(GL_BACK);  // both
 }
 
+// What is read of a picture is read of a whole one.
+void Session::draw_at_rest() {
+  rest();
+  draw();
+}
+
 void Session::focus(const glm::ivec2& pixel) {
+  draw_at_rest();
   if (frames_drawn_ == 0) return;
   const shared::View& eye = drawn_[0];
   const auto layout = static_cast<shared::uint>(shown_layout_);
@@ -203,8 +268,9 @@ void Session::focus(const glm::ivec2& pixel) {
 }
 
 std::string Session::save_picture(bool exr) {
+  draw_at_rest();
   const std::vector<Picture> pictures = frame_.read_pictures();
-  const auto path = free_name(folder_, exr ? ".exr" : ".png");
+  const auto path = free_name(folder_, "preview", exr ? ".exr" : ".png");
   if (exr) {
     save_exr(path, pictures[0], pictures[1], {.half = false, .background = choices.background});
   } else {
@@ -217,18 +283,14 @@ std::string Session::save_picture(bool exr) {
   return path.string();
 }
 
-std::string Session::save_camera(double seconds) {
-  Camera camera = head_camera();
-  camera.name = fmt::format("key_{:03}", path_.size());
-  camera.time = path_.empty() ? 0.0 : std::max(seconds, *path_.back().time + 1e-3);
-  path_.push_back(camera);
-  nlohmann::ordered_json list = nlohmann::json::array();
-  for (const Camera& key : path_) list.push_back(camera_json(key));
-  const auto path = folder_ / "cameras.json";
-  OutputFile file(path);
-  file.write(list.dump(2) + "\n");
-  file.commit();
-  return path.string();
+std::string Session::add_key() {
+  keys.add(head_camera());
+  return keys.file().string();
+}
+
+std::string Session::move_key(std::size_t k) {
+  keys.replace(k, head_camera());
+  return keys.file().string();
 }
 
 void Session::save_pose(const std::filesystem::path& path) const {
@@ -238,6 +300,7 @@ void Session::save_pose(const std::filesystem::path& path) const {
 }
 
 double Session::psnr_against_exact() {
+  draw_at_rest();
   const std::vector<Picture> shown = frame_.read_pictures();
   const std::vector<Picture> right = show_.exact(views(), choices.settings);
   return measure::psnr(shown, right, choices.background);

@@ -4,10 +4,13 @@
 
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "gl/texture.h"
+#include "preview/key_list.h"
 #include "preview/navigator.h"
 #include "render/frame.h"
 #include "scene/model.h"
@@ -25,22 +28,37 @@ struct Choices {
   render::FrameSettings settings;
   stereo::RigSettings rig;
   glm::vec3 background{0.0f};
+  bool seeks_screen = false;  // rig.convergence is to suit what a model's first picture shows
 };
 
 /// Another rule, with the tolerance at which a search would begin.
 void choose_threshold(render::FrameSettings& settings, int th);
 
+/// So many dB against the exact pictures; none: exact.
+void choose_quality(render::FrameSettings& settings, std::optional<float> db);
+
 /// Changes what cannot be combined to what can, in favour of the threshold that is chosen: no tolerance
-/// without one, and so on (docs/method.md 5).
+/// without one, and so on (docs/method.md 5); and of a quality rather than a tolerance.
 void make_consistent(Choices& choices);
+
+/// While the head moves, pictures of a fraction of the size are drawn where a frame takes longer than this.
+constexpr double moving_ms = 30.0;
+
+/// By what both sides of the next picture are divided while the head moves, 1 to 4, after a frame that was
+/// divided by `divisor` and took `ms`. Goes back only where the larger picture would be in time, too.
+int next_divisor(int divisor, double ms);
 
 class Session {
  public:
   /// Uploads; the context is current here and in every call. `cameras` are where to start and what to step
-  /// through, not empty. `folder` is where pictures and paths are saved.
+  /// through, not empty. `folder` is where pictures and keys are saved.
   Session(gl::Context& context, Model model, std::vector<Camera> cameras, const glm::dvec3& up,
           Choices wanted, std::filesystem::path folder);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
+  KeyList keys;
   Navigator head;
   Choices choices;
 
@@ -50,6 +68,13 @@ class Session {
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
   /// settled.
   void change();
+  /// The same while the head is under way: frames may be smaller, until it rests.
+  void move();
+  /// Draws in full what was drawn smaller while the head moved.
+  void rest();
+  bool moving() const { return moving_; }
+  /// By what the sides of the last picture were divided.
+  int divisor() const { return divisor_; }
   /// What is shown of it changes, not what is drawn.
   void change_show() { pending_ = std::max(pending_, 1); }
   /// What points upwards in the picture now is up in the world.
@@ -58,6 +83,8 @@ class Session {
   void resize(const glm::ivec2& framebuffer);
   /// Goes on to the next camera, or back.
   void step_camera(int by);
+  /// Back to the camera, with its own field of view.
+  void reset_view() { go_to(cameras_[camera_]); }
   const std::string& camera_name() const { return cameras_[camera_].name; }
 
   /// Draws a frame if anything changed; false if nothing did, or there is nothing to draw into. What goes
@@ -70,9 +97,12 @@ class Session {
   void focus(const glm::ivec2& pixel);
   /// Writes what is shown as PNG, or both eyes with depth as multi-view OpenEXR; returns the file's name.
   std::string save_picture(bool exr);
-  /// Adds the head to a path that `render --path` replays, and writes it: cameras.json with times in s from
-  /// the first on. Returns its name.
-  std::string save_camera(double seconds);
+  // The keys of the path that `render --path` goes along; those that change them return the file's name.
+  std::string add_key();
+  /// To where the head is.
+  std::string move_key(std::size_t k);
+  /// Puts the head where a key is, or any camera.
+  void go_to(const Camera& camera);
   /// Writes head, up, scale and the eyes' distance to where they are found again (formats/pose_file.h).
   void save_pose(const std::filesystem::path& path) const;
   /// PSNR of what is drawn against the exact frame, dB, over both eyes.
@@ -84,14 +114,19 @@ class Session {
   std::optional<double> most_shown() const { return shown_.most; }
   std::size_t frames_drawn() const { return frames_drawn_; }
   const std::string& trouble() const { return trouble_; }
+  /// The convergence that suited the first picture, in m, where that was asked for.
+  const std::optional<double>& screen_found() const { return screen_found_; }
   const Model& model() const { return model_; }
 
   /// What the next frame draws, left eye first; none before there is a size to draw in.
   std::vector<shared::View> views();
 
  private:
-  glm::ivec2 eye_size() const;
-  Camera head_camera() const;
+  glm::ivec2 eye_size(int divisor = 1) const;
+  Camera head_camera(int divisor = 1) const;
+  std::vector<shared::View> views_of(const Camera& camera);
+  void draw_at_rest();
+  void find_screen();
   void make_shown(std::span<const shared::View> views);
 
   gl::Context& context_;
@@ -106,14 +141,19 @@ class Session {
   stereo::Shown shown_;       // in place of the frame's own pictures; none: those
   gl::Buffer shown_colours_;  // as the frame's colours
   glm::ivec2 framebuffer_{0};
+  bool moving_ = false;
+  int divisor_ = 1;                       // of the last frame drawn
+  std::unique_ptr<gl::Texture> smaller_;  // a frame that is shown enlarged
+  std::uint32_t smaller_framebuffer_ = 0;
   std::array<Camera, 2> eyes_;
   int shown_layout_ = LAYOUT_SEPARATE;  // of the last frame drawn, as are
   std::vector<shared::View> drawn_;     // its views as the frame has them
   int pending_ = 1;                     // frames still to draw
   std::size_t frames_drawn_ = 0;
   std::deque<render::FrameReport> reports_;
-  std::vector<Camera> path_;
   std::string trouble_;
+  bool seeks_screen_;
+  std::optional<double> screen_found_;
 };
 
 }  // namespace binosplat::preview

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,23 +12,28 @@
 
 namespace binosplat::preview {
 
+/// Where a scene is looked at from.
+struct Start {
+  std::vector<Camera> cameras;  // to start at the first and step through; not empty
+  glm::dvec3 up;                // the world's
+};
+
 /// A scene to open: read in a thread of its own, then shown.
 struct Opened {
   std::string name;
-  glm::dvec3 up{0.0, -1.0, 0.0};    // the world's
+  std::filesystem::path folder;     // for its pictures and keys
+  std::function<void()> claim;      // called before each that is written there; may be empty
   std::filesystem::path pose_file;  // where its pose is saved; empty: nowhere
   std::function<Model()> load;
-  /// Where to start and what to step through, for the model; not empty. Sets what of the choices follows from
-  /// the model, such as the near plane.
-  std::function<std::vector<Camera>(const Model& model, Choices& choices)> cameras;
+  /// Sets what of the choices follows from the model, too, such as the near plane.
+  std::function<Start(const Model& model, Choices& choices)> start;
   /// Of a model with levels of detail: what reads the levels that these views need, in a thread of its own
   /// and one at a time; nothing where they are the last ones that were read.
   std::function<std::function<Model()>(std::span<const shared::View> views)> levels;
 };
 
 struct WindowSettings {
-  glm::ivec2 size{1280, 720};    // px
-  std::filesystem::path folder;  // for pictures and paths
+  std::optional<glm::ivec2> size;  // px; none: what suits the display
   std::filesystem::path
       shader_folder;  // empty: the embedded shaders; else they are read again when they change
 };

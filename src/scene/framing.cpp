@@ -1,11 +1,17 @@
 #include "scene/framing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "base/error.h"
+#include "base/parallel.h"
+#include "base/statistics.h"
 #include "scene/axes.h"
+#include "scene/core.h"
+#include "scene/open_space.h"
 
 namespace binosplat {
 
@@ -15,41 +21,6 @@ namespace {
 constexpr double elevation_degrees = 15.0;
 /// More Gaussians than this tell no more about what stands in the way.
 constexpr std::size_t sample_count = 200000;
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// The ball around the median position that holds half of the Gaussians: what the model is about. Trained
-/// models have far outliers and a background larger than their subject, which would ruin a mean or a box.
-struct Core {
-  glm::dvec3 middle{0.0};
-  double radius = 0.0;
-};
-
-Core core_of(const Model& model) {
-  if (model.count() == 0) fail("{}: the model has no Gaussians to look at", model.name);
-  Core core;
-  std::vector<double> values(model.count());
-  for (int i = 0; i < 3; ++i) {
-    std::transform(model.position.begin(), model.position.end(), values.begin(),
-                   [&](const glm::vec3& p) { return static_cast<double>(p[i]); });
-    core.middle[i] = median(values);
-  }
-  std::transform(model.position.begin(), model.position.end(), values.begin(),
-                 [&](const glm::vec3& p) { return glm::length(glm::dvec3(p) - core.middle); });
-  core.radius = median(values);
-  if (core.radius == 0.0) {  // half of them lie in one point: go by their size
-    const glm::vec3& s = model.scale[0];
-    core.radius =
-        std::max({static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z), 1e-3});
-  }
-  // Far from the origin floats tell no less apart, and a camera must stand beside what it looks at.
-  core.radius = std::max(core.radius, 1e-7 * glm::length(core.middle));
-  return core;
-}
 
 /// The place on the circle around the core where a camera at `turn` radians stands.
 struct Ring {
@@ -109,23 +80,26 @@ double obstruction(const Model& model, const Ring& ring, const glm::dvec3& eye) 
     std::sort(&s.x, &s.x + 3);
     sum += model.opacity[i] * std::min(1.0, static_cast<double>(s.y) * s.z / square);
   }
-  return sum;
+  return sum * static_cast<double>(stride);
 }
 
-/// Of 16 places on the ring the first one with the clearest view, in radians. Differences below 0.02 sr, one
-/// per cent of what is looked at, do not count: they would make the choice depend on noise.
-double clearest_turn(const Model& model, const Ring& ring) {
+/// How clear the view is from one place on a ring.
+struct Clearest {
+  double turn = 0.0;        // radians
+  double obstructed = 0.0;  // sr
+};
+
+/// Of 16 places on the ring the first one with the clearest view. Differences below 0.02 sr, one per cent of
+/// what is looked at, do not count: they would make the choice depend on noise.
+Clearest clearest_on(const Model& model, const Ring& ring) {
   constexpr int places = 16;
-  double best = 0.0, best_turn = 0.0;
-  for (int k = 0; k < places; ++k) {
-    const double turn = glm::two_pi<double>() * k / places;
-    const double found = std::floor(obstruction(model, ring, ring.eye(turn)) / 0.02);
-    if (k == 0 || found < best) {
-      best = found;
-      best_turn = turn;
-    }
-  }
-  return best_turn;
+  std::array<double, places> found{};
+  parallel_for(places, [&](int k) {
+    const glm::dvec3 eye = ring.eye(glm::two_pi<double>() * k / places);
+    found[static_cast<std::size_t>(k)] = 0.02 * std::floor(obstruction(model, ring, eye) / 0.02);
+  });
+  const auto best = std::min_element(found.begin(), found.end());
+  return {glm::two_pi<double>() * static_cast<double>(best - found.begin()) / places, *best};
 }
 
 // The point nearest to the cameras' axes: the sum of (1 - f f^T) (x - p) is zero.
@@ -150,10 +124,10 @@ std::optional<Capture::Around> around_of(std::span<const Camera> cameras, const 
     facing.push_back(-glm::dot(away, camera.rotation[2]) / distances.back());
   }
   constexpr double half_look_there = 0.866;  // within 30 degrees
-  if (!(median(facing) > half_look_there)) return std::nullopt;
+  if (!(quantile(facing, 0.5) > half_look_there)) return std::nullopt;
   around.first = cameras[0].position - around.middle;
-  around.distance = median(distances);
-  around.elevation = median(heights);
+  around.distance = quantile(distances, 0.5);
+  around.elevation = quantile(heights, 0.5);
   return around;
 }
 
@@ -175,11 +149,38 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
   return Capture{found, around_of(cameras, found)};
 }
 
+Capture capture_of(const Model& model, const Ground& ground, double eyes) {
+  Capture capture{ground.up};
+  if (!ground.level) return capture;
+  const Core core = core_of(model);
+  const glm::dmat3 world = world_from_axes(model.axes);
+  constexpr double highest = 0.7;  // radii: of a model that is no larger than a person
+  const double eyes_at = *ground.level + std::min(eyes, highest * core.radius);
+  constexpr double crowded = 0.2;  // sr, of 1.8 that are looked at
+  std::optional<double> least;
+  for (const double away : {0.9, 0.6, 0.4}) {
+    Capture::Around around{world * core.middle};
+    const double height = eyes_at - glm::dot(around.middle, ground.up);
+    around.distance = std::hypot(away * core.radius, height);
+    around.elevation = std::atan2(height, away * core.radius);
+    const Ring ring(model, 1, 1, default_fov_degrees, ground.up, around);
+    const Clearest clearest = clearest_on(model, ring);
+    if (least && *least <= clearest.obstructed) continue;
+    least = clearest.obstructed;
+    around.first = world * ring.eye(clearest.turn) - around.middle;
+    capture.around = around;
+  }
+  if (*least > crowded) {
+    if (const auto open = open_space(model, ground, eyes_at - *ground.level)) capture.around = open;
+  }
+  return capture;
+}
+
 std::vector<Camera> orbit(const Model& model, int count, int width, int height, double fov_degrees,
                           const glm::dvec3& up, const std::optional<Capture::Around>& around) {
   const Ring ring(model, width, height, fov_degrees, up, around);
   const glm::dmat3 world = world_from_axes(model.axes);
-  const double start = around ? ring.turn_to(around->first) : clearest_turn(model, ring);
+  const double start = around ? ring.turn_to(around->first) : clearest_on(model, ring).turn;
   std::vector<Camera> cameras;
   for (int k = 0; k < count; ++k) {
     const glm::dvec3 eye = world * ring.eye(start + glm::two_pi<double>() * k / count);
@@ -189,8 +190,9 @@ std::vector<Camera> orbit(const Model& model, int count, int width, int height, 
   return cameras;
 }
 
-Camera frame_model(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& up) {
-  Camera camera = orbit(model, 1, width, height, fov_degrees, up)[0];
+Camera frame_model(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& up,
+                   const std::optional<Capture::Around>& around) {
+  Camera camera = orbit(model, 1, width, height, fov_degrees, up, around)[0];
   camera.name = "framed";
   return camera;
 }

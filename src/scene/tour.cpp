@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/statistics.h"
+#include "scene/curve.h"
 
 namespace binosplat {
 
@@ -152,17 +153,6 @@ struct Knot {
   glm::dvec4 turned{0.0}, turned_slope{0.0};
 };
 
-/// Catmull-Rom's tangent at b for uneven knots. Where one of both ways is much shorter than its knots are
-/// apart (a turn on the spot, a walk straight ahead) it is bounded so that no way overshoots.
-template <typename V>
-V slope_at(const V& a, const V& b, const V& c, double before, double after) {
-  const V in = (b - a) / before, out = (c - b) / after;
-  const V slope = in - (c - a) / (before + after) + out;
-  const double steepest = 3.0 * std::min(glm::length(in), glm::length(out));
-  const double steep = glm::length(slope);
-  return steep > steepest ? slope * (steepest / steep) : slope;
-}
-
 /// Centripetal knots, which are apart by the root of the way: no loops and no cusps within a way.
 std::vector<Knot> knots_of(const std::vector<Stop>& stops) {
   std::vector<Knot> knots;
@@ -185,8 +175,10 @@ std::vector<Knot> knots_of(const std::vector<Stop>& stops) {
   for (std::size_t k = 1; k + 1 < knots.size(); ++k) {
     const Knot &a = knots[k - 1], &c = knots[k + 1];
     Knot& b = knots[k];
-    b.place_slope = slope_at(a.place, b.place, c.place, b.at - a.at, c.at - b.at);
-    b.turned_slope = slope_at(a.turned, b.turned, c.turned, b.at - a.at, c.at - b.at);
+    const double before = b.at - a.at, after = c.at - b.at;
+    b.place_slope = slope_between((b.place - a.place) / before, (c.place - b.place) / after, before, after);
+    b.turned_slope =
+        slope_between((b.turned - a.turned) / before, (c.turned - b.turned) / after, before, after);
   }
   return knots;
 }

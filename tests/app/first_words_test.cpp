@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/scene.h"
+#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
@@ -76,6 +77,23 @@ TEST_F(FirstWords, CheapChecksComeBeforeTheModelIsRead) {
   EXPECT_TRUE(ended(render({"--calibration", "nosuch.json", "-o", out}), 2, "cannot read nosuch.json"));
   EXPECT_TRUE(ended(render({"--orbit", "2", "--fov", "190", "-o", out}), 2, "between 0 and 180"));
   EXPECT_TRUE(ended(render({"--view", "front", "-o", out}), 2, "model.ply is not a model"));
+  // A photo of another size, wherever photos are compared, and one that fits.
+  const auto run_with = [&](const std::string& command, const std::string& photo) {
+    save_png(folder / "photos/front.png", Image(36, photo == "fits" ? 24 : 25, 3));
+    std::vector<std::string> words = {command, model, "--photos", folder / "photos"};
+    if (command == "render") words.insert(words.end(), {"--mono", "--size", "36x24", "--view", "front"});
+    if (command != "render" && command != "refit") words.insert(words.end(), {"--max-drop", "1"});
+    if (command == "bench" || command == "study") words.resize(4);
+    words.insert(words.end(), {"-o", folder / (command == "calibrate"                    ? "c.json"
+                                               : command == "refit" || command == "trim" ? "m.ply"
+                                                                                         : "new")});
+    return run(words);
+  };
+  std::filesystem::create_directory(folder / "photos");
+  for (const char* command : {"render", "calibrate", "trim", "refit", "study", "bench"}) {
+    EXPECT_TRUE(ended(run_with(command, "differs"), 2, "front.png has 36 x 25 px")) << command;
+  }
+  EXPECT_TRUE(ended(run_with("render", "fits"), 2, "model.ply is not a model"));
 }
 
 TEST_F(FirstWords, EmptyPicturesAreExplained) {
@@ -109,6 +127,24 @@ TEST_F(FirstWords, ModelsOfOneNameLeaveTheirPicturesApart) {
   EXPECT_TRUE(good(run({"render", "garden", "--size", "36x24"})));
   for (const char* name : {"garden_iteration_7000", "fox", "bike", "garden"})
     EXPECT_TRUE(std::filesystem::exists(folder / "out" / name / "framed_left.png")) << name;
+}
+
+TEST_F(FirstWords, TwoModelsOfOneFileNameDoToo) {
+  for (const char* place : {"a", "b", "c/b"}) {
+    std::filesystem::create_directories(folder / place);
+    std::filesystem::copy(model, folder / place / "garden.ply");
+  }
+  const auto draw = [&](const std::string& file, const std::string& to) {
+    std::filesystem::remove_all(folder / "out" / to / "framed_left.png");
+    EXPECT_TRUE(good(run({"render", file, "--size", "36x24"})));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / to / "framed_left.png")) << file;
+  };
+  for (int round = 0; round < 2; ++round) {
+    draw("a/garden.ply", "garden");
+    draw("b/garden.ply", "b_garden");
+    draw("c/b/garden.ply", "c_b_garden");
+  }
+  EXPECT_EQ(test::read_text(folder / "out/b_garden/model.txt"), (folder / "b/garden.ply").string() + "\n");
 }
 
 TEST_F(FirstWords, AModelsNameIsNoEnding) {
@@ -153,7 +189,7 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
   test::write_text(folder / "cameras.json", cameras.dump());
   const Outcome outcome =
       render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out, "--json", folder / "r.json"});
-  EXPECT_TRUE(ended(outcome, 0, "--orbit: around what the cameras beside"));
+  EXPECT_TRUE(ended(outcome, 0, ": around what the cameras beside it look at"));
   const nlohmann::json drawn = nlohmann::json::parse(test::read_text(folder / "r.json"))["views"];
   ASSERT_EQ(drawn.size(), 4u);
   for (const nlohmann::json& view : drawn) {
@@ -162,6 +198,30 @@ TEST_F(FirstWords, AnOrbitGoesByTheCameras) {
   }
   test::write_text(folder / "cameras.json", "no cameras");
   EXPECT_TRUE(ended(render({"--orbit", "4", "--mono", "--size", "36x24", "-o", out}), 0, "warning"));
+}
+
+TEST_F(FirstWords, WithoutCamerasOneStandsOnTheGround) {
+  std::filesystem::remove(folder / "cameras.json");
+  EXPECT_NE(said({"--size", "36x24"}).find("from outside; up is 0.00,-1.00,0.00, since nothing in it tells"),
+            std::string::npos);
+  test::save_ply(model, test::floor_model());
+  const auto drawn = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--mono", "--size", "36x24", "--json", folder / "r.json"});
+    const std::string text = said(arguments);
+    const auto view = nlohmann::json::parse(test::read_text(folder / "r.json"))["views"][0]["eyes"][0];
+    return std::pair(text, view["position"][2].get<double>());
+  };
+  const auto [text, height] = drawn({});
+  EXPECT_NE(text.find("from 1.6 units above the ground (--eye and --at for another place); up is"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("0.00,1.00, by the surfaces in it (--up for another)"), std::string::npos) << text;
+  EXPECT_NEAR(height, 1.6, 0.1);
+  EXPECT_NEAR(drawn({"--units-per-metre", "0.5"}).second, 0.8, 0.1);
+  EXPECT_NEAR(drawn({"--orbit", "3"}).second, 1.6, 0.1);
+  const auto [other, above] = drawn({"--up", "0,-1,0"});
+  EXPECT_NE(other.find("from outside"), std::string::npos) << other;
+  EXPECT_EQ(other.find("up is"), std::string::npos) << "it was said: " << other;
 }
 
 }  // namespace

@@ -21,9 +21,10 @@ struct Layout : test::SceneTest {
 };
 
 TEST_F(Layout, AFolderGetsOnePictureAShot) {
-  ASSERT_TRUE(good(render({"-o", out, "--view", "front", "side", "--layout", "over-under"})));
+  ASSERT_TRUE(
+      good(render({"-o", out, "--view", "front", "side", "--layout", "over-under", "--convergence", "3"})));
   EXPECT_EQ(folder.files(), (Names{"cameras.json", "model.ply", "out/front.png", "out/side.png"}));
-  ASSERT_TRUE(good(render({"-o", folder / "eyes"})));
+  ASSERT_TRUE(good(render({"-o", folder / "eyes", "--convergence", "3"})));
   const Image both = load_image(out + "/front.png");
   const Image left = load_image(folder / "eyes/front_left.png");
   const Image right = load_image(folder / "eyes/front_right.png");
@@ -109,6 +110,58 @@ TEST_F(Layout, DisparityIsToldAndWarnedOf) {
 
   ASSERT_TRUE(good(render({"-o", out, "--json", folder / "r.json", "--mono"})));
   EXPECT_TRUE(disparity().is_null());
+}
+
+TEST_F(Layout, AScreenStandsWhereItSuitsTheFirstView) {
+  const std::string png = folder / "pair.png";
+  const auto draw = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--ipd", "0.1", "--json", folder / "r.json"});
+    Outcome outcome = render(arguments);
+    EXPECT_TRUE(good(outcome));
+    return outcome;
+  };
+  const auto metres = [&](std::size_t view) {
+    return nlohmann::json::parse(read_text(folder / "r.json"))["views"][view]["convergence_metres"];
+  };
+  const Outcome plain = draw({"-o", png});
+  EXPECT_NE(plain.err.find("--convergence METRES for another"), std::string::npos) << plain.err;
+  EXPECT_EQ(plain.err.find("tire most eyes"), std::string::npos) << plain.err;
+  ASSERT_TRUE(metres(0).is_number());
+  EXPECT_TRUE(disparity()["comfortable"].get<bool>()) << disparity();
+  EXPECT_NEAR(disparity()["focus_metres"].get<double>(), metres(0).get<double>(), 1e-9);
+  EXPECT_GT(disparity()["near_degrees"].get<double>(), 0.0);
+  EXPECT_LT(disparity()["far_degrees"].get<double>(), 0.0);
+  const Image suited = load_image(png);
+
+  // The option says the same, comes first, and may say that there is none.
+  draw({"-o", png, "--convergence", metres(0).dump()});
+  EXPECT_EQ(measure::largest_difference(load_image(png), suited).max, 0.0);
+  const Outcome infinite = draw({"-o", png, "--convergence", "inf"});
+  EXPECT_GT(measure::largest_difference(load_image(png), suited).max, 0.1);
+  EXPECT_TRUE(metres(0).is_null());
+  EXPECT_NE(infinite.err.find("tire most eyes"), std::string::npos) << infinite.err;
+
+  // Headsets, canted eyes, single eyes and files for each eye have no screen.
+  using Arguments = std::vector<std::string>;
+  for (const Arguments& other : {Arguments{"-o", out}, Arguments{"-o", folder / "pair.exr"},
+                                 Arguments{"-o", png, "--cant", "1"}, Arguments{"-o", png, "--only", "left"},
+                                 Arguments{"-o", png, "--preset", "headset", "--size", "72x48"}}) {
+    const Outcome outcome = draw(other);
+    EXPECT_TRUE(metres(0).is_null()) << outcome.err;
+    EXPECT_EQ(outcome.err.find("for another"), std::string::npos) << outcome.err;
+    // Only who can change it is warned.
+    const bool warned = outcome.err.find("tire most eyes") != std::string::npos;
+    EXPECT_EQ(warned, other.size() == 2) << outcome.err;
+  }
+
+  // One for all views, and for all parts of a run.
+  draw({"-o", out, "--layout", "parallel", "--view", "front", "side"});
+  const auto of_front = metres(0);
+  EXPECT_EQ(metres(1), of_front);
+  draw({"-o", out, "--layout", "parallel", "--view", "front", "side", "--shard", "1/2"});
+  EXPECT_EQ(metres(0), of_front);
+  draw({"-o", out, "--layout", "parallel", "--view", "side"});
+  EXPECT_NE(metres(0), of_front) << "any view has this one";
 }
 
 }  // namespace

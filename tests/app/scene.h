@@ -44,6 +44,26 @@ inline void save_ply(const std::filesystem::path& path, const Model& model) {
   file.commit();
 }
 
+/// A floor of 8 x 8, z up, with a low wall on one side, all of flat Gaussians.
+inline Model floor_model() {
+  Model model;
+  const auto add = [&](const glm::vec3& place, const glm::vec3& scale, const glm::vec3& colour) {
+    model.position.push_back(place);
+    model.scale.push_back(scale);
+    model.rotation.emplace_back(1, 0, 0, 0);
+    model.opacity.push_back(0.95f);
+    for (int i = 0; i < 3; ++i) model.sh.push_back(colour[i]);
+  };
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      const float x = 0.2f * static_cast<float>(i) - 4.0f, y = 0.2f * static_cast<float>(j) - 4.0f;
+      add({x, y, 0.0f}, {0.1f, 0.1f, 0.01f}, {(i + j) % 2 == 0 ? 1.0f : -1.0f, 0.5f, -1.0f});
+      if (j < 10) add({x, 4.0f, 0.1f * static_cast<float>(j)}, {0.1f, 0.01f, 0.1f}, {-1.0f, -1.0f, 1.0f});
+    }
+  }
+  return model;
+}
+
 struct SceneTest : testing::Test {
   TempFolder folder;
   const std::string model = folder / "model.ply";

@@ -42,11 +42,27 @@ TEST(View, BadOptionsEndBeforeAnyWindow) {
       return testing::AssertionSuccess();
     return ended(outcome, 2, said);
   };
-  EXPECT_TRUE(refused({"--mono"}, "binosplat render"));
+  for (const char* option : {"--mono", "--preset=headset", "--orbit=3", "--frames=2", "--backend=device"}) {
+    const std::string text = option;
+    EXPECT_TRUE(refused({text}, text.substr(0, text.find('=')) + " is for `binosplat render`"));
+  }
+  EXPECT_TRUE(refused({"--transmittance", "depth"}, "--transmittance"));
+  EXPECT_TRUE(refused({"--view", "a", "--view", "b"}, "--view a b"));
   EXPECT_TRUE(refused({"--layout", "multi-view"}, "multi-view"));
   EXPECT_TRUE(refused({"--show", "colour"}, "--show"));
   EXPECT_TRUE(refused({"--th", "squared"}, "--tolerance"));
   EXPECT_TRUE(refused({"--no-such-option"}, "--no-such-option"));
+}
+
+TEST(View, HelpHasKeysAndNoOptionThatIsRefused) {
+  if (!is_built()) GTEST_SKIP() << "the preview is not built";
+  const Outcome outcome = test::run_program({"view", "--help"});
+  ASSERT_TRUE(good(outcome));
+  for (const char* said : {"--layout", "Escape", "F12", "full screen"})
+    EXPECT_NE(outcome.out.find(said), std::string::npos) << said;
+  for (const char* refused :
+       {"--mono", "--only", "--preset", "--path", "--calibration", "--device", "multi-view"})
+    EXPECT_EQ(outcome.out.find(refused), std::string::npos) << refused;
 }
 
 /// A display without a screen, and hands on it.
@@ -79,7 +95,9 @@ struct ViewOnADisplay : test::SceneTest {
   }
 
   Program view(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"view", model, "-o", out, "--size", "600x400"};
+    std::vector<std::string> arguments = {
+        "view",    model,           "-o", out, "--size",
+        "600x400", "--convergence", "inf"};  // none that goes by what is seen
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Program(arguments, {.variables = {{"DISPLAY", display}}});
   }
@@ -118,8 +136,9 @@ struct ViewOnADisplay : test::SceneTest {
   /// The same pose as `render` draws it.
   Image rendered(const std::string& key, const std::string& size,
                  const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"--cameras", out + "/cameras.json",  "--view", key, "--size", size,
-                                          "-o",        folder / "rendered.png"};
+    std::vector<std::string> arguments = {
+        "--cameras", out + "/cameras.json",   "--view",        key,  "--size", size,
+        "-o",        folder / "rendered.png", "--convergence", "inf"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_TRUE(good(render(arguments)));
     return load_image(folder / "rendered.png");
@@ -133,6 +152,7 @@ bool same(const Image& a, const Image& b) {
 TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   Program program = view();
   ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");  // the picture takes the whole window
   key("F12");
   ASSERT_TRUE(says(program, "saved", 1));
   key("k");
@@ -163,16 +183,51 @@ TEST_F(ViewOnADisplay, ShowsWhatRenderDraws) {
   ASSERT_TRUE(says(program, "saved", 6));
   EXPECT_FALSE(same(picture(4), picture(3))) << "nothing moved";
   EXPECT_TRUE(same(picture(4), rendered("key_001", "300x400", approximate)));
-  ASSERT_TRUE(
-      good(render({"--path", out + "/cameras.json", "-o", folder / "replayed", "--layout", "parallel"})));
-  EXPECT_TRUE(fs::exists(folder / "replayed/key_001.png"));
+  ASSERT_TRUE(good(render({"--path", out + "/cameras.json", "--fps", "2", "-o", folder / "replayed",
+                           "--layout", "parallel", "--convergence", "inf"})));
+  EXPECT_TRUE(same(picture(1), load_image(folder / "replayed/path_00000.png"))) << "it begins elsewhere";
+  EXPECT_TRUE(fs::exists(folder / "replayed/path_00004.png")) << "there are two seconds between keys";
 
   EXPECT_EQ(leave(program).code, 0);
+}
+
+TEST_F(ViewOnADisplay, KeysArePlayedAndGoneOnWith) {
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 1));
+  hands("keydown w sleep 0.5 keyup w");
+  key("k");
+  ASSERT_TRUE(says(program, "saved", 2));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 3));
+  key("space");
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  key("space");
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 4));
+  EXPECT_FALSE(same(picture(1), picture(2))) << "the way back to the first key was not gone";
+  key("space");
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  key("F12");
+  ASSERT_TRUE(says(program, "saved", 5));
+  EXPECT_TRUE(same(picture(1), picture(3))) << "the way does not end at the last key";
+  EXPECT_EQ(leave(program).code, 0);
+
+  Program next = view();
+  ASSERT_TRUE(says(next, "2 keys of a path"));
+  ASSERT_TRUE(says(next, "Gaussians"));
+  key("k");
+  ASSERT_TRUE(says(next, "saved"));
+  EXPECT_EQ(leave(next).code, 0);
+  ASSERT_TRUE(good(render({"--path", out + "/cameras.json", "--keys", "-o", folder / "keys"})));
+  EXPECT_TRUE(fs::exists(folder / "keys/key_002_left.png"));
 }
 
 TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
   Program program = view();
   ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");  // the picture takes the whole window
   hands("search --name binosplat windowsize --sync 500 300");
   key("F12");
   ASSERT_TRUE(says(program, "saved", 1));
@@ -188,6 +243,7 @@ TEST_F(ViewOnADisplay, IsResizedHiddenAndShownAgain) {
 TEST_F(ViewOnADisplay, ShowsWhatAFrameIsMadeOf) {
   Program program = view({"--tolerance", "0.5"});
   ASSERT_TRUE(says(program, "Gaussians"));
+  key("F1");  // the picture takes the whole window
   key("k");
   ASSERT_TRUE(says(program, "saved", 1));
   const std::vector<std::string> names = {"split", "difference", "disagreement", "depth", "alphas"};
@@ -218,12 +274,12 @@ TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
   ASSERT_TRUE(says(program, "saved", 2));
   EXPECT_EQ(leave(program).code, 0);
 
-  const Outcome outcome = render({"-o", folder / "again.png"});
+  const Outcome outcome = render({"-o", folder / "again.png", "--convergence", "inf"});
   ASSERT_TRUE(good(outcome));
   EXPECT_NE(outcome.err.find("model.binosplat.json"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("pose saved there"), std::string::npos) << outcome.err;
   EXPECT_TRUE(same(picture(1), load_image(folder / "again.png")));
-  ASSERT_TRUE(good(render({"-o", folder / "other.png", "--units-per-metre", "1"})));
+  ASSERT_TRUE(good(render({"-o", folder / "other.png", "--convergence", "inf", "--units-per-metre", "1"})));
   EXPECT_FALSE(same(picture(1), load_image(folder / "other.png"))) << "the saved scale changes nothing";
 
   Program again = view();
@@ -232,6 +288,19 @@ TEST_F(ViewOnADisplay, ASavedPoseIsFoundAgain) {
   ASSERT_TRUE(says(again, "saved"));
   EXPECT_EQ(leave(again).code, 0);
   EXPECT_TRUE(same(picture(1), picture(2)));
+}
+
+TEST_F(ViewOnADisplay, UpThatIsFoundIsSaved) {
+  std::filesystem::remove(folder / "cameras.json");
+  test::save_ply(model, test::floor_model());
+  Program program = view();
+  ASSERT_TRUE(says(program, "Gaussians"));
+  key("F9");
+  ASSERT_TRUE(says(program, "saved", 1));
+  EXPECT_EQ(leave(program).code, 0);
+  const auto pose = nlohmann::json::parse(test::read_text(folder / "model.binosplat.json"))[0];
+  EXPECT_NEAR(pose["up"][2].get<double>(), 1.0, 1e-3) << pose.dump();
+  EXPECT_NEAR(pose["position"][2].get<double>(), 1.6, 0.1) << pose.dump();
 }
 
 TEST_F(ViewOnADisplay, AFailedLoadIsToldAndTheOldSceneStays) {
@@ -260,12 +329,14 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
   REQUIRE_FIXTURES(fixtures);
   const std::string scene = fixtures / "sog/st-lod";
   const auto start = [&](const std::string& to, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"view", scene, "-o", to, "--size", "600x400"};
+    std::vector<std::string> arguments = {"view",    scene,           "-o", to, "--size",
+                                          "600x400", "--convergence", "inf"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Program(arguments, {.variables = {{"DISPLAY", display}}});
   };
   Program program = start(out, {});
   ASSERT_TRUE(says(program, ": 250 Gaussians")) << "the coarsest at first";
+  key("F1");
   ASSERT_TRUE(says(program, "levels of 1000 Gaussians"));
   key("F12");
   ASSERT_TRUE(says(program, "saved", 1));
@@ -275,7 +346,7 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
   const auto drawn = [&](const std::string& level) {
     const Outcome outcome =
         test::run_program({"render", scene, "--cameras", out + "/cameras.json", "--view", "key_000", "--size",
-                           "300x400", "--lod", level, "-o", folder / "level.png"});
+                           "300x400", "--lod", level, "-o", folder / "level.png", "--convergence", "inf"});
     EXPECT_TRUE(good(outcome));
     return load_image(folder / "level.png");
   };
@@ -284,6 +355,7 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
 
   Program far_away = start(folder / "far", {"--detail", "1e6"});
   ASSERT_TRUE(says(far_away, ": 250 Gaussians"));
+  key("F1");
   key("F12");
   ASSERT_TRUE(says(far_away, "saved"));
   const Outcome outcome = leave(far_away);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <regex>
 
 #include "app/scene.h"
 #include "formats/image_file.h"
@@ -74,6 +75,35 @@ TEST(Install, AnotherProgramDrawsWithIt) {
         << "swapped lenses go unnoticed";
   }
   EXPECT_FALSE(succeeds(folder, "ASAN_OPTIONS=detect_leaks=0 " + build + "/embed /no/such.ply /tmp"));
+}
+
+/// What files of Markdown below a folder link to and is not there.
+std::vector<std::string> dangling(const fs::path& folder) {
+  std::vector<std::string> out;
+  static const std::regex link(R"(\]\(([^)#]+)(#[^)]*)?\))");
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string text = test::read_text(entry.path());
+    for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+      const std::string to = (*at)[1];
+      if (to.find("://") == std::string::npos && !fs::exists(entry.path().parent_path() / to))
+        out.push_back(entry.path().string() + ": " + to);
+    }
+  }
+  return out;
+}
+
+TEST(Install, DocumentsLinksHoldAndShellsAndManFindTheirFiles) {
+  const test::TempFolder folder;
+  ASSERT_TRUE(succeeds(folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " +
+                                   (folder / "prefix").string()));
+  const fs::path share = folder / "prefix/share";
+  EXPECT_EQ(dangling(share / "doc/binosplat"), std::vector<std::string>{});
+  fs::remove(share / "doc/binosplat/docs/viewing.md");
+  EXPECT_GE(dangling(share / "doc/binosplat").size(), 3u) << "a missing file goes unnoticed";
+  EXPECT_NE(test::read_text(share / "man/man1/binosplat.1").find(".SH binosplat render"), std::string::npos);
+  EXPECT_TRUE(fs::exists(share / "bash-completion/completions/binosplat"));
+  EXPECT_TRUE(fs::exists(share / "fish/vendor_completions.d/binosplat.fish"));
 }
 
 TEST(Install, HeadersNameNobodyElsesRooms) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "formats/image_file.h"
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
@@ -73,6 +75,92 @@ TEST_F(SessionTest, OtherLevelsTakeThePlaceOfTheModel) {
   EXPECT_EQ(apart(picture(), after), 0.0);
   session.replace(test::random_model(9, 400, 0, 0.6));
   EXPECT_EQ(apart(picture(), before), 0.0);
+}
+
+TEST(Session, SmallerPicturesAreDrawnWhileFramesAreLate) {
+  EXPECT_EQ(next_divisor(1, moving_ms), 1);
+  EXPECT_EQ(next_divisor(1, 1.01 * moving_ms), 2);
+  EXPECT_EQ(next_divisor(4, 100.0 * moving_ms), 4);
+  // Half the divisor is at most four times the work: going back never makes a frame late again.
+  EXPECT_EQ(next_divisor(2, 0.26 * moving_ms), 2);
+  EXPECT_EQ(next_divisor(2, 0.24 * moving_ms), 1);
+  EXPECT_EQ(next_divisor(1, 0.0), 1);
+}
+
+TEST_F(SessionTest, AtRestAPictureIsWhole) {
+  session.resize({1600, 1000});
+  const Image before = picture();
+  const int expected = next_divisor(1, session.reports().back().total_ms);  // 1 on a fast GPU
+  session.move();
+  ASSERT_TRUE(session.draw());
+  EXPECT_EQ(session.divisor(), expected);
+  EXPECT_TRUE(session.moving());
+  EXPECT_EQ(apart(picture(), before), 0.0) << "what is saved is not whole";
+  EXPECT_EQ(session.divisor(), 1);
+  EXPECT_FALSE(session.moving());
+  // Interlaced pictures are never scaled.
+  session.choices.layout = LAYOUT_ROWS;
+  session.move();
+  ASSERT_TRUE(session.draw());
+  EXPECT_EQ(session.divisor(), 1);
+}
+
+TEST_F(SessionTest, TheScreenStandsWhereItSuitsTheFirstPicture) {
+  picture();
+  EXPECT_FALSE(session.screen_found()) << "nobody asked for one";
+  EXPECT_FALSE(session.choices.rig.convergence);
+  Choices seeking = coarse;
+  seeking.seeks_screen = true;
+  seeking.layout = LAYOUT_SEPARATE;
+  Session other(test::gl_context(), test::random_model(9, 400, 0, 0.6), {test::front_camera(64, 40, 55.0)},
+                glm::dvec3(0, -1, 0), seeking, folder.path());
+  other.resize({128, 40});
+  other.draw();
+  EXPECT_FALSE(other.screen_found()) << "one eye has no screen";
+  other.choices.layout = LAYOUT_PARALLEL;
+  other.change();
+  other.draw();
+  ASSERT_TRUE(other.screen_found());
+  EXPECT_EQ(other.choices.rig.convergence, other.screen_found());
+  EXPECT_TRUE(other.draw()) << "it is not shown";
+  // It stays where it is, wherever the head goes and whatever is chosen.
+  other.head.dolly(0.5);
+  other.choices.rig.convergence.reset();
+  other.change();
+  other.draw();
+  EXPECT_FALSE(other.choices.rig.convergence);
+}
+
+TEST_F(SessionTest, TheViewIsWidenedAndReset) {
+  const Image before = picture();
+  const double fov = session.head.fov();
+  EXPECT_NEAR(std::tan(0.5 * fov), 20.0 / 55.0, 1e-12);
+  session.head.set_fov(1.4 * fov);
+  EXPECT_NEAR(session.head.fov(), 1.4 * fov, 1e-12);
+  session.change();
+  EXPECT_GT(apart(picture(), before), 0.1);
+  session.reset_view();
+  EXPECT_EQ(apart(picture(), before), 0.0);
+}
+
+TEST_F(SessionTest, AQualityAndAToleranceExcludeEachOther) {
+  render::FrameSettings& s = session.choices.settings;
+  choose_quality(s, 40.0f);
+  session.change();
+  EXPECT_EQ(s.th, TH_SQUARED);
+  EXPECT_EQ(s.tolerance, 0.0f);
+  picture();
+  EXPECT_TRUE(session.trouble().empty()) << session.trouble();
+  EXPECT_GT(session.psnr_against_exact(), 38.0);
+  EXPECT_LT(session.psnr_against_exact(), 60.0) << "it is exact";
+  choose_threshold(s, TH_PERIPHERAL);
+  EXPECT_EQ(s.quality, 0.0f);
+  choose_quality(s, 30.0f);
+  EXPECT_EQ(s.th, TH_PERIPHERAL) << "a rule that was chosen goes";
+  choose_quality(s, {});
+  session.change();
+  picture();
+  EXPECT_TRUE(std::isinf(session.psnr_against_exact()));
 }
 
 TEST_F(SessionTest, MapsHaveARangeAndGoAgain) {

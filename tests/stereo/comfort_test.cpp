@@ -49,6 +49,19 @@ TEST(Comfort, DisparityIsTheMethods) {
   EXPECT_LT(disparity_range(pair.cameras, walls(), {})->near_px, 0.0);
 }
 
+TEST(Comfort, PixelsAndDegreesAgreeWhateverIsFocusedOn) {
+  for (const double focus : {1.0, 2.5, 4.0, 9.0}) {
+    // A headset's optics focus somewhere, whatever the eyes' convergence.
+    for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(3.0)}) {
+      const auto range = disparity_range(rig(convergence).cameras, walls(), focus);
+      ASSERT_TRUE(range);
+      EXPECT_NEAR(range->near_px, focal * ipd * (1.0 / 2.0 - 1.0 / focus), 1e-5);
+      EXPECT_EQ(range->near_px > 0.0, range->near_degrees > 0.0) << focus;
+      EXPECT_EQ(range->far_px > 0.0, range->far_degrees > 0.0) << focus;
+    }
+  }
+}
+
 TEST(Comfort, CantedEyesHaveVerticalDisparity) {
   const auto range = disparity_range(rig({}, 10.0).cameras, walls(), 2.0);
   ASSERT_TRUE(range);
@@ -99,6 +112,26 @@ TEST(Comfort, WhatIsProposedIsComfortable) {
   };
   EXPECT_TRUE(comfortable(at(*narrow.ipd)));
   EXPECT_FALSE(comfortable(at(ipd))) << "any eyes would do";
+}
+
+TEST(Comfort, TheScreenSuitsWhatIsSeen) {
+  // Half of it at 2 m and half at 8 m fit into a degree either way, though not about either wall.
+  for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(1.5)}) {
+    const auto metres = suitable_convergence(rig(convergence).cameras, walls(), 1.0);
+    ASSERT_TRUE(metres);
+    EXPECT_TRUE(comfortable(*disparity_range(rig(metres).cameras, walls(), metres))) << *metres;
+  }
+  EXPECT_FALSE(comfortable(*disparity_range(rig(2.0).cameras, walls(), 2.0)));
+  EXPECT_FALSE(comfortable(*disparity_range(rig(8.0).cameras, walls(), 8.0)));
+
+  // In a scene that is too deep for any, it stands where most is, to three digits.
+  Picture deep = walls();
+  for (std::size_t k = 0; k < deep.z_sum.size(); ++k)
+    deep.z_sum[k] = k % 10 == 0 ? 0.4f : k % 10 == 1 ? 500.0f : 2.71828f;
+  EXPECT_NEAR(*suitable_convergence(rig({}).cameras, deep, 1.0), 2.72, 1e-9);
+  EXPECT_NEAR(*suitable_convergence(rig({}).cameras, deep, 100.0), 0.0272, 1e-9) << "units are not metres";
+
+  EXPECT_FALSE(suitable_convergence(rig({}).cameras, Picture(width, height), 1.0)) << "nothing is seen";
 }
 
 }  // namespace

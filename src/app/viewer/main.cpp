@@ -1,6 +1,7 @@
 // binosplat-view: the preview as a program of its own, so that the other one needs no window system's
 // libraries. `binosplat view` starts it.
 
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -26,18 +27,9 @@ namespace fs = std::filesystem;
 
 void check_view(const RenderOptions& o) {
   check(o);
-  const bool of_render = o.rig.one_picture() || o.camera.orbit || !o.camera.path.empty() ||
-                         o.camera.views.size() > 1 || o.drawing.frames > 1 || o.drawing.reference_until ||
-                         o.drawing.quality || !o.drawing.calibration.empty() ||
-                         o.context.backend != gl::Backend::automatic || o.context.device >= 0;
-  if (of_render) {
-    fail(
-        "--mono, --only, --frames, --orbit, --path, --reference-until, --quality, --calibration, --backend, "
-        "--device and more than one --view are for `binosplat render`");
-  }
-  if (o.drawing.transmittance == TRANSMITTANCE_DEPTH) fail("--transmittance depth is for `binosplat render`");
-  if (o.output.layout == LAYOUT_MULTI_VIEW)
-    fail("--layout multi-view is for OpenEXR files of `binosplat render`");
+  if (o.camera.views.size() > 1)
+    fail("--view {}: the window starts at one camera, and goes on to the next with N: name one",
+         fmt::join(o.camera.views, " "));
 }
 
 preview::Choices choices_of(const RenderOptions& o) {
@@ -47,11 +39,13 @@ preview::Choices choices_of(const RenderOptions& o) {
   choices.settings.background = choices.background = o.output.backdrop();
   choices.rig = rig_settings(o.rig, {});  // until the model tells
   choices.show = o.output.show;
+  choices.seeks_screen = !o.rig.convergence;
   return choices;
 }
 
 // What is opened, and what goes for files that are dropped on the window, too.
 struct Wanted {
+  fs::path folder;  // for what is saved; empty: default_folder()
   SceneOptions scene;
   CameraOptions camera;
   RigOptions rig;
@@ -87,23 +81,29 @@ preview::Opened open(const Wanted& wanted) {
   const SceneOptions& scene = wanted.scene;
   const CameraOptions& camera = wanted.camera;
   const auto saved = find_saved(scene);
-  const CameraList list = listed_cameras(scene, camera, saved);
+  CameraList list = listed_cameras(scene, camera, saved);
+  if (wanted.rig.units_per_metre) list.known.units_per_metre = wanted.rig.units_per_metre;
   const auto pose = saved_camera(scene, camera, saved);
   preview::Opened opened;
   opened.name = scene.name;
-  opened.up = up_of(camera, list.known);
+  opened.folder = wanted.folder;
+  if (opened.folder.empty()) {
+    opened.folder = default_folder(scene.name);
+    opened.claim = [folder = opened.folder, name = scene.name] { claim_folder(folder, name); };
+  }
+  check_output(opened.folder / "picture");
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
   opened.load = [scene = scene] { return load_scene(scene); };
   follow_levels(wanted, opened);
-  opened.cameras = [wanted, list, pose](const Model& model, preview::Choices& choices) {
+  opened.start = [wanted, list, pose](const Model& model, preview::Choices& choices) {
     const CameraOptions& o = wanted.camera;
     const stereo::RigSettings found =
         rig_settings(wanted.rig, list.known, near_plane_of(o, pose ? *pose : list, model));
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;
-    std::vector<Camera> cameras =
-        list.listed ? list.cameras : made_up_cameras(wanted.scene, o, list.known, model).cameras;
+    const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);
+    std::vector<Camera> cameras = all.cameras;
     if (!o.views.empty()) {
       const auto at =
           std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) { return c.name == o.views[0]; });
@@ -111,23 +111,24 @@ preview::Opened open(const Wanted& wanted) {
       std::rotate(cameras.begin(), at, cameras.end());
     }
     if (pose) cameras.insert(cameras.begin(), pose->cameras[0]);
-    return cameras;
+    return preview::Start{std::move(cameras), up_of(o, all.known)};
   };
   return opened;
 }
 
 void view(const RenderOptions& o) {
   check_view(o);
-  const fs::path folder = o.output.output.empty() ? default_folder(o.scene.name) : fs::path(o.output.output);
-  check_output(folder / "picture");
+  const fs::path folder = o.output.output;
   preview::WindowSettings window;
-  window.size = o.camera.lens.size.value_or(window.size);
-  window.folder = folder;
+  window.size = o.camera.lens.size;
   window.shader_folder = o.context.shader_dir;
-  preview::run(open({o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
-               [metre = o.rig.units_per_metre](const std::string& file) {
-                 return open({{.name = file}, {}, {.units_per_metre = metre}, {}});
-               });
+  // What is saved of another model lies apart.
+  const auto open_other = [folder, metre = o.rig.units_per_metre](const std::string& file) {
+    const fs::path own = folder.empty() ? folder : folder / default_folder(file).filename();
+    return open({own, {.name = file}, {}, {.units_per_metre = metre}, {}});
+  };
+  preview::run(open({folder, o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
+               open_other);
 }
 
 int end(ExitCode code, const std::string& text) {

@@ -1,0 +1,32 @@
+#pragma once
+// What keys and buttons do, for the panel and for `binosplat view --help`; window_input.cpp does it.
+
+namespace binosplat::preview {
+
+struct KeyHelp {
+  const char* keys;
+  const char* what;
+};
+
+inline constexpr KeyHelp key_help[] = {
+    {"left button", "drag: go around what is looked at"},
+    {"right button", "drag: turn the head"},
+    {"middle button", "drag: move the head"},
+    {"wheel", "nearer, farther"},
+    {"double click", "look at what lies there"},
+    {"W A S D Q E", "go; faster with Shift"},
+    {"G", "walk level with the ground, or fly"},
+    {"N, P", "next camera, the one before"},
+    {"R", "back to the camera (reset view)"},
+    {"L, V", "next layout, kind of picture; Shift: back"},
+    {"T, H", "next tile test, threshold; Shift: back"},
+    {"F", "full screen, or a window again"},
+    {"F1", "show or hide the panel"},
+    {"F5", "read the model again"},
+    {"F9", "save the pose beside the model"},
+    {"F11, F12", "save an OpenEXR of both eyes, a PNG"},
+    {"K, Space", "add a key to the path, play the path"},
+    {"Escape", "leave full screen, or end"},
+};
+
+}  // namespace binosplat::preview

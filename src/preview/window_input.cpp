@@ -1,0 +1,229 @@
+// What hands do to the window; keys.h tells of it.
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "preview/window_parts.h"
+
+namespace binosplat::preview {
+
+void Window::listen() {
+  glfwSetWindowUserPointer(window_, this);
+  static const auto of = [](GLFWwindow* window) {
+    return static_cast<Window*>(glfwGetWindowUserPointer(window));
+  };
+  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int mods) {
+    if (action == GLFW_PRESS) of(w)->key(key, mods);
+    of(w)->ui_frames_ = 3;
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
+    if (button == GLFW_MOUSE_BUTTON_LEFT && action == GLFW_PRESS) of(w)->click();
+    of(w)->ui_frames_ = 3;
+  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) { of(w)->drag({x, y}); });
+  glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w)->scroll(y); });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { of(w)->ui_frames_ = 3; });
+  glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { of(w)->ui_frames_ = 3; });
+  glfwSetWindowContentScaleCallback(window_, [](GLFWwindow* w, float, float) {
+    of(w)->scale_changed_ = true;
+    of(w)->ui_frames_ = 3;
+  });
+  glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** files) {
+    if (count > 0) of(w)->open_file(files[0]);
+  });
+}
+
+glm::dvec3 Window::direction() const {
+  if (!session_ || ImGui::GetIO().WantCaptureKeyboard) return glm::dvec3(0.0);
+  return {down(GLFW_KEY_D) - down(GLFW_KEY_A), down(GLFW_KEY_E) - down(GLFW_KEY_Q),
+          down(GLFW_KEY_W) - down(GLFW_KEY_S)};
+}
+
+void Window::moved() {
+  moved_at_ = glfwGetTime();
+  session_->move();
+}
+
+// Held keys go half the distance to the target a second; with Shift four times as fast.
+void Window::go() {
+  const double now = glfwGetTime();
+  const double seconds = std::min(0.1, now - last_time_);
+  last_time_ = now;
+  if (!going()) return;
+  const double speed = (down(GLFW_KEY_LEFT_SHIFT) ? 2.0 : 0.5) * session_->head.distance() * seconds;
+  const glm::dvec3 by = speed * direction();
+  session_->head.move(by.x, by.y, by.z, panel_.walking);
+  moved();
+}
+
+void Window::drag(const glm::dvec2& at) {
+  // Radians a pixel: a window's width is some 3 of them, on a display of any scale.
+  const glm::dvec2 by = (at - cursor_) / (400.0 * ImGui::GetFontSize() / 13.0);
+  cursor_ = at;
+  ui_frames_ = 3;
+  if (!session_ || ImGui::GetIO().WantCaptureMouse) return;
+  const auto held = [&](int button) { return glfwGetMouseButton(window_, button) == GLFW_PRESS; };
+  if (held(GLFW_MOUSE_BUTTON_LEFT)) {
+    session_->head.orbit(-by.x, by.y);
+  } else if (held(GLFW_MOUSE_BUTTON_RIGHT)) {
+    session_->head.look(by.x, -by.y);
+  } else if (held(GLFW_MOUSE_BUTTON_MIDDLE)) {
+    session_->head.move(-by.x * session_->head.distance(), by.y * session_->head.distance(), 0.0);
+  } else {
+    return;
+  }
+  moved();
+}
+
+void Window::scroll(double by) {
+  ui_frames_ = 3;
+  if (!session_ || ImGui::GetIO().WantCaptureMouse) return;
+  session_->head.dolly(std::pow(0.9, by));
+  moved();
+}
+
+void Window::click() {
+  const double now = glfwGetTime();
+  const bool twice = now - last_click_ < 0.35;
+  last_click_ = twice ? 0.0 : now;
+  if (!twice || !session_ || ImGui::GetIO().WantCaptureMouse) return;
+  glm::ivec2 window, framebuffer;
+  glfwGetWindowSize(window_, &window.x, &window.y);
+  glfwGetFramebufferSize(window_, &framebuffer.x, &framebuffer.y);
+  session_->focus(glm::ivec2(cursor_ * glm::dvec2(framebuffer) / glm::max(glm::dvec2(window), 1.0)));
+}
+
+void Window::open_file(const std::string& file) {
+  ui_frames_ = 3;
+  if (loading_.valid()) return tell(fmt::format("{} is still being read", next_.name), true);
+  try {
+    load(open_(file));
+  } catch (const Error& error) {
+    tell(error.what(), true);
+  }
+}
+
+// The same model as its file is now.
+void Window::read_again() {
+  if (loading_.valid()) return;
+  if (levels_.valid()) return tell(fmt::format("levels of {} are still being read", scene_.name), true);
+  load(scene_, true);
+}
+
+namespace {
+
+// The next of a list's choices, without one of them.
+void next(int& value, int count, int left_out, int by) {
+  do value = (value + by + count) % count;
+  while (value == left_out);
+}
+
+}  // namespace
+
+void Window::key(int key, int mods) {
+  if (ImGui::GetIO().WantTextInput) return;
+  if (key == GLFW_KEY_ESCAPE && !full_screen_.leave(window_)) glfwSetWindowShouldClose(window_, GLFW_TRUE);
+  if (key == GLFW_KEY_F && !full_screen_.leave(window_)) full_screen_.enter(window_);
+  if (key == GLFW_KEY_F1) panel_.open = !panel_.open;
+  if (session_) key_of_scene(key, (mods & GLFW_MOD_SHIFT) != 0 ? -1 : 1);
+}
+
+void Window::key_of_scene(int key, int by) {
+  Choices& c = session_->choices;
+  if (key == GLFW_KEY_G) {
+    panel_.walking = !panel_.walking;
+    tell(panel_.walking ? "walking" : "flying");
+  }
+  if (key == GLFW_KEY_N) session_->step_camera(1);
+  if (key == GLFW_KEY_P) session_->step_camera(-1);
+  if (key == GLFW_KEY_N || key == GLFW_KEY_P) tell(session_->camera_name());
+  if (key == GLFW_KEY_R) session_->reset_view();
+  if (key == GLFW_KEY_F5) read_again();
+  if (key == GLFW_KEY_L) {
+    panel_.next_layout(c.layout, by);
+    tell(fmt::format("layout {}: {}", layout_choices[c.layout].name, layout_choices[c.layout].help));
+  }
+  if (key == GLFW_KEY_V) {
+    next(c.show, static_cast<int>(std::size(show_choices)), -1, by);
+    session_->change_show();
+    tell(fmt::format("{}: {}", show_choices[c.show].name, show_choices[c.show].help));
+  }
+  if (key == GLFW_KEY_T) {
+    next(c.settings.tiles, static_cast<int>(std::size(tiles_choices)), TILES_ALL, by);
+    tell(fmt::format("tiles {}: {}", tiles_choices[c.settings.tiles].name,
+                     tiles_choices[c.settings.tiles].help));
+  }
+  if (key == GLFW_KEY_H) {
+    next(c.settings.th, static_cast<int>(std::size(th_choices)), -1, by);
+    choose_threshold(c.settings, c.settings.th);
+    tell(fmt::format("threshold {}: {}", th_choices[c.settings.th].name, th_choices[c.settings.th].help));
+  }
+  if (key == GLFW_KEY_L || key == GLFW_KEY_T || key == GLFW_KEY_H) session_->change();
+  if (key == GLFW_KEY_SPACE) play_or_stop();
+  if (key == GLFW_KEY_K) save_in_folder([this] { return session_->add_key(); });
+  if (key == GLFW_KEY_F9) save([this] { return save_pose(); });
+  if (key == GLFW_KEY_F11 || key == GLFW_KEY_F12)
+    save_in_folder([&] { return session_->save_picture(key == GLFW_KEY_F11); });
+}
+
+void Window::play_or_stop() {
+  if (playing_) return playing_.reset();
+  try {
+    playing_.emplace(session_->keys.keys());
+    playing_since_ = glfwGetTime();
+    session_->go_to(playing_->at(0.0));
+    played_ = session_->head.camera();
+  } catch (const Error& error) {
+    tell(error.what(), true);
+  }
+}
+
+// By the keys' times, however many frames come of it, until hands move the head.
+void Window::play() {
+  if (!playing_) return;
+  const Camera& head = session_->head.camera();
+  if (head.position != played_.position || head.rotation != played_.rotation) return playing_.reset();
+  const double at = glfwGetTime() - playing_since_;
+  session_->go_to(playing_->at(std::min(at, playing_->seconds())));
+  played_ = session_->head.camera();
+  moved();
+  if (at >= playing_->seconds()) playing_.reset();
+}
+
+void Window::delete_key(std::size_t k) {
+  save_in_folder([&] {
+    session_->keys.remove(k);
+    return session_->keys.file().string();
+  });
+}
+
+// Tells which file was written, or why not.
+void Window::save(const std::function<std::string()>& write) {
+  try {
+    draw();  // what has changed since the last frame, the size among it
+    const std::string file = write();
+    tell("saved " + file);
+    log_info("saved {}", file);
+  } catch (const Error& error) {
+    tell(error.what(), true);
+  }
+}
+
+void Window::save_in_folder(const std::function<std::string()>& write) {
+  save([&] {
+    if (scene_.claim) scene_.claim();
+    return write();
+  });
+}
+
+std::string Window::save_pose() const {
+  if (scene_.pose_file.empty()) fail("{} is built in: there is no file to save a pose beside", scene_.name);
+  session_->save_pose(scene_.pose_file);
+  return scene_.pose_file.string();
+}
+
+}  // namespace binosplat::preview

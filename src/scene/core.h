@@ -1,0 +1,20 @@
+#pragma once
+// What a model is about, whatever lies far around it.
+
+#include <glm/glm.hpp>
+
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// The ball around the median position that holds half of the Gaussians, in the model's frame. Trained models
+/// have far outliers and a background larger than their subject, which would ruin a mean or a box.
+struct Core {
+  glm::dvec3 middle{0.0};
+  double radius = 0.0;  // world units, above 0
+};
+
+/// Throws Error if the model is empty.
+Core core_of(const Model& model);
+
+}  // namespace binosplat

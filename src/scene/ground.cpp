@@ -1,0 +1,185 @@
+#include "scene/ground.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <span>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/statistics.h"
+#include "scene/axes.h"
+#include "scene/core.h"
+
+namespace binosplat {
+
+namespace {
+
+/// More Gaussians than this tell no more.
+constexpr std::size_t sample_count = 50000;
+/// Flat is what is at most so thick beside its second axis; of less opacity it is air.
+constexpr float flat = 0.3f, opaque = 0.5f;
+/// Fewer flat Gaussians say nothing.
+constexpr std::size_t flat_least = 200;
+/// A surface is level, or upright, to so many degrees.
+constexpr double level_degrees = 10.0;
+/// What an upright surface counts for beside a level one of its size. Of a wall alone, without any floor, the
+/// directions in it must beat the one that it faces; of a floor alone it must be the other way round.
+constexpr double upright_counts = 0.3;
+/// By how much the best direction must beat all that are more than 30 degrees away.
+constexpr double stands_out = 1.05;
+
+/// A flat Gaussian, in the world.
+struct Piece {
+  glm::dvec3 place;  // from the middle of the core, in its radii
+  glm::dvec3 normal;
+  double weight;  // its area, the less the farther away it is
+};
+
+std::vector<Piece> pieces_of(const Model& model, const Core& core) {
+  const glm::dmat3 world = world_from_axes(model.axes);
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i < model.count(); i += model.count() / sample_count + 1) {
+    const glm::vec3& s = model.scale[i];
+    const int thin = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
+    const float wide = s[(thin + 1) % 3], other = s[(thin + 2) % 3];
+    if (model.opacity[i] < opaque || s[thin] > flat * std::min(wide, other)) continue;
+    const glm::vec4& q = model.rotation[i];
+    const glm::dmat3 turned = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
+    const glm::dvec3 place = (glm::dvec3(model.position[i]) - core.middle) / core.radius;
+    // One huge Gaussian of the background is no floor.
+    const double area = std::min(static_cast<double>(wide) * other / (core.radius * core.radius), 0.01);
+    pieces.push_back({world * place, world * turned[thin],
+                      model.opacity[i] * area / (1.0 + 0.25 * glm::dot(place, place))});
+  }
+  return pieces;
+}
+
+const double aligned = std::cos(glm::radians(level_degrees)), across = std::sin(glm::radians(level_degrees));
+
+/// How much speaks for a direction.
+double votes_for(const glm::dvec3& direction, std::span<const Piece> pieces) {
+  double votes = 0.0;
+  for (const Piece& piece : pieces) {
+    const double x = std::abs(glm::dot(direction, piece.normal));
+    if (x > aligned) votes += piece.weight;
+    if (x < across) votes += upright_counts * piece.weight;
+  }
+  return votes;
+}
+
+/// The direction, up or down, that the level pieces have for a normal as nearly as the upright ones lie in
+/// it.
+glm::dvec3 refined(glm::dvec3 direction, std::span<const Piece> pieces) {
+  for (int round = 0; round < 4; ++round) {
+    glm::dmat3 sum(0.0);
+    double upright = 0.0;
+    for (const Piece& piece : pieces) {
+      const double x = std::abs(glm::dot(direction, piece.normal));
+      const double weight = x > aligned ? piece.weight : x < across ? -upright_counts * piece.weight : 0.0;
+      sum += weight * glm::outerProduct(piece.normal, piece.normal);
+      upright -= std::min(weight, 0.0);
+    }
+    // The largest eigenvalue's direction, by powers; the shift keeps all of them positive.
+    sum += glm::dmat3(upright);
+    for (int k = 0; k < 50; ++k) direction = glm::normalize(sum * direction);
+  }
+  return direction;
+}
+
+std::optional<glm::dvec3> axis_of(std::span<const Piece> pieces) {
+  if (pieces.size() < flat_least) return std::nullopt;
+  constexpr int count = 1000;  // on half a sphere, some 4 degrees apart: a Fibonacci spiral
+  std::vector<glm::dvec3> directions(count);
+  std::vector<double> votes(count);
+  parallel_for(count, [&](int k) {
+    const auto n = static_cast<std::size_t>(k);
+    const double z = (k + 0.5) / count, ring = std::sqrt(1.0 - z * z), turn = 2.399963 * k;
+    directions[n] = {ring * std::cos(turn), ring * std::sin(turn), z};
+    votes[n] = votes_for(directions[n], pieces);
+  });
+  const auto best = static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+  const double far = std::cos(glm::radians(30.0));
+  for (std::size_t n = 0; n < count; ++n) {
+    if (std::abs(glm::dot(directions[n], directions[best])) < far && votes[n] * stands_out > votes[best])
+      return std::nullopt;
+  }
+  return refined(directions[best], pieces);
+}
+
+/// Which of both ends of the axis is up: models reach farther up from where most of them is than down. Where
+/// they do not, worlds have y downwards or z upwards.
+glm::dvec3 upper(const glm::dvec3& axis, std::span<const Piece> pieces) {
+  constexpr double around = 3.0;  // radii: what is farther away is sky, above and below
+  std::vector<double> heights;
+  for (const Piece& piece : pieces) {
+    if (glm::length(piece.place) < around) heights.push_back(glm::dot(piece.place, axis));
+  }
+  if (heights.empty()) return axis;
+  const double middle = quantile(heights, 0.5);
+  const double above = quantile(heights, 0.95) - middle, below = middle - quantile(heights, 0.05);
+  const double usual = std::abs(axis.z) > std::abs(axis.y) ? axis.z : -axis.y;
+  constexpr double farther = 1.35;
+  const double sense = above > farther * below ? 1.0 : below > farther * above ? -1.0 : usual;
+  return sense < 0.0 ? -axis : axis;
+}
+
+/// Along up from the core's middle, in its radii.
+std::optional<double> level_of(const glm::dvec3& up, std::span<const Piece> pieces) {
+  constexpr double around = 2.0;
+  std::vector<double> heights;
+  double flat_weight = 0.0;
+  for (const Piece& piece : pieces) {
+    if (glm::length(piece.place) > around) continue;
+    flat_weight += piece.weight;
+    if (std::abs(glm::dot(piece.normal, up)) > aligned) heights.push_back(glm::dot(piece.place, up));
+  }
+  if (heights.size() < flat_least / 2) return std::nullopt;
+  // Tables and ceilings are level, too: the floor is the lowest.
+  const double floor = quantile(std::move(heights), 0.1);
+  // It reaches all round, or what stands on it is an object on its base.
+  constexpr double thick = 0.1, near = 0.3;
+  constexpr int sectors = 8, most_sectors = 6;
+  constexpr double share = 0.02;
+  const glm::dvec3 aside =
+      glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
+  const glm::dvec3 ahead = glm::cross(up, aside);
+  std::array<bool, sectors> reached{};
+  double floor_weight = 0.0;
+  for (const Piece& piece : pieces) {
+    const double height = glm::dot(piece.place, up) - floor, x = glm::dot(piece.place, aside),
+                 y = glm::dot(piece.place, ahead);
+    if (std::abs(height) > thick || std::abs(glm::dot(piece.normal, up)) < aligned) continue;
+    if (glm::length(piece.place) > around) continue;
+    floor_weight += piece.weight;
+    if (std::hypot(x, y) < near) continue;
+    const double turn = (std::atan2(y, x) / glm::two_pi<double>() + 0.5) * sectors;
+    reached[static_cast<std::size_t>(turn) % sectors] = true;
+  }
+  if (floor_weight < share * flat_weight || std::count(reached.begin(), reached.end(), true) < most_sectors)
+    return std::nullopt;
+  return floor;
+}
+
+}  // namespace
+
+std::optional<Ground> find_ground(const Model& model, const std::optional<glm::dvec3>& up) {
+  if (model.scaffold || model.count() == 0) return std::nullopt;
+  const Core core = core_of(model);
+  const std::vector<Piece> pieces = pieces_of(model, core);
+  Ground ground;
+  if (up) {
+    ground.up = glm::normalize(*up);
+  } else {
+    const auto axis = axis_of(pieces);
+    if (!axis) return std::nullopt;
+    ground.up = upper(*axis, pieces);
+  }
+  if (const auto level = level_of(ground.up, pieces))
+    ground.level = glm::dot(world_from_axes(model.axes) * core.middle, ground.up) + *level * core.radius;
+  return ground;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,25 @@
+#pragma once
+// How a model lies, found in the model itself where no camera tells.
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// In the world (scene/axes.h).
+struct Ground {
+  glm::dvec3 up;
+  /// How far along `up` the floor lies that reaches around what the model is about, world units; nothing for
+  /// an object, which nobody stands in.
+  std::optional<double> level;
+};
+
+/// From the flat, opaque Gaussians, which lie in surfaces: up is where most of them face, as grounds, floors
+/// and tables do, or else what walls have in common; and rather the side on which a model reaches farther.
+/// Nothing where no direction stands out, as with models of round Gaussians and those that a network makes.
+/// `up`, where it is known, is taken as it is. Takes 0.4 s for four million Gaussians.
+std::optional<Ground> find_ground(const Model& model, const std::optional<glm::dvec3>& up = {});
+
+}  // namespace binosplat

@@ -1,0 +1,169 @@
+#include "scene/key_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "scene/curve.h"
+
+namespace binosplat {
+
+namespace {
+
+/// Seconds between keys, in the median; no film has fewer frames a second.
+constexpr double keys_apart = 0.1;
+/// More frames would hardly fit in memory.
+constexpr double frames_most = 1e6;
+
+bool times_rise(std::span<const Camera> cameras) {
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    if (!cameras[k].time || (k > 0 && !(*cameras[k].time > *cameras[k - 1].time))) return false;
+  }
+  return true;
+}
+
+// Focal lengths by their logarithms, so that a zoom is even, and the middle; of a picture of 1 by 1.
+glm::dvec4 lens_of(const Camera& camera) {
+  return {std::log(camera.fx / camera.width), std::log(camera.fy / camera.height), camera.cx / camera.width,
+          camera.cy / camera.height};
+}
+
+/// The axis of a turn, as long as its angle.
+glm::dvec3 turn_of(const glm::dquat& turn) {
+  const glm::dvec3 axis(turn.x, turn.y, turn.z);
+  const double sine = glm::length(axis);
+  return sine > 0.0 ? axis * (2.0 * std::atan2(sine, turn.w) / sine) : glm::dvec3(0.0);
+}
+
+glm::dquat turn_by(const glm::dvec3& turn) {
+  const double angle = glm::length(turn);
+  return angle > 0.0 ? glm::angleAxis(angle, turn / angle) : glm::dquat(1, 0, 0, 0);
+}
+
+/// De Casteljau's cubic, which holds for any way of going from one to another.
+template <typename T, typename Between>
+T cubic(const T& a, const T& b, const T& c, const T& d, double u, const Between& between) {
+  const T ab = between(a, b, u), bc = between(b, c, u), cd = between(c, d, u);
+  return between(between(ab, bc, u), between(bc, cd, u), u);
+}
+
+// The cubic from a to b that leaves and arrives with these slopes.
+template <typename V>
+V cubic_between(const V& a, const V& slope_a, const V& b, const V& slope_b, double apart, double u) {
+  return cubic(a, a + slope_a * (apart / 3.0), b - slope_b * (apart / 3.0), b, u,
+               [](const V& from, const V& to, double share) { return glm::mix(from, to, share); });
+}
+
+}  // namespace
+
+bool are_keys(std::span<const Camera> cameras) {
+  if (cameras.size() < 2 || !times_rise(cameras)) return false;
+  std::vector<double> apart;
+  for (std::size_t k = 1; k < cameras.size(); ++k) apart.push_back(*cameras[k].time - *cameras[k - 1].time);
+  return quantile(std::move(apart), 0.5) > keys_apart;
+}
+
+KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seconds) {
+  if (keys.size() < 2)
+    fail("a path goes through two keys or more, and there is {}: set another", keys.size());
+  if (!seconds && !times_rise(keys))
+    fail("the keys of a path have no times that rise: say in how many seconds to go through them");
+  if (seconds && !(*seconds > 0.0 && std::isfinite(*seconds)))
+    fail("a path in {} seconds: expected more than 0", *seconds);
+  first_ = keys[0];
+  for (const Camera& key : keys) {
+    Knot knot{
+        .place = key.position, .turned = glm::normalize(glm::quat_cast(key.rotation)), .lens = lens_of(key)};
+    if (!seconds) knot.at = *key.time - *keys[0].time;
+    // q and -q are one orientation: the nearer one, or the head would go the long way round.
+    if (!knots_.empty() && glm::dot(knot.turned, knots_.back().turned) < 0.0) knot.turned = -knot.turned;
+    knots_.push_back(knot);
+  }
+  if (seconds) pace(*seconds);
+  find_slopes();
+}
+
+// A way takes the longer, the farther it goes beside the others and the more it turns; a radian counts as
+// much as the usual way from key to key, since keys tell of no metre.
+void KeyPath::pace(double seconds) {
+  std::vector<double> ways, turns;
+  double all = 0.0;
+  for (std::size_t k = 1; k < knots_.size(); ++k) {
+    ways.push_back(glm::distance(knots_[k].place, knots_[k - 1].place));
+    turns.push_back(glm::length(turn_of(glm::conjugate(knots_[k - 1].turned) * knots_[k].turned)));
+    all += ways.back();
+  }
+  const double usual = all > 0.0 ? all / static_cast<double>(ways.size()) : 1.0;
+  // Keys of one pose take a moment, too: a zoom, or a rest.
+  constexpr double least = 0.05;
+  for (std::size_t k = 0; k < ways.size(); ++k)
+    knots_[k + 1].at = knots_[k].at + std::max(least, ways[k] / usual + turns[k]);
+  const double scale = seconds / knots_.back().at;
+  for (Knot& knot : knots_) knot.at *= scale;
+}
+
+void KeyPath::find_slopes() {
+  // Of the chord from each knot to the next.
+  struct Chord {
+    double apart;
+    glm::dvec3 going, turning;
+    glm::dvec4 zooming;
+  };
+  std::vector<Chord> chords;
+  for (std::size_t k = 1; k < knots_.size(); ++k) {
+    const Knot &a = knots_[k - 1], &b = knots_[k];
+    const double apart = b.at - a.at;
+    chords.push_back({apart, (b.place - a.place) / apart,
+                      turn_of(glm::conjugate(a.turned) * b.turned) / apart, (b.lens - a.lens) / apart});
+  }
+  for (std::size_t k = 0; k < knots_.size(); ++k) {
+    const Chord& in = chords[k == 0 ? 0 : k - 1];
+    const Chord& out = chords[std::min(k, chords.size() - 1)];
+    Knot& knot = knots_[k];
+    knot.going = slope_between(in.going, out.going, in.apart, out.apart);
+    knot.turning = slope_between(in.turning, out.turning, in.apart, out.apart);
+    knot.zooming = slope_between(in.zooming, out.zooming, in.apart, out.apart);
+  }
+}
+
+Camera KeyPath::at(double seconds) const {
+  const double time = std::clamp(seconds, 0.0, knots_.back().at);
+  const auto after = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, time,
+                                      [](double t, const Knot& knot) { return t < knot.at; });
+  const Knot &a = *(after - 1), &b = *after;
+  const double apart = b.at - a.at, u = (time - a.at) / apart;
+  Camera camera = first_;
+  camera.time = seconds;
+  camera.position = cubic_between(a.place, a.going, b.place, b.going, apart, u);
+  // Not glm::slerp, which turns back where a way is longer than half a turn: it would jump.
+  const auto spherical = [](const glm::dquat& from, const glm::dquat& to, double share) {
+    return glm::mix(from, to, share);
+  };
+  camera.rotation = glm::mat3_cast(
+      glm::normalize(cubic(a.turned, a.turned * turn_by(a.turning * (apart / 3.0)),
+                           b.turned * turn_by(b.turning * (-apart / 3.0)), b.turned, u, spherical)));
+  const glm::dvec4 lens = cubic_between(a.lens, a.zooming, b.lens, b.zooming, apart, u);
+  camera.fx = std::exp(lens.x) * camera.width;
+  camera.fy = std::exp(lens.y) * camera.height;
+  camera.cx = lens.z * camera.width;
+  camera.cy = lens.w * camera.height;
+  return camera;
+}
+
+std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second) {
+  // The last key is a frame, too, however its time was rounded.
+  const double count = std::floor(path.seconds() * frames_per_second + 1e-6) + 1.0;
+  if (!(count <= frames_most)) {
+    fail("a path of {:.4g} s at {} frames a second: {:.3g} frames are too many: take fewer a second",
+         path.seconds(), frames_per_second, count);
+  }
+  std::vector<Camera> frames;
+  for (double n = 0.0; n < count; ++n) {
+    frames.push_back(path.at(n / frames_per_second));
+    frames.back().name = fmt::format("path_{:05}", frames.size() - 1);
+  }
+  return frames;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,111 @@
+// Where widgets lie, without a window: Dear ImGui lays them out for a display of any size.
+
+#include "preview/panel.h"
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+#include <imgui/imgui_internal.h>
+
+#include "preview/messages.h"
+#include "support/gl.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat::preview {
+namespace {
+
+struct PanelTest : testing::Test {
+  test::TempFolder folder;
+  Session session{test::gl_context(),
+                  test::random_model(9, 400, 0, 0.6),
+                  {[] {
+                    Camera camera = test::front_camera(64, 40, 55.0);
+                    camera.name = "a/rather/long/name/of/a/folder/of/photos/DSC07956.JPG";
+                    return camera;
+                  }()},
+                  glm::dvec3(0, -1, 0),
+                  {.show = SHOW_DEPTH},
+                  folder.path()};
+  Panel panel;
+
+  PanelTest() {
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    session.resize({340, 400});
+    session.draw();
+    session.add_key();
+    session.add_key();
+  }
+  ~PanelTest() override { ImGui::DestroyContext(); }
+
+  /// Some frames at a size and scale of the display, all sections open.
+  void show(float width, float height, float scale, const std::vector<Message>& messages = {}) {
+    ImGui::GetIO().DisplaySize = {width, height};
+    set_scale(scale, 1.0f);
+    unsigned char* pixels = nullptr;
+    int across = 0, down = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &across, &down);
+    for (int frame = 0; frame < 4; ++frame) {
+      ImGui::NewFrame();
+      const float beside = width - panel.width(width);
+      draw_legend(SHOW_DEPTH, *session.most_shown(), beside);
+      panel.draw(session);
+      preview::draw(messages, beside);
+      ImGui::Render();
+      ImGuiWindow* const window = ImGui::FindWindowByName("panel");
+      if (window == nullptr) continue;
+      for (const char* section : {"view", "eyes", "path", "open", "accuracy", "times", "keys"})
+        window->StateStorage.SetInt(window->GetID(section), 1);
+    }
+  }
+
+  static ImRect place(const char* name) { return ImGui::FindWindowByName(name)->Rect(); }
+};
+
+TEST_F(PanelTest, LiesBesideThePictureAndIsReachedByScrolling) {
+  for (const auto& [width, height, scale] :
+       {std::array{640.0f, 400.0f, 1.0f}, std::array{1280.0f, 720.0f, 1.0f},
+        std::array{3840.0f, 2160.0f, 2.0f}, std::array{640.0f, 400.0f, 2.0f}}) {
+    show(width, height, scale);
+    const ImGuiWindow* const window = ImGui::FindWindowByName("panel");
+    const ImRect at = window->Rect();
+    EXPECT_EQ(at.Max.x, width);
+    EXPECT_EQ(at.GetHeight(), height);
+    EXPECT_EQ(at.Min.x, width - panel.width(width)) << "the picture does not begin where it ends";
+    EXPECT_LE(at.GetWidth(), 0.5f * width);
+    EXPECT_GE(at.GetWidth(), std::min(0.5f * width, 20.0f * 13.0f * scale)) << "it does not follow the scale";
+    // What does not fit is below, where the wheel gets.
+    EXPECT_GE(window->ScrollMax.y + window->InnerRect.GetHeight(), window->ContentSize.y) << width;
+    EXPECT_EQ(window->ScrollMax.y > 0.0f, window->ContentSize.y > window->InnerRect.GetHeight()) << width;
+    const float most = scale * 640.0f <= width ? window->InnerRect.GetWidth() : window->ContentSize.x;
+    EXPECT_LE(window->ContentSize.x, most) << "cut off at the right at " << width;
+  }
+  panel.open = false;
+  EXPECT_EQ(panel.width(640.0f), 0.0f);
+}
+
+TEST_F(PanelTest, TextsOverThePictureStayOnItAndApart) {
+  const std::vector<Message> messages = {
+      {"saved /home/somebody/with/a/rather/long/name/out/garden/preview_001.png", false, 1.0},
+      {"garden.ply: vertex 17: the position is not finite; a model has a place for each Gaussian", true,
+       1.0}};
+  for (const bool open : {true, false}) {
+    panel.open = open;
+    show(640.0f, 400.0f, 1.0f, messages);
+    const float beside = 640.0f - panel.width(640.0f);
+    for (const char* name : {"messages", "legend"}) {
+      const ImRect at = place(name);
+      EXPECT_GE(at.Min.x, 0.0f) << name;
+      EXPECT_LE(at.Max.x, beside) << name;
+      EXPECT_LE(at.Max.y, 400.0f) << name;
+    }
+    EXPECT_FALSE(place("messages").Overlaps(place("legend")));
+    // Both texts are there whole: as tall as they are when wrapped, one below the other.
+    const ImGuiWindow* const window = ImGui::FindWindowByName("messages");
+    EXPECT_GE(window->InnerRect.GetHeight() + 1.0f, window->ContentSize.y);
+    EXPECT_GT(window->ContentSize.y, 2.0f * 13.0f);
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::preview

@@ -1,0 +1,184 @@
+#include "scene/ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
+#define GLM_ENABLE_EXPERIMENTAL
+#include <glm/gtx/quaternion.hpp>
+#include <random>
+
+#include "scene/axes.h"
+#include "scene/framing.h"
+#include "scene/open_space.h"
+
+namespace binosplat {
+namespace {
+
+/// Surfaces of flat Gaussians that are somewhat askew, evenly random over a rectangle.
+struct Surfaces {
+  Model model;
+  std::mt19937 random{1};
+
+  double next(double low, double high) { return std::uniform_real_distribution(low, high)(random); }
+
+  /// `across` and `along` from one corner; `thick` beside 1 for the other axes.
+  void add(const glm::dvec3& corner, const glm::dvec3& across, const glm::dvec3& along, int count,
+           float thick = 0.1f) {
+    const glm::dvec3 normal = glm::normalize(glm::cross(across, along));
+    for (int i = 0; i < count; ++i) {
+      const glm::dvec3 n = glm::normalize(normal + 0.1 * glm::dvec3(next(-1, 1), next(-1, 1), next(-1, 1)));
+      // The shortest axis, z, along the normal.
+      const glm::dquat q = glm::rotation(glm::dvec3(0, 0, 1), n);
+      model.position.emplace_back(corner + next(0, 1) * across + next(0, 1) * along);
+      model.scale.emplace_back(0.1f, 0.1f, 0.1f * thick);
+      model.rotation.emplace_back(q.w, q.x, q.y, q.z);
+      model.opacity.push_back(0.9f);
+      model.sh.insert(model.sh.end(), 3, 0.0f);
+    }
+  }
+};
+
+/// A lawn of 20 x 20 around the origin, z up, with a table in the middle and a hedge on one side.
+Model garden(float thick = 0.1f) {
+  Surfaces out;
+  out.add({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}, 6000, thick);
+  out.add({-1, -1, 0.8}, {2, 0, 0}, {0, 2, 0}, 800, thick);
+  out.add({-10, 9, 0}, {20, 0, 0}, {0, 0, 2}, 1500, thick);
+  return out.model;
+}
+
+/// A room of 6 x 5 x 2.6 in a flat of many: four walls, floor, ceiling, a cupboard.
+Model room(const glm::dvec3& at = {}) {
+  Surfaces out;
+  const glm::dvec3 x(6, 0, 0), y(0, 5, 0), z(0, 0, 2.6);
+  for (const glm::dvec3& corner : {glm::dvec3(0), z}) out.add(at + corner, x, y, 3000);
+  for (const glm::dvec3& corner : {glm::dvec3(0), y}) out.add(at + corner, x, z, 1500);
+  for (const glm::dvec3& corner : {glm::dvec3(0), x}) out.add(at + corner, y, z, 1300);
+  out.add(at + glm::dvec3(0, 1, 0), {0.6, 0, 0}, {0, 0, 1}, 300);
+  out.add(at + glm::dvec3(0, 1, 1), {0.6, 0, 0}, {0, 1, 0}, 300);
+  return out.model;
+}
+
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
+  return glm::degrees(std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)));
+}
+
+Model turned(const Model& model, const glm::dquat& by) {
+  Model out = model;
+  for (std::size_t i = 0; i < out.count(); ++i) {
+    const glm::vec4& q = out.rotation[i];
+    const glm::dquat t = by * glm::dquat(q.x, q.y, q.z, q.w);
+    out.position[i] = by * glm::dvec3(out.position[i]);
+    out.rotation[i] = {t.w, t.x, t.y, t.z};
+  }
+  return out;
+}
+
+const glm::dvec3 z_up(0, 0, 1);
+
+TEST(Ground, IsWhereMostSurfacesFaceAndTheModelBegins) {
+  for (const glm::dquat& by :
+       {glm::dquat(1, 0, 0, 0), glm::angleAxis(glm::half_pi<double>(), glm::dvec3(1, 0, 0)),
+        glm::angleAxis(2.0, glm::normalize(glm::dvec3(1, -2, 0.5)))}) {
+    const auto found = find_ground(turned(garden(), by));
+    ASSERT_TRUE(found);
+    EXPECT_LT(degrees_between(found->up, by * z_up), 1.0);
+    ASSERT_TRUE(found->level);
+    EXPECT_NEAR(*found->level, 0.0, 0.05);
+  }
+}
+
+TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
+  Model model = garden();
+  model.axes = "RFU";  // x right, y forward, z up
+  const auto found = find_ground(model);
+  ASSERT_TRUE(found);
+  EXPECT_LT(degrees_between(found->up, {0, -1, 0}), 1.0);
+}
+
+TEST(Ground, OfARoomIsTheFloor) {
+  const auto found = find_ground(room({5, 5, 5}));
+  ASSERT_TRUE(found);
+  EXPECT_LT(degrees_between(found->up, z_up), 1.0);
+  ASSERT_TRUE(found->level);
+  EXPECT_NEAR(*found->level, 5.0, 0.05);
+}
+
+TEST(Ground, WallsAloneTellUpButNoFloor) {
+  Surfaces walls;  // as of a house with a bay
+  for (const double turn : {0.0, 0.6, 1.2, 1.8, 2.4})
+    walls.add({turn, 0, 0}, {0, -4, 0}, {std::cos(turn), 0, std::sin(turn)}, 1000);
+  const auto found = find_ground(walls.model);
+  ASSERT_TRUE(found);
+  EXPECT_LT(degrees_between(found->up, {0, -1, 0}), 2.0) << "y is down where nothing tells";
+  EXPECT_FALSE(found->level);
+}
+
+TEST(Ground, WhereNothingTellsThereIsNone) {
+  EXPECT_FALSE(find_ground(garden(1.0f))) << "round Gaussians face nowhere";
+  EXPECT_FALSE(find_ground(Model{}));
+  Surfaces few;
+  few.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100);
+  EXPECT_FALSE(find_ground(few.model));
+  Surfaces ball;  // faces everywhere
+  for (int i = 0; i < 3000; ++i) {
+    const glm::dvec3 n =
+        glm::normalize(glm::dvec3(ball.next(-1, 1), ball.next(-1, 1), ball.next(-1, 1)) + 1e-9);
+    ball.add(n, 1e-3 * glm::cross(n, glm::normalize(glm::dvec3(1, 2, 3))),
+             1e-3 * glm::cross(n, glm::cross(n, glm::normalize(glm::dvec3(1, 2, 3)))), 1);
+  }
+  const auto found = find_ground(ball.model);
+  EXPECT_TRUE(!found || !found->level);
+}
+
+TEST(Ground, UpThatIsKnownIsTaken) {
+  const auto found = find_ground(garden(), glm::dvec3(0, 0, 2));
+  ASSERT_TRUE(found && found->level);
+  EXPECT_EQ(found->up, z_up);
+  EXPECT_NEAR(*found->level, 0.0, 0.05);
+  const auto askew = find_ground(garden(), glm::dvec3(1, 0, 0));
+  ASSERT_TRUE(askew);
+  EXPECT_FALSE(askew->level) << "nothing is level";
+}
+
+TEST(Standing, IsOnTheFloorAndLooksAtTheMiddle) {
+  const Model model = garden();
+  const Capture capture = capture_of(model, *find_ground(model), 1.6);
+  ASSERT_TRUE(capture.around);
+  const Camera camera = frame_model(model, 640, 360, 60.0, capture.up, capture.around);
+  EXPECT_NEAR(camera.position.z, 1.6, 0.1);
+  EXPECT_LT(glm::length(glm::dvec2(camera.position)), 10.0) << "on the lawn";
+  EXPECT_GT(glm::dot(camera.rotation[2], glm::normalize(-camera.position)), 0.9);
+}
+
+TEST(Standing, IsInARoomAndNotInItsWalls) {
+  // Three rooms in a row, with the middle of all of them in a wall.
+  Model model = room();
+  for (const double x : {6.0, 12.0, 18.0}) {
+    const Model other = room({x, 0, 0});
+    model.position.insert(model.position.end(), other.position.begin(), other.position.end());
+    model.scale.insert(model.scale.end(), other.scale.begin(), other.scale.end());
+    model.rotation.insert(model.rotation.end(), other.rotation.begin(), other.rotation.end());
+    model.opacity.insert(model.opacity.end(), other.opacity.begin(), other.opacity.end());
+    model.sh.insert(model.sh.end(), other.sh.begin(), other.sh.end());
+  }
+  const auto ground = find_ground(model);
+  ASSERT_TRUE(ground && ground->level);
+  const auto open = open_space(model, *ground, 1.6);
+  ASSERT_TRUE(open);
+  for (const Camera& camera : orbit(model, 8, 64, 48, 60.0, ground->up, open)) {
+    const glm::dvec3& p = camera.position;
+    EXPECT_NEAR(p.z, 1.6, 0.1);
+    EXPECT_GT(p.y, 0.3);
+    EXPECT_LT(p.y, 4.7);
+    EXPECT_GT(std::abs(p.x - 6.0 * std::round(p.x / 6.0)), 0.3) << p.x;
+  }
+  Ground in_the_air = *ground;
+  *in_the_air.level += 1.0;
+  EXPECT_FALSE(open_space(model, in_the_air, 1.6)) << "no floor there";
+}
+
+}  // namespace
+}  // namespace binosplat
