@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
+#include "formats/image_file.h"
 #include "study/calibration.h"
 #include "study/fields.h"
 #include "study/settings.h"
@@ -153,17 +154,24 @@ fs::path BenchFolder::file(std::size_t point) const {
 
 study::BenchNumbers BenchFolder::load(std::size_t point) const {
   const ordered_json measured = load_json(file(point));
+  const fs::path picture = fs::path(file(point)).replace_extension(".png");
   const bool good = measured.is_object() && (measured.contains("frame_ms") || measured.contains("problem"));
   constexpr auto wrong = "{}: not a point of bench: remove it, and it is measured again";
   if (!good) fail(wrong, file(point).string());
   try {
-    return measured;
+    study::BenchNumbers numbers = measured;
+    if (fs::exists(picture)) numbers.picture = load_image(picture);
+    return numbers;
   } catch (const ordered_json::exception&) {
     fail(wrong, file(point).string());
   }
 }
 
 void BenchFolder::save(std::size_t point, const study::BenchNumbers& measured) const {
+  if (measured.picture) {
+    const Uninterrupted hold;
+    save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
+  }
   save_json(file(point), measured);
 }
 

@@ -150,10 +150,11 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
                              "ipd_metres", drawn.shot.ipd, "convergence_metres", convergence, "cant_degrees",
                              options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
-  FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.total_ms, "tile", r.tile_size,
-                    "depth_orders", r.order_groups, "drawn_again", r.redrawn, "tolerance",
-                    given(drawing.quality || !drawing.calibration.empty(), r.tolerance), "probed_psnr_db",
-                    given(drawing.quality.has_value(), r.quality), "photo_psnr_db", drawn.photo_psnr);
+  FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.stages.empty() ? NAN : r.total_ms,
+                    "tile", r.tile_size, "depth_orders", r.order_groups, "drawn_again", r.redrawn,
+                    "tolerance", given(drawing.quality || !drawing.calibration.empty(), r.tolerance),
+                    "probed_psnr_db", given(drawing.quality.has_value(), r.quality), "photo_psnr_db",
+                    drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
   if (drawn.most_shown)
@@ -231,6 +232,7 @@ void StageTimes::add(const render::FrameReport& report) { frames_.push_back(repo
 std::vector<StageTimes::Row> StageTimes::rows() const {
   if (frames_.empty()) return {};
   const std::size_t first = frames_.size() - frames();
+  if (frames_[first].stages.empty()) return {};  // the GPU drew nothing: the reference did
   const auto row = [&](const std::string& name, const auto& time_of) {
     std::vector<double> times;
     for (std::size_t k = first; k < frames_.size(); ++k) times.push_back(time_of(frames_[k]));
@@ -253,7 +255,9 @@ void print_needs(const render::MemoryNeeds& needs) {
 void print(const RenderReport& report) {
   for (const Drawn& drawn : report.drawn) {
     std::string line = fmt::format("{}: {}", drawn.shot.name, fmt::join(drawn.files, ", "));
-    line += fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
+    line += drawn.report.stages.empty()
+                ? "  (by the float64 reference, on the CPU"
+                : fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
     if (report.options.drawing.quality)
       line +=
           fmt::format(", tolerance {:.4g} for about {:.1f} dB", drawn.report.tolerance, drawn.report.quality);
@@ -269,8 +273,10 @@ void print(const RenderReport& report) {
   if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
   print_levels(report);
   const std::size_t frames = report.times.frames();
+  const std::vector<StageTimes::Row> rows = report.times.rows();
+  if (rows.empty()) return;
   fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
-  for (const StageTimes::Row& row : report.times.rows()) {
+  for (const StageTimes::Row& row : rows) {
     fmt::print("{:<12}{:>12.3f}{:>12.3f}\n", row.stage, row.median_ms, row.p99_ms);
   }
   fmt::print("GPU time of {} frame{} on {}{}; {:.1f} MB in buffers\n", frames, frames == 1 ? "" : "s",

@@ -1,12 +1,37 @@
 #include "app/report.h"
 
+#include <fmt/chrono.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include <ctime>
+#include <fstream>
+
 #include "app/command.h"
 
 namespace binosplat::app {
 
+namespace {
+
+// As it was typed, for a shell to read again.
+std::string command_line() {
+  std::ifstream file("/proc/self/cmdline");
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) {
+    const bool plain = word.find_first_of(" '\"\\$`*?<>|&;()#~!") == std::string::npos;
+    words.push_back(plain ? word : "'" + CLI::detail::find_and_replace(word, "'", "'\\''") + "'");
+  }
+  if (!words.empty()) words.front() = "binosplat";
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+}  // namespace
+
 void save_report(const std::filesystem::path& folder, const std::string& name,
-                 const nlohmann::ordered_json& results, const study::Page& page) {
+                 const nlohmann::ordered_json& results, study::Page page) {
   save_json(folder / name, results);
+  page.facts.emplace_back("command", command_line());
+  page.facts.emplace_back("date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))));
   const Uninterrupted hold;
   study::save_page(folder / "report.html", page, results);
 }

@@ -9,8 +9,9 @@
 
 namespace binosplat::app {
 
-/// Writes the numbers, as `name`, and their page, report.html; each whole or not at all.
+/// Writes the numbers, as `name`, and their page, report.html, with the command and the date; each whole or
+/// not at all.
 void save_report(const std::filesystem::path& folder, const std::string& name,
-                 const nlohmann::ordered_json& results, const study::Page& page);
+                 const nlohmann::ordered_json& results, study::Page page);
 
 }  // namespace binosplat::app

@@ -37,4 +37,7 @@ std::optional<glm::ivec2> picture_size(const std::filesystem::path& path);
 /// are sRGB as they are, and the file says so.
 void save_png(const std::filesystem::path& path, const Image& image, int bits = 8, const Notes& notes = {});
 
+/// The bytes of such a file.
+std::string png_bytes(const Image& image, int bits = 8, const Notes& notes = {});
+
 }  // namespace binosplat

@@ -176,9 +176,8 @@ Image load_png(const std::filesystem::path& path, std::span<const std::byte> byt
   return image;
 }
 
-void save_png(const std::filesystem::path& path, const Image& image, int bits, const Notes& notes) {
-  if (bits != 8 && bits != 16) fail("{}: a PNG has 8 or 16 bits, not {}", path.string(), bits);
-  OutputFile file(path);
+std::string png_bytes(const Image& image, int bits, const Notes& notes) {
+  if (bits != 8 && bits != 16) fail("a PNG has 8 or 16 bits, not {}", bits);
   Writer writer;
   writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error<Writer>, on_warning);
   if (writer.png == nullptr || (writer.info = png_create_info_struct(writer.png)) == nullptr)
@@ -192,8 +191,13 @@ void save_png(const std::filesystem::path& path, const Image& image, int bits, c
     text.text = const_cast<char*>(value.c_str());
     writer.texts.push_back(text);
   }
-  if (!write_image(writer, image, bits)) fail("cannot write {}: {}", path.string(), writer.error);
-  file.write(writer.encoded);
+  if (!write_image(writer, image, bits)) fail("cannot write a PNG: {}", writer.error);
+  return std::move(writer.encoded);
+}
+
+void save_png(const std::filesystem::path& path, const Image& image, int bits, const Notes& notes) {
+  OutputFile file(path);
+  file.write(png_bytes(image, bits, notes));
   file.commit();
 }
 

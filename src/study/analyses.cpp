@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "render/frame.h"
 #include "study/bench.h"
 #include "study/fields.h"
 #include "study/settings.h"
@@ -91,7 +92,7 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
                  const std::function<void(const std::string&, std::size_t, std::size_t)>& progress) {
   Calibrator calibrator(context, model, calibration, settings.near_plane, settings.kind);
   Calibrator tester(context, model, test, settings.near_plane, settings.kind);
-  Analysis analysis{.device = context.renderer(),
+  Analysis analysis{.device = device_text(context),
                     .scene = settings.scene,
                     .gaussians = model.count(),
                     .kind = settings.kind,
@@ -142,6 +143,12 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
   for (std::size_t k = 0; k < times.size(); ++k) timed[k]->times = times[k];
   for (AnalysedSystem& system : from_targets(analysis.targets, settings.targets[settings.targets.size() / 2]))
     analysis.systems.push_back(std::move(system));
+  render::Frame frame(context, model);
+  for (AnalysedSystem& system : analysis.systems) {
+    for (int n = 0; n < render::settling_frames; ++n)
+      frame.draw(std::span(&tester.views()[0], 1), system.settings);
+    system.picture = for_page(composite(frame.read_pictures().front(), glm::vec3(0.0f)));
+  }
   return analysis;
 }
 

@@ -31,7 +31,8 @@ struct AnalysedSystem {
       reached_db;  // where its tolerance was found for a target: on calibration views
   std::string name;
   render::FrameSettings settings;
-  Typical times;  // medians of a view's frames, in the mean over views
+  Typical times;                      // medians of a view's frames, in the mean over views
+  std::optional<Image> picture = {};  // of the first test view, for_page(); of the systems alone
 };
 
 struct Analysis {

@@ -68,6 +68,21 @@ Section systems(const Analysis& a) {
           plot, table};
 }
 
+Section pictures(const Analysis& a) {
+  Section section{
+      "pictures", "The systems' pictures",
+      fmt::format("Test view {}: drag across it to see what the systems differ in. The numbers are means "
+                  "over all test views.",
+                  a.test_views.front())};
+  section.compared = true;
+  for (const AnalysedSystem& system : a.systems) {
+    if (system.picture)
+      section.figures.push_back(
+          {fmt::format("{}, {:.4g} ms", system.name, system.times.frame_ms), *system.picture});
+  }
+  return section;
+}
+
 Section skipping(const Analysis& a) {
   const std::vector<SkippingCurve>& curves = a.contributions.skipping;
   const bool drop = curves.front().points.front().drop_db.has_value();
@@ -222,6 +237,8 @@ Page analysis_page(const Analysis& a) {
       removed(a),
       speed(a)};
   page.sentence = page.sections[6].sentence;
+  if (Section seen = pictures(a); seen.figures.size() > 1)
+    page.sections.insert(page.sections.begin() + 2, std::move(seen));  // after the systems
   return page;
 }
 

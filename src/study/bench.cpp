@@ -260,6 +260,7 @@ void Bench::judge(const render::FrameSettings& settings, BenchNumbers& point) {
     view.pairs = report.pairs;
     view.visible = report.visible;
     add_work(frame, report, views_.size(), work);
+    if (v == 0) point.picture = for_page(composite(frame.read_pictures().front(), black));
     view.alphas = mean_of(frame.read_shown(SHOW_ALPHAS));
     view.alphas_visible = mean_of(frame.read_shown(SHOW_VISIBLE));
     if (views_[v].photo) photographed.push_back(view);
@@ -286,7 +287,7 @@ void Bench::judge(const render::FrameSettings& settings, BenchNumbers& point) {
 
 BenchNumbers Bench::measure(render::FrameSettings settings) {
   if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table();
-  BenchNumbers point{.device = gpu_model_->context().renderer(), .problem = verify(settings)};
+  BenchNumbers point{.device = device_text(gpu_model_->context()), .problem = verify(settings)};
   if (!point.problem.empty()) return point;
   time(settings, point);
   judge(settings, point);

@@ -141,6 +141,35 @@ Section numbers(const Chart& chart) {
   return {chart.id + "-numbers", chart.title + ": the numbers", sentence, {}, table};
 }
 
+/// The exact picture and those of the points on the front; nothing where there are not two.
+std::optional<Section> pictures(const Chart& chart) {
+  Section section{chart.id + "-pictures", chart.title + ": pictures", ""};
+  section.compared = true;
+  std::string view;
+  const BenchPoint* exact = exact_of(chart);
+  const auto add = [&](const BenchPoint& point) {
+    if (!point.picture) return;
+    section.figures.push_back(
+        {fmt::format("{}, {}, {:.4g} ms", point.name,
+                     std::isfinite(point.exact.psnr_db) ? fmt::format("{:.1f} dB", point.exact.psnr_db)
+                                                        : "equal to exact",
+                     point.frame_ms),
+         *point.picture});
+    view = point.views.front().name;
+  };
+  if (exact != nullptr) add(*exact);
+  for (auto point = chart.measured.rbegin(); point != chart.measured.rend(); ++point) {
+    if (*point != exact && chart.front.count(*point) != 0) add(**point);
+  }
+  if (section.figures.size() < 2) return {};
+  section.sentence = fmt::format(
+      "View {}{}, of the exact picture and the points on the front; drag across it. The numbers are means "
+      "over "
+      "all views.",
+      view, chart.pair ? ", left eye" : "");
+  return section;
+}
+
 /// The stages of the points on the front and of the exact picture beside what the GPU could do at best.
 std::optional<Section> floors(const Chart& chart) {
   Table table{{"setting", "stage", "ms", "MB", "million operations", "floor ms", "share %"}, {}};
@@ -195,6 +224,7 @@ Page bench_page(const BenchResults& results) {
                 {"program", results.program}};
   for (const Chart& chart : charts) {
     page.sections.push_back(accuracy(chart));
+    if (auto section = pictures(chart)) page.sections.push_back(std::move(*section));
     if (!chart.measured.empty()) {
       page.sections.push_back(stages(chart));
       page.sections.push_back(numbers(chart));

@@ -64,6 +64,7 @@ struct BenchNumbers {
   ExactNumbers exact;
   std::optional<PhotoNumbers> photos;
   std::vector<ViewNumbers> views;
+  std::optional<Image> picture;  // of the first view's first eye, for_page(); not in the JSON
 
   bool measured() const { return !std::isnan(frame_ms); }  // without a problem
   double psnr_db() const { return std::isnan(exact.psnr_db) ? equal_db : std::min(exact.psnr_db, equal_db); }

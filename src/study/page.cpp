@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "base/output_file.h"
+#include "formats/image_file.h"
+#include "gl/context.h"
 #include "study/embedded.h"
 #include "study/fields.h"
 
@@ -47,15 +50,27 @@ static void fields(const auto& io, const Table& t) {
   io("columns", t.columns, "rows", t.rows);
 }
 
+static std::string base64(std::string_view bytes) {
+  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::string_view three = bytes.substr(i, 3);
+    unsigned bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k) text += k > three.size() ? '=' : letters[bits >> (18 - 6 * k) & 63];
+  }
+  return text;
+}
+
 static void fields(const auto& io, const Figure& f) {
-  std::vector<int> values;
-  for (const float value : f.image.data) values.push_back(static_cast<int>(std::lround(255.0f * value)));
-  io("caption", f.caption, "width", f.image.width, "height", f.image.height, "rgb", values);
+  io("caption", f.caption, "width", f.image.width, "height", f.image.height, "png",
+     base64(png_bytes(f.image)));
 }
 
 static void fields(const auto& io, const Section& s) {
   io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "plot", s.plot, "table",
-     s.table, "figures", s.figures);
+     s.table, "figures", s.figures, "compared", s.compared);
 }
 
 namespace {
@@ -91,6 +106,23 @@ std::string escaped(const std::string& text) {
 
 void Series::add(std::variant<double, std::string> x, double y, std::string point, bool marked) {
   points.push_back({std::move(x), y, std::move(point), marked});
+}
+
+Image for_page(const Image& image) {
+  constexpr int widest = 640;
+  const int by = (image.width + widest - 1) / widest;
+  Image small(image.width / by, image.height / by, image.channels);
+  for (int y = 0; y < small.height * by; ++y) {
+    for (int x = 0; x < small.width * by; ++x) {
+      for (int c = 0; c < image.channels; ++c)
+        small.at(x / by, y / by, c) += image.at(x, y, c) / static_cast<float>(by * by);
+    }
+  }
+  return small;
+}
+
+std::string device_text(const gl::Context& context) {
+  return fmt::format("{}, OpenGL {}", context.renderer(), context.version());
 }
 
 Series& series_of(Plot& plot, const std::string& name) {

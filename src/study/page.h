@@ -15,6 +15,10 @@
 
 #include "base/image.h"
 
+namespace binosplat::gl {
+class Context;
+}
+
 namespace binosplat::study {
 
 struct Axis {
@@ -82,8 +86,14 @@ struct Table {
 /// A small picture, drawn as large as there is room.
 struct Figure {
   std::string caption;
-  Image image;  // RGB
+  Image image;  // RGB, grey or with alpha
 };
+
+/// A picture by whole factors smaller, so that a page can hold many: at most 640 px wide.
+Image for_page(const Image& image);
+
+/// The GPU and its driver, for the page's facts.
+std::string device_text(const gl::Context& context);
 
 /// One heading of the page: what it shows on this scene, in a sentence, then the plot and the table.
 struct Section {
@@ -94,6 +104,7 @@ struct Section {
   std::optional<Table> table = {};
   std::string problem = {};  // why there is neither
   std::vector<Figure> figures = {};
+  bool compared = false;  // the figures are of one size: two lie on each other, with a slider between them
 };
 
 /// The series of a plot with this name, made where there is none yet.

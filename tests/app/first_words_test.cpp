@@ -169,6 +169,19 @@ TEST_F(FirstWords, QuietIsQuiet) {
   EXPECT_EQ(outcome.err, "");
 }
 
+TEST_F(FirstWords, TheJudgeHasNoGpuTimes) {
+  const auto printed = [&](const std::string& stage) {
+    return render({"--mono", "--size", "36x24", "--frames", "2", "--reference-until", stage, "-o", out,
+                   "--json", folder / "r.json"})
+        .out;
+  };
+  const std::string judged = printed("blend");
+  EXPECT_NE(judged.find("(by the float64 reference, on the CPU)"), std::string::npos) << judged;
+  EXPECT_EQ(judged.find(" ms"), std::string::npos) << judged;
+  EXPECT_TRUE(nlohmann::json::parse(test::read_text(folder / "r.json"))["views"][0]["gpu_ms"].is_null());
+  EXPECT_NE(printed("project").find("blend  "), std::string::npos) << "the GPU's stages keep their times";
+}
+
 TEST_F(FirstWords, ViewsAreListed) {
   const Outcome outcome = run({"info", "model.ply", "--views", "--json", folder / "views.json"});
   ASSERT_TRUE(good(outcome));

@@ -183,5 +183,49 @@ TEST(BenchResults, PageInChromiumHasTheJsonsNumbers) {
             "true 4");
 }
 
+// Of the exact picture and the front; two lie on each other, and tables are whole at 1,300 px.
+TEST(BenchPage, PicturesAreCompared) {
+  BenchResults measured = results();
+  for (const Section& section : bench_page(measured).sections) EXPECT_FALSE(section.compared);
+  for (BenchPoint& point : measured.points) {
+    point.photos.emplace();
+    point.picture = Image(8, 4, 3);
+    if (point.views.empty()) point.views.emplace_back();
+    point.views.front().name = "0001";
+  }
+  const Page page = bench_page(measured);
+  const auto found = std::find_if(page.sections.begin(), page.sections.end(),
+                                  [](const Section& section) { return section.compared; });
+  ASSERT_NE(found, page.sections.end());
+  EXPECT_EQ(found->id, "chart-1-pictures");
+  const std::size_t count = found->figures.size();
+  ASSERT_GE(count, 2u);
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
+  ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
+  const test::TempFolder folder;
+  save_page(folder / "report.html", page, {});
+  const test::Chromium chromium;
+  const auto ask = [&](const std::string& script) {
+    return chromium.ask(folder / "report.html", 1300, false,
+                        "const at = document.querySelector('#chart-1-pictures');" + script);
+  };
+  EXPECT_EQ(ask("return at.querySelectorAll('.thumbnail').length;"), std::to_string(count));
+  EXPECT_EQ(ask("const over = at.querySelector('.compared'), slider = over.querySelector('input');"
+                "slider.value = 20; slider.dispatchEvent(new window.Event('input'));"
+                "at.querySelectorAll('.thumbnail')[1].click();"
+                "return over.style.getPropertyValue('--border') + ' ' + "
+                "at.querySelectorAll('select')[1].value + ' ' +"
+                "over.querySelector('.over').alt;"),
+            "20% 1 " + found->figures[1].caption);
+  EXPECT_EQ(ask("return [...document.querySelectorAll('.wide')].filter((w) => w.scrollWidth > "
+                "w.clientWidth).length;"),
+            "0");
+  EXPECT_NE(ask("document.querySelector('main').style.maxWidth = '20rem';"
+                "return [...document.querySelectorAll('.wide')].filter((w) => w.scrollWidth > "
+                "w.clientWidth).length;"),
+            "0")
+      << "a table that is cut off goes unnoticed";
+}
+
 }  // namespace
 }  // namespace binosplat::study

@@ -171,15 +171,37 @@ function figure(section) {
   return parts;
 }
 
-// A picture of few pixels.
-function picture({ caption, width, height, rgb }) {
-  const canvas = element("canvas", { width, height, role: "img", "aria-label": caption });
-  const context = canvas.getContext("2d");
-  const image = context.createImageData(width, height);
-  for (let k = 0; k < width * height; ++k)
-    image.data.set([rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2], 255], 4 * k);
-  context.putImageData(image, 0, 0);
-  return element("figure", { class: "picture" }, canvas, element("figcaption", {}, caption));
+const image = ({ caption, width, height, png }) =>
+  element("img", { src: `data:image/png;base64,${png}`, width, height, alt: caption });
+
+const picture = (figure) =>
+  element("figure", { class: "picture" }, image(figure), element("figcaption", {}, figure.caption));
+
+// Two pictures on each other: of the one what lies left of the slider, of the other the rest. Of small ones
+// below, the one that is chosen takes the right side.
+function comparison(figures) {
+  const sides = [image(figures[0]), image(figures[figures.length - 1])];
+  sides[1].className = "over";
+  const show = (side, k) => {
+    sides[side].src = image(figures[k]).src;
+    sides[side].alt = figures[k].caption;
+    choices[side].value = String(k);
+    thumbnails.forEach((thumbnail, i) => thumbnail.setAttribute("aria-current", String(i === Number(choices[1].value))));
+  };
+  const choices = ["left", "right"].map((name, side) => element("select", { "aria-label": `${name} picture`,
+    onchange: (event) => show(side, Number(event.target.value)) },
+    ...figures.map((figure, k) => element("option", { value: String(k) }, figure.caption))));
+  const slider = element("input", { type: "range", min: "0", max: "100", value: "50", step: "0.1",
+    "aria-label": "border between both pictures", oninput: () => place() });
+  const over = element("div", { class: "compared" }, ...sides, slider);
+  const place = () => over.style.setProperty("--border", `${slider.value}%`);
+  const thumbnails = figures.map((figure, k) => element("button", { type: "button", class: "thumbnail",
+    onclick: () => show(1, k) }, image(figure), figure.caption));
+  show(0, 0);
+  show(1, figures.length - 1);
+  place();
+  return element("div", {}, element("div", { class: "choices" }, ...choices), over,
+    element("div", { class: "thumbnails" }, ...thumbnails));
 }
 
 function sectionParts(section) {
@@ -189,7 +211,8 @@ function sectionParts(section) {
     parts.push(section.table.rows.length ? table(section.table.columns, section.table.rows)
       : problem("This table is empty: nothing was measured."));
   }
-  if (section.figures.length)
+  if (section.compared && section.figures.length > 1) parts.push(comparison(section.figures));
+  else if (section.figures.length)
     parts.push(element("div", { class: "pictures" }, ...section.figures.map(picture)));
   return parts;
 }
