@@ -243,7 +243,7 @@ void study_motion(const StudyOptions& options) {
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
   const std::vector<Variant> rules = rules_for(options);
   const auto context = open_context_for_all("study", true, options.context);
-  study::MotionStudy study{.device = context->renderer(),
+  study::MotionStudy study{.device = study::device_text(*context),
                            .scene = options.scene.name,
                            .gaussians = driven.model->count(),
                            .eyes = views.size(),

@@ -65,7 +65,7 @@ void study_stability(gl::Context& context, const StudyOptions& options, const St
   for (auto& one : study::cases_in(studied.model, head, settings)) cases.push_back(std::move(one));
   check_cases(options.cases, cases);
   study::StabilityStudy study{
-      options.scene.name, context.renderer(), options.target, {}, study::all_variants(), {}};
+      options.scene.name, study::device_text(context), options.target, {}, study::all_variants(), {}};
   std::vector<Variant>& variants = study.rules;
   {
     const stereo::EyePair eyes = stereo::make_rig(head, settings);

@@ -67,13 +67,8 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
 
 void study_turn(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   const Camera& camera = studied.shots.front().eyes.front().camera;
-  study::TurningStudy study{options.scene.name,
-                            context.renderer(),
-                            camera.name,
-                            camera.width,
-                            camera.height,
-                            settings_for(context, options),
-                            {}};
+  study::TurningStudy study{options.scene.name, study::device_text(context),    camera.name, camera.width,
+                            camera.height,      settings_for(context, options), {}};
   render::Frame frame(context, *studied.model);
   const study::PerspectiveViews views = views_for(context, options, studied);
   Progress progress("turning", study::turning_steps(study.settings) + study::perspective_steps(views));
