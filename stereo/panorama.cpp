@@ -109,6 +109,7 @@ render::FrameReport Panorama::draw(std::span<const Camera> eyes, double near_pla
     pixels_.push_back(std::make_unique<Pixels>(blend_.context()));
   const std::int64_t count = std::int64_t{side_} * side_;
   render::FrameReport report;
+  double blend_ms = 0;
   for (std::size_t nth = 0; nth < faces.size(); ++nth) {
     std::vector<shared::View> views;
     if (eyes_ == 2) {
@@ -123,9 +124,11 @@ render::FrameReport Panorama::draw(std::span<const Camera> eyes, double near_pla
       Pixels& pixels = *pixels_[v];
       pixels.colours.reserve(count * 16);
       pixels.z_sums.reserve(count * 4);
-      blend_.blend(v, *rays_[nth], ray_counts_[nth], pixels.colours, pixels.z_sums);
+      blend_ms += blend_.blend(v, *rays_[nth], ray_counts_[nth], pixels.colours, pixels.z_sums);
     }
   }
+  report.stages.push_back({"blend", blend_ms});
+  report.total_ms += blend_ms;
   return report;
 }
 

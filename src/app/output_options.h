@@ -23,7 +23,7 @@ struct OutputOptions {
   std::optional<bool> exr_half;     // OpenEXR, too, as half or float
   std::optional<bool> exr_display;  // display values instead of light
   Depth exr_depth = Depth::mean;
-  std::string photos;               // a folder, or photos_beside
+  std::string photos;  // a folder, or photos_beside
   std::string json;
   bool detail_report = false;
 

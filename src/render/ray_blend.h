@@ -20,10 +20,10 @@ class RayBlend {
   FrameReport set_views(std::span<const shared::View> views, const FrameSettings& settings = {});
 
   /// Blends `count` rays (shared::PlacedRay) of view `v`, which must meet its picture: C and T as vec4, and
-  /// the sum of depths as float (with PROJECTION_TANGENT of distances), to their places. Throws
-  /// Error(out_of_memory) for lists that are too long for the driver.
-  void blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t count, gl::Buffer& colours,
-             gl::Buffer& z_sums);
+  /// the sum of depths as float (with PROJECTION_TANGENT of distances), to their places. Returns the GPU's
+  /// time, ms. Throws Error(out_of_memory) for lists that are too long for the driver.
+  double blend(std::uint32_t v, const gl::Buffer& rays, std::uint32_t count, gl::Buffer& colours,
+               gl::Buffer& z_sums);
 
   gl::Context& context() { return frame_.model()->context(); }
 

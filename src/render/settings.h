@@ -61,7 +61,7 @@ struct FrameSettings {
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
   /// With the lists of TILES_ELLIPSE: what is seen between the centres of pixels only, too (ray_blend.h).
   bool between = false;
-  glm::vec3 background{0.0f};      // behind the scene, for the probe only: the pictures are without
+  glm::vec3 background{0.0f};  // behind the scene, for the probe only: the pictures are without
 };
 
 /// Throws Error for values that no frame has and for settings that contradict each other: an exact rule with

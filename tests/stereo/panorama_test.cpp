@@ -122,6 +122,17 @@ TEST(Panoramas, ShowBothEyesAtOnce) {
   EXPECT_LE(psnr(both[0], expected(model, right)), 28.0);
 }
 
+TEST(Panoramas, TellTheTimeOfAllTheirStages) {
+  Panorama panorama(std::make_shared<render::GpuModel>(test::gl_context(), around(9, 200)), side);
+  const std::vector<Camera> eye = {eyes()[0]};
+  const render::FrameReport report = panorama.draw(eye, near_plane);
+  double sum = 0.0;
+  for (const gl::StageTime& stage : report.stages) sum += stage.ms;
+  EXPECT_EQ(report.stages.back().name, "blend");
+  EXPECT_GT(report.stages.back().ms, 0.0);
+  EXPECT_NEAR(report.total_ms, sum, 1e-9);
+}
+
 TEST(Panoramas, TellDistances) {
   Model model;
   for (const glm::vec3& place : {glm::vec3(0, 0, 3), glm::vec3(2, 0, 0.05), glm::vec3(0, -4, 0.05)})
