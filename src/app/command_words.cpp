@@ -74,6 +74,12 @@ std::vector<std::string> words_of(const CLI::Option& option) {
   return words;
 }
 
+// Whether it takes one of them and nothing else, as a file or a number.
+bool takes_words_only(const CLI::Option& option) {
+  const std::size_t choices = CLI::detail::split(option.get_type_name(), '|').size();
+  return !words_of(option).empty() && words_of(option).size() == choices;
+}
+
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
 std::string replaced(const std::string& text, const std::string& what, const std::string& by) {
@@ -147,9 +153,8 @@ std::string bash_completion(const CLI::App& program) {
     options += fmt::format("    [{}]='{}'\n", part.name, names_of(part.options()));
     for (const CLI::Option* option : part.options()) {
       for (const std::string& name : option->get_lnames()) {
-        const std::vector<std::string> taken = words_of(*option);
-        if (!taken.empty())
-          words += fmt::format("    ['{} --{}']='{}'\n", part.name, name, fmt::join(taken, " "));
+        if (takes_words_only(*option))
+          words += fmt::format("    ['{} --{}']='{}'\n", part.name, name, fmt::join(words_of(*option), " "));
       }
     }
   }
@@ -191,8 +196,8 @@ std::string fish_completion(const CLI::App& program) {
       for (const std::string& name : option->get_snames()) text += " -s " + name;
       for (const std::string& name : option->get_lnames()) text += " -l " + name;
       const std::vector<std::string> taken = words_of(*option);
-      if (!taken.empty()) text += fmt::format(" -x -a '{}'", fmt::join(taken, " "));
-      if (taken.empty() && takes_value(*option)) text += " -r";
+      if (takes_value(*option)) text += takes_words_only(*option) ? " -x" : " -r";
+      if (!taken.empty()) text += fmt::format(" -a '{}'", fmt::join(taken, " "));
       text += fmt::format(" -d {}\n", quoted(in_one_line(option->get_description())));
     }
   }

@@ -99,10 +99,10 @@ bool is_empty(const Picture& picture) {
 }
 
 // Whether pictures are for a screen whose distance no option says: both eyes in one, and not for a headset.
-bool seeks_screen(const RenderOptions& o, const OutputPlan& plan, const Shot& first) {
+bool seeks_screen(const RenderOptions& o, const OutputPlan& plan) {
   const bool flat = plan.layout != LAYOUT_SEPARATE && plan.layout != LAYOUT_MULTI_VIEW;
   return flat && !plan.vr180 && !o.rig.convergence && o.rig.cant.value_or(0.0) == 0.0 &&
-         !o.camera.lens.headset() && !first.given_eyes;
+         !o.camera.lens.headset();
 }
 
 // That distance, in metres: what suits the first view of the run, whichever part of it is drawn here; nothing
@@ -267,11 +267,17 @@ ExitCode render(const RenderOptions& o) {
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list, model);
-  if (work.plan.vr180) level(work.list.cameras, up_of(o.camera, work.list.known));
   work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
+  if (work.plan.vr180) {
+    for (Shot& shot : work.shots) level(shot, up_of(o.camera, work.list.known));
+  }
   check_shots(work.plan, work.shots);
   if (!work.photos.empty()) check_any_photo(work.photos, work.shots);
-  if (seeks_screen(o, work.plan, work.shots[0])) work.screen = work.shots[0];
+  if (seeks_screen(o, work.plan)) {
+    const auto head =
+        std::find_if(work.shots.begin(), work.shots.end(), [](const Shot& shot) { return !shot.given_eyes; });
+    if (head != work.shots.end()) work.screen = *head;
+  }
   take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
   if (work.followed) work.followed->bring(model, views_of(work.shots[0]));

@@ -140,6 +140,8 @@ void check(const RenderOptions& o) {
     fail("--show {}: the GPU's blend tells it, which --reference-until blend leaves out",
          show_choices[o.output.show].name);
   }
+  if (o.drawing.reference_until == render::Stage::blend && o.output.exr_depth == Depth::median)
+    fail("--exr-depth median: the GPU's blend tells it, which --reference-until blend leaves out");
   check_parts(o);
   check_vr180(o);
   check(o.context);

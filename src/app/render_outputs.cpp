@@ -88,8 +88,8 @@ std::vector<std::string> bases_of(const OutputPlan& plan, const Shot& shot) {
 OutputPlan plan_video(const OutputOptions& options, bool one_picture, const fs::path& output) {
   check_output(output);
   find_ffmpeg();
-  if (options.bits || options.exr_half || options.exr_display)
-    fail("--bits, --exr and --exr-encoding are for pictures: -o {} is a video", output.string());
+  if (options.bits || options.exr_half || options.exr_display || options.exr_depth == Depth::median)
+    fail("--bits, --exr, --exr-depth and --exr-encoding are for pictures: -o {} is a video", output.string());
   if (!options.background) fail("--background none: a video has no alpha");
   if (!options.json.empty()) check_output(options.json);
   OutputPlan plan;
@@ -134,26 +134,50 @@ bool tells_nothing(std::string name) {
   return said.contains(name);
 }
 
-// In a folder of pictures, the model that they are of.
+// In a folder of pictures, the model that they are of, by its whole path, or a built-in scene.
 constexpr const char* owner_name = "model.txt";
 
 fs::path path_of(const std::string& scene) {
+  if (is_built_in(scene)) return scene;
   const fs::path path = fs::absolute(scene).lexically_normal();
   return path.has_filename() ? path : path.parent_path();
 }
 
-// Whether pictures of another model lie there.
-bool is_anothers(const fs::path& folder, const fs::path& model) {
+// Empty where nobody's pictures lie.
+fs::path owner_of(const fs::path& folder) {
   std::ifstream file(folder / owner_name);
   std::string owner;
-  return std::getline(file, owner) && owner != model.string();
+  std::getline(file, owner);
+  return owner;
+}
+
+// Whether pictures of another model lie there.
+bool is_anothers(const fs::path& folder, const fs::path& model) {
+  const fs::path owner = owner_of(folder);
+  return !owner.empty() && owner != model;
+}
+
+// The name, or where that is another model's one that tells the two apart.
+std::string free_name(std::string name, const fs::path& model) {
+  const auto is_taken = [&](const std::string& asked) { return is_anothers(fs::path("out") / asked, model); };
+  const std::string ending = lowered_ending(model);
+  // Beside each other they differ in the ending; elsewhere in the name of a folder, at some height.
+  if (is_taken(name) && !ending.empty() &&
+      owner_of(fs::path("out") / name).parent_path() == model.parent_path())
+    name += "_" + ending.substr(1);
+  for (fs::path path = model.parent_path(); is_taken(name) && path.has_relative_path();
+       path = path.parent_path())
+    name = path.filename().string() + "_" + name;
+  const std::string all = name;
+  for (int n = 2; is_taken(name); ++n) name = fmt::format("{}_{}", all, n);
+  return name;
 }
 
 }  // namespace
 
 fs::path default_folder(const std::string& scene) {
-  if (is_built_in(scene)) return fs::path("out") / scene.substr(scene.find(':') + 1);
   const fs::path model = path_of(scene);
+  if (is_built_in(scene)) return fs::path("out") / free_name(scene.substr(scene.find(':') + 1), model);
   fs::path path = model;
   std::error_code ignored;
   std::string name = fs::is_directory(path, ignored) ? path.filename().string() : path.stem().string();
@@ -164,17 +188,10 @@ fs::path default_folder(const std::string& scene) {
     path = path.parent_path();
     name = path.filename().string();
   }
-  name = name.empty() ? "model" : name + number;
-  // Two models of one name lie in folders of two names, at some height.
-  while (is_anothers(fs::path("out") / name, model) && path.has_relative_path()) {
-    path = path.parent_path();
-    if (path.has_filename()) name = path.filename().string() + "_" + name;
-  }
-  return fs::path("out") / name;
+  return fs::path("out") / free_name(name.empty() ? "model" : name + number, model);
 }
 
 void claim_folder(const fs::path& folder, const std::string& scene) {
-  if (is_built_in(scene)) return;
   const Uninterrupted hold;
   OutputFile file(folder / owner_name);
   file.write(path_of(scene).string() + "\n");
@@ -190,7 +207,7 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   const bool named = !options.output.empty();  // else it is a folder, however its model is called
   const bool video = named && is_video(output);
   const std::string extension = lowered_ending(output);
-  const bool vr_photo = named && render.camera.lens.vr180() && (extension == ".jpg" || extension == ".jpeg");
+  const bool vr_photo = named && render.camera.lens.vr180() && extension == ".jpg";
   const bool file = named && (extension == ".png" || extension == ".exr" || vr_photo);
   if ((video || file) && (!render.shard.all() || render.resume))
     fail("--shard and --resume are for a folder of pictures, and -o {} is one file: name a folder",
@@ -226,7 +243,7 @@ OutputPlan plan_outputs(const RenderOptions& render) {
     plan.png = false;
     plan.exr = true;
   }
-  if (options.bits && !plan.png)
+  if (options.bits && !plan.png && !plan.vr_photo)
     fail("--bits is for PNG: this writes OpenEXR to {}, whose depth --exr sets", output.string());
   if (plan.exr && options.show != SHOW_PICTURE) {
     fail("--show {} is for PNG and videos: it has no light and no depth for OpenEXR",

@@ -146,9 +146,10 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
                        const std::optional<double>& convergence) {
   const render::FrameReport& r = drawn.report;
   const DrawingOptions& drawing = options.drawing;
-  ordered_json json = object("name", drawn.shot.name, "units_per_metre", drawn.shot.units_per_metre,
-                             "ipd_metres", drawn.shot.ipd, "convergence_metres", convergence, "cant_degrees",
-                             options.rig.cant, "eyes", ordered_json::array());
+  ordered_json json =
+      object("name", drawn.shot.name, "units_per_metre", drawn.shot.units_per_metre, "ipd_metres",
+             drawn.shot.ipd, "convergence_metres", drawn.shot.given_eyes ? std::nullopt : convergence,
+             "cant_degrees", options.rig.cant, "eyes", ordered_json::array());
   for (const Eye& eye : drawn.shot.eyes) json["eyes"].push_back(eye_json(eye));
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.stages.empty() ? NAN : r.total_ms,
                     "tile", r.tile_size, "depth_orders", r.order_groups, "drawn_again", r.redrawn,
@@ -167,13 +168,16 @@ ordered_json settings_json(const RenderReport& report) {
   const DrawingOptions& o = report.options.drawing;
   const Background& background = report.options.output.background;
   const Model& model = report.model;
-  return object("tiles", tiles_choices[o.tiles].name, "tile",
+  const bool vr180 = report.options.camera.lens.vr180();
+  const int order = vr180 ? ORDER_DISTANCE : o.order.value_or(model.perspective.order);
+  const int projection = vr180 ? PROJECTION_TANGENT : o.projection.value_or(model.perspective.projection);
+  return object("vr180", given(vr180, true), "tiles", tiles_choices[o.tiles].name, "tile",
                 o.tile ? ordered_json(*o.tile) : ordered_json("auto"), "precision",
                 precision_choices[o.precision].name, "near", report.near_plane, "antialiased",
-                model.antialiased, "order", order_choices[o.order.value_or(model.perspective.order)].name,
-                "projection", projection_choices[o.projection.value_or(model.perspective.projection)].name,
-                "kernel_px2", model.kernel_px2, "th", th_choices[threshold_of(o)].name, "tolerance",
-                o.tolerance, "transmittance", transmittance_choices[o.transmittance].name, "decode",
+                model.antialiased, "order", order_choices[order].name, "projection",
+                projection_choices[projection].name, "kernel_px2", model.kernel_px2, "th",
+                th_choices[threshold_of(o)].name, "tolerance", o.tolerance, "transmittance",
+                transmittance_choices[o.transmittance].name, "decode",
                 given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
                 "detail_px", report.options.scene.detail, "quality_db", o.quality, "calibration",
                 given(!o.calibration.empty(), o.calibration), "background",

@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <ctime>
 #include <fstream>
 
@@ -18,7 +21,10 @@ std::string command_line() {
   std::ifstream file("/proc/self/cmdline");
   std::vector<std::string> words;
   for (std::string word; std::getline(file, word, '\0');) {
-    const bool plain = word.find_first_of(" '\"\\$`*?<>|&;()#~!") == std::string::npos;
+    const auto is_plain = [](unsigned char c) {
+      return std::isalnum(c) != 0 || std::strchr("_./:,=+@%-", c) != nullptr;
+    };
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), is_plain);
     words.push_back(plain ? word : "'" + CLI::detail::find_and_replace(word, "'", "'\\''") + "'");
   }
   if (!words.empty()) words.front() = "binosplat";

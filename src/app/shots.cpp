@@ -194,8 +194,11 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   list.listed = !list.cameras.empty();
   list.path = camera.along_path();
   list.known = known;
+  // Keys of a path may all lean the same way; of the many beside the model the mean does not.
+  if (built_in.empty() && camera.lens.vr180() && !(camera.path + camera.file).empty())
+    learn_beside(scene.name, camera, list.known);
   if (built_in.empty()) learn(list, camera, list.known);
-  if (list.listed && (camera.up || camera.fov)) {
+  if (list.listed && ((camera.up && !camera.lens.vr180()) || camera.fov)) {
     fail(
         "--up and --fov are for cameras that are made up: {} has cameras; use --eye and --at, or --orbit, "
         "with them",

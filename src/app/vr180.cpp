@@ -12,10 +12,11 @@ namespace {
 
 // What has no meaning where all rays are drawn exactly, each along its own way.
 constexpr const char* refused[] = {
-    "--fov",         "--convergence", "--cant",      "--order",    "--projection",
-    "--tiles",       "--th",          "--tolerance", "--quality",  "--transmittance",
-    "--calibration", "--show",        "--frames",    "--detail",   "--reference-until",
-    "--photos",      "--precision",   "--decode",    "--exr-depth"};
+    "--fov",         "--convergence", "--cant",      "--order",     "--projection",
+    "--tiles",       "--th",          "--tolerance", "--quality",   "--transmittance",
+    "--calibration", "--show",        "--frames",    "--detail",    "--reference-until",
+    "--photos",      "--precision",   "--decode",    "--exr-depth", "--tile",
+    "--only"};
 
 std::vector<Camera> eyes_of(const Shot& shot, const std::string& axes) {
   std::vector<Camera> eyes;
@@ -40,13 +41,15 @@ void check_vr180(const RenderOptions& o) {
   for (const std::string& given : o.given) {
     for (const char* const name : refused) {
       if (given.substr(0, given.find(' ')) == name)
-        fail("--vr180 draws exactly, and along rays of its own: leave {} out", name);
+        fail("--vr180 draws both eyes, or --mono, exactly and along rays of its own: leave {} out", name);
     }
   }
   if (const auto& size = o.camera.lens.size; size && (size->x != size->y || size->x % 2 != 0)) {
     fail("--size {0}x{1} with --vr180: expected an even number of pixels twice, for one 2880x2880", size->x,
          size->y);
   }
+  if (const auto& size = o.camera.lens.size; size && size->x > stereo::panorama_side_most)
+    fail("--size {0}x{0} with --vr180: at most {1}x{1}", size->x, stereo::panorama_side_most);
   const int layout = o.output.layout.value_or(LAYOUT_PARALLEL);
   if (layout != LAYOUT_PARALLEL && layout != LAYOUT_OVER_UNDER && layout != LAYOUT_SEPARATE)
     fail("--vr180 with --layout {}: players know parallel and over-under", layout_choices[layout].name);
@@ -56,10 +59,12 @@ void check_vr180(const RenderOptions& o) {
 }
 
 void plan_vr180(const RenderOptions& o, OutputPlan& plan) {
-  if (plan.vr_photo && (o.rig.one_picture() || o.output.layout || !o.output.background)) {
+  if (plan.vr_photo &&
+      (o.rig.one_picture() || o.output.layout || !o.output.background || plan.exr || o.output.bits)) {
     fail(
-        "-o {}: a VR photo holds both eyes, each by itself and opaque: leave --mono, --only, --layout and "
-        "--background none out",
+        "-o {}: a VR photo holds both eyes, each by itself, opaque and of 8 bits: leave --mono, --layout, "
+        "--exr, "
+        "--bits and --background none out",
         o.output.output);
   }
   if (!o.output.layout && !o.rig.one_picture() && !plan.exr) plan.layout = LAYOUT_PARALLEL;
@@ -69,15 +74,18 @@ void plan_vr180(const RenderOptions& o, OutputPlan& plan) {
                                                    : "_180";
 }
 
-void level(std::vector<Camera>& cameras, const glm::dvec3& up) {
+void level(Shot& shot, const glm::dvec3& up) {
   const glm::dvec3 down = -glm::normalize(up);
-  for (Camera& camera : cameras) {
-    // Where it looks straight up or down, its own right.
-    glm::dvec3 right = glm::cross(down, camera.rotation[2]);
-    if (glm::length(right) < 1e-3) right = camera.rotation[0] - glm::dot(camera.rotation[0], down) * down;
-    right = glm::normalize(right);
-    camera.rotation = glm::dmat3(right, down, glm::cross(right, down));
-  }
+  Camera &first = shot.eyes.front().camera, &last = shot.eyes.back().camera;
+  // Where it looks straight up or down, its own right.
+  glm::dvec3 right = glm::cross(down, first.rotation[2] + last.rotation[2]);
+  if (glm::length(right) < 1e-3) right = first.rotation[0] - glm::dot(first.rotation[0], down) * down;
+  right = glm::normalize(right);
+  const glm::dvec3 middle = 0.5 * (first.position + last.position);
+  const double half = 0.5 * glm::length(last.position - first.position);
+  first.position = middle - half * right;
+  last.position = middle + half * right;
+  for (Eye& eye : shot.eyes) eye.camera.rotation = glm::dmat3(right, down, glm::cross(right, down));
 }
 
 render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double near_plane) {

@@ -18,9 +18,9 @@ void check_vr180(const RenderOptions& options);
 /// Pictures as players look for them: both eyes in one, and names in a folder that say what they are.
 void plan_vr180(const RenderOptions& options, OutputPlan& plan);
 
-/// Turns cameras about their places so that the horizon is level, as one who wears a headset holds his head:
-/// each keeps looking where it did, seen from above.
-void level(std::vector<Camera>& cameras, const glm::dvec3& up);
+/// Holds the head of a shot level, as one who wears a headset does: it looks where it did (a pair of eyes
+/// between them), seen from above, and the eyes lie level about their middle.
+void level(Shot& shot, const glm::dvec3& up);
 
 /// What one shot's largest face and the panoramas take on the GPU.
 render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double near_plane);

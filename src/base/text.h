@@ -1,10 +1,11 @@
 #pragma once
-// Letters in names.
+// Letters in names, and bytes as letters.
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace binosplat {
 
@@ -19,5 +20,8 @@ inline std::string lowered(std::string text) {
 inline std::string lowered_ending(const std::filesystem::path& path) {
   return lowered(path.extension().string());
 }
+
+/// Bytes as base64 (RFC 4648), filled up by =.
+std::string base64(std::string_view bytes);
 
 }  // namespace binosplat

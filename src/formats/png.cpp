@@ -197,7 +197,11 @@ std::string png_bytes(const Image& image, int bits, const Notes& notes) {
 
 void save_png(const std::filesystem::path& path, const Image& image, int bits, const Notes& notes) {
   OutputFile file(path);
-  file.write(png_bytes(image, bits, notes));
+  try {
+    file.write(png_bytes(image, bits, notes));
+  } catch (const Error& error) {
+    fail("{}: {}", path.string(), error.what());
+  }
   file.commit();
 }
 

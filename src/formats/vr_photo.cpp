@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "base/text.h"
 
 namespace binosplat {
 
@@ -34,19 +35,6 @@ std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
   const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(made, &tjFree);
   if (!good) fail("cannot write {}: {}", path.string(), tjGetErrorStr2(encoder.get()));
   return {reinterpret_cast<const char*>(made), size};
-}
-
-std::string base64(std::string_view bytes) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    const std::size_t have = std::min<std::size_t>(3, bytes.size() - at);
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      three = three << 8 | (k < have ? static_cast<unsigned char>(bytes[at + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= have ? digits[three >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
 }
 
 std::string number(std::uint32_t value, int bytes) {
@@ -99,6 +87,7 @@ void save_vr_photo(const std::filesystem::path& path, const Image& left, const I
   const std::string rest =
       described("xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" GImage:Data=\"" +
                 base64(jpeg_of(path, right)) + "\"");
+  // XMP asks for an MD5 as this name; readers compare it only, and any digest tells two apart.
   const XXH128_hash_t hash = XXH3_128bits(rest.data(), rest.size());
   const std::string name = fmt::format("{:016X}{:016X}", hash.high64, hash.low64);
   // After the marks of a JPEG and of JFIF, as cameras have it.

@@ -1,8 +1,8 @@
 #pragma once
 // VR photos (.vr.jpg), as Google's VR180 cameras leave them and headsets' galleries know them: a JPEG of the
 // left eye whose XMP says that it is half a sphere and holds the right eye's JPEG (GPano and GImage,
-// developers. google.com/vr/reference/cardboard-camera-vr-photo-format). Readers that do not know XMP show
-// the left eye.
+// https://developers.google.com/vr/reference/cardboard-camera-vr-photo-format). Readers that do not know XMP
+// show the left eye.
 
 #include <filesystem>
 

@@ -139,6 +139,7 @@ void Window::take_loaded() {
       head = session_->head;
       keys = session_->keys;
       choices = session_->choices;
+      choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
     }
     session_.reset();  // its memory first
     log_info("{}: {} Gaussians", next_.name, model.count());
@@ -264,7 +265,7 @@ void Window::rescale() {
   glfwGetFramebufferSize(window_, &framebuffer.x, &framebuffer.y);
   set_scale(scale,
             static_cast<float>(std::max(1, framebuffer.x)) / static_cast<float>(std::max(1, window.x)));
-  ImGui_ImplOpenGL3_DestroyFontsTexture();  // made anew from the fonts
+  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // made anew with the next frame, the fonts' texture, too
 }
 
 void Window::tell(const std::string& message, bool trouble) {

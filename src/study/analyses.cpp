@@ -145,8 +145,8 @@ Analysis analyse(gl::Context& context, const Model& model, const std::vector<Cal
     analysis.systems.push_back(std::move(system));
   render::Frame frame(context, model);
   for (AnalysedSystem& system : analysis.systems) {
-    for (int n = 0; n < render::settling_frames; ++n)
-      frame.draw(std::span(&tester.views()[0], 1), system.settings);
+    const int frames = render::measures(system.settings.transmittance) ? render::settling_frames : 1;
+    for (int n = 0; n < frames; ++n) frame.draw(std::span(&tester.views()[0], 1), system.settings);
     system.picture = for_page(composite(frame.read_pictures().front(), glm::vec3(0.0f)));
   }
   return analysis;

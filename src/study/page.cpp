@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/output_file.h"
+#include "base/text.h"
 #include "formats/image_file.h"
 #include "gl/context.h"
 #include "study/embedded.h"
@@ -48,19 +49,6 @@ static void fields(const auto& io, const Table& t) {
     }
   }
   io("columns", t.columns, "rows", t.rows);
-}
-
-static std::string base64(std::string_view bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::string_view three = bytes.substr(i, 3);
-    unsigned bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k > three.size() ? '=' : letters[bits >> (18 - 6 * k) & 63];
-  }
-  return text;
 }
 
 static void fields(const auto& io, const Figure& f) {
@@ -111,8 +99,8 @@ void Series::add(std::variant<double, std::string> x, double y, std::string poin
 Image for_page(const Image& image) {
   constexpr int widest = 640;
   const int by = (image.width + widest - 1) / widest;
-  Image small(image.width / by, image.height / by, image.channels);
-  for (int y = 0; y < small.height * by; ++y) {
+  Image small(image.width / by, std::max(1, image.height / by), image.channels);
+  for (int y = 0; y < std::min(small.height * by, image.height); ++y) {
     for (int x = 0; x < small.width * by; ++x) {
       for (int c = 0; c < image.channels; ++c)
         small.at(x / by, y / by, c) += image.at(x, y, c) / static_cast<float>(by * by);

@@ -145,6 +145,19 @@ TEST_F(FirstWords, TwoModelsOfOneFileNameDoToo) {
     draw("c/b/garden.ply", "c_b_garden");
   }
   EXPECT_EQ(test::read_text(folder / "out/b_garden/model.txt"), (folder / "b/garden.ply").string() + "\n");
+  // Of one folder they differ in the ending.
+  EXPECT_TRUE(good(run({"convert", "a/garden.ply", "-o", "a/garden.spz"})));
+  EXPECT_TRUE(good(run({"convert", "a/garden.ply", "-o", "a/garden.splat"})));
+  for (int round = 0; round < 2; ++round) {
+    draw("a/garden.spz", "garden_spz");
+    draw("a/garden.splat", "garden_splat");
+  }
+  // A built-in scene's folder is its own, too.
+  std::filesystem::create_directories(folder / "out/city");
+  test::write_text(folder / "out/city/model.txt", (folder / "city.ply").string() + "\n");
+  EXPECT_TRUE(good(run({"render", "demo:city", "--count", "10000", "--size", "36x24"})));
+  EXPECT_EQ(test::read_text(folder / "out/city/model.txt"), (folder / "city.ply").string() + "\n");
+  EXPECT_EQ(test::read_text(folder / "out/city_2/model.txt"), "demo:city\n");
 }
 
 TEST_F(FirstWords, AModelsNameIsNoEnding) {

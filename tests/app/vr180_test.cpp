@@ -51,6 +51,26 @@ TEST_F(Vr180, HoldsTheHeadLevel) {
   }
 }
 
+TEST_F(Vr180, HoldsPairsLevelAndTogether) {
+  nlohmann::json cameras;
+  for (const char* side : {"left", "right"}) {  // turned outwards, and rolled
+    nlohmann::json camera = test::camera_json(std::string("pair_") + side, side[0] == 'l' ? -0.1 : 0.1);
+    const double s = side[0] == 'l' ? -0.1 : 0.1, c = std::sqrt(1 - s * s);
+    camera["rotation"] = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}};
+    camera["position"][1] = side[0] == 'l' ? -0.05 : 0.05;
+    cameras.push_back(camera);
+  }
+  write_text(folder / "pair.json", cameras.dump());
+  ASSERT_TRUE(good(render({"--cameras", folder / "pair.json", "--up", "0,-1,0", "--vr180", "--size", "32x32",
+                           "-o", out, "--json", folder / "run.json"})));
+  const auto run = nlohmann::json::parse(test::read_text(folder / "run.json"));
+  const auto eyes = run.at("views").at(0).at("eyes");
+  EXPECT_EQ(eyes.at(0).at("axes"), eyes.at(1).at("axes"));
+  EXPECT_NEAR(eyes.at(0).at("position").at(1).get<double>(), 0.0, 1e-12);
+  EXPECT_NEAR(eyes.at(1).at("position").at(0).get<double>(), std::hypot(0.1, 0.05), 1e-9);
+  EXPECT_EQ(run.at("settings").at("projection"), "tangent");
+}
+
 TEST_F(Vr180, TellsPlayersWhatAVideoIs) {
   if (std::system("ffprobe -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
   const auto facts = [&](const std::string& file, const std::string& layout) {
@@ -73,6 +93,7 @@ TEST_F(Vr180, TellsPlayersWhatAVideoIs) {
 // The parts of a VR photo: what XMP says of it, and what it holds in 64 KiB pieces.
 struct Photo {
   std::string said, held;
+  std::size_t whole = 0, pieces = 0;
 
   explicit Photo(const std::string& file) {
     const std::string bytes = test::read_text(file);
@@ -87,6 +108,15 @@ struct Photo {
       if (content.rfind(plain, 0) == 0) said = content.substr(plain.size());
       if (content.rfind(more, 0) != 0) continue;
       EXPECT_NE(said.find(content.substr(more.size(), 32)), std::string::npos) << "names another whole";
+      const auto number = [&](std::size_t from) {
+        std::size_t value = 0;
+        for (std::size_t k = 0; k < 4; ++k)
+          value = 256 * value + static_cast<unsigned char>(content.at(from + k));
+        return value;
+      };
+      whole = number(more.size() + 32);
+      EXPECT_EQ(number(more.size() + 36), held.size()) << "a piece is not where it says";
+      ++pieces;
       held += content.substr(more.size() + 40);
     }
   }
@@ -94,12 +124,14 @@ struct Photo {
 
 TEST_F(Vr180, WritesVrPhotosThatHoldBothEyes) {
   const std::string file = folder / "both.vr.jpg", eyes = folder / "eyes";
-  ASSERT_TRUE(good(render({"--vr180", "--size", "256x256", "-o", file})));
-  ASSERT_TRUE(good(render({"--vr180", "--size", "256x256", "-o", eyes, "--layout", "separate"})));
+  ASSERT_TRUE(good(render({"--vr180", "--size", "1536x1536", "-o", file})));
+  ASSERT_TRUE(good(render({"--vr180", "--size", "1536x1536", "-o", eyes, "--layout", "separate"})));
   const Photo photo(file);
-  for (const char* fact : {"ProjectionType=\"equirectangular\"", "CroppedAreaImageWidthPixels=\"256\"",
-                           "FullPanoWidthPixels=\"512\"", "CroppedAreaLeftPixels=\"128\""})
+  for (const char* fact : {"ProjectionType=\"equirectangular\"", "CroppedAreaImageWidthPixels=\"1536\"",
+                           "FullPanoWidthPixels=\"3072\"", "CroppedAreaLeftPixels=\"768\""})
     EXPECT_NE(photo.said.find(fact), std::string::npos) << fact << " is not in " << photo.said;
+  EXPECT_EQ(photo.held.size(), photo.whole);
+  EXPECT_GE(photo.pieces, 2U) << "too small a picture to tell";
   const std::string mark = "GImage:Data=\"";
   const std::size_t begin = photo.held.find(mark) + mark.size(), end = photo.held.find('"', begin);
   write_text(folder / "right.base64", photo.held.substr(begin, end - begin));
@@ -124,6 +156,9 @@ TEST_F(Vr180, RefusesWhatHasNoMeaningForIt) {
   };
   EXPECT_TRUE(refused({"--quality", "40"}, "leave --quality out"));
   EXPECT_TRUE(refused({"--order", "depth"}, "leave --order out"));
+  EXPECT_TRUE(refused({"--only", "left"}, "leave --only out"));
+  EXPECT_TRUE(refused({"--size", "9000x9000"}, "at most 8192"));
+  EXPECT_TRUE(refused({"-o", folder / "a.vr.jpg", "--exr", "half"}, "--exr"));
   EXPECT_TRUE(refused({"--size", "32x30"}, "an even number of pixels twice"));
   EXPECT_TRUE(refused({"--layout", "anaglyph"}, "parallel and over-under"));
   EXPECT_TRUE(refused({"-o", folder / "a.webm"}, "only .mp4 and .mov"));
