@@ -9,6 +9,6 @@ namespace binosplat::app {
 /// Puts the boxes into a finished .mp4 or .mov with one video track whose `moov` comes last, as ffmpeg leaves
 /// it: equirectangular, 180 degrees across, of one eye (LAYOUT_SEPARATE) or both as `layout` has them. Throws
 /// Error where the file is no such one.
-void mark_half_sphere(const std::filesystem::path& file, int layout);
+void mark_half_sphere(const std::filesystem::path& path, int layout);
 
 }  // namespace binosplat::app
