@@ -16,6 +16,7 @@
 #include "app/report.h"
 #include "app/shots.h"
 #include "app/study_parts.h"
+#include "app/tour.h"
 #include "base/log.h"
 #include "base/progress.h"
 #include "render/stage.h"
@@ -37,6 +38,8 @@ Studied open(const StudyOptions& options) {
     if (options.photos.empty()) return;
     check_photos(options.photos, photographed_cameras(photos_of_a_turn, options.photos, {}, list));
   });
+  if (!options.camera.path.empty())
+    scene.list = go_along_path(options.camera, headset_fps, true, std::move(scene.list));
   std::vector<Shot> shots = make_shots(options.camera.views, options.camera.lens, rig, scene.list,
                                        scene.near_plane, scene.model.axes);
   if (options.camera.path.empty() && shots.size() > 1) fail("--view all: a study is of one view");
@@ -275,8 +278,10 @@ void add_study(CLI::App& program, Command& command) {
       ->type_name("N")
       ->check(range(1, 10000));
   sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules, motion);
-  sub->add_option("--path", o.camera.path,
-                  "Carry one rule along the cameras of this file instead;\nwith --motion: measure along it")
+  sub->add_option(
+         "--path", o.camera.path,
+         "Carry one rule along the cameras of this file instead, through keys\n90 frames a second; with "
+         "--motion: measure along it")
       ->type_name("FILE");
   sub->add_option("--target", o.target,
                   "dB that tolerances are chosen for (40);\nwith --motion: at which rules are compared")

@@ -12,6 +12,7 @@
 #include "app/option_checks.h"
 #include "app/parts.h"
 #include "app/study_parts.h"
+#include "app/tour.h"
 #include "base/choices.h"
 #include "base/error.h"
 #include "scene/tour.h"
@@ -26,7 +27,6 @@ using study::Variant;
 
 namespace {
 
-constexpr double frames_per_second = 90.0;
 constexpr const char* still_name = "still";
 constexpr std::size_t segments_default = 3;
 
@@ -88,6 +88,8 @@ Driven open(const StudyOptions& options) {
       .list = listed_cameras(options.scene, options.camera), .lens = options.camera.lens, .rig = options.rig};
   if (!driven.list.listed)
     fail("--motion goes through the cameras of a model: name their file with --cameras, or a --path");
+  if (!options.camera.path.empty())
+    driven.list = go_along_path(options.camera, headset_fps, true, std::move(driven.list));
   driven.metre = metre(options, driven.list.cameras);
   driven.model = std::make_shared<const Model>(load_scene(options.scene));
   driven.near_plane = near_plane_of(options.camera, driven.list, *driven.model);
@@ -106,7 +108,7 @@ std::vector<std::vector<shared::View>> frames_of(const Driven& driven, std::vect
 }
 
 std::vector<Camera> toured(const Driven& driven, const Motion& motion) {
-  return tour(driven.list.cameras, {motion, frames_per_second, driven.metre.units});
+  return tour(driven.list.cameras, {motion, headset_fps, driven.metre.units});
 }
 
 /// How long a stretch of a tour is, without its stop, in frames; and where they begin.
@@ -249,7 +251,7 @@ void study_motion(const StudyOptions& options) {
                            .eyes = views.size(),
                            .width = views.front().width,
                            .height = views.front().height,
-                           .frames_per_second = frames_per_second,
+                           .frames_per_second = headset_fps,
                            .units_per_metre = driven.metre.units,
                            .metre_source = driven.metre.source,
                            .settings = {.quality = options.quality.value_or(40.0f),

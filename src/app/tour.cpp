@@ -15,8 +15,6 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr double headset_fps = 90.0;
-
 // The name of a motion, or "1.5,45": metres and degrees a second.
 Motion parse_motion(const std::string& text) {
   std::vector<std::string> names;
@@ -93,21 +91,33 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
   return list;
 }
 
-CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool video,
+CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool played,
                          CameraList list) {
-  const bool keys = !camera.keys && (camera.seconds || are_keys(list.cameras));
-  if (!keys) {
-    if (fps && !video)
-      fail("--fps: {} has frames, each drawn as it is; --seconds S goes through them as keys", list.source);
+  if (camera.keys) {
+    if (fps && !played)
+      fail("--fps: --keys draws each camera of {} as it is: leave one of them out", list.source);
     return list;
   }
-  const KeyPath path(list.cameras, camera.seconds);
+  const std::vector<Camera> heads = heads_of(list.cameras);
+  if (!camera.seconds && !are_keys(heads)) {
+    if (fps && !played)
+      fail("--fps: {} has frames, each drawn as it is; --seconds S goes through them as keys", list.source);
+    const bool timed = std::any_of(heads.begin(), heads.end(), [](const Camera& c) { return c.time; });
+    if (timed && !times_rise(heads)) {
+      log_info(
+          "--path: {} frames of {} as they are (not all have times that rise: render --seconds S goes "
+          "through "
+          "them as keys)",
+          list.cameras.size(), list.source);
+    }
+    return list;
+  }
+  const KeyPath path(heads, camera.seconds);
   const double rate = fps.value_or(video_fps);
-  const std::size_t count = list.cameras.size();
   list.cameras = frames_of(path, rate);
-  log_info("--path: smoothly through the {} keys of {} in {:.3g} s{}: {} frames, {} a second", count,
+  log_info("--path: smoothly through the {} keys of {} in {:.3g} s{}: {} frames, {} a second", heads.size(),
            list.source, path.seconds(),
-           camera.seconds ? "" : ", by their times (--seconds S: in S seconds; --keys: they alone)",
+           camera.seconds ? "" : ", by their times (render --seconds S: in S seconds; --keys: they alone)",
            list.cameras.size(), rate);
   return list;
 }

@@ -1,11 +1,15 @@
 #pragma once
-// render --tour: along the way of a head that goes through a model's cameras; --path: along keys.
+// render --tour: along the way of a head that goes through a model's cameras; --path, of study, too: along
+// keys.
 
 #include "app/camera_options.h"
 #include "app/rig_options.h"
 #include "app/shots.h"
 
 namespace binosplat::app {
+
+/// Frames a second where nothing says otherwise: of tours, and of what is studied along a way.
+inline constexpr double headset_fps = 90.0;
 
 /// Adds --tour, --keys and --seconds.
 void add_tour_options(CLI::App& sub, CameraOptions& options);
@@ -20,8 +24,9 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
                       double fps, CameraList list);
 
 /// The frames of a path: of keys (scene/key_path.h), `fps` a second, those on a smooth way through them, and
-/// says so; others are frames as they are. Throws Error for options that need keys where there are none.
-CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool video,
+/// says so; others are frames as they are. A pair of eyes (heads_of) is one key. Throws Error for options
+/// that need keys where there are none, `fps` among them unless all frames are `played` at it.
+CameraList go_along_path(const CameraOptions& camera, const std::optional<double>& fps, bool played,
                          CameraList list);
 
 }  // namespace binosplat::app

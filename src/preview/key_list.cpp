@@ -77,7 +77,11 @@ void KeyList::remove(std::size_t k) {
 }
 
 void KeyList::set(std::vector<Camera> keys) {
-  for (std::size_t k = 0; k < keys.size(); ++k) keys[k].name = name_of_key(k);
+  const double began = keys.empty() ? 0.0 : *keys[0].time;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    keys[k].name = name_of_key(k);
+    *keys[k].time -= began;
+  }
   const bool changed_by_others = fs::exists(file_) && contents(file_) != written_;
   const fs::path to = changed_by_others ? free_name(file_.parent_path(), "cameras", ".json") : file_;
   const std::string text = keys.empty() ? "" : text_of(keys);

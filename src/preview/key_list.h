@@ -20,7 +20,8 @@ class KeyList {
   const std::filesystem::path& file() const { return file_; }
 
   // Each writes the file; without keys there is none. One that somebody else has changed since is left alone,
-  // too. Throw Error where it cannot be written; then the keys are as they were.
+  // too. Times count from the first key. Throw Error where it cannot be written; then the keys are as they
+  // were.
 
   /// Behind the last one, key_seconds later.
   void add(Camera camera);

@@ -11,17 +11,11 @@ namespace binosplat {
 
 namespace {
 
-/// Seconds between keys, in the median; no film has fewer frames a second.
-constexpr double keys_apart = 0.1;
+/// Seconds between keys, in the median; no film has fewer frames a second. A little above 0.1, so that no
+/// rounding of times makes keys of frames that are 0.1 s apart.
+constexpr double keys_apart = 0.1 * (1.0 + 1e-3);
 /// More frames would hardly fit in memory.
 constexpr double frames_most = 1e6;
-
-bool times_rise(std::span<const Camera> cameras) {
-  for (std::size_t k = 0; k < cameras.size(); ++k) {
-    if (!cameras[k].time || (k > 0 && !(*cameras[k].time > *cameras[k - 1].time))) return false;
-  }
-  return true;
-}
 
 // Focal lengths by their logarithms, so that a zoom is even, and the middle; of a picture of 1 by 1.
 glm::dvec4 lens_of(const Camera& camera) {
@@ -57,6 +51,13 @@ V cubic_between(const V& a, const V& slope_a, const V& b, const V& slope_b, doub
 
 }  // namespace
 
+bool times_rise(std::span<const Camera> cameras) {
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    if (!cameras[k].time || (k > 0 && !(*cameras[k].time > *cameras[k - 1].time))) return false;
+  }
+  return true;
+}
+
 bool are_keys(std::span<const Camera> cameras) {
   if (cameras.size() < 2 || !times_rise(cameras)) return false;
   std::vector<double> apart;
@@ -73,8 +74,10 @@ KeyPath::KeyPath(std::span<const Camera> keys, const std::optional<double>& seco
     fail("a path in {} seconds: expected more than 0", *seconds);
   first_ = keys[0];
   for (const Camera& key : keys) {
-    Knot knot{
-        .place = key.position, .turned = glm::normalize(glm::quat_cast(key.rotation)), .lens = lens_of(key)};
+    // At one size, or pixels would not stay square between keys of other aspects.
+    Knot knot{.place = key.position,
+              .turned = glm::normalize(glm::quat_cast(key.rotation)),
+              .lens = lens_of(resized(key, first_.width, first_.height))};
     if (!seconds) knot.at = *key.time - *keys[0].time;
     // q and -q are one orientation: the nearer one, or the head would go the long way round.
     if (!knots_.empty() && glm::dot(knot.turned, knots_.back().turned) < 0.0) knot.turned = -knot.turned;

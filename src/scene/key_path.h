@@ -10,6 +10,9 @@
 
 namespace binosplat {
 
+/// Whether all cameras have times, each later than the one before.
+bool times_rise(std::span<const Camera> cameras);
+
 /// Whether cameras are keys to go through, and not themselves the frames of a path: their times rise, and
 /// are more than 0.1 s apart in the median, as no film's frames are.
 bool are_keys(std::span<const Camera> cameras);
@@ -26,8 +29,8 @@ class KeyPath {
   /// From the first key to the last.
   double seconds() const { return knots_.back().at; }
 
-  /// Where it is so many seconds after the first key, with that `time`. Its size is the first key's, its lens
-  /// what the keys' own sizes say.
+  /// Where it is so many seconds after the first key, with that `time`. Its size is the first key's, to which
+  /// the others' lenses are resized().
   Camera at(double seconds) const;
 
  private:

@@ -56,30 +56,6 @@ Camera head_of(const Camera& left, const Camera& right) {
   return head;
 }
 
-/// The cameras, where both eyes of a pair, NAME_left and NAME_right, are the one head between them.
-std::vector<Camera> heads_of(std::span<const Camera> cameras) {
-  constexpr std::string_view left_end = "_left", right_end = "_right";
-  std::map<std::string, const Camera*, std::less<>> by_name;
-  for (const Camera& camera : cameras) by_name.emplace(camera.name, &camera);
-  const auto other_eye = [&](const Camera& camera, std::string_view end, std::string_view other) {
-    if (!camera.name.ends_with(end)) return by_name.end();
-    return by_name.find(camera.name.substr(0, camera.name.size() - end.size()).append(other));
-  };
-  std::vector<Camera> heads;
-  for (const Camera& camera : cameras) {
-    const auto right = other_eye(camera, left_end, right_end);
-    const auto left = other_eye(camera, right_end, left_end);
-    if (right != by_name.end()) {
-      heads.push_back(head_of(camera, *right->second));
-    } else if (left == by_name.end()) {
-      heads.push_back(camera);
-    } else if (heads.empty()) {
-      heads.push_back(head_of(*left->second, camera));  // the first camera: the tour begins there
-    }
-  }
-  return heads;
-}
-
 /// The heads that are worth a stop: the first, then the others in an order that the list's does not change.
 std::vector<Stop> stops_of(const std::vector<Camera>& heads, double units_per_metre) {
   std::vector<Stop> all;
@@ -325,6 +301,30 @@ void check_length(const std::vector<Stop>& stops, const TourSettings& settings) 
 }
 
 }  // namespace
+
+std::vector<Camera> heads_of(std::span<const Camera> cameras) {
+  constexpr std::string_view left_end = "_left", right_end = "_right";
+  std::map<std::string, const Camera*, std::less<>> by_name;
+  for (const Camera& camera : cameras) by_name.emplace(camera.name, &camera);
+  const auto other_eye = [&](const Camera& camera, std::string_view end,
+                             std::string_view other) -> const Camera* {
+    if (!camera.name.ends_with(end)) return nullptr;
+    const auto found = by_name.find(camera.name.substr(0, camera.name.size() - end.size()).append(other));
+    return found == by_name.end() ? nullptr : found->second;
+  };
+  std::vector<Camera> heads;
+  for (const Camera& camera : cameras) {
+    const Camera* const right = other_eye(camera, left_end, right_end);
+    const Camera* const left = other_eye(camera, right_end, left_end);
+    const Camera* const other = right != nullptr ? right : left;
+    if (other == nullptr) {
+      heads.push_back(camera);
+    } else if (other > &camera) {
+      heads.push_back(right != nullptr ? head_of(camera, *right) : head_of(*left, camera));
+    }
+  }
+  return heads;
+}
 
 const std::vector<Motion>& head_motions() {
   static const std::vector<Motion> motions = {{"calm", 0.3, 12.0}, {"walk", 1.5, 45.0}, {"fast", 6.0, 200.0}};

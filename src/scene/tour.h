@@ -10,6 +10,10 @@
 
 namespace binosplat {
 
+/// The cameras in their order, where both eyes of a pair, NAME_left and NAME_right, are the one head between
+/// them, in the place of the first of the two.
+std::vector<Camera> heads_of(std::span<const Camera> cameras);
+
 /// How fast a head goes and how fast it turns at most: at each moment as fast as both allow. Only where its
 /// way turns back does it slow down, to go from rest to full speed, or to turn so, in 0.25 s.
 struct Motion {
@@ -23,8 +27,7 @@ struct Motion {
 const std::vector<Motion>& head_motions();
 
 /// World units that count as a metre where nothing tells of a scale: from each camera to its nearest
-/// neighbour elsewhere, in the median. 1 for fewer than two places. NAME_left and NAME_right are one camera
-/// between them, here and for tours.
+/// neighbour elsewhere, in the median. 1 for fewer than two places. Of heads_of() the cameras, as tours are.
 double metre_of(std::span<const Camera> cameras);
 
 struct TourSettings {

@@ -12,6 +12,8 @@ using test::good;
 using test::Outcome;
 using test::write_text;
 
+using Arguments = std::vector<std::string>;
+
 struct KeysPath : test::SceneTest {
   const std::string path = folder / "path.json";
 
@@ -78,11 +80,50 @@ TEST_F(KeysPath, PicturesOfKeysWhereTheyAreAskedFor) {
 }
 
 TEST_F(KeysPath, FramesAreFrames) {
-  for (const double step : {0.0, 0.04}) {
+  const std::string said = "4 frames of " + path + " as they are (not all have times that rise";
+  for (const double step : {0.0, 0.04, -0.5}) {
     save_cameras(step);
-    EXPECT_TRUE(good(along({})));
+    const Outcome outcome = along({});
+    EXPECT_TRUE(good(outcome));
     EXPECT_EQ(places().size(), 4u) << step;
+    EXPECT_EQ(outcome.err.find(said) != std::string::npos, step <= 0.0) << outcome.err;
   }
+}
+
+TEST_F(KeysPath, APairOfEyesIsOneKey) {
+  nlohmann::json cameras;
+  for (int k = 0; k < 3; ++k) {
+    for (const int side : {1, -1}) {  // the right eye first
+      const std::string name = fmt::format("head{}_{}", k, side < 0 ? "left" : "right");
+      cameras.push_back(test::camera_json(name, 0.3 * k + 0.03 * side));
+      cameras.back()["time"] = 0.5 * k;
+    }
+  }
+  write_text(path, cameras.dump());
+  for (const Arguments& more : {Arguments{"--fps", "4"}, {"--fps", "4", "--seconds", "1"}}) {
+    EXPECT_TRUE(ended(along(more), 0, "through the 3 keys of " + path + " in 1 s"));
+    const std::vector<double> x = places();
+    ASSERT_EQ(x.size(), 5u);
+    for (std::size_t n = 0; n < x.size(); ++n)
+      EXPECT_NEAR(x[n], 0.15 * static_cast<double>(n), 1e-6) << "not to one eye and the other";
+  }
+}
+
+TEST_F(KeysPath, StudiesGoThroughKeys) {
+  save_cameras(0.05);
+  const auto study = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"study", model, "--path", path, "--mono", "--size", "24x16", "--tolerance",
+                               "0.05", "--json", folder / "s.json"});
+    return test::run_program(more);
+  };
+  const auto frames = [&] {
+    return nlohmann::json::parse(test::read_text(folder / "s.json")).at("frames").size();
+  };
+  EXPECT_TRUE(good(study({})));
+  EXPECT_EQ(frames(), 4u);
+  save_cameras(0.2);
+  EXPECT_TRUE(ended(study({}), 0, "through the 4 keys of " + path + " in 0.6 s"));
+  EXPECT_EQ(frames(), 55u);
 }
 
 TEST_F(KeysPath, AVideoHasTheFrames) {
@@ -99,6 +140,7 @@ TEST_F(KeysPath, AVideoHasTheFrames) {
 TEST_F(KeysPath, WhatCannotHaveAnEffectIsRefused) {
   save_cameras(0.04);
   EXPECT_TRUE(ended(along({"--fps", "30"}), 2, "has frames, each drawn as it is"));
+  EXPECT_TRUE(ended(along({"--keys", "--fps", "10"}), 2, "leave one of them out"));
   EXPECT_TRUE(ended(along({"--keys", "--seconds", "2"}), 2, "leave --seconds out"));
   EXPECT_TRUE(ended(render({"--keys", "-o", out}), 2, "name that"));
   EXPECT_FALSE(std::filesystem::exists(out));

@@ -77,6 +77,18 @@ TEST_F(MotionCommand, GoesAlongAFileWithEveryRuleThatOneEyeCanGoBy) {
   }
 }
 
+TEST_F(MotionCommand, GoesThroughKeys) {
+  nlohmann::json path;
+  for (int n = 0; n < 3; ++n) {
+    path.push_back(test::camera_json(fmt::format("key_{}", n), 0.1 * n));
+    path.back()["time"] = 0.2 * n;
+  }
+  test::write_text(folder / "way.json", path.dump());
+  const auto json = motion({"--path", folder / "way.json", "--mono", "--size", "24x16", "--no-equal",
+                            "--stop", "0", "--rule", "squared,one"});
+  EXPECT_EQ(json.at("paths")[0].at("lengths")[0], nlohmann::json({{"lead", 2}, {"moving", 35}, {"stop", 0}}));
+}
+
 TEST_F(MotionCommand, WhatMakesNoSenseIsNamed) {
   nlohmann::json alone = {test::camera_json("alone", 0.0)};
   test::write_text(folder / "alone.json", alone.dump());

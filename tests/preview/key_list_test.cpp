@@ -43,6 +43,8 @@ TEST_F(KeyListTest, AreChangedAndWritten) {
   EXPECT_EQ(load_cameras(file)[1].time, key_seconds);
   list.remove(0);
   EXPECT_EQ(places(load_cameras(file)), (Places{5.0, 3.0}));
+  EXPECT_EQ(load_cameras(file)[0].time, 0.0) << "times count from the first key that is left";
+  EXPECT_EQ(load_cameras(file)[1].time, key_seconds);
   EXPECT_EQ(load_cameras(file)[0].name, "key_000");
   list.remove(1);
   list.remove(0);

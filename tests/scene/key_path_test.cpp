@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -139,6 +140,25 @@ TEST(KeyPath, LensesAreOfTheKeysOwnSizes) {
   EXPECT_NEAR(camera.cx, 32.0, 1e-9);
 }
 
+TEST(KeyPath, PixelsStaySquareBetweenKeysOfOtherAspects) {
+  Cameras set = {key({0, 0, 0}, 0, 150, 0), key({1, 0, 0}, 0, 150, 1), key({2, 0, 0}, 0, 75, 2)};
+  const std::array<glm::ivec2, 3> sizes = {{{320, 180}, {180, 180}, {90, 90}}};
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    set[k].width = sizes[k].x;
+    set[k].height = sizes[k].y;
+    set[k].cx = sizes[k].x / 2.0;
+    set[k].cy = sizes[k].y / 2.0;
+  }
+  const KeyPath path(set);
+  for (const double t : {0.0, 0.5, 1.0, 1.7, 2.0}) {
+    const Camera camera = path.at(t);
+    EXPECT_EQ(camera.width, 320);
+    EXPECT_NEAR(camera.fx, 150.0, 1e-9) << t;
+    EXPECT_NEAR(camera.fy, 150.0, 1e-9) << t;
+    EXPECT_NEAR(camera.cx, 160.0, 1e-9) << t;
+  }
+}
+
 TEST(KeyPath, FramesReachTheLastKey) {
   const Cameras frames = frames_of(KeyPath(keys()), 30.0);
   ASSERT_EQ(frames.size(), 226u);
@@ -149,14 +169,19 @@ TEST(KeyPath, FramesReachTheLastKey) {
 }
 
 TEST(KeyPath, KeysAreNoFrames) {
-  const auto every = [](double apart, int count = 5) {
+  const auto every = [](double apart, int count = 5, double first = 0.0) {
     Cameras set;
-    for (int k = 0; k < count; ++k) set.push_back(key({k, 0, 0}, 0, 50, apart * k));
+    for (int k = 0; k < count; ++k) set.push_back(key({k, 0, 0}, 0, 50, first + apart * k));
     return set;
   };
   EXPECT_TRUE(are_keys(every(1.0)));
   EXPECT_TRUE(are_keys(every(0.2)));
   EXPECT_FALSE(are_keys(every(1.0 / 12.0))) << "a film's";
+  for (const int count : {5, 31, 50, 600}) {
+    for (const double first : {0.0, 1.0, 1000.0})
+      EXPECT_FALSE(are_keys(every(0.1, count, first))) << count << " at 10 a second, from " << first;
+  }
+  EXPECT_TRUE(are_keys(every(0.101, 50)));
   EXPECT_FALSE(are_keys(every(0.0))) << "as of files without times";
   EXPECT_FALSE(are_keys(every(1.0, 1)));
   Cameras none = every(1.0);

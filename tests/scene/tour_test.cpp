@@ -386,6 +386,10 @@ TEST(Tour, TheEyesOfAPairAreOneHead) {
     EXPECT_LT(angle(of_pairs[9].rotation, of_heads[9].rotation), 1e-6);
     EXPECT_EQ(of_pairs[9].cx, of_heads[9].cx);
     EXPECT_NEAR(metre_of(pairs), metre_of(heads), 1e-9);
+    const Cameras merged = heads_of(pairs);
+    ASSERT_EQ(merged.size(), heads.size());
+    for (std::size_t k = 0; k < heads.size(); ++k)
+      EXPECT_LT(glm::distance(merged[k].position, heads[k].position), 1e-9) << k;
     for (std::size_t k = 0; k < pairs.size(); k += 2) std::swap(pairs[k], pairs[k + 1]);
   }
   for (Camera& camera : pairs) camera.name += "_eye";  // nothing says that they are pairs
