@@ -30,7 +30,7 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
   check_output(folder / "study.json");
   const std::vector<std::string>& named = options.camera.views;
   const ViewChoice to_test{test, test_views, test.empty() ? named : std::vector<std::string>()};
-  const OpenScene scene = open_scene(options.scene, options.camera, [&](const CameraList& list) {
+  const OpenScene scene = open_scene(options.scene, options.camera, no_rig, [&](const CameraList& list) {
     check_photos(options.photos, photographed_cameras(to_test, options.photos, options.camera.lens, list));
   });
   const auto views_of = [&](const ViewChoice& choice) {

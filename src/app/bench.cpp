@@ -42,7 +42,7 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
   const BenchScene& scene = plan.scenes[which.scene];
   const CameraList list =
       scene.list.listed ? scene.list : made_up_cameras(scene.options, options.camera, {}, model);
-  const double near_plane = near_plane_of(options.camera, list, model);
+  const double near_plane = near_plane_of(options.camera, list);
   const bool photos = !options.photos.empty() && which.eyes == 1 && which.size == "own";
   const std::vector<Shot> shots = choose_shots(options, static_cast<std::size_t>(plan.axes.views), photos,
                                                make_shots(views_or_all(options.camera.views), lens_of(which),

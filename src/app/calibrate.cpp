@@ -47,7 +47,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
   check_target("calibrate", "a target", o.target, o);
   check_output(o.output);
   const ViewChoice choice{o.camera.views, static_cast<std::size_t>(o.views)};
-  const OpenScene scene = open_scene(o.scene, o.camera, [&](const CameraList& list) {
+  const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
     check_photos(o.photos, photographed_cameras(choice, o.photos, o.camera.lens, list));
   });
   const std::vector<study::CalibrationView> views =

@@ -79,7 +79,7 @@ Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
     log_info("no cameras beside {}: taking {} around the model", o.scene.name, *o.report);
     list = made_up_cameras(o.scene, {.orbit = o.report}, {}, model);
   }
-  Views views{{}, near_plane_of(o.camera, list, model), nullptr};
+  Views views{{}, near_plane_of(o.camera, list), nullptr};
   const std::vector<Camera> all = chosen_cameras(o.camera.views, o.camera.lens, list);
   const std::size_t wanted = o.camera.views.empty() ? static_cast<std::size_t>(*o.report) : all.size();
   for (const std::size_t i : study::spread_evenly(all.size(), wanted)) views.cameras.push_back(all[i]);

@@ -12,8 +12,7 @@ std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& li
   if (!list.listed && !camera.eye) return {};
   const double near_plane = camera.near_plane.value_or(near_default);
   return make_shots(camera.views, camera.lens, options.rig,
-                    list.listed ? list : made_up_cameras(options.scene, camera, list.known, Model()),
-                    near_plane, axes);
+                    list.listed ? list : eye_camera(camera, list.known), near_plane, axes);
 }
 
 /// Bytes that a frame starts with, the model's included.

@@ -52,7 +52,7 @@ std::optional<Seen> see(const InfoOptions& o, const Model& model) {
   const CameraList list = listed_cameras(o.scene, o.camera);
   const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
   const auto context = open_context({});
-  study::Weights weights = study::weigh(*context, model, cameras, near_plane_of(o.camera, list, model));
+  study::Weights weights = study::weigh(*context, model, cameras, near_plane_of(o.camera, list));
   std::vector<double>& weight = weights.weight;
   Seen seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());
@@ -84,8 +84,9 @@ std::string axes_in_words(const Model& model) {
 
 /// What a headset's frame of a model starts with, seen so that the model fills the eyes.
 render::MemoryNeeds headset_needs(const Model& model) {
-  const Camera head = stereo::apply_preset(into_axes(frame_model(model, 1280, 720), model.axes), "headset");
-  const stereo::EyePair eyes = stereo::make_rig(head, {.near_plane = near_for(model)});
+  const CoredModel cored(model);
+  const Camera head = stereo::apply_preset(into_axes(frame_model(cored, 1280, 720), model.axes), "headset");
+  const stereo::EyePair eyes = stereo::make_rig(head, {.near_plane = near_for(cored)});
   return render::memory_needs(render::make_shape(eyes.views, {}, model));
 }
 

@@ -115,7 +115,7 @@ ExitCode refit(const RefitOptions& o) {
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(format));
   const study::ViewSplit views =
-      split_views("refit", o, o.split, list, near_plane_of(o.camera, list, model),
+      split_views("refit", o, o.split, list, near_plane_of(o.camera, list),
                   [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
   const study::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(

@@ -225,7 +225,7 @@ CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
     log_info("drawing from the pose saved there (--view or --cameras for others)");
     return *pose;
   }
-  CameraList list = listed_cameras(o.scene, o.camera, saved);
+  CameraList list = listed_cameras(o.scene, o.camera, o.rig, saved);
   if (o.camera.tour) return go_on_tour(o.scene, o.camera, o.rig, *plan.fps, std::move(list));
   if (!o.camera.path.empty()) return go_along_path(o.camera, plan.fps, !plan.video.empty(), std::move(list));
   return list;
@@ -263,10 +263,9 @@ ExitCode render(const RenderOptions& o) {
   }
   Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget);
   log_model(o.scene.name, o.drawing.decode, model);
-  if (o.rig.units_per_metre) work.list.known.units_per_metre = o.rig.units_per_metre;
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
-  const double near_plane = near_plane_of(o.camera, work.list, model);
+  const double near_plane = near_plane_of(o.camera, work.list);
   work.shots = make_shots(o.camera.views, o.camera.lens, o.rig, work.list, near_plane, model.axes);
   if (work.plan.vr180) {
     for (Shot& shot : work.shots) level(shot, up_of(o.camera, work.list.known));

@@ -148,35 +148,41 @@ void learn_beside(const std::string& scene, const CameraOptions& camera, Known& 
   }
 }
 
-// What the model tells where no cameras do. Returns what cameras go by that are made up, for the log.
-std::string learn_from(const Model& model, const SceneOptions& scene, const CameraOptions& camera,
+// What the model tells where no cameras do. Returns what cameras go by that are made up, for the log; nothing
+// where --eye and --up say all.
+std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const CameraOptions& camera,
                        Known& known) {
-  if (known.around) return "around what the cameras beside it look at (--eye and --at for other places)";
+  if (known.around && !camera.eye)
+    return "around what the cameras beside it look at (--eye and --at for other places)";
   const std::optional<glm::dvec3> up = camera.up ? camera.up : known.up;
-  const auto ground = is_built_in(scene.name) ? std::nullopt : find_ground(model, up);
-  std::string place = "from outside";
-  if (ground) {
-    const Capture capture = capture_of(model, *ground, eye_height * known.units_per_metre.value_or(1.0));
-    known.up = capture.up;
-    known.around = capture.around;
+  std::string place = camera.eye ? "" : "from outside";
+  const char* tells = known.up ? "by what lies beside it" : "since nothing in it tells";
+  if (!is_built_in(scene.name) && !(camera.eye && up)) {
+    if (const auto ground = find_ground(cored, up)) {
+      known.up = ground->up;
+      if (!up) tells = "by the surfaces in it";
+      if (!camera.eye)
+        known.around = capture_of(cored, *ground, eye_height * known.units_per_metre.value_or(1.0)).around;
+      if (known.around) {
+        const double eyes = glm::dot(known.around->middle, ground->up) - *ground->level +
+                            known.around->distance * std::sin(known.around->elevation);
+        place = fmt::format("from {:.2g} units above the ground (--eye and --at for another place)", eyes);
+      }
+    }
   }
-  if (known.around) {
-    const double eyes = glm::dot(known.around->middle, ground->up) - *ground->level +
-                        known.around->distance * std::sin(known.around->elevation);
-    place = fmt::format("from {:.2g} units above the ground (--eye and --at for another place)", eyes);
-  }
-  if (up || is_built_in(scene.name)) return place;
+  if (camera.up || is_built_in(scene.name)) return place;
   const glm::dvec3 found = up_of(camera, known);
-  return fmt::format("{}; up is {:.2f},{:.2f},{:.2f}, {} (--up for another)", place, found.x, found.y,
-                     found.z, ground ? "by the surfaces in it" : "since nothing in it tells");
+  return fmt::format("{}{}up is {:.2f},{:.2f},{:.2f}, {} (--up for another)", place,
+                     place.empty() ? "" : "; ", found.x, found.y, found.z, tells);
 }
 
 }  // namespace
 
-CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
+CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                           const std::optional<SavedPose>& saved) {
   const std::vector<Camera> built_in = built_in_cameras(scene);
   Known known = known_of(saved);
+  if (rig.units_per_metre) known.units_per_metre = rig.units_per_metre;
   if (camera.made_up()) {
     if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, camera, known);
     return {.known = known};
@@ -230,23 +236,32 @@ std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOp
                     .known = known_of(saved)};
 }
 
+CameraList eye_camera(const CameraOptions& camera, const Known& known) {
+  return {.source = "--eye",
+          .cameras = {look_at(*camera.eye, *camera.at, up_of(camera, known),
+                              camera.fov.value_or(default_fov_degrees), made_up_width, made_up_height)},
+          .known = known};
+}
+
 CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camera, Known known,
                            const Model& model) {
   const double fov = camera.fov.value_or(default_fov_degrees);
-  const std::string how = learn_from(model, scene, camera, known);
+  const CoredModel cored(model);
+  const std::string how = learn_from(cored, scene, camera, known);
   const glm::dvec3 up = up_of(camera, known);
   CameraList list{.source = scene.name, .known = known};
   if (camera.eye) {
-    list.source = "--eye";
-    list.cameras = {look_at(*camera.eye, *camera.at, up, fov, made_up_width, made_up_height)};
+    if (!how.empty()) log_info("looking at {} from --eye: {}", scene.name, how);
+    list = eye_camera(camera, known);
   } else if (camera.orbit) {
     list.source = "--orbit";
     log_info("going around {}: {}", scene.name, how);
-    list.cameras = orbit(model, *camera.orbit, made_up_width, made_up_height, fov, up, known.around);
+    list.cameras = orbit(cored, *camera.orbit, made_up_width, made_up_height, fov, up, known.around);
   } else {
     log_info("no cameras beside {}: {}", scene.name, how);
-    list.cameras = {frame_model(model, made_up_width, made_up_height, fov, up, known.around)};
+    list.cameras = {frame_model(cored, made_up_width, made_up_height, fov, up, known.around)};
   }
+  list.near_plane = near_for(cored);
   return list;
 }
 
@@ -254,23 +269,22 @@ glm::dvec3 up_of(const CameraOptions& camera, const Known& known) {
   return camera.up.value_or(known.up.value_or(default_up));
 }
 
-double near_plane_of(const CameraOptions& camera, const CameraList& list, const Model& model) {
-  if (camera.near_plane) return *camera.near_plane;
-  return list.near_plane.value_or(list.listed ? near_default : near_for(model));
+double near_plane_of(const CameraOptions& camera, const CameraList& list) {
+  return camera.near_plane.value_or(list.near_plane.value_or(near_default));
 }
 
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera,
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                      const std::function<void(const CameraList&)>& check) {
-  OpenScene opened{.list = listed_cameras(scene, camera)};
+  OpenScene opened{.list = listed_cameras(scene, camera, rig)};
   if (check && opened.list.listed) check(opened.list);
   opened.model = load_scene(scene);
   if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.known, opened.model);
-  opened.near_plane = near_plane_of(camera, opened.list, opened.model);
+  opened.near_plane = near_plane_of(camera, opened.list);
   return opened;
 }
 
-bool take_metre_of_cameras(const SceneOptions& scene, const RigOptions& rig, CameraList& list) {
-  if (rig.units_per_metre || list.known.units_per_metre || is_built_in(scene.name)) return false;
+bool take_metre_of_cameras(const SceneOptions& scene, CameraList& list) {
+  if (list.known.units_per_metre || is_built_in(scene.name)) return false;
   list.known.units_per_metre = metre_of(list.cameras);
   return true;
 }

@@ -54,8 +54,9 @@ struct CameraList {
 };
 
 /// The cameras that --cameras, a file beside the model, or the built-in scene gives; empty if none does or
-/// the options make up their own. Quick: comes before the model is read. `saved` as find_saved() has it.
-CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera,
+/// the options make up their own. Quick: comes before the model is read. `saved` as find_saved() has it. What
+/// is known of metres is the rig's, where it says so: the list's cameras, and those made up, go by that.
+CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig = {},
                           const std::optional<SavedPose>& saved = {});
 
 /// What `binosplat view` saved beside the model, if it did; says so.
@@ -64,6 +65,9 @@ std::optional<SavedPose> find_saved(const SceneOptions& scene);
 /// The saved pose as a camera, where no option chooses cameras.
 std::optional<CameraList> saved_camera(const SceneOptions& scene, const CameraOptions& camera,
                                        const std::optional<SavedPose>& saved);
+
+/// The camera of --eye and --at.
+CameraList eye_camera(const CameraOptions& camera, const Known& known);
 
 /// Cameras made up from --eye, --orbit or the model: level, and on the orbit around, as those beside the
 /// model, or by what the model itself tells (scene/ground.h), which the list then knows; says which.
@@ -74,7 +78,7 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
 glm::dvec3 up_of(const CameraOptions& camera, const Known& known);
 
 /// --near, or what suits the cameras of a file, or those made up for the model; world units.
-double near_plane_of(const CameraOptions& camera, const CameraList& list, const Model& model);
+double near_plane_of(const CameraOptions& camera, const CameraList& list);
 
 /// A model and the cameras that it is seen from.
 struct OpenScene {
@@ -85,12 +89,12 @@ struct OpenScene {
 
 /// Those listed for the scene, or made up for its model. What is listed goes to `check` before the model is
 /// read.
-OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera,
+OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                      const std::function<void(const CameraList&)>& check = {});
 
 /// Where nothing else tells how many units make a metre, the distances of the cameras do (metre_of); whether
 /// they did.
-bool take_metre_of_cameras(const SceneOptions& scene, const RigOptions& rig, CameraList& list);
+bool take_metre_of_cameras(const SceneOptions& scene, CameraList& list);
 
 /// What there is of a rig. `near_plane` in world units.
 stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane = near_default);

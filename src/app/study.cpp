@@ -34,7 +34,7 @@ using study::Variant;
 Studied open(const StudyOptions& options) {
   // A case takes a head along paths of its own, and makes the eyes itself; a head that turns has one.
   const RigOptions& rig = options.stability || options.turn ? no_rig : options.rig;
-  OpenScene scene = open_scene(options.scene, options.camera, [&](const CameraList& list) {
+  OpenScene scene = open_scene(options.scene, options.camera, options.rig, [&](const CameraList& list) {
     if (options.photos.empty()) return;
     check_photos(options.photos, photographed_cameras(photos_of_a_turn, options.photos, {}, list));
   });

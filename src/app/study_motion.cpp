@@ -84,15 +84,16 @@ Metre metre(const StudyOptions& options, const std::vector<Camera>& cameras) {
 }
 
 Driven open(const StudyOptions& options) {
-  Driven driven{
-      .list = listed_cameras(options.scene, options.camera), .lens = options.camera.lens, .rig = options.rig};
+  Driven driven{.list = listed_cameras(options.scene, options.camera, options.rig),
+                .lens = options.camera.lens,
+                .rig = options.rig};
   if (!driven.list.listed)
     fail("--motion goes through the cameras of a model: name their file with --cameras, or a --path");
   if (!options.camera.path.empty())
     driven.list = go_along_path(options.camera, headset_fps, true, std::move(driven.list));
   driven.metre = metre(options, driven.list.cameras);
   driven.model = std::make_shared<const Model>(load_scene(options.scene));
-  driven.near_plane = near_plane_of(options.camera, driven.list, *driven.model);
+  driven.near_plane = near_plane_of(options.camera, driven.list);
   return driven;
 }
 

@@ -74,7 +74,7 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
         "with --orbit",
         scene.name);
   }
-  if (take_metre_of_cameras(scene, rig, list)) {
+  if (take_metre_of_cameras(scene, list)) {
     log_info(
         "--tour: {:.4g} world units count as a metre, for the eyes' distance, too: from each camera to the "
         "next, in the median (--units-per-metre for another)",

@@ -133,7 +133,7 @@ ExitCode trim(const TrimOptions& o) {
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model.format, format);
   bring_into_axes(model, axes_of(format));
-  const study::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list, model),
+  const study::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list),
                                              [](std::size_t, std::size_t cameras) { return cameras / 2; });
   study::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
   if (o.refit) settings.refit = photo_finder(o.photos);

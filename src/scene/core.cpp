@@ -1,9 +1,9 @@
 #include "scene/core.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "base/error.h"
-#include "base/statistics.h"
 
 namespace binosplat {
 
@@ -11,14 +11,16 @@ Core core_of(const Model& model) {
   if (model.count() == 0) fail("{}: the model has no Gaussians to look at", model.name);
   Core core;
   std::vector<double> values(model.count());
-  for (int i = 0; i < 3; ++i) {
-    std::transform(model.position.begin(), model.position.end(), values.begin(),
-                   [&](const glm::vec3& p) { return static_cast<double>(p[i]); });
-    core.middle[i] = quantile(values, 0.5);
-  }
-  std::transform(model.position.begin(), model.position.end(), values.begin(),
-                 [&](const glm::vec3& p) { return glm::length(glm::dvec3(p) - core.middle); });
-  core.radius = quantile(values, 0.5);
+  // Of two in the middle the upper one: the ball around one of two Gaussians reaches the other.
+  const auto median = [&](const auto& value) {
+    std::transform(model.position.begin(), model.position.end(), values.begin(), value);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  for (int i = 0; i < 3; ++i)
+    core.middle[i] = median([i](const glm::vec3& p) { return static_cast<double>(p[i]); });
+  core.radius = median([&](const glm::vec3& p) { return glm::length(glm::dvec3(p) - core.middle); });
   if (core.radius == 0.0) {  // half of them lie in one point: go by their size
     const glm::vec3& s = model.scale[0];
     core.radius =

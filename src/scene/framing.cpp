@@ -10,7 +10,6 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "scene/axes.h"
-#include "scene/core.h"
 #include "scene/open_space.h"
 
 namespace binosplat {
@@ -30,9 +29,9 @@ struct Ring {
   double distance = 0.0;
   double elevation = glm::radians(elevation_degrees);
 
-  Ring(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& wanted_up,
+  Ring(const CoredModel& cored, int width, int height, double fov_degrees, const glm::dvec3& wanted_up,
        const std::optional<Capture::Around>& around)
-      : core(core_of(model)), world(world_from_axes(model.axes)) {
+      : core(cored.core), world(world_from_axes(cored.model.axes)) {
     const glm::dvec3 up_there = glm::normalize(wanted_up);
     // Any direction that is not up will do to start the circle; z, unless up is along it, is where COLMAP's
     // first camera looks.
@@ -149,11 +148,11 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
   return Capture{found, around_of(cameras, found)};
 }
 
-Capture capture_of(const Model& model, const Ground& ground, double eyes) {
+Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
   Capture capture{ground.up};
   if (!ground.level) return capture;
-  const Core core = core_of(model);
-  const glm::dmat3 world = world_from_axes(model.axes);
+  const Core& core = cored.core;
+  const glm::dmat3 world = world_from_axes(cored.model.axes);
   constexpr double highest = 0.7;  // radii: of a model that is no larger than a person
   const double eyes_at = *ground.level + std::min(eyes, highest * core.radius);
   constexpr double crowded = 0.2;  // sr, of 1.8 that are looked at
@@ -163,24 +162,24 @@ Capture capture_of(const Model& model, const Ground& ground, double eyes) {
     const double height = eyes_at - glm::dot(around.middle, ground.up);
     around.distance = std::hypot(away * core.radius, height);
     around.elevation = std::atan2(height, away * core.radius);
-    const Ring ring(model, 1, 1, default_fov_degrees, ground.up, around);
-    const Clearest clearest = clearest_on(model, ring);
+    const Ring ring(cored, 1, 1, default_fov_degrees, ground.up, around);
+    const Clearest clearest = clearest_on(cored.model, ring);
     if (least && *least <= clearest.obstructed) continue;
     least = clearest.obstructed;
     around.first = world * ring.eye(clearest.turn) - around.middle;
     capture.around = around;
   }
   if (*least > crowded) {
-    if (const auto open = open_space(model, ground, eyes_at - *ground.level)) capture.around = open;
+    if (const auto open = open_space(cored, ground, eyes_at - *ground.level)) capture.around = open;
   }
   return capture;
 }
 
-std::vector<Camera> orbit(const Model& model, int count, int width, int height, double fov_degrees,
+std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int height, double fov_degrees,
                           const glm::dvec3& up, const std::optional<Capture::Around>& around) {
-  const Ring ring(model, width, height, fov_degrees, up, around);
-  const glm::dmat3 world = world_from_axes(model.axes);
-  const double start = around ? ring.turn_to(around->first) : clearest_on(model, ring).turn;
+  const Ring ring(cored, width, height, fov_degrees, up, around);
+  const glm::dmat3 world = world_from_axes(cored.model.axes);
+  const double start = around ? ring.turn_to(around->first) : clearest_on(cored.model, ring).turn;
   std::vector<Camera> cameras;
   for (int k = 0; k < count; ++k) {
     const glm::dvec3 eye = world * ring.eye(start + glm::two_pi<double>() * k / count);
@@ -190,16 +189,16 @@ std::vector<Camera> orbit(const Model& model, int count, int width, int height, 
   return cameras;
 }
 
-Camera frame_model(const Model& model, int width, int height, double fov_degrees, const glm::dvec3& up,
+Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees, const glm::dvec3& up,
                    const std::optional<Capture::Around>& around) {
-  Camera camera = orbit(model, 1, width, height, fov_degrees, up, around)[0];
+  Camera camera = orbit(cored, 1, width, height, fov_degrees, up, around)[0];
   camera.name = "framed";
   return camera;
 }
 
-double near_for(const Model& model) {
+double near_for(const CoredModel& cored) {
   // A framed model starts about one radius from the camera; a tenth of it leaves room to come closer.
-  return std::min(near_default, 0.1 * core_of(model).radius);
+  return std::min(near_default, 0.1 * cored.core.radius);
 }
 
 }  // namespace binosplat

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "scene/camera.h"
+#include "scene/core.h"
 #include "scene/ground.h"
-#include "scene/model.h"
 
 namespace binosplat {
 
@@ -40,21 +40,21 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
 /// on the floor, with the `eyes` so high above it (world units; less in a tiny model), among what the model
 /// is about and where the least stands in the way of looking at that; or, where much does, in an open space.
 /// Throws Error if the model is empty.
-Capture capture_of(const Model& model, const Ground& ground, double eyes);
+Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 
 /// A camera that looks at the densest part of the model from slightly above, so far away that the part fills
 /// the picture, and from the side where the least stands in the way. A few far outliers change nothing.
 /// Or, where there is something `around` which to look, from there. Throws Error if the model is empty.
-Camera frame_model(const Model& model, int width, int height, double fov_degrees = default_fov_degrees,
+Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
                    const glm::dvec3& up = default_up, const std::optional<Capture::Around>& around = {});
 
 /// `count` cameras on a circle around the same part, called orbit_000 and so on; the first is frame_model's.
 /// Or on the circle `around` which the scene was captured, from its first camera on.
-std::vector<Camera> orbit(const Model& model, int count, int width, int height,
+std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int height,
                           double fov_degrees = default_fov_degrees, const glm::dvec3& up = default_up,
                           const std::optional<Capture::Around>& around = {});
 
 /// near_default, or less for a model so small that near_default would cut into it when it is framed.
-double near_for(const Model& model);
+double near_for(const CoredModel& cored);
 
 }  // namespace binosplat

@@ -11,7 +11,6 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "scene/axes.h"
-#include "scene/core.h"
 
 namespace binosplat {
 
@@ -38,7 +37,9 @@ struct Piece {
   double weight;  // its area, the less the farther away it is
 };
 
-std::vector<Piece> pieces_of(const Model& model, const Core& core) {
+std::vector<Piece> pieces_of(const CoredModel& cored) {
+  const Model& model = cored.model;
+  const Core& core = cored.core;
   const glm::dmat3 world = world_from_axes(model.axes);
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < model.count(); i += model.count() / sample_count + 1) {
@@ -51,8 +52,8 @@ std::vector<Piece> pieces_of(const Model& model, const Core& core) {
     const glm::dvec3 place = (glm::dvec3(model.position[i]) - core.middle) / core.radius;
     // One huge Gaussian of the background is no floor.
     const double area = std::min(static_cast<double>(wide) * other / (core.radius * core.radius), 0.01);
-    pieces.push_back({world * place, world * turned[thin],
-                      model.opacity[i] * area / (1.0 + 0.25 * glm::dot(place, place))});
+    const double weight = model.opacity[i] * area / (1.0 + 0.25 * glm::dot(place, place));
+    if (weight > 0.0) pieces.push_back({world * place, world * turned[thin], weight});
   }
   return pieces;
 }
@@ -165,10 +166,9 @@ std::optional<double> level_of(const glm::dvec3& up, std::span<const Piece> piec
 
 }  // namespace
 
-std::optional<Ground> find_ground(const Model& model, const std::optional<glm::dvec3>& up) {
-  if (model.scaffold || model.count() == 0) return std::nullopt;
-  const Core core = core_of(model);
-  const std::vector<Piece> pieces = pieces_of(model, core);
+std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<glm::dvec3>& up) {
+  if (cored.model.scaffold) return std::nullopt;
+  const std::vector<Piece> pieces = pieces_of(cored);
   Ground ground;
   if (up) {
     ground.up = glm::normalize(*up);
@@ -178,7 +178,8 @@ std::optional<Ground> find_ground(const Model& model, const std::optional<glm::d
     ground.up = upper(*axis, pieces);
   }
   if (const auto level = level_of(ground.up, pieces))
-    ground.level = glm::dot(world_from_axes(model.axes) * core.middle, ground.up) + *level * core.radius;
+    ground.level = glm::dot(world_from_axes(cored.model.axes) * cored.core.middle, ground.up) +
+                   *level * cored.core.radius;
   return ground;
 }
 

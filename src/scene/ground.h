@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "scene/model.h"
+#include "scene/core.h"
 
 namespace binosplat {
 
@@ -19,7 +19,7 @@ struct Ground {
 /// From the flat, opaque Gaussians, which lie in surfaces: up is where most of them face, as grounds, floors
 /// and tables do, or else what walls have in common; and rather the side on which a model reaches farther.
 /// Nothing where no direction stands out, as with models of round Gaussians and those that a network makes.
-/// `up`, where it is known, is taken as it is. Takes 0.4 s for four million Gaussians.
-std::optional<Ground> find_ground(const Model& model, const std::optional<glm::dvec3>& up = {});
+/// `up`, where it is known, is taken as it is.
+std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<glm::dvec3>& up = {});
 
 }  // namespace binosplat

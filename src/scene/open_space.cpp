@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "scene/axes.h"
-#include "scene/core.h"
 
 namespace binosplat {
 
@@ -49,8 +48,8 @@ struct Plan {
   glm::dvec3 up, aside, ahead;
   double level, cell;
 
-  Plan(const Model& model, const Ground& ground)
-      : core(core_of(model)), world(world_from_axes(model.axes)), cell(core.radius / half) {
+  Plan(const CoredModel& cored, const Ground& ground)
+      : core(cored.core), world(world_from_axes(cored.model.axes)), cell(core.radius / half) {
     up = glm::transpose(world) * ground.up;
     aside = glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
     ahead = glm::cross(up, aside);
@@ -116,9 +115,9 @@ double sight(const Map& map, const glm::dvec2& from, const glm::dvec2& towards) 
 
 }  // namespace
 
-std::optional<Capture::Around> open_space(const Model& model, const Ground& ground, double eyes) {
-  const Plan plan(model, ground);
-  const Map map = map_of(model, plan, eyes);
+std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground& ground, double eyes) {
+  const Plan plan(cored, ground);
+  const Map map = map_of(cored.model, plan, eyes);
   const std::vector<double> room = room_in(map);
   // More room than this is no better; then what is near the middle is.
   const double enough = 3.0 * eyes / plan.cell, least = 0.3 * eyes / plan.cell;

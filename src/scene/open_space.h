@@ -3,15 +3,15 @@
 
 #include <optional>
 
+#include "scene/core.h"
 #include "scene/framing.h"
 #include "scene/ground.h"
-#include "scene/model.h"
 
 namespace binosplat {
 
 /// A circle to stand on, with eyes so many world units above the ground, which must have a level: around the
 /// middle of the widest open space near the middle of the model, the first place where one sees farthest
 /// across it. Nothing where there is no floor with room for a person.
-std::optional<Capture::Around> open_space(const Model& model, const Ground& ground, double eyes);
+std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground& ground, double eyes);
 
 }  // namespace binosplat

@@ -248,6 +248,15 @@ TEST_F(FirstWords, WithoutCamerasOneStandsOnTheGround) {
   const auto [other, above] = drawn({"--up", "0,-1,0"});
   EXPECT_NE(other.find("from outside"), std::string::npos) << other;
   EXPECT_EQ(other.find("up is"), std::string::npos) << "it was said: " << other;
+  const std::vector<std::string> eye = {"--eye", "1,-3,2", "--at", "0,0,1"};
+  EXPECT_NE(drawn(eye).first.find("from --eye: up is"), std::string::npos) << "it is a guess";
+  std::vector<std::string> upright = eye;
+  upright.insert(upright.end(), {"--up", "0,0,1"});
+  EXPECT_EQ(drawn(upright).first.find("up is"), std::string::npos) << "it was said";
+  add_cameras();
+  const std::string beside = drawn(eye).first;
+  EXPECT_NE(beside.find("0.00,-1.00,0.00, by what lies beside it (--up for another)"), std::string::npos)
+      << beside;
 }
 
 }  // namespace

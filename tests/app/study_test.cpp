@@ -62,13 +62,14 @@ TEST(Study, CamerasEnterTheModelsFrame) {
 struct RulesCommand : test::SceneTest {
   RulesCommand() { add_cameras(); }
 
-  std::string printed;
+  std::string printed, logged;
 
   nlohmann::json rules(std::vector<std::string> more) {
     more.insert(more.begin(), {"study", model, "--rules", "--frames", "1", "--json", folder / "r.json"});
     const test::Outcome outcome = test::run_program(more);
     EXPECT_TRUE(test::good(outcome));
     printed = outcome.out;
+    logged = outcome.err;
     return nlohmann::json::parse(test::read_text(folder / "r.json"));
   }
 };
@@ -137,6 +138,13 @@ TEST_F(RulesCommand, PutsARigOnACameraWithALensOfAPreset) {
     return json.at("rules")[0].at("pairs").get<double>();
   };
   EXPECT_LT(exact_pairs({"--preset", "headset"}), exact_pairs({}));
+}
+
+TEST_F(RulesCommand, MetresAreThoseOfTheOption) {
+  std::filesystem::remove(folder / "cameras.json");
+  test::save_ply(model, test::floor_model());
+  rules({"--size", "36x24", "--target", "1", "--units-per-metre", "0.5"});
+  EXPECT_NE(logged.find("from 0.8 units above the ground"), std::string::npos) << logged;
 }
 
 struct AnalysesCommand : test::SceneTest {

@@ -128,6 +128,10 @@ TEST(Framing, OddModels) {
   add(one, {1, 2, 3}, 0.5f);
   const Camera camera = frame_model(one, 640, 360);
   EXPECT_NEAR(glm::length(camera.position - glm::dvec3(1, 2, 3)), 1.0, 1e-6);
+  Model two;
+  for (const float x : {0.0f, 10.0f}) add(two, {x, 0, 0}, 0.2f);
+  const Camera of_both = frame_model(two, 640, 360);
+  EXPECT_LT(reach(two, of_both, near_for(two)), 640.0 / 360.0) << "one is beside the picture";
   EXPECT_THROW(frame_model(one, 640, 360, 0.0), Error);
   EXPECT_THROW(frame_model(one, 640, 360, 60.0, {0, 0, 0}), Error);
 }

@@ -9,6 +9,7 @@
 #include <glm/gtx/quaternion.hpp>
 #include <random>
 
+#include "base/error.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/open_space.h"
@@ -58,6 +59,29 @@ Model room(const glm::dvec3& at = {}) {
   for (const glm::dvec3& corner : {glm::dvec3(0), x}) out.add(at + corner, y, z, 1300);
   out.add(at + glm::dvec3(0, 1, 0), {0.6, 0, 0}, {0, 0, 1}, 300);
   out.add(at + glm::dvec3(0, 1, 1), {0.6, 0, 0}, {0, 1, 0}, 300);
+  return out.model;
+}
+
+/// A closed box of 4 x 4 x height, as dense on all sides.
+Model box(double height) {
+  Surfaces out;
+  const glm::dvec3 x(4, 0, 0), y(0, 4, 0), z(0, 0, height);
+  for (const glm::dvec3& corner : {glm::dvec3(0), z}) out.add(corner, x, y, 4000);
+  for (const glm::dvec3& corner : {glm::dvec3(0), y}) out.add(corner, x, z, static_cast<int>(1000 * height));
+  for (const glm::dvec3& corner : {glm::dvec3(0), x}) out.add(corner, y, z, static_cast<int>(1000 * height));
+  return out.model;
+}
+
+/// Evenly spread, a Fibonacci spiral.
+Model ball() {
+  Surfaces out;
+  constexpr int count = 8000;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - 2.0 * (i + 0.5) / count, ring = std::sqrt(1.0 - z * z), turn = 2.399963 * i;
+    const glm::dvec3 n(ring * std::cos(turn), ring * std::sin(turn), z);
+    const glm::dvec3 aside = glm::normalize(glm::cross(n, glm::dvec3(1, 2, 3)));
+    out.add(n, 1e-3 * aside, 1e-3 * glm::cross(n, aside), 1);
+  }
   return out.model;
 }
 
@@ -118,19 +142,24 @@ TEST(Ground, WallsAloneTellUpButNoFloor) {
 
 TEST(Ground, WhereNothingTellsThereIsNone) {
   EXPECT_FALSE(find_ground(garden(1.0f))) << "round Gaussians face nowhere";
-  EXPECT_FALSE(find_ground(Model{}));
+  EXPECT_THROW(find_ground(Model{}), Error);
   Surfaces few;
   few.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 100);
   EXPECT_FALSE(find_ground(few.model));
-  Surfaces ball;  // faces everywhere
-  for (int i = 0; i < 3000; ++i) {
-    const glm::dvec3 n =
-        glm::normalize(glm::dvec3(ball.next(-1, 1), ball.next(-1, 1), ball.next(-1, 1)) + 1e-9);
-    ball.add(n, 1e-3 * glm::cross(n, glm::normalize(glm::dvec3(1, 2, 3))),
-             1e-3 * glm::cross(n, glm::cross(n, glm::normalize(glm::dvec3(1, 2, 3)))), 1);
-  }
-  const auto found = find_ground(ball.model);
-  EXPECT_TRUE(!found || !found->level);
+}
+
+TEST(Ground, WhereDirectionsTieThereIsNone) {
+  EXPECT_FALSE(find_ground(ball())) << "faces everywhere";
+  EXPECT_FALSE(find_ground(box(4.0))) << "as much wall as floor, three times";
+  const auto low = find_ground(box(3.0));
+  ASSERT_TRUE(low) << "more floor than wall";
+  EXPECT_LT(degrees_between(low->up, z_up), 2.0);
+}
+
+TEST(Ground, PiecesWithoutAnAreaSayNothing) {
+  Model points = garden();
+  for (glm::vec3& s : points.scale) s = glm::vec3(0.0f);  // of logarithms like -110
+  EXPECT_FALSE(find_ground(points));
 }
 
 TEST(Ground, UpThatIsKnownIsTaken) {

@@ -81,8 +81,7 @@ preview::Opened open(const Wanted& wanted) {
   const SceneOptions& scene = wanted.scene;
   const CameraOptions& camera = wanted.camera;
   const auto saved = find_saved(scene);
-  CameraList list = listed_cameras(scene, camera, saved);
-  if (wanted.rig.units_per_metre) list.known.units_per_metre = wanted.rig.units_per_metre;
+  const CameraList list = listed_cameras(scene, camera, wanted.rig, saved);
   const auto pose = saved_camera(scene, camera, saved);
   preview::Opened opened;
   opened.name = scene.name;
@@ -97,12 +96,12 @@ preview::Opened open(const Wanted& wanted) {
   follow_levels(wanted, opened);
   opened.start = [wanted, list, pose](const Model& model, preview::Choices& choices) {
     const CameraOptions& o = wanted.camera;
+    const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);
     const stereo::RigSettings found =
-        rig_settings(wanted.rig, list.known, near_plane_of(o, pose ? *pose : list, model));
+        rig_settings(wanted.rig, list.known, near_plane_of(o, pose ? *pose : all));
     choices.rig.ipd = found.ipd;
     choices.rig.units_per_metre = found.units_per_metre;
     choices.rig.near_plane = found.near_plane;
-    const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);
     std::vector<Camera> cameras = all.cameras;
     if (!o.views.empty()) {
       const auto at =
