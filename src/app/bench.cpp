@@ -40,8 +40,9 @@ std::vector<Shot> choose_shots(const BenchOptions& options, std::size_t wanted, 
 study::Bench open_case(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
                        const BenchCase& which, const Model& model, const std::optional<study::Peaks>& peaks) {
   const BenchScene& scene = plan.scenes[which.scene];
-  const CameraList list =
-      scene.list.listed ? scene.list : made_up_cameras(scene.options, options.camera, {}, model);
+  const CameraList list = scene.list.listed
+                              ? scene.list
+                              : made_up_cameras(scene.options, options.camera, scene.list.known, model);
   const double near_plane = near_plane_of(options.camera, list);
   const bool photos = !options.photos.empty() && which.eyes == 1 && which.size == "own";
   const std::vector<Shot> shots = choose_shots(options, static_cast<std::size_t>(plan.axes.views), photos,

@@ -12,7 +12,6 @@ namespace {
 
 using test::ended;
 using test::good;
-using test::Outcome;
 using test::write_text;
 
 struct Vr180 : test::SceneTest {
@@ -151,7 +150,7 @@ TEST_F(Vr180, WritesVrPhotosThatHoldBothEyes) {
 
 TEST_F(Vr180, RefusesWhatHasNoMeaningForIt) {
   const auto refused = [&](std::vector<std::string> arguments, const std::string& text) {
-    arguments.push_back("--vr180");
+    arguments.emplace_back("--vr180");
     return ended(render(arguments), 2, text);
   };
   EXPECT_TRUE(refused({"--quality", "40"}, "leave --quality out"));
