@@ -123,7 +123,8 @@ TEST(Panoramas, ShowBothEyesAtOnce) {
 }
 
 TEST(Panoramas, TellTheTimeOfAllTheirStages) {
-  Panorama panorama(std::make_shared<render::GpuModel>(test::gl_context(), around(9, 200)), side);
+  const Model few = around(9, 200);
+  Panorama panorama(std::make_shared<render::GpuModel>(test::gl_context(), few), side);
   const std::vector<Camera> eye = {eyes()[0]};
   const render::FrameReport report = panorama.draw(eye, near_plane);
   double sum = 0.0;
@@ -145,7 +146,8 @@ TEST(Panoramas, TellDistances) {
 }
 
 TEST(Panoramas, RefuseSizesThatAreNone) {
-  const auto model = std::make_shared<render::GpuModel>(test::gl_context(), around(9, 10));
+  const Model few = around(9, 10);
+  const auto model = std::make_shared<render::GpuModel>(test::gl_context(), few);
   EXPECT_TRUE(test::fails_saying([&] { Panorama(model, 41); }, {"41 x 41", "even"}));
   EXPECT_TRUE(test::fails_saying([&] { Panorama(model, 0); }, {"from 2 to"}));
 }
