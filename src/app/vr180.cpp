@@ -11,12 +11,11 @@ namespace binosplat::app {
 namespace {
 
 // What has no meaning where all rays are drawn exactly, each along its own way.
-constexpr const char* refused[] = {
-    "--fov",         "--convergence", "--cant",      "--order",     "--projection",
-    "--tiles",       "--th",          "--tolerance", "--quality",   "--transmittance",
-    "--calibration", "--show",        "--frames",    "--detail",    "--reference-until",
-    "--photos",      "--precision",   "--decode",    "--exr-depth", "--tile",
-    "--only"};
+constexpr const char* refused[] = {"--fov",        "--convergence",     "--cant",        "--order",
+                                   "--projection", "--tiles",           "--th",          "--tolerance",
+                                   "--quality",    "--transmittance",   "--calibration", "--show",
+                                   "--detail",     "--reference-until", "--photos",      "--precision",
+                                   "--decode",     "--exr-depth",       "--tile",        "--only"};
 
 std::vector<Camera> eyes_of(const Shot& shot, const std::string& axes) {
   std::vector<Camera> eyes;
