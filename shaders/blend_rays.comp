@@ -20,9 +20,6 @@ layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 uniform uint ray_count;
 uniform uint view_index;
 
-// Splats in the inner of two loops: drivers without a GPU end a loop of too many rounds.
-#define ROUNDS 1024u
-
 void main() {
   if (thread_index() >= ray_count) return;
   PlacedRay ray = rays[thread_index()];
@@ -40,10 +37,11 @@ void main() {
 #else
   float nearness = 1.0;
 #endif
+  // A driver may end loops of too many rounds: each is of several splats, as in blend.comp.
   uint at = begin;
-  for (uint batch = begin; batch < end && !is_done; batch += ROUNDS) {
-    for (; at < min(end, batch + ROUNDS); ++at) {
-      Splat splat = SPLAT(values[at]);
+  for (; at < end && !is_done; at += BLEND_UNROLL) {
+    for (uint k = 0u; k < BLEND_UNROLL; ++k) {
+      Splat splat = SPLAT(values[min(at + k, end - 1u)]);
       vec2 d = ray.pixel - splat.mean;
       // By the Cholesky factor of the conic, which keeps it positive.
       float root = sqrt(splat.conic.x);
@@ -51,13 +49,11 @@ void main() {
       float down = d.y / (abs(splat.conic.w) * root);
       float q = (across * across + down * down) * nearness;
       float alpha = min(float(ALPHA_MAX), splat.opacity * exp(-0.5 * q));
-      if (!(alpha >= float(ALPHA_MIN))) continue;
+      bool is_seen = at + k < end && !is_done && alpha >= float(ALPHA_MIN);  // not a number: no
       float left = transmittance * (1.0 - alpha);
-      if (left < float(TRANSMITTANCE_MIN)) {
-        is_done = true;
-        break;
-      }
-      float weight = transmittance * alpha;
+      is_done = is_done || (is_seen && left < float(TRANSMITTANCE_MIN));
+      float weight = is_seen && !is_done ? transmittance * alpha : 0.0;
+      if (weight == 0.0) continue;
       colour += weight * splat.colour.rgb;
       z_sum += weight * abs(splat.depth);
       transmittance = left;

@@ -143,7 +143,7 @@ Shown Show::make(int what, render::Frame& frame, std::span<const shared::View> v
   } else {
     const std::vector<Image> maps = map(what, frame, views, pictures, settings, background);
     // What is near tells eyes apart; the sky would leave it one colour.
-    shown.most = range_of(maps, what == SHOW_DEPTH ? 0.8 : 0.99);
+    shown.most = range_of(maps, what == SHOW_DEPTH || what == SHOW_MEDIAN_DEPTH ? 0.8 : 0.99);
     for (const Image& map : maps) shown.pictures.push_back(coloured(map, *shown.most));
   }
   return shown;

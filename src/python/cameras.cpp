@@ -167,8 +167,8 @@ void add_camera(py::module_& module) {
       },
       py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(), py::arg("up") = up_in_colmap,
       py::arg("fov") = default_fov_degrees,
-      "A camera that shows all of a model, as `binosplat render` makes up where it finds none; draw\n"
-      "with near=model.near. up, fov: as of look_at. Raises InputError, for one of an empty model.");
+      "A camera that shows all of a model from outside; draw with near=model.near. up, fov: as of\n"
+      "look_at. Raises InputError, for one of an empty model.");
 }
 
 void add_list(py::module_& module) {

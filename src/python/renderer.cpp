@@ -191,8 +191,8 @@ constexpr const char* draw_help =
     "'affine' or 'tangent' (None: as the model was trained). tiles: 'ellipse', 'snug', 'all' (exact),\n"
     "'aabb' or 'obb'. decode: of Scaffold-GS, 'eyes' or, with a Rig, 'cyclopean'. background: RGB behind\n"
     "the scene. near: nothing nearer is drawn, world units. depth: 'mean' of what is seen, or 'median',\n"
-    "by which half of it is. follow: this is the next frame of a path,\n"
-    "which goes by what the one before measured; else the picture depends on nothing drawn before.\n\n"
+    "by which half of it is. follow: this is the next frame of a path, which goes by what the one\n"
+    "before measured; else the picture depends on nothing drawn before.\n\n"
     "May be called from any thread; pictures of one Renderer are drawn one after the other.\n"
     "Raises InputError for settings that contradict each other, OutOfMemory.";
 

@@ -134,6 +134,17 @@ TEST(Panoramas, TellTheTimeOfAllTheirStages) {
   EXPECT_NEAR(report.total_ms, sum, 1e-9);
 }
 
+// A tile of a small panorama sees much of a scene, and drivers end loops of over 65,535 rounds.
+TEST(Panoramas, TakeLongLists) {
+  Model model;  // most are beside the pixel, but in its tile
+  for (int k = 0; k < 70000; ++k)
+    test::add(model, glm::vec3(-1.4f, 0, 3), glm::vec3(0.05f), 0.5f, glm::vec3(1.0f));
+  test::add(model, glm::vec3(0, 0, 4), glm::vec3(2.0f), 0.5f, glm::vec3(1.0f));
+  const Picture picture = drawn(model, {test::front_camera(side, side, 20)})[0];
+  EXPECT_NEAR(picture.colour[static_cast<std::size_t>(side) * side / 2 + side / 2].r, 0.5f, 0.05f)
+      << "the last of the list is lost";
+}
+
 TEST(Panoramas, TellDistances) {
   Model model;
   for (const glm::vec3& place : {glm::vec3(0, 0, 3), glm::vec3(2, 0, 0.05), glm::vec3(0, -4, 0.05)})
