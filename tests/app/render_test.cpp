@@ -267,7 +267,8 @@ TEST_F(Render, TheBuiltInRoomNeedsNoFile) {
   test::Surroundings here;
   here.folder = folder.path();
   ASSERT_TRUE(good(run_program({"render", "demo:room", "--size", "96x54"}, here)));
-  EXPECT_EQ(folder.files(), (Names{"model.ply", "out/room/room_left.png", "out/room/room_right.png"}));
+  EXPECT_EQ(folder.files(),
+            (Names{"model.ply", "out/room/model.txt", "out/room/room_left.png", "out/room/room_right.png"}));
 }
 
 TEST_F(Render, ShadersFromAFolder) {
