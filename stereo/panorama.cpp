@@ -1,6 +1,7 @@
 #include "stereo/panorama.h"
 
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "base/error.h"
 #include "stereo/rig.h"
@@ -8,8 +9,6 @@
 namespace binosplat::stereo {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 // A face of the cube around the eye, as far as it lies ahead: which way it looks, and its picture in focal
 // lengths from the middle.
@@ -34,7 +33,7 @@ std::size_t face_of(const glm::dvec3& ray) {
 }
 
 // A panorama's pixel at the horizon is as wide as one in the middle of a face.
-double focal(int side) { return side / pi; }
+double focal(int side) { return side / glm::pi<double>(); }
 
 int face_pixels(int side, double low, double high) {
   return static_cast<int>(std::ceil((high - low) * focal(side)));
@@ -58,7 +57,8 @@ void add(const render::FrameReport& face, render::FrameReport& sum) {
 }  // namespace
 
 glm::dvec3 panorama_ray(int side, int i, int j) {
-  const double longitude = ((i + 0.5) / side - 0.5) * pi, latitude = (0.5 - (j + 0.5) / side) * pi;
+  const double longitude = ((i + 0.5) / side - 0.5) * glm::pi<double>();
+  const double latitude = (0.5 - (j + 0.5) / side) * glm::pi<double>();
   return {std::cos(latitude) * std::sin(longitude), -std::sin(latitude),
           std::cos(latitude) * std::cos(longitude)};
 }

@@ -105,9 +105,8 @@ CameraList go_along_path(const CameraOptions& camera, const std::optional<double
     const bool timed = std::any_of(heads.begin(), heads.end(), [](const Camera& c) { return c.time; });
     if (timed && !times_rise(heads)) {
       log_info(
-          "--path: {} frames of {} as they are (not all have times that rise: render --seconds S goes "
-          "through "
-          "them as keys)",
+          "--path: {} frames of {} as they are (not all have times that rise: render --seconds S "
+          "goes through them as keys)",
           list.cameras.size(), list.source);
     }
     return list;

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +16,7 @@
 
 #include "app/mp4_spherical.h"
 #include "base/error.h"
+#include "base/levels.h"
 #include "base/text.h"
 
 namespace binosplat::app {
@@ -159,10 +159,8 @@ void Video::fail_with_what_it_said() {
 
 void Video::add(const Image& image) {
   std::vector<std::uint8_t> bytes(image.data.size());
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const float v = image.data[i] > 0.0f ? std::min(image.data[i], 1.0f) : 0.0f;  // NaN becomes 0
-    bytes[i] = static_cast<std::uint8_t>(std::lround(v * 255.0f));
-  }
+  std::transform(image.data.begin(), image.data.end(), bytes.begin(),
+                 [](float v) { return static_cast<std::uint8_t>(level_of(v, 255.0f)); });
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t sent = send(pictures_, &bytes[at], bytes.size() - at, MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;

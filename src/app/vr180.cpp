@@ -28,9 +28,9 @@ std::vector<Camera> eyes_of(const Shot& shot, const std::string& axes) {
 void add_vr180_option(CLI::App& sub, Lens& lens) {
   sub.add_flag_callback(
          "--vr180", [&lens] { lens.preset = "vr180"; },
-         "All that lies ahead of each eye, 180 degrees wide and high\n(equirectangular, 2048 x 2048 px an "
-         "eye, "
-         "or --size), level, for players of\nVR180: .png, or .vr.jpg, .mp4 and .mov that say so")
+         "All that lies ahead of each eye, 180 degrees wide and high\n"
+         "(equirectangular, 2048 x 2048 px an eye, or --size), level, for players of\n"
+         "VR180: .png, or .vr.jpg, .mp4 and .mov that say so")
       ->group("Cameras")
       ->excludes("--preset");
 }
@@ -61,9 +61,8 @@ void plan_vr180(const RenderOptions& o, OutputPlan& plan) {
   if (plan.vr_photo &&
       (o.rig.one_picture() || o.output.layout || !o.output.background || plan.exr || o.output.bits)) {
     fail(
-        "-o {}: a VR photo holds both eyes, each by itself, opaque and of 8 bits: leave --mono, --layout, "
-        "--exr, "
-        "--bits and --background none out",
+        "-o {}: a VR photo holds both eyes, each by itself, opaque and of 8 bits: leave --mono, "
+        "--layout, --exr, --bits and --background none out",
         o.output.output);
   }
   if (!o.output.layout && !o.rig.one_picture() && !plan.exr) plan.layout = LAYOUT_PARALLEL;

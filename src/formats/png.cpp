@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <csetjmp>
 #include <cstring>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/levels.h"
 #include "base/output_file.h"
 #include "formats/image_file.h"
 #include "formats/picture_readers.h"
@@ -95,11 +95,10 @@ void encode_row(const Image& image, int y, int bits, std::vector<png_byte>& row)
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
   const float* values = &image.data[static_cast<std::size_t>(y) * count];
   for (std::size_t i = 0; i < count; ++i) {
-    const float clamped = values[i] > 0.0f ? std::min(values[i], 1.0f) : 0.0f;
     if (bits == 8) {
-      row[i] = static_cast<png_byte>(std::lround(clamped * 255.0f));
+      row[i] = static_cast<png_byte>(level_of(values[i], 255.0f));
     } else {
-      const auto level = static_cast<std::uint16_t>(std::lround(clamped * 65535.0f));
+      const auto level = static_cast<std::uint16_t>(level_of(values[i], 65535.0f));
       row[2 * i] = static_cast<png_byte>(level >> 8);
       row[2 * i + 1] = static_cast<png_byte>(level & 255);
     }

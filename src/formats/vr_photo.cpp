@@ -5,7 +5,6 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/levels.h"
 #include "base/output_file.h"
 #include "base/text.h"
 
@@ -24,9 +24,8 @@ constexpr int jpeg_quality = 95;
 
 std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
   std::vector<unsigned char> bytes(image.data.size());
-  std::transform(image.data.begin(), image.data.end(), bytes.begin(), [](float v) {
-    return static_cast<unsigned char>(std::lround(255.0f * (v > 0.0f ? std::min(v, 1.0f) : 0.0f)));
-  });
+  std::transform(image.data.begin(), image.data.end(), bytes.begin(),
+                 [](float v) { return static_cast<unsigned char>(level_of(v, 255.0f)); });
   const std::unique_ptr<void, decltype(&tjDestroy)> encoder(tjInitCompress(), &tjDestroy);
   unsigned char* made = nullptr;
   unsigned long size = 0;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -85,6 +87,22 @@ struct SceneTest : testing::Test {
     for (int i = 0; i < count; ++i)
       cameras.push_back(camera_json("view" + std::to_string(i), 0.1 * i - 0.05 * (count - 1)));
     write_text(folder / "cameras.json", cameras.dump());
+  }
+
+  static bool have_ffmpeg() { return std::system("ffmpeg -version > /dev/null 2>&1") == 0; }
+
+  /// What a command of the shell prints.
+  std::string asked(const std::string& command) const {
+    const std::string said = folder / "said";
+    EXPECT_EQ(std::system((command + " > " + said).c_str()), 0) << command;
+    std::string text = read_text(said);
+    std::filesystem::remove(said);
+    return text;
+  }
+
+  /// What a video is, and of how many frames.
+  std::string facts_of(const std::string& video) const {
+    return asked("ffprobe -v error -count_frames -show_streams " + video);
   }
 
   Outcome render(std::vector<std::string> arguments, const Surroundings& surroundings = {}) const {

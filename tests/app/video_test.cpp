@@ -31,20 +31,10 @@ struct Video : test::SceneTest {
     write_text(path, cameras.dump());
   }
 
-  static bool have_ffmpeg() { return std::system("ffmpeg -version > /dev/null 2>&1") == 0; }
-
   static glm::dvec3 mean(const Image& image) {
     glm::dvec3 sum(0.0);
     for (std::size_t k = 0; k < image.data.size(); ++k) sum[static_cast<int>(k % 3)] += image.data[k];
     return sum / (static_cast<double>(image.data.size()) / 3.0);
-  }
-
-  std::string asked(const std::string& command) const {
-    const std::string said = folder / "said";
-    EXPECT_EQ(std::system((command + " > " + said).c_str()), 0) << command;
-    const std::string text = test::read_text(said);
-    std::filesystem::remove(said);
-    return text;
   }
 };
 
@@ -53,7 +43,7 @@ TEST_F(Video, HasThePathsFramesInOrder) {
   const std::string video = folder / "new/pair.mkv";
   ASSERT_TRUE(good(render({"--path", path, "-o", video, "--layout", "cross-eyed", "--convergence", "inf"})));
   ASSERT_TRUE(good(render({"--path", path, "-o", out, "--layout", "cross-eyed", "--convergence", "inf"})));
-  const std::string facts = asked("ffprobe -v error -count_frames -show_streams " + video);
+  const std::string facts = facts_of(video);
   for (const char* fact : {"width=144", "height=48", "r_frame_rate=25/1", "nb_read_frames=5",
                            "codec_name=h264", "stereo_mode=right_left", "color_space=bt709"})
     EXPECT_NE(facts.find(fact), std::string::npos) << fact << " is not in " << facts;

@@ -71,15 +71,11 @@ TEST_F(Vr180, HoldsPairsLevelAndTogether) {
 }
 
 TEST_F(Vr180, TellsPlayersWhatAVideoIs) {
-  if (std::system("ffprobe -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const auto facts = [&](const std::string& file, const std::string& layout) {
     EXPECT_TRUE(good(
         render({"--vr180", "--size", "32x32", "--view", "all", "-o", folder / file, "--layout", layout})));
-    const std::string said = folder / "said";
-    const std::string command =
-        "ffprobe -v error -count_frames -show_streams " + (folder / file).string() + " > " + said;
-    EXPECT_EQ(std::system(command.c_str()), 0);
-    return test::read_text(said);
+    return facts_of(folder / file);
   };
   const std::string aside = facts("aside.mp4", "parallel"), above = facts("above.mov", "over-under");
   for (const char* fact :
