@@ -63,6 +63,32 @@ XrResult WaitFrame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* 
 XrResult BeginFrame(XrSession handle, const XrFrameBeginInfo* info);
 XrResult EndFrame(XrSession handle, const XrFrameEndInfo* info);
 
+XrResult CreateActionSet(XrInstance handle, const XrActionSetCreateInfo* info, XrActionSet* out);
+XrResult DestroyActionSet(XrActionSet handle);
+XrResult CreateAction(XrActionSet handle, const XrActionCreateInfo* info, XrAction* out);
+XrResult DestroyAction(XrAction handle);
+XrResult SuggestInteractionProfileBindings(XrInstance handle,
+                                           const XrInteractionProfileSuggestedBinding* info);
+XrResult AttachSessionActionSets(XrSession handle, const XrSessionActionSetsAttachInfo* info);
+XrResult GetCurrentInteractionProfile(XrSession handle, XrPath user, XrInteractionProfileState* state);
+XrResult GetActionStateBoolean(XrSession handle, const XrActionStateGetInfo* info,
+                               XrActionStateBoolean* state);
+XrResult GetActionStateFloat(XrSession handle, const XrActionStateGetInfo* info, XrActionStateFloat* state);
+XrResult GetActionStateVector2f(XrSession handle, const XrActionStateGetInfo* info,
+                                XrActionStateVector2f* state);
+XrResult GetActionStatePose(XrSession handle, const XrActionStateGetInfo* info, XrActionStatePose* state);
+XrResult SyncActions(XrSession handle, const XrActionsSyncInfo* info);
+XrResult EnumerateBoundSourcesForAction(XrSession handle, const XrBoundSourcesForActionEnumerateInfo* info,
+                                        std::uint32_t capacity, std::uint32_t* count, XrPath* sources);
+XrResult GetInputSourceLocalizedName(XrSession handle, const XrInputSourceLocalizedNameGetInfo* info,
+                                     std::uint32_t capacity, std::uint32_t* count, char* buffer);
+XrResult ApplyHapticFeedback(XrSession handle, const XrHapticActionInfo* info,
+                             const XrHapticBaseHeader* feedback);
+XrResult StopHapticFeedback(XrSession handle, const XrHapticActionInfo* info);
+
+XrResult GetVisibilityMaskKHR(XrSession handle, XrViewConfigurationType type, std::uint32_t view,
+                              XrVisibilityMaskTypeKHR mask_type, XrVisibilityMaskKHR* mask);
+
 }  // namespace binosplat::xr_test::api
 
 namespace binosplat::xr_test {
@@ -70,6 +96,18 @@ namespace binosplat::xr_test {
 constexpr XrSystemId the_system = 0x5e7;
 const std::vector<ViewSpec>& views_of(XrViewConfigurationType type);
 void check_system(XrSystemId system);
+void check_pose(const XrPosef& pose);
+Pose head_at(XrTime time);
+/// Of an action space; none where nobody holds it.
+std::optional<Pose> pose_of_action(const Space& space, XrTime time);
+/// A path as text. Throws Refusal for one that was never made.
+const std::string& text_of(XrPath path);
+XrPath path_of(const std::string& text);
+
+/// Whether a controller of an interaction profile has this path, and what it stands for: its value or click
+/// where the path names neither. Empty: no.
+std::string component_of(const std::string& profile, const std::string& path);
+bool is_profile(const std::string& profile);
 /// The layers of a frame that ends: checked, logged into `line`, their pictures written.
 void check_layers(Session& session, FrameRecord& frame, const XrFrameEndInfo& info, Json& line);
 

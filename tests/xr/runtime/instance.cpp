@@ -4,7 +4,25 @@
 
 #include "xr/runtime/api.h"
 
-namespace binosplat::xr_test::api {
+namespace binosplat::xr_test {
+
+const std::string& text_of(XrPath path) {
+  const auto& paths = runtime().paths;
+  const auto found = paths.find(path);
+  require(found != paths.end(), XR_ERROR_PATH_INVALID, "path " + std::to_string(path) + " was never made");
+  return found->second;
+}
+
+XrPath path_of(const std::string& text) {
+  auto& paths = runtime().paths;
+  for (const auto& [path, known] : paths) {
+    if (known == text) return path;
+  }
+  paths[paths.size() + 1] = text;
+  return paths.size();
+}
+
+namespace api {
 
 XrResult EnumerateInstanceExtensionProperties(const char* layer, std::uint32_t capacity, std::uint32_t* count,
                                               XrExtensionProperties* properties) {
@@ -85,21 +103,15 @@ XrResult StringToPath(XrInstance handle, const char* text, XrPath* path) {
                     name.back() != '/' && name.find("//") == std::string::npos &&
                     name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_./") == std::string::npos;
   require(good, XR_ERROR_PATH_FORMAT_INVALID, "'" + name + "' is no path");
-  for (const auto& [known, string] : r.paths) {
-    if (string == name) return *path = known, XR_SUCCESS;
-  }
-  *path = r.paths.size() + 1;
-  r.paths[*path] = name;
+  *path = path_of(name);
   return XR_SUCCESS;
 }
 
 XrResult PathToString(XrInstance handle, XrPath path, std::uint32_t capacity, std::uint32_t* count,
                       char* buffer) {
-  Runtime& r = runtime();
-  r.get<Instance>(handle);
-  const auto found = r.paths.find(path);
-  require(found != r.paths.end(), XR_ERROR_PATH_INVALID, "path " + std::to_string(path) + " was never made");
-  return fill_text(found->second, capacity, count, buffer);
+  runtime().get<Instance>(handle);
+  return fill_text(text_of(path), capacity, count, buffer);
 }
 
-}  // namespace binosplat::xr_test::api
+}  // namespace api
+}  // namespace binosplat::xr_test

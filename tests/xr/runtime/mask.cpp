@@ -19,8 +19,9 @@ XrResult GetVisibilityMaskKHR(XrSession handle, XrViewConfigurationType type, st
   mask->vertexCountOutput = static_cast<std::uint32_t>(mesh.vertices.size());
   mask->indexCountOutput = static_cast<std::uint32_t>(mesh.indices.size());
   if (asks) return XR_SUCCESS;
-  require(mask->vertexCapacityInput >= mesh.vertices.size() && mask->indexCapacityInput >= mesh.indices.size(),
-          XR_ERROR_SIZE_INSUFFICIENT, "no room for the mask");
+  require(
+      mask->vertexCapacityInput >= mesh.vertices.size() && mask->indexCapacityInput >= mesh.indices.size(),
+      XR_ERROR_SIZE_INSUFFICIENT, "no room for the mask");
   std::copy(mesh.vertices.begin(), mesh.vertices.end(), mask->vertices);
   std::copy(mesh.indices.begin(), mesh.indices.end(), mask->indices);
   return XR_SUCCESS;

@@ -89,11 +89,10 @@ void apply(Session& session, int frame, const Json& event) {
       for (const auto& [path, state] : value.items()) r.input[path] = state;
     } else if (key == "gaze") {
       r.script.gaze = value.is_null() ? std::nullopt : std::optional(pose_from(value));
-    } else if (key == "hands" || key == "profile") {
-      if (key == "hands") r.script.hands = value.get<std::set<std::string>>();
-      if (key == "profile") r.script.profile = value;
-      r.queue(XrEventDataInteractionProfileChanged{XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED, nullptr,
-                                                   handle_of<XrSession>(session)});
+    } else if (key == "hands") {
+      r.script.hands = value.get<std::set<std::string>>();
+    } else if (key == "profile") {
+      r.script.profile = value;
     } else {
       throw std::runtime_error("an event of the script has an unknown word: " + key);
     }

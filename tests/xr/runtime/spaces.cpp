@@ -6,19 +6,10 @@
 #include "xr/runtime/api.h"
 
 namespace binosplat::xr_test {
-namespace {
 
 Pose head_at(XrTime time) {
   const auto& heads = runtime().script.heads;
   return heads[std::min<std::size_t>(static_cast<std::size_t>(runtime().frame_of(time)), heads.size() - 1)];
-}
-
-Pose local_at(XrTime time) {
-  Pose out;
-  for (const auto& [frame, pose] : runtime().locals) {
-    if (frame <= runtime().frame_of(time)) out = pose;
-  }
-  return out;
 }
 
 void check_pose(const XrPosef& pose) {
@@ -26,6 +17,16 @@ void check_pose(const XrPosef& pose) {
   const float length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
   require(std::abs(length - 1.0f) < 0.01f, XR_ERROR_POSE_INVALID,
           "a quaternion of length " + std::to_string(length));
+}
+
+namespace {
+
+Pose local_at(XrTime time) {
+  Pose out;
+  for (const auto& [frame, pose] : runtime().locals) {
+    if (frame <= runtime().frame_of(time)) out = pose;
+  }
+  return out;
 }
 
 void check_offered(XrReferenceSpaceType type) {
@@ -39,7 +40,7 @@ void check_time(XrTime time) { require(time > 0, XR_ERROR_TIME_INVALID, "time " 
 }  // namespace
 
 std::optional<Pose> pose_of(const Space& space, XrTime time) {
-  if (!space.reference) return std::nullopt;
+  if (!space.reference) return pose_of_action(space, time);
   switch (*space.reference) {
     case XR_REFERENCE_SPACE_TYPE_VIEW:
       return head_at(time) * space.offset;
@@ -83,6 +84,23 @@ XrResult GetReferenceSpaceBoundsRect(XrSession handle, XrReferenceSpaceType type
   return XR_SUCCESS;
 }
 
+XrResult CreateActionSpace(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* out) {
+  const auto& session = runtime().get<Session>(handle);
+  checked(info, XR_TYPE_ACTION_SPACE_CREATE_INFO);
+  const auto& action = runtime().get<Action>(info->action);
+  require(action.type == XR_ACTION_TYPE_POSE_INPUT, XR_ERROR_ACTION_TYPE_MISMATCH,
+          "a space of an action that is no pose: " + action.name);
+  require(info->subactionPath == XR_NULL_PATH || action.users.count(text_of(info->subactionPath)) != 0,
+          XR_ERROR_PATH_UNSUPPORTED, "a user path that action " + action.name + " was not made with");
+  check_pose(info->poseInActionSpace);
+  auto& space = runtime().add<Space>(session.id);
+  space.action = action.id;
+  space.subaction = info->subactionPath;
+  space.offset = from_xr(info->poseInActionSpace);
+  *out = handle_of<XrSpace>(space);
+  return XR_SUCCESS;
+}
+
 XrResult LocateSpace(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation* location) {
   Runtime& r = runtime();
   const auto& space = r.get<Space>(handle);
@@ -91,6 +109,8 @@ XrResult LocateSpace(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation*
   check_time(time);
   auto* velocity = chained<XrSpaceVelocity>(location->next, XR_TYPE_SPACE_VELOCITY);
   if (velocity != nullptr) velocity->velocityFlags = 0;
+  auto* sample = chained<XrEyeGazeSampleTimeEXT>(location->next, XR_TYPE_EYE_GAZE_SAMPLE_TIME_EXT);
+  if (sample != nullptr) sample->time = time;
   const auto pose = pose_of(space, time), base_pose = pose_of(from, time);
   location->locationFlags = 0;
   if (!pose || !base_pose) return XR_SUCCESS;

@@ -61,7 +61,7 @@ struct Session : Object {
   std::optional<FrameRecord> waited, begun;  // not yet begun, not yet ended
   std::map<std::size_t, std::pair<std::uint64_t, std::uint32_t>> depth_of_view;  // swapchain, array index
   bool attached = false;
-  std::set<std::uint64_t> action_sets;
+  std::map<std::string, std::string> profiles;  // by user path, as the application was last told
 };
 
 struct Swapchain : Object {
@@ -85,6 +85,28 @@ struct Space : Object {
   Pose offset;
 };
 
+struct ActionSet : Object {
+  const char* kind() const override { return "action set"; }
+  std::string name, localized;
+  bool attached = false;
+};
+
+/// What xrSyncActions saw of one user path.
+struct ActionState {
+  Json value;
+  bool active = false, changed = false;
+  XrTime time = 0;
+};
+
+struct Action : Object {
+  const char* kind() const override { return "action"; }
+  std::string name, localized;
+  XrActionType type = XR_ACTION_TYPE_BOOLEAN_INPUT;
+  std::set<std::string> users;                               // subaction paths
+  std::map<std::string, std::vector<std::string>> bindings;  // by interaction profile
+  std::map<std::string, ActionState> states;                 // by user path
+};
+
 class Runtime {
  public:
   Runtime();
@@ -97,7 +119,8 @@ class Runtime {
   std::vector<std::pair<int, Pose>> locals;  // where LOCAL lies from a frame on
   std::map<std::string, Json> input;         // by path, as scripted last
   std::map<XrPath, std::string> paths;
-  int applied = -1;  // events of frames up to this one have happened
+  std::set<std::string> suggested;  // interaction profiles that have bindings
+  int applied = -1;                 // events of frames up to this one have happened
 
   Instance* instance();
   Session* session();
