@@ -71,14 +71,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-bool has_display() {
-  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
-    const char* value = std::getenv(name);
-    if (value != nullptr && *value != '\0') return true;
-  }
-  return false;
-}
-
 void note(const std::string& value) {
   note_input(value);
   std::error_code ignored;
@@ -96,6 +88,14 @@ void note_pictures_in(const std::string& folder) {
 }
 
 }  // namespace
+
+bool has_display() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && *value != '\0') return true;
+  }
+  return false;
+}
 
 void check_arguments(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
