@@ -276,12 +276,16 @@ bool find_tile() {
   uint list = frame.list_per_view != 0u ? view_index : tile;
   begin = ranges[2u * list];
   end = ranges[2u * list + 1u];
-  return LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;
+  bool is_own = LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;
+#if PARTS
+  if (!is_drawn(tile_of(tile, views[view_index]), views[view_index])) end = begin;
+#endif
+  return is_own;
 }
 
 // Where pixel p of this invocation is kept. A probe's tiles are kept side by side.
 uint place_of(View view, uint p) {
-  uvec2 at = first_pixel;
+  uvec2 at = first_pixel - first_drawn(view);
   uint across = view.width;
   if (is_probe(view)) {
     uvec2 in_grid = tile_of(tile, view);
@@ -305,7 +309,7 @@ void begin_pixels(uvec2 in_tile) {
   farthest = 1.0 + dot(most, most);
 #endif
   for (uint p = 0u; p < COLUMN; ++p) {
-    bool inside = first_pixel.x < view.width && first_pixel.y + p < view.height;
+    bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
     row[p] = float(first_pixel.y + p) - middle.y;
     colour[p] = vec3(0.0);
     z_sum[p] = 0.0;
@@ -331,7 +335,7 @@ void begin_pixels(uvec2 in_tile) {
 void write_pixels() {
   View view = views[view_index];
   for (uint p = 0u; p < COLUMN; ++p) {
-    if (first_pixel.x >= view.width || first_pixel.y + p >= view.height) continue;
+    if (first_pixel.x > last_drawn(view).x || first_pixel.y + p > last_drawn(view).y) continue;
     uint to = place_of(view, p);
     float left = is_done(p) ? -least[p] : transmittance[p];
 #if SHOW == SHOW_PAIRS

@@ -37,7 +37,11 @@ struct View {
   uint pitch;  // px from one of its tiles to the next: a tile's side, more in a probe, whose tiles lie apart
   uint shift_x;  // px, where its first tile begins
   uint shift_y;
-  uint is_probe;  // 1: only tiles that lie apart, drawn exactly
+  uint is_probe;          // 1: only tiles that lie apart, drawn exactly
+  uint left;              // px of the picture that its first pixel is: above 0 in a window, whose `width` and
+  uint top;               // `height` are its own
+  uint first_row;         // of its tiles among the rows that say which are drawn (tiles/parts.glsl)
+  float tolerance_share;  // of the frame's tolerance
   uint unused;
 };
 
@@ -139,7 +143,7 @@ struct DispatchArguments {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(View) == 176 && offsetof(View, slopes) == 96 && offsetof(View, is_probe) == 168);
+static_assert(sizeof(View) == 192 && offsetof(View, slopes) == 96 && offsetof(View, unused) == 188);
 static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, tolerance) == 16);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);

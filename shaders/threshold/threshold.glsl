@@ -9,7 +9,8 @@
 #include "threshold/{TH_NAME}.glsl"
 
 float threshold_of(uint v, Splat splat, float bound) {
-  return threshold(size_of(views[v], splat), bound, frame.tolerance);
+  precise float tolerance = frame.tolerance * views[v].tolerance_share;
+  return threshold(size_of(views[v], splat), bound, tolerance);
 }
 
 // Th of a Gaussian in view v, where it is `splat`.

@@ -9,7 +9,7 @@ bool ellipse_touches(Outline outline, float rho, vec2 low, vec2 high) {
 }
 
 float lowest_level(Outline outline, View view, out vec2 at) {
-  return lowest_level(outline, vec2(-REACH), vec2(view.width - 1u, view.height - 1u) + REACH, at);
+  return lowest_level(outline, vec2(first_drawn(view)) - REACH, vec2(last_drawn(view)) + REACH, at);
 }
 
 // What bounds the ellipse is a little too large on purpose: the test above decides, this only says where to ask it.
@@ -63,7 +63,7 @@ uvec2 tile_row(Outline outline, View view, uvec4 box, uint row) {
   if (min(room.x, room.y) > 0.0) {
     precise float first = lean * left_y - sqrt(room.x * width) + slack;
     precise float last = lean * right_y + sqrt(room.y * width) - slack;
-    if (outline.mean.x + first <= float(view.width - 1u)) sure = tile_columns(outline.mean.x + first, outline.mean.x + last, view);
+    if (outline.mean.x + first <= float(last_drawn(view).x)) sure = tile_columns(outline.mean.x + first, outline.mean.x + last, view);
   }
   while (columns.x < columns.y && !(columns.x >= sure.x && columns.x < sure.y) &&
          !ellipse_touches(outline, rho, tile_low(uvec2(columns.x, row), view), tile_high(uvec2(columns.x, row), view))) {

@@ -54,7 +54,8 @@ Cone cone_of(Outline outline, View view) {
 // Slopes across between which a wide splat is seen, if it is, in the rows of pixels [first, last]: a little too far apart. The
 // first is above the second where it is not. What is across depends on where |d| is largest between them, so it is found thrice.
 vec2 seen_across(Cone cone, View view, float first, float last) {
-  vec2 low = slope_at(view, vec2(-0.5, first - 0.5)), high = slope_at(view, vec2(float(view.width) - 0.5, last + 0.5));
+  vec2 low = slope_at(view, vec2(float(first_drawn(view).x) - 0.5, first - 0.5));
+  vec2 high = slope_at(view, vec2(float(last_drawn(view).x) + 0.5, last + 0.5));
   precise float y = 0.5 * (low.y + high.y);
   precise float size = 0.5 * (high.y - low.y);
   precise float down = max(0.0, abs(cone.second.y * y + cone.second.z) - cone.second.y * size);

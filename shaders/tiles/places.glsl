@@ -4,17 +4,33 @@
 #ifndef PROBED
 #define PROBED 0  // 1: the frame has a probe
 #endif
+#ifndef PARTS
+#define PARTS 0  // 1: of some views only parts are drawn
+#endif
 
 #if PROBED
 // The tiles of a probe lie apart: its supertiles are of tiles that are neighbours among these.
 bool is_probe(View view) { return view.is_probe != 0u; }
 uint tile_pitch(View view) { return view.pitch; }
-uvec2 tile_shift(View view) { return uvec2(view.shift_x, view.shift_y); }
 #else
 bool is_probe(View view) { return false; }
 uint tile_pitch(View view) { return uint(TILE_SIZE); }
+#endif
+#if PROBED || PARTS
+uvec2 tile_shift(View view) { return uvec2(view.shift_x, view.shift_y); }
+#else
 uvec2 tile_shift(View view) { return uvec2(0u); }
 #endif
+#if PARTS
+uvec2 first_drawn(View view) { return uvec2(view.left, view.top); }
+#else
+uvec2 first_drawn(View view) { return uvec2(0u); }
+#endif
+
+// The pixels of the picture that are drawn: from the first above to this one.
+uvec2 last_drawn(View view) { return first_drawn(view) + uvec2(view.width - 1u, view.height - 1u); }
 
 // The first pixel of a tile.
 uvec2 tile_corner(uvec2 tile, View view) { return tile * tile_pitch(view) + tile_shift(view); }
+
+#include "tiles/parts.glsl"

@@ -45,7 +45,7 @@ uvec2 tile_rows(float low, float high, View view) {
 vec2 tile_low(uvec2 tile, View view) { return vec2(tile_corner(tile, view)) - REACH; }
 
 vec2 tile_high(uvec2 tile, View view) {
-  return vec2(min(tile_corner(tile, view) + uint(TILE_SIZE - 1), uvec2(view.width - 1u, view.height - 1u))) + REACH;
+  return vec2(min(tile_corner(tile, view) + uint(TILE_SIZE - 1), last_drawn(view))) + REACH;
 }
 
 // C2 from the conic, multiplied in an order that does not overflow: xx, xy, yy.
@@ -66,10 +66,10 @@ vec2 level_extent(Outline outline) {
   return extent;
 }
 
-// Whether that box holds the centre of a pixel of the picture: a splat between centres is seen by none.
+// Whether that box holds the centre of a pixel that is drawn: a splat between centres is seen by none.
 bool holds_a_centre(Outline outline, View view, vec2 extent) {
   if (outline.level < RHO_NONE) return false;
-  vec2 first = vec2(-REACH), last = vec2(view.width - 1u, view.height - 1u) + REACH;
+  vec2 first = vec2(first_drawn(view)) - REACH, last = vec2(last_drawn(view)) + REACH;
 #if BETWEEN
   precise vec2 nearest = clamp(outline.mean, first, last);
 #else
@@ -81,6 +81,15 @@ bool holds_a_centre(Outline outline, View view, vec2 extent) {
 
 #include "tiles/{TILES_NAME}.glsl"
 #include "tiles/outline_{PROJECTION_NAME}.glsl"
+
+// Of the columns that a splat touches in a row, those that are drawn; all the oracle's, whose tiles share one list.
+uvec2 paired_columns(uvec2 columns, View view, uint row) {
+#if TILES == TILES_ALL
+  return columns;
+#else
+  return drawn_columns(columns, view, row);
+#endif
+}
 
 // The rows of supertiles of a box of tiles: [x, y).
 uvec2 supertile_rows(uvec4 box) {
@@ -108,9 +117,9 @@ SupertileRow supertile_row_of(uvec4 tiles) {
 SupertileRow supertile_row(Outline outline, View view, uvec4 box, uint nth) {
   uvec4 tiles = uvec4(0u);
   uint row = nth * uint(SUPERTILE_SIDE);
-  if (row >= box.y) tiles.xy = row_of_tiles(outline, view, box, row);
+  if (row >= box.y) tiles.xy = paired_columns(row_of_tiles(outline, view, box, row), view, row);
 #if SUPERTILE_SIDE == 2
-  if (row + 1u < box.w) tiles.zw = row_of_tiles(outline, view, box, row + 1u);
+  if (row + 1u < box.w) tiles.zw = paired_columns(row_of_tiles(outline, view, box, row + 1u), view, row + 1u);
 #endif
   return supertile_row_of(tiles);
 }
@@ -132,7 +141,7 @@ uint coverage_of(Outline outline, View view, uvec4 box) {
   uint count = 0u;
 #if SUPERTILE_SIDE == 1
   for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = tile_row(outline, view, box, row);
+    uvec2 columns = paired_columns(tile_row(outline, view, box, row), view, row);
     count += columns.y - columns.x;
   }
 #else
@@ -142,7 +151,7 @@ uint coverage_of(Outline outline, View view, uvec4 box) {
   uint bits = 0u;
   uvec4 tiles = uvec4(0u);
   for (uint row = box.y; row < box.w; ++row) {
-    uvec2 columns = tile_row(outline, view, box, row);
+    uvec2 columns = paired_columns(tile_row(outline, view, box, row), view, row);
     if (are_few) {
       uvec2 from = columns - (box.x & ~1u);
       uint row_bits = columns.x < columns.y ? (1u << from.y) - (1u << from.x) : 0u;
@@ -167,9 +176,13 @@ bool touches_a_tile(Splat splat, View view) {
 #if TILES == TILES_ELLIPSE
   // Most splats reach the pixel's centre that is nearest to theirs; nothing more need be asked of these, but in a probe, whose
   // tiles may not hold it. (With the tangent projection q is smaller by |d|^2, which is at least 1.)
-  vec2 d = clamp(round(splat.mean), vec2(0.0), vec2(view.width - 1u, view.height - 1u)) - splat.mean;
+  vec2 nearest = clamp(round(splat.mean), vec2(first_drawn(view)), vec2(last_drawn(view)));
+  vec2 d = nearest - splat.mean;
   float q = splat.conic.x * d.x * d.x + 2.0 * splat.conic.y * d.x * d.y + splat.conic.z * d.y * d.y;
-  if (!is_wide(splat) && !is_probe(view) && q <= ellipse_inner_rho(splat.colour.w)) return true;
+  if (!is_wide(splat) && !is_probe(view) && q <= ellipse_inner_rho(splat.colour.w)) {
+    uvec2 tile = (uvec2(nearest) - tile_shift(view)) / uint(TILE_SIZE);
+    if (is_drawn(tile, view)) return true;
+  }
 #endif
   Outline outline = outline_of(splat, view);
   if (outline.is_wide) return outline.level >= RHO_NONE;
@@ -177,7 +190,7 @@ bool touches_a_tile(Splat splat, View view) {
   uint likely = likely_row(outline, view, box);
   for (uint n = 0u; n < box.w - box.y; ++n) {
     uint row = n == 0u ? likely : box.y + n - uint(box.y + n <= likely);
-    uvec2 columns = tile_row(outline, view, box, row);
+    uvec2 columns = paired_columns(tile_row(outline, view, box, row), view, row);
     if (columns.y > columns.x) return true;
   }
   return false;

@@ -23,8 +23,8 @@ namespace binosplat::gl {
 enum class Backend { automatic, device, surfaceless, osmesa };
 
 /// Storage blocks that binosplat's largest shader uses, and the bindings that all use, from 0 on.
-constexpr std::uint32_t storage_blocks_needed = 12;
-constexpr std::uint32_t storage_bindings_needed = 13;
+constexpr std::uint32_t storage_blocks_needed = 13;
+constexpr std::uint32_t storage_bindings_needed = 14;
 
 struct Limits {
   std::int64_t storage_block_bytes = 0;  // largest binding of a storage buffer that is safe on this driver

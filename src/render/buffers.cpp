@@ -43,6 +43,7 @@ shared::FrameParameters parameters_of(const FrameShape& shape) {
 FrameBuffers::FrameBuffers(gl::Context& context)
     : parameters(context, "parameters of the frame"),
       views(context, "views"),
+      part_rows(context, "parts of views"),
       counters(context, "counters"),
       depth_keys(context, "depth keys"),
       block_arguments(context, "arguments of blocks"),
@@ -75,6 +76,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
 void FrameBuffers::upload(const FrameShape& shape) {
   parameters.upload(std::vector{parameters_of(shape)});
   views.upload(shape.views);
+  if (shape.draws_parts()) part_rows.upload(shape.part_rows);
   if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = shape.settings.depth_table.bounds;
   for (float& bound : table) bound = bound > 0.0f ? std::max(bound, static_cast<float>(BOUND_FLOOR)) : 1.0f;

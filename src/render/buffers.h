@@ -60,6 +60,7 @@ struct FrameBuffers {
 
   gl::Buffer parameters;  // FrameParameters
   gl::Buffer views;       // View, the probe last
+  gl::Buffer part_rows;   // uvec2 by row of tiles of a view, where a view draws a part
   gl::Buffer counters;    // Counters
 
   // Of the order group at hand.

@@ -44,6 +44,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
                   {"OrderArguments", drawn},
                   {"PairArguments", buffers.pair_arguments},
                   {"Views", buffers.views},
+                  {"PartRows", buffers.part_rows},
                   {"Order", buffers.order.values()},
                   {"PairOffsets", buffers.pair_offsets},
                   {"CoverageInOrder", buffers.coverage_in_order},

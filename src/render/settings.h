@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "render/parts.h"
 #include "render/rules.h"
 #include "shared/axes.h"
 #include "shared/limits.h"
@@ -64,7 +65,8 @@ struct FrameSettings {
   bool between = false;
   /// The median is the depth at which T falls below a half: z_sum is then (1 - T) times that.
   Depth depth = Depth::mean;
-  glm::vec3 background{0.0f};  // behind the scene, for the probe only: the pictures are without
+  std::vector<ViewPart> parts;  // what is drawn of each view; empty: all of every view
+  glm::vec3 background{0.0f};   // behind the scene, for the probe only: the pictures are without
 };
 
 /// Throws Error for values that no frame has and for settings that contradict each other: an exact rule with

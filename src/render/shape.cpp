@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "base/error.h"
 #include "render/anchors.h"
@@ -36,20 +37,28 @@ void check_needs(const FrameSettings& s, std::size_t views) {
   }
 }
 
+bool any_part(const FrameSettings& settings) {
+  return !std::all_of(settings.parts.begin(), settings.parts.end(), std::mem_fn(&ViewPart::is_whole));
+}
+
 // Appends a view, or a probe of it, in the last order group if that sees the same depths.
-void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& probe = {}) {
+void add_view(FrameShape& shape, shared::View view, const ViewPart& part,
+              const std::optional<Probe>& probe = {}) {
   const Probe tiles = probe.value_or(Probe{});
   const auto tile = static_cast<std::uint32_t>(shape.settings.tile_size);
   const std::uint32_t v = shape.view_count();
   if (view.width == 0 || view.height == 0)
     fail("a view of {} x {} px has no picture", view.width, view.height);
+  view.left = view.top = 0;
+  take_window(part, view);
+  view.tolerance_share = part.tolerance_share;
   const auto tiles_in = [&](std::uint32_t pixels, std::uint32_t first) {
     const std::uint32_t all = (pixels + tile - 1) / tile;
     return all <= first ? 0 : (all - first + tiles.step - 1) / tiles.step;
   };
   view.pitch = tiles.step * tile;
-  view.shift_x = tiles.column * tile;
-  view.shift_y = tiles.row * tile;
+  view.shift_x = view.left + tiles.column * tile;
+  view.shift_y = view.top + tiles.row * tile;
   view.tiles_x = tiles_in(view.width, tiles.column);
   view.tiles_y = tiles_in(view.height, tiles.row);
   view.supertile_offset = shape.supertile_count;
@@ -65,6 +74,12 @@ void add_view(FrameShape& shape, shared::View view, const std::optional<Probe>& 
   if (v == 0 || !same_order(view, shape.views.back(), shape.perspective.order))
     shape.groups.push_back({v, v});
   shape.groups.back().end = v + 1;
+  if (any_part(shape.settings)) {
+    const auto rows = part_rows(part, view, tile, static_cast<std::uint32_t>(shape.supertile_side),
+                                {tiles.column, tiles.row}, tiles.step);
+    view.first_row = static_cast<std::uint32_t>(shape.part_rows.size());
+    shape.part_rows.insert(shape.part_rows.end(), rows.begin(), rows.end());
+  }
   view.order_group = static_cast<std::uint32_t>(shape.groups.size() - 1);
   shape.views.push_back(view);
 }
@@ -118,6 +133,7 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   check(settings);
   check_needs(settings, views.size());
+  check_parts(settings, views.size(), model.scaffold != nullptr);
   FrameShape shape;
   shape.settings = settings;
   shape.supertile_side = supertile_side;
@@ -133,9 +149,11 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   }
   shape.slots = starting_slots(shape.gaussian_count);
   shape.asked = static_cast<std::uint32_t>(views.size());
-  for (const shared::View& view : views) add_view(shape, view);
+  const auto part_of = [&](std::size_t v) { return settings.parts.empty() ? ViewPart{} : settings.parts[v]; };
+  for (std::size_t v = 0; v < views.size(); ++v) add_view(shape, views[v], part_of(v));
   shape.probe = probe;
-  if (probe) add_view(shape, views[probe->view], probe);
+  if (probe && part_of(probe->view).is_window()) fail("a probe of a window: only whole views have them");
+  if (probe) add_view(shape, views[probe->view], part_of(probe->view), probe);
   return shape;
 }
 

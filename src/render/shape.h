@@ -52,6 +52,8 @@ struct FrameShape {
   std::uint32_t asked = 0;
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
+  std::vector<glm::uvec2>
+      part_rows;  // of all views' rows of tiles (tiles/parts.glsl), where any draws a part
   std::uint32_t supertile_count = 0;  // over all views
   std::int64_t pixel_count = 0;       // over all views
   // Of Scaffold-GS; K is 0 for other models.
@@ -59,6 +61,7 @@ struct FrameShape {
   std::uint32_t views_per_decoding = 1;  // views that share what the networks made
   std::int64_t anchor_bytes = 0;
 
+  bool draws_parts() const { return !part_rows.empty(); }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// Tiles of all supertiles: a few more than the pictures have where supertiles are of several.
   std::uint32_t tile_count() const { return supertile_count * tiles_a_supertile(); }

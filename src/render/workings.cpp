@@ -13,6 +13,8 @@ void check(const Workings& workings, const FrameSettings& settings, std::string_
         "out",
         prefix);
   }
+  if (workings.stand_in && !settings.parts.empty())
+    fail("{}reference-until: the reference draws all of every view", prefix);
 }
 
 }  // namespace binosplat::render

@@ -19,7 +19,7 @@ TEST(Devices, ListsWaysToDrawThatRenderTakes) {
   for (const auto& device : list) {
     if (!device.at("usable").get<bool>()) continue;
     any = true;
-    EXPECT_GE(device.at("limits").at("storage_blocks").get<int>(), 12);
+    EXPECT_GE(device.at("limits").at("storage_blocks").get<int>(), 13);
     EXPECT_NE(outcome.out.find(device.at("renderer").get<std::string>()), std::string::npos);
   }
   EXPECT_TRUE(any);

@@ -79,6 +79,10 @@ TEST(Layout, ViewIsWhereTheDriverPutsIt) {
                             AT(View, shift_x),
                             AT(View, shift_y),
                             AT(View, is_probe),
+                            AT(View, left),
+                            AT(View, top),
+                            AT(View, first_row),
+                            AT(View, tolerance_share),
                             AT(View, unused),
                             STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);

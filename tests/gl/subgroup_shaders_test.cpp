@@ -27,12 +27,13 @@ class SubgroupShaders : public testing::Test {
   }
 };
 
-// In both projections, with a probe and without.
+// In both projections, with a probe and without, of whole pictures and of parts.
 void expect_compiles(const std::string& name, const Defines& some, const std::string& what = "") {
   for (const char* projection : {"affine", "tangent"}) {
-    for (const char* probed : {"0", "1"}) {
+    for (const char* probed : {"0", "1", "parts"}) {
       Defines defines = some;
-      defines.emplace_back("PROBED", probed);
+      defines.emplace_back("PROBED", *probed == '1' ? "1" : "0");
+      defines.emplace_back("PARTS", *probed == 'p' ? "1" : "0");
       defines.emplace_back("PROJECTION_NAME", projection);
       defines.emplace_back("PROJECTION", *projection == 'a' ? "0" : "1");
       defines.emplace_back("ORDER", "0");

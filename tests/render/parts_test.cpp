@@ -1,0 +1,312 @@
+// Parts of views: what is drawn of them is what the whole pictures have, to the bit.
+
+#include <gtest/gtest-spi.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "render/faulty_shaders.h"
+#include "render/support.h"
+#include "stereo/rig.h"
+#include "support/errors.h"
+
+namespace binosplat {
+namespace {
+
+using render::FrameSettings;
+using render::ViewPart;
+using test::draw;
+using test::same_bits;
+
+constexpr glm::ivec2 size{200, 150};
+
+shared::View view_of(double cx) {
+  Camera camera = test::front_camera(size.x, size.y, 180);
+  camera.cx = cx;
+  return make_view(camera);
+}
+
+Picture cut(const Picture& whole, const glm::uvec2& corner, const glm::uvec2& extent) {
+  Picture out(static_cast<int>(extent.x), static_cast<int>(extent.y));
+  for (std::uint32_t y = 0; y < extent.y; ++y) {
+    for (std::uint32_t x = 0; x < extent.x; ++x) {
+      const std::size_t from = (corner.y + y) * static_cast<std::size_t>(whole.width) + corner.x + x;
+      out.colour[y * extent.x + x] = whole.colour[from];
+      out.z_sum[y * extent.x + x] = whole.z_sum[from];
+    }
+  }
+  return out;
+}
+
+FrameSettings with(FrameSettings settings, std::vector<ViewPart> parts) {
+  settings.parts = std::move(parts);
+  return settings;
+}
+
+// Whether windows of a picture, drawn in one frame, are what the whole picture has there.
+testing::AssertionResult windows_are_right(const Model& model, const FrameSettings& settings,
+                                           int supertile_side = 1) {
+  const shared::View view = view_of(87.3);
+  const render::Workings workings{.supertile_side = supertile_side};
+  const Picture whole = draw(model, view, settings, workings);
+  struct Window {
+    glm::uvec2 corner, size, extent;
+  };
+  const Window windows[] = {
+      {{64, 32}, {64, 96}, {64, 96}}, {{0, 96}, {96, 0}, {96, 54}}, {{160, 0}, {40, 32}, {40, 32}}};
+  std::vector<ViewPart> parts;
+  for (const Window& window : windows) parts.push_back({.corner = window.corner, .size = window.size});
+  const std::vector<Picture> drawn =
+      draw(model, std::vector(std::size(windows), view), with(settings, parts), workings);
+  for (std::size_t k = 0; k < std::size(windows); ++k) {
+    const auto same = same_bits(drawn[k], cut(whole, windows[k].corner, windows[k].extent));
+    if (!same) return testing::AssertionFailure() << "window " << k << ": " << same.message();
+  }
+  return testing::AssertionSuccess();
+}
+
+TEST(Parts, WindowsAreTheWholePictureBitForBit) {
+  const Model model = test::random_model(41, 3000, 1, 0.75);
+  for (const int supertile_side : {1, 2}) {
+    EXPECT_TRUE(windows_are_right(model, {}, supertile_side)) << supertile_side;
+    EXPECT_TRUE(windows_are_right(model, {.th = TH_SQUARED, .tolerance = 0.05f}, supertile_side));
+  }
+  for (const int tiles : {TILES_SNUG, TILES_OBB, TILES_AABB, TILES_ALL})
+    EXPECT_TRUE(windows_are_right(model, {.tiles = tiles})) << tiles_choices[tiles].name;
+  for (const int tile_size : {8, 32}) EXPECT_TRUE(windows_are_right(model, {.tile_size = tile_size}));
+  EXPECT_TRUE(windows_are_right(
+      model, {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT, .precision = PRECISION_HALF}, 2));
+}
+
+TEST(Parts, AWindowBesideItsPlaceIsCaught) {
+  const Model model = test::random_model(41, 3000, 1, 0.75);
+  for (const char* fault : {"view.shift_x + 1u, view.shift_y", "view.shift_x, view.shift_y + 16u"}) {
+    const test::FaultyShaders faulty("tiles/places.glsl", "view.shift_x, view.shift_y", fault);
+    EXPECT_FALSE(windows_are_right(model, {}));
+  }
+  // What lies half in a window and half beside it.
+  const test::FaultyShaders faulty("tiles/tiles.glsl", "vec2(first_drawn(view)) - REACH, last",
+                                   "vec2(first_drawn(view)) + 24.0, last");
+  EXPECT_FALSE(windows_are_right(model, {}));
+}
+
+// Ragged columns of the rows of tiles, some empty, and a hole.
+ViewPart ragged(int tile) {
+  ViewPart part{.hole_begin = {50, 40}, .hole_end = {130, 150}};
+  const auto tiles = (size + tile - 1) / tile;
+  for (int row = 0; row < tiles.y; ++row) {
+    const std::uint32_t begin = row % 3, end = static_cast<std::uint32_t>(tiles.x - row % 4);
+    part.columns.emplace_back(begin, row == 2 ? begin : std::max(begin, end));
+  }
+  return part;
+}
+
+// Whether a part's tiles are drawn, by another rule than the shaders'.
+bool shows(const ViewPart& part, int tile, int x, int y) {
+  const glm::uvec2 at(x / tile, y / tile), columns = part.columns[at.y];
+  if (at.x < columns.x || at.x >= columns.y) return false;
+  const glm::uvec2 first = at * static_cast<std::uint32_t>(tile);
+  const glm::uvec2 end = glm::min(first + static_cast<std::uint32_t>(tile), glm::uvec2(size));
+  return glm::any(glm::lessThan(first, part.hole_begin)) || glm::any(glm::greaterThan(end, part.hole_end));
+}
+
+Picture masked(Picture whole, const ViewPart& part, int tile) {
+  for (int y = 0; y < whole.height; ++y) {
+    for (int x = 0; x < whole.width; ++x) {
+      const auto k = static_cast<std::size_t>(y * whole.width + x);
+      if (shows(part, tile, x, y)) continue;
+      whole.colour[k] = {0, 0, 0, 1};
+      whole.z_sum[k] = 0;
+    }
+  }
+  return whole;
+}
+
+TEST(Parts, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
+  const Model model = test::random_model(42, 3000, 1, 0.75);
+  const std::vector views = {view_of(100), view_of(70)};
+  for (const auto& [settings, side] :
+       {std::pair{FrameSettings{}, 1},
+        {FrameSettings{}, 2},
+        {FrameSettings{.tile_size = 8}, 2},
+        {FrameSettings{.tiles = TILES_ALL}, 1},
+        {FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f, .projection = PROJECTION_TANGENT}, 2}}) {
+    const ViewPart part = ragged(settings.tile_size);
+    const render::Workings workings{.supertile_side = side};
+    const std::vector<Picture> whole = draw(model, views, settings, workings);
+    const auto drawn = draw(model, views, with(settings, {part, {}}), workings);
+    EXPECT_TRUE(same_bits(drawn[0], masked(whole[0], part, settings.tile_size))) << side;
+    EXPECT_TRUE(same_bits(drawn[1], whole[1])) << side;
+    EXPECT_FALSE(same_bits(drawn[0], whole[0]));
+  }
+}
+
+// How long the lists of a view's tiles are; only those that no hole hides.
+std::vector<std::uint32_t> list_sizes(const Model& model, const FrameSettings& settings, int supertile_side,
+                                      const ViewPart& shown) {
+  test::StageRun run(model, {view_of(100)}, settings, supertile_side);
+  run.run_until(render::Stage::ranges);
+  const auto counters = run.frame.counters.read<shared::Counters>(1).front();
+  EXPECT_EQ(counters.overflow, 0u);
+  const auto ranges =
+      run.frame.ranges_of_tiles(run.shape).read<std::uint32_t>(2 * std::size_t{run.shape.tile_count()});
+  const shared::View& view = run.shape.views.front();
+  const auto side = static_cast<std::uint32_t>(supertile_side);
+  const std::uint32_t across = (view.tiles_x + side - 1) / side;
+  std::vector<std::uint32_t> sizes;
+  std::uint32_t pairs = 0;
+  for (std::uint32_t y = 0; y < view.tiles_y; ++y) {
+    for (std::uint32_t x = 0; x < view.tiles_x; ++x) {
+      const std::uint32_t tile = (y / side * across + x / side) * side * side + y % side * side + x % side;
+      const std::uint32_t length = ranges[2 * tile + 1] - ranges[2 * tile];
+      pairs += length;
+      const int px = settings.tile_size;
+      const auto in_span = shown.columns[y].x <= x && x < shown.columns[y].y;
+      const bool is_shown = shows(shown, px, static_cast<int>(x) * px, static_cast<int>(y) * px);
+      sizes.push_back(is_shown ? length : 0);
+      if (!is_shown && !in_span && !settings.parts.empty()) {
+        EXPECT_EQ(length, 0u) << x << " " << y;
+      }
+    }
+  }
+  EXPECT_EQ(pairs, supertile_side == 1 ? counters.pairs : counters.tile_pairs);
+  return sizes;
+}
+
+TEST(Parts, WhatIsNotShownMakesNoPairs) {
+  const Model model = test::random_model(43, 3000, 1, 0.75);
+  for (const int tiles : {TILES_ELLIPSE, TILES_SNUG, TILES_AABB}) {
+    for (const int side : {1, 2}) {
+      const FrameSettings whole{.tiles = tiles};
+      const ViewPart part = ragged(whole.tile_size);
+      EXPECT_EQ(list_sizes(model, with(whole, {part}), side, part), list_sizes(model, whole, side, part))
+          << tiles_choices[tiles].name << " " << side;
+    }
+  }
+}
+
+TEST(Parts, AColumnTooManyOrTooFewIsCaught) {
+  const Model model = test::random_model(43, 3000, 1, 0.75);
+  const ViewPart part = ragged(16);
+  const auto right = list_sizes(model, {}, 1, part);
+  for (const char* fault : {"min(columns.y, drawn.y - 1u)", "min(columns.y, drawn.y + 1u)"}) {
+    const test::FaultyShaders faulty("tiles/parts.glsl", "min(columns.y, drawn.y)", fault);
+    testing::TestPartResultArray said;
+    {
+      const testing::ScopedFakeTestPartResultReporter caught(&said);
+      const auto sizes = list_sizes(model, with({}, {part}), 1, part);
+      if (sizes != right) ADD_FAILURE() << "other lists";
+    }
+    EXPECT_GT(said.size(), 0) << fault;
+  }
+}
+
+TEST(Parts, AHoleIsPairedOnlyByWhatReachesOverIt) {
+  const Model model = test::random_model(44, 3000, 0, 0.75);
+  render::Frame frame(test::gl_context(), model);
+  const std::vector views = {view_of(100)};
+  const auto whole = frame.draw(views).pairs;
+  const auto holed = frame.draw(views, with({}, {{.hole_begin = {32, 32}, .hole_end = {176, 128}}})).pairs;
+  const double left = static_cast<double>(holed) / static_cast<double>(whole);
+  EXPECT_LT(left, 0.75);  // the hole is 0.46 of the picture
+  EXPECT_GT(left, 0.4);
+}
+
+TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
+  const Model model = test::random_model(45, 4000, 1, 0.75);
+  const std::vector views = {view_of(100), view_of(100), view_of(100)};
+  for (const int th : {TH_SQUARED, TH_PERIPHERAL}) {
+    FrameSettings settings{.th = th, .tolerance = 0.1f};
+    const auto drawn = draw(
+        model, views,
+        with(settings, {{.tolerance_share = 0.0f}, {.tolerance_share = 1.0f}, {.tolerance_share = 4.0f}}));
+    EXPECT_TRUE(same_bits(drawn[0], draw(model, views[0])));
+    EXPECT_TRUE(same_bits(drawn[1], draw(model, views[0], settings)));
+    settings.tolerance = 0.4f;
+    EXPECT_TRUE(same_bits(drawn[2], draw(model, views[0], settings)));
+    EXPECT_FALSE(same_bits(drawn[1], drawn[2]));
+    EXPECT_FALSE(same_bits(drawn[0], drawn[1]));
+  }
+}
+
+// Of each eye the whole picture in fewer pixels, and a window of it.
+std::vector<shared::View> four_views(double cant) {
+  const Camera head = test::front_camera(size.x, size.y, 180);
+  const auto rig = stereo::make_rig(head, {.ipd = 0.1, .cant_degrees = cant});
+  std::vector<shared::View> views;
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    views.push_back(rig.views[eye]);
+    set_lens(views.back(), resized(rig.cameras[eye], 80, 60));
+    views.push_back(rig.views[eye]);
+  }
+  return views;
+}
+
+TEST(Parts, OneDepthOrderServesFourViews) {
+  const Model model = test::random_model(46, 3000, 1, 0.75);
+  const ViewPart inset{.corner = {64, 32}, .size = {64, 64}};
+  for (const double cant : {0.0, 6.0}) {
+    for (const int order : {ORDER_DEPTH, ORDER_DISTANCE}) {
+      const FrameSettings settings = with({.order = order}, {{}, inset, {}, inset});
+      const auto views = four_views(cant);
+      render::Frame frame(test::gl_context(), model);
+      const auto report = frame.draw(views, settings);
+      EXPECT_EQ(report.order_groups, cant != 0.0 && order == ORDER_DEPTH ? 2u : 1u) << cant << " " << order;
+      const auto drawn = frame.read_pictures();
+      for (std::size_t v = 0; v < views.size(); ++v) {
+        const Picture alone = draw(model, views[v], {.order = order});
+        EXPECT_TRUE(same_bits(drawn[v], v % 2 == 0 ? alone : cut(alone, inset.corner, inset.size))) << v;
+      }
+    }
+  }
+  // Planted: an inset whose eye is another's.
+  auto views = four_views(6.0);
+  std::swap(views[1], views[3]);
+  render::Frame frame(test::gl_context(), model);
+  EXPECT_EQ(frame.draw(views, with({}, {{}, inset, {}, inset})).order_groups, 3u);
+}
+
+TEST(Parts, AQualityIsThatOfWhatIsShown) {
+  const Model model = test::random_model(97, 3000, 1);
+  const std::vector views = {view_of(100)};
+  const ViewPart part = ragged(16);
+  const auto exact = draw(model, views[0], with({}, {part}));
+  render::Frame frame(test::gl_context(), model);
+  for (int n = 0; n < 3; ++n) {
+    const auto report = frame.draw(views, with({.th = TH_SQUARED, .quality = 34}, {part}));
+    const auto shown = [](const Picture& picture) { return quantised(composite(picture, glm::vec3(0.0f))); };
+    const double db = measure::psnr(shown(frame.read_pictures().front()), shown(exact));
+    EXPECT_NEAR(report.quality, db, 0.4) << n;
+  }
+}
+
+TEST(Parts, WrongOnesAreNamed) {
+  const Model model = test::random_model(47, 10, 0);
+  const auto said = [&](const ViewPart& part, const FrameSettings& settings = {}) {
+    return [=, &model] { draw(model, view_of(100), with(settings, {part})); };
+  };
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        draw(model, view_of(100), with({}, {{}, {}}));
+      },
+      {"2 parts of 1 views"}));
+  EXPECT_TRUE(test::fails_saying(said({.corner = {16, 0}}), {"from (16, 0)", "multiples of 32"}));
+  EXPECT_TRUE(test::fails_saying(said({.size = {40, 32}}), {"40 x 32", "multiples of 32"}));
+  EXPECT_TRUE(test::fails_saying(said({.corner = {224, 0}}), {"from (224, 0) of 200 x 150"}));
+  EXPECT_TRUE(test::fails_saying(said({.corner = {64, 0}, .size = {0xFFFFFFE0u, 32}}), {"a window of"}));
+  EXPECT_TRUE(test::fails_saying(said({.columns = {{0, 1}}}), {"columns for 1 rows", "10 of 16 px"}));
+  EXPECT_TRUE(test::fails_saying(said({.columns = std::vector<glm::uvec2>(10, {0, 14})}), {"0 to 14", "13"}));
+  EXPECT_TRUE(test::fails_saying(said({.columns = std::vector<glm::uvec2>(10, {3, 2})}), {"3 to 2"}));
+  EXPECT_TRUE(test::fails_saying(said({.hole_begin = {0, 0}, .hole_end = {8, 151}}), {"hole", "200 x 150"}));
+  EXPECT_TRUE(test::fails_saying(said({.tolerance_share = -1.0f}), {"-1 of the frame's tolerance"}));
+  EXPECT_TRUE(test::fails_saying(said({.tolerance_share = 2.0f}, {.th = TH_SQUARED, .quality = 40}),
+                                 {"a quality is found for whole pictures"}));
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        draw(model, view_of(100), with({}, {{.corner = {32, 0}}}), test::given(render::Stage::project));
+      },
+      {"reference-until", "all of every view"}));
+}
+
+}  // namespace
+}  // namespace binosplat
