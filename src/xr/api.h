@@ -46,6 +46,7 @@ namespace binosplat::xr {
   X(CreateActionSet)                   \
   X(DestroyActionSet)                  \
   X(CreateAction)                      \
+  X(DestroyAction)                     \
   X(SuggestInteractionProfileBindings) \
   X(AttachSessionActionSets)           \
   X(SyncActions)                       \

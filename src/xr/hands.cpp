@@ -65,7 +65,10 @@ Hands::~Hands() {
   for (const XrSpace space : spaces_) {
     if (space != XR_NULL_HANDLE) api_.DestroySpace(space);
   }
-  api_.DestroyActionSet(set_);  // and its actions
+  for (const XrAction action : {pose_, stick_, grab_, menu_, gaze_}) {
+    if (action != XR_NULL_HANDLE) api_.DestroyAction(action);
+  }
+  api_.DestroyActionSet(set_);
 }
 
 XrAction Hands::make_action(const char* name, const char* shown, XrActionType type) {

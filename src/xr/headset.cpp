@@ -21,7 +21,8 @@ constexpr double own_share = 0.8;         // of a frame's time: the runtime draw
 constexpr double eyes_above_floor = 1.6;  // m, of somebody who stands
 constexpr int sessions_most = 10;         // one after the other, where they are lost
 constexpr milliseconds between_sessions{500};
-constexpr milliseconds between_polls{10};  // while no frames are wanted
+constexpr XrDuration between_looks = 1'000'000'000;  // ns
+constexpr milliseconds between_polls{10};            // while no frames are wanted
 
 class Viewer {
  public:
@@ -37,15 +38,18 @@ class Viewer {
   /// False where the session was lost.
   bool run_session() {
     Session session(instance_);
+    const struct Ended {  // before the session
+      std::optional<Projection>& projection;
+      ~Ended() { projection.reset(); }
+    } ended{projection_};
     Hands hands(session);
-    Projection projection(session, context_, settings_.projection);
-    log_info("{}: {}", instance_.headset(), projection.description());
+    make_projection(session);
     Walk walk(start_of(settings_, session.on_floor()));
     frame_.start_over();
     last_.reset();
     try {
       while (session.poll()) {
-        const bool drawn = session.running() && draw(session, hands, projection, walk);
+        const bool drawn = session.running() && draw(session, hands, walk);
         if (!beside_.step(drawn ? &frame_ : nullptr) && !leaving_) {
           leaving_ = true;
           session.request_exit();
@@ -69,7 +73,7 @@ class Viewer {
 
  private:
   /// A frame of the runtime's; false where nothing was to be drawn.
-  bool draw(Session& session, Hands& hands, Projection& projection, Walk& walk) {
+  bool draw(Session& session, Hands& hands, Walk& walk) {
     const FrameTime time = session.begin_frame();
     const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
     if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
@@ -80,6 +84,11 @@ class Viewer {
       return false;
     }
     if (session.take_recentred()) frame_.forget();
+    if (time.display - looked_ >= between_looks) {
+      looked_ = time.display;
+      if (projection_->outdated()) make_projection(session);
+    }
+    if (session.take_masks_changed()) projection_->take_masks();
     follow(hands, walk, views, time);
     follow_levels();
     if (settings_.budget_ms && !budget_) {
@@ -91,12 +100,19 @@ class Viewer {
     settings.quality = effort.quality;
     if (effort.quality > 0.0f) settings.th = TH_SQUARED;
     const auto start = Clock::now();
-    projection.draw(frame_, views, walk.stage(), settings, effort.scale);
+    projection_->draw(frame_, views, walk.stage(), settings, effort.scale);
     const double ms = ms_since(start);
     times_.push_back(ms);
     if (budget_) budget_->took(ms, 1e-6 * static_cast<double>(time.period));
-    session.end_frame(time, projection.layer());
+    session.end_frame(time, projection_->layer());
     return true;
+  }
+
+  void make_projection(const Session& session) {
+    projection_.reset();  // its memory first
+    projection_.emplace(session, context_, settings_.projection);
+    projection_->take_masks();
+    log_info("{}: {}", instance_.headset(), projection_->description());
   }
 
   /// To where hands take the head.
@@ -130,8 +146,10 @@ class Viewer {
   render::Frame frame_;
   std::future<Model> levels_;
   std::optional<Budget> budget_;
-  std::optional<XrTime> last_;  // when the last frame was seen
-  std::vector<double> times_;   // ms
+  std::optional<Projection> projection_;  // of the session at hand
+  std::optional<XrTime> last_;            // when the last frame was seen
+  XrTime looked_ = 0;                     // when it was asked which sizes the runtime recommends
+  std::vector<double> times_;             // ms
   bool tracked_ = true, leaving_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -33,6 +34,26 @@ std::size_t place_of(std::size_t view, std::size_t views) {
   return views == 4 ? (view % 2) * 2 + view / 2 : view;
 }
 
+// What an inset covers of the wide view it lies in is not drawn there, but for a margin that runtimes may mix
+// both in. Both look the same way from the same place.
+void take_hole(const XrView& wide, const XrView& inset, const glm::ivec2& size, render::ViewPart& part) {
+  if (std::memcmp(&wide.pose, &inset.pose, sizeof(XrPosef)) != 0) return;
+  constexpr double margin = 0.1;  // of the inset's sides
+  const double left = std::tan(wide.fov.angleLeft), right = std::tan(wide.fov.angleRight);
+  const double up = std::tan(wide.fov.angleUp), down = std::tan(wide.fov.angleDown);
+  glm::dvec2 begin((std::tan(inset.fov.angleLeft) - left) / (right - left),
+                   (up - std::tan(inset.fov.angleUp)) / (up - down));
+  glm::dvec2 end((std::tan(inset.fov.angleRight) - left) / (right - left),
+                 (up - std::tan(inset.fov.angleDown)) / (up - down));
+  const glm::dvec2 edge = margin * (end - begin);
+  const auto pixels = [&](const glm::dvec2& share) {
+    return glm::uvec2(glm::clamp(share, 0.0, 1.0) * glm::dvec2(size));
+  };
+  begin += edge;
+  end -= edge;
+  if (glm::all(glm::lessThan(begin, end))) part.hole_begin = pixels(begin), part.hole_end = pixels(end);
+}
+
 }  // namespace
 
 stereo::XrEye eye_of(const XrPosef& pose, const XrFovf& fov) {
@@ -48,17 +69,23 @@ Projection::Projection(const Session& session, gl::Context& context, const Proje
       settings_(settings),
       presenter_(context),
       layer_{XR_TYPE_COMPOSITION_LAYER_PROJECTION} {
-  for (const XrViewConfigurationView& view : session.instance().views()) {
-    const auto scaled = [&](std::uint32_t recommended, std::uint32_t most) {
-      const auto wanted = static_cast<int>(std::lround(recommended * settings.scale));
-      return std::clamp(wanted, 1, static_cast<int>(most));
-    };
-    sizes_.emplace_back(scaled(view.recommendedImageRectWidth, view.maxImageRectWidth),
-                        scaled(view.recommendedImageRectHeight, view.maxImageRectHeight));
-  }
+  sizes_ = sizes_now();
   eyes_.resize(sizes_.size());
   make_colours();
   if (session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) make_depths();
+}
+
+std::vector<glm::ivec2> Projection::sizes_now() const {
+  std::vector<glm::ivec2> sizes;
+  for (const XrViewConfigurationView& view : session_.instance().views()) {
+    const auto scaled = [&](std::uint32_t recommended, std::uint32_t most) {
+      const auto wanted = static_cast<int>(std::lround(recommended * settings_.scale));
+      return std::clamp(wanted, 1, static_cast<int>(most));
+    };
+    sizes.emplace_back(scaled(view.recommendedImageRectWidth, view.maxImageRectWidth),
+                       scaled(view.recommendedImageRectHeight, view.maxImageRectHeight));
+  }
+  return sizes;
 }
 
 void Projection::make_colours() {
@@ -104,6 +131,25 @@ void Projection::make_depths() {
         XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT);
 }
 
+void Projection::take_masks() {
+  for (std::size_t k = 0; k < eyes_.size(); ++k)
+    eyes_[k].visible = visible_of(session_, static_cast<std::uint32_t>(k));
+}
+
+// By the order in which they are drawn; none where all of every view is.
+std::vector<render::ViewPart> Projection::parts_of(std::span<const XrView> located,
+                                                   std::span<const glm::ivec2> sizes) const {
+  std::vector<render::ViewPart> parts(located.size());
+  for (std::size_t k = 0; k < located.size(); ++k) {
+    const std::size_t at = place_of(k, located.size());
+    parts[at].columns = visible_columns(eyes_[k].visible, located[k].fov, sizes[at], TILE_SIZE_DEFAULT);
+    if (located.size() == 4 && k < 2) take_hole(located[k], located[k + 2], sizes[at], parts[at]);
+  }
+  const auto is_whole = [](const render::ViewPart& part) { return part.is_whole(); };
+  if (std::all_of(parts.begin(), parts.end(), is_whole)) parts.clear();
+  return parts;
+}
+
 render::FrameReport Projection::draw(render::Frame& frame, std::span<const XrView> located,
                                      const stereo::Stage& stage, render::FrameSettings settings,
                                      double part) {
@@ -121,6 +167,7 @@ render::FrameReport Projection::draw(render::Frame& frame, std::span<const XrVie
     sizes[place_of(k, count)] = glm::max(glm::ivec2(1), glm::ivec2(glm::round(part * glm::dvec2(sizes_[k]))));
   }
   const stereo::HeadViews head = stereo::views_from_xr(drawn, stage, sizes, settings_.near_plane);
+  settings.parts = parts_of(located, sizes);
   render::FrameReport report = frame.draw(head.views, settings);
   const double near_plane = settings_.near_plane;
   const double far_plane = std::max(far_metres * stage.units_per_metre, 2.0 * near_plane);

@@ -10,6 +10,7 @@
 #include "render/frame.h"
 #include "stereo/embed.h"
 #include "xr/swapchain.h"
+#include "xr/visibility.h"
 
 namespace binosplat::xr {
 
@@ -29,6 +30,12 @@ class Projection {
   render::FrameReport draw(render::Frame& frame, std::span<const XrView> located, const stereo::Stage& stage,
                            render::FrameSettings settings, double part = 1.0);
 
+  /// Whether the runtime recommends other sizes now: a new Projection would have them.
+  bool outdated() const { return sizes_ != sizes_now(); }
+
+  /// Asks the runtime anew what its lenses show.
+  void take_masks();
+
   /// The frame that was drawn last, for Session::end_frame.
   const XrCompositionLayerBaseHeader* layer() const;
 
@@ -39,9 +46,13 @@ class Projection {
  private:
   struct Eye {
     std::unique_ptr<Swapchain> colours, depths;
+    Visible visible;
   };
+  std::vector<glm::ivec2> sizes_now() const;
   void make_colours();
   void make_depths();
+  std::vector<render::ViewPart> parts_of(std::span<const XrView> located,
+                                         std::span<const glm::ivec2> sizes) const;
 
   const Session& session_;
   ProjectionSettings settings_;

@@ -98,6 +98,7 @@ class XrStage {
   /// What a program is to be run with: Surroundings::variables.
   std::map<std::string, std::string> variables() {
     script["folder"] = folder_.path().string();
+    std::filesystem::remove(folder_ / "log.jsonl");  // of the run before
     const auto path = folder_ / "script.json";
     write_text(path, script.dump(1));
     return {{"XR_RUNTIME_JSON", BINOSPLAT_XR_RUNTIME}, {"BINOSPLAT_XR_SCRIPT", path.string()}};
