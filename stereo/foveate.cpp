@@ -1,0 +1,188 @@
+#include "stereo/foveate.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/error.h"
+#include "shared/limits.h"
+
+namespace binosplat::stereo {
+
+namespace {
+
+constexpr double inset_least = 1.0, inset_most = 120.0;  // degrees
+constexpr double gaze_most = 80.0;
+constexpr double scale_least = 0.05;
+
+// Pixels of the context that one beside it is made of, on each side.
+constexpr std::uint32_t reach = 2;
+
+glm::dvec3 direction_of(const glm::dvec2& gaze) {
+  return glm::normalize(glm::dvec3(std::tan(glm::radians(gaze.x)), -std::tan(glm::radians(gaze.y)), 1.0));
+}
+
+// Slopes along axis k between which the cone of that half angle about a direction lies.
+glm::dvec2 slopes_of(const glm::dvec3& direction, int k, double half) {
+  const double middle = std::atan2(direction[k], direction.z);
+  const double sine = std::sin(half) / std::hypot(direction[k], direction.z);
+  const double side = sine < 1.0 ? std::asin(sine) : glm::radians(90.0);
+  const double most = glm::radians(89.0);
+  return {std::tan(std::max(middle - side, -most)), std::tan(std::min(middle + side, most))};
+}
+
+struct Span {
+  std::uint32_t begin = 0, end = 0;
+};
+
+// Pixels of a picture, `size` of them, that lie between.
+Span pixels_between(double begin, double end, std::uint32_t size) {
+  const auto within = [&](double at) {
+    return static_cast<std::uint32_t>(std::clamp(at, 0.0, static_cast<double>(size)));
+  };
+  return {within(std::floor(begin)), within(std::ceil(end))};
+}
+
+// Widened to where windows may begin and end.
+Span to_cells(const Span& span, std::uint32_t size) {
+  return {span.begin / BLEND_CELL * BLEND_CELL,
+          std::min(size, (span.end + BLEND_CELL - 1) / BLEND_CELL * BLEND_CELL)};
+}
+
+}  // namespace
+
+void check(const Foveation& f, std::string_view prefix) {
+  // Written so that values that are not finite fail, too.
+  if (!(f.inset_degrees >= inset_least && f.inset_degrees <= inset_most))
+    fail("{}inset {}: expected {} to {} degrees", prefix, f.inset_degrees, inset_least, inset_most);
+  if (!(f.context_scale >= scale_least && f.context_scale <= 1.0))
+    fail("{}context {}: expected {} to 1 of the picture's pixels along each axis", prefix, f.context_scale,
+         scale_least);
+  if (!(f.seam >= 0.0 && f.seam <= 1.0)) fail("{}seam {}: expected 0 to 1 of the inset", prefix, f.seam);
+  for (const glm::dvec2& gaze : f.gaze) {
+    if (!(std::abs(gaze.x) <= gaze_most && std::abs(gaze.y) <= gaze_most))
+      fail("{}gaze {},{}: expected up to {} degrees to either side", prefix, gaze.x, gaze.y, gaze_most);
+  }
+}
+
+FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::size_t nth) {
+  check(foveation);
+  if (foveation.gaze.size() > 1 && nth >= foveation.gaze.size())
+    fail("{} gazes: there is none for eye {}", foveation.gaze.size(), nth);
+  const glm::dvec2 gaze =
+      foveation.gaze.empty() ? glm::dvec2(0.0) : foveation.gaze[std::min(nth, foveation.gaze.size() - 1)];
+  const glm::dvec3 direction = direction_of(gaze);
+  const double half = glm::radians(foveation.inset_degrees) / 2.0;
+  const glm::uvec2 size(eye.width, eye.height);
+  FoveatedEye out;
+  for (int k = 0; k < 2; ++k) {
+    const double focal = eye.lens[k], middle = eye.lens[k + 2];
+    const glm::dvec2 px = focal * slopes_of(direction, k, half) + middle;
+    const Span inset = pixels_between(px.x, px.y, size[k]);
+    if (inset.begin >= inset.end) {
+      fail("gaze {},{}: the inset lies outside the picture of {} x {} px", gaze.x, gaze.y, size.x, size.y);
+    }
+    out.inset_begin[k] = inset.begin;
+    out.inset_end[k] = inset.end;
+    if (k == 0) out.seam = foveation.seam * (px.y - px.x);
+  }
+  out.context = eye;
+  for (int k = 0; k < 2; ++k) {
+    const Span seam = pixels_between(out.inset_begin[k] - out.seam, out.inset_end[k] + out.seam, size[k]);
+    const Span cells = to_cells(seam, size[k]);
+    out.window.corner[k] = cells.begin;
+    out.window.size[k] = cells.end - cells.begin;
+    // The same frustum in whole pixels.
+    const auto pixels = static_cast<std::uint32_t>(std::lround(size[k] * foveation.context_scale));
+    const double scale = static_cast<double>(std::max(pixels, 1u)) / size[k];
+    (k == 0 ? out.context.width : out.context.height) = std::max(pixels, 1u);
+    out.context.lens[k] = static_cast<float>(eye.lens[k] * scale);
+    out.context.lens[k + 2] = static_cast<float>(eye.lens[k + 2] * scale);
+    // What no pixel beside the inset is made of.
+    const auto begin = static_cast<std::uint32_t>(std::ceil(out.inset_begin[k] * scale)) + reach;
+    const auto end = static_cast<std::uint32_t>(std::floor(out.inset_end[k] * scale));
+    const bool at_begin = out.inset_begin[k] == 0, at_end = out.inset_end[k] == size[k];
+    out.context_part.hole_begin[k] = at_begin ? 0 : begin;
+    out.context_part.hole_end[k] = at_end ? std::max(pixels, 1u) : end - std::min(end, reach);
+  }
+  if (glm::any(glm::greaterThanEqual(out.context_part.hole_begin, out.context_part.hole_end)))
+    out.context_part.hole_begin = out.context_part.hole_end = glm::uvec2(0);
+  out.window.tolerance_share = 0.0f;
+  return out;
+}
+
+FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation& foveation,
+                             const render::FrameSettings& settings) {
+  if (eyes.empty() || eyes.size() > MAX_VIEWS / 2)
+    fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
+  if (!settings.parts.empty()) fail("foveation of views of which only parts are drawn");
+  FoveatedViews out{.settings = settings};
+  for (std::size_t k = 0; k < eyes.size(); ++k) {
+    const FoveatedEye& eye = out.eyes.emplace_back(foveate(eyes[k], foveation, k));
+    out.views.insert(out.views.end(), {eye.context, eyes[k]});
+    out.settings.parts.insert(out.settings.parts.end(), {eye.context_part, eye.window});
+  }
+  return out;
+}
+
+render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, const Foveation& foveation,
+                                        const render::FrameSettings& settings,
+                                        const render::Workings& workings) {
+  FoveatedViews drawn = foveated_views(eyes, foveation, settings);
+  render::FrameReport report = frame_.draw(drawn.views, drawn.settings, workings);
+  eyes_.assign(eyes.begin(), eyes.end());
+  std::int64_t pixels = 0;
+  for (shared::View& eye : eyes_) {
+    eye.pixel_offset = static_cast<std::uint32_t>(pixels);
+    pixels += std::int64_t{eye.width} * eye.height;
+  }
+  colours_.reserve(pixels * 16);
+  z_sums_.reserve(pixels * 4);
+  dispatcher_.begin_frame();
+  dispatcher_.begin_stage("compose");
+  for (std::size_t k = 0; k < eyes_.size(); ++k) {
+    const shared::View &eye = eyes_[k], &context = frame_.views()[2 * k], &window = frame_.views()[2 * k + 1];
+    const FoveatedEye& parts = drawn.eyes[k];
+    dispatcher_.start(dispatcher_.context().program("foveate.comp"),
+                      gl::Work::threads(std::uint64_t{eye.width} * eye.height, THREADS),
+                      {{"Colours", frame_.colours()},
+                       {"ZSums", frame_.buffers().z_sums},
+                       {"Composed", colours_},
+                       {"ComposedZ", z_sums_}},
+                      {{"first", eye.pixel_offset},
+                       {"width", eye.width},
+                       {"height", eye.height},
+                       {"context_first", context.pixel_offset},
+                       {"context_width", context.width},
+                       {"context_height", context.height},
+                       {"window_first", window.pixel_offset},
+                       {"window_left", window.left},
+                       {"window_top", window.top},
+                       {"window_width", window.width},
+                       {"inset_left", parts.inset_begin.x},
+                       {"inset_top", parts.inset_begin.y},
+                       {"inset_right", parts.inset_end.x},
+                       {"inset_bottom", parts.inset_end.y},
+                       {"seam", std::bit_cast<std::uint32_t>(static_cast<float>(parts.seam))}});
+  }
+  dispatcher_.wait_for_writes();
+  dispatcher_.end_frame();
+  for (const gl::StageTime& stage : dispatcher_.wait_and_time()) {
+    report.stages.push_back(stage);
+    report.total_ms += stage.ms;
+  }
+  parts_ = std::move(drawn.eyes);
+  return report;
+}
+
+std::vector<Picture> FoveatedFrame::read_pictures() const {
+  std::vector<Picture> pictures;
+  for (const shared::View& eye : eyes_) {
+    Picture& picture = pictures.emplace_back(static_cast<int>(eye.width), static_cast<int>(eye.height));
+    picture.colour = colours_.read<glm::vec4>(picture.colour.size(), eye.pixel_offset);
+    picture.z_sum = z_sums_.read<float>(picture.z_sum.size(), eye.pixel_offset);
+  }
+  return pictures;
+}
+
+}  // namespace binosplat::stereo

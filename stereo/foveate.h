@@ -1,0 +1,90 @@
+#pragma once
+// Foveated pictures: of each eye a window about its gaze, exact to the bit, and around it the same picture in
+// fewer pixels, brought to one size on the GPU. Both are views of one frame and share its depth order.
+
+#include <array>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/image.h"
+#include "gl/dispatch.h"
+#include "render/frame.h"
+
+namespace binosplat::stereo {
+
+/// What is seen sharply. Degrees are those of the eye: its picture's middle is where its axis meets it,
+/// wherever that lies in an asymmetric frustum.
+struct Foveation {
+  double inset_degrees = 20.0;  // across what is exact, all around the gaze
+  double context_scale = 0.4;   // of the picture's pixels along each axis, above 0 and up to 1
+  /// By eye, or one for all: degrees to the right of its axis and above it; empty: along it.
+  std::vector<glm::dvec2> gaze;
+  /// Of the inset: beyond it the window goes over into the context in so much more on each side. 0: at once.
+  double seam = 0.1;
+};
+
+/// Throws Error for numbers that no eye has; `prefix` goes before their names.
+void check(const Foveation& foveation, std::string_view prefix = "");
+
+/// Of one eye's picture, px.
+struct FoveatedEye {
+  glm::uvec2 inset_begin{0}, inset_end{0};  // of its pixels, those that are exact
+  double seam = 0.0;                        // around them
+  shared::View context;                     // the picture in fewer pixels
+  render::ViewPart context_part;            // without what only the inset shows
+  render::ViewPart window;                  // of the eye's own view: the inset and its seam
+};
+
+/// What is drawn of an eye's view. `nth` is the eye's place in foveation.gaze. Throws Error for what check()
+/// refuses, a list of gazes without that eye, and a gaze whose inset lies outside the picture.
+FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::size_t nth = 0);
+
+/// The views of a frame that draws these eyes, two each (its context, then its window), and the frame's
+/// settings, by whose tolerance the contexts go. The insets are exact.
+struct FoveatedViews {
+  std::vector<FoveatedEye> eyes;
+  std::vector<shared::View> views;
+  render::FrameSettings settings;
+};
+
+/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have parts, and as foveate()
+/// does.
+FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation& foveation,
+                             const render::FrameSettings& settings = {});
+
+class FoveatedFrame {
+ public:
+  explicit FoveatedFrame(std::shared_ptr<render::GpuModel> model)
+      : frame_(std::move(model)),
+        dispatcher_(frame_.model()->context()),
+        colours_(dispatcher_.context(), "foveated pixels"),
+        z_sums_(dispatcher_.context(), "their depth") {}
+
+  /// Draws all eyes in one frame and composes their pictures, which is a stage of its own, "compose". Throws
+  /// as foveated_views() and render::Frame::draw() do.
+  render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
+                           const render::FrameSettings& settings = {}, const render::Workings& workings = {});
+
+  /// The composed pictures of the last frame, one an eye; and on the GPU, as a frame's lie: vec4 (C, T) by
+  /// pixel, a view's from its pixel_offset on.
+  std::vector<Picture> read_pictures() const;
+  const gl::Buffer& colours() const { return colours_; }
+  const std::vector<shared::View>& views() const { return eyes_; }
+
+  /// What the last frame drew of each eye.
+  const std::vector<FoveatedEye>& parts() const { return parts_; }
+  /// What draws the parts: twice as many views.
+  render::Frame& frame() { return frame_; }
+
+ private:
+  render::Frame frame_;
+  gl::Dispatcher dispatcher_;
+  gl::Buffer colours_, z_sums_;
+  std::vector<shared::View> eyes_;
+  std::vector<FoveatedEye> parts_;
+};
+
+}  // namespace binosplat::stereo

@@ -1,0 +1,253 @@
+// Foveated pictures: the inset is the exact picture, to the bit, and around it lies the context and nothing
+// else.
+
+#include "stereo/foveate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/faulty_shaders.h"
+#include "render/support.h"
+#include "stereo/layout.h"
+#include "stereo/present.h"
+#include "stereo/rig.h"
+#include "support/caller.h"
+#include "support/errors.h"
+
+namespace binosplat {
+namespace {
+
+using stereo::FoveatedFrame;
+using stereo::Foveation;
+
+constexpr glm::ivec2 size{220, 160};
+
+std::array<shared::View, 2> eyes(const stereo::RigSettings& rig) {
+  return stereo::make_rig(test::front_camera(size.x, size.y, 150), rig).views;
+}
+
+const std::vector<stereo::RigSettings> rigs = {
+    {.ipd = 0.1}, {.ipd = 0.1, .convergence = 1.0}, {.ipd = 0.1, .cant_degrees = 5.0}};
+
+struct Drawn {
+  std::vector<Picture> pictures;
+  std::vector<stereo::FoveatedEye> parts;
+  render::FrameReport report;
+};
+
+Drawn draw(const Model& model, std::span<const shared::View> views, const Foveation& foveation,
+           const render::FrameSettings& settings = {}, int supertile_side = 0) {
+  FoveatedFrame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, settings.precision));
+  const auto report = frame.draw(views, foveation, settings, {.supertile_side = supertile_side});
+  return {frame.read_pictures(), frame.parts(), report};
+}
+
+// Degrees between a pixel's ray and a gaze, by another way than the code's.
+double degrees_off(const shared::View& view, const glm::dvec2& gaze, int x, int y) {
+  const glm::dvec3 ray((x + 0.5 - view.lens.z) / view.lens.x, (y + 0.5 - view.lens.w) / view.lens.y, 1.0);
+  const glm::dvec3 at(std::tan(glm::radians(gaze.x)), -std::tan(glm::radians(gaze.y)), 1.0);
+  return glm::degrees(std::atan2(glm::length(glm::cross(ray, at)), glm::dot(ray, at)));
+}
+
+// Whether the pixels that an eye sees sharply are the exact picture's, to the bit.
+testing::AssertionResult is_sharp(const Picture& drawn, const Picture& exact, const shared::View& view,
+                                  const Foveation& foveation, const glm::dvec2& gaze) {
+  int count = 0;
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      if (degrees_off(view, gaze, x, y) > foveation.inset_degrees / 2) continue;
+      const auto k = static_cast<std::size_t>(y * size.x + x);
+      ++count;
+      if (std::memcmp(&drawn.colour[k], &exact.colour[k], sizeof(glm::vec4)) != 0 ||
+          drawn.z_sum[k] != exact.z_sum[k])
+        return testing::AssertionFailure() << "pixel (" << x << ", " << y << ") differs";
+    }
+  }
+  if (count < 100) return testing::AssertionFailure() << "an inset of " << count << " px";
+  return testing::AssertionSuccess();
+}
+
+TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
+  const Model model = test::random_model(71, 3000, 1, 0.75);
+  const std::vector<std::vector<glm::dvec2>> gazes = {
+      {}, {{12, -7}}, {{-20, 11}, {-17, 11}}, {{34, 25}}};  // the last at the picture's corner
+  for (const stereo::RigSettings& rig : rigs) {
+    const auto views = eyes(rig);
+    const auto exact = test::draw(model, std::vector(views.begin(), views.end()));
+    for (std::size_t n = 0; n < gazes.size(); ++n) {
+      const Foveation foveation{
+          .inset_degrees = 18, .context_scale = 0.3 + 0.1 * static_cast<double>(n), .gaze = gazes[n]};
+      const auto drawn = draw(model, views, foveation, {}, 1 + static_cast<int>(n % 2));
+      EXPECT_EQ(drawn.report.order_groups, rig.cant_degrees == 0.0 ? 1u : 2u);
+      for (std::size_t eye = 0; eye < 2; ++eye) {
+        const glm::dvec2 gaze =
+            gazes[n].empty() ? glm::dvec2(0.0) : gazes[n][std::min(eye, gazes[n].size() - 1)];
+        EXPECT_TRUE(is_sharp(drawn.pictures[eye], exact[eye], views[eye], foveation, gaze)) << n << eye;
+        EXPECT_FALSE(test::same_bits(drawn.pictures[eye], exact[eye]));
+      }
+      // Planted: where the other eye looks.
+      if (n == 2) {
+        EXPECT_FALSE(is_sharp(drawn.pictures[0], exact[0], views[0], foveation, gazes[n][1]));
+      }
+    }
+  }
+}
+
+TEST(Foveate, TheInsetIsExactWhateverTheContextMayCost) {
+  const Model model = test::random_model(72, 3000, 1, 0.75);
+  const auto views = eyes(rigs[0]);
+  const render::FrameSettings perspective{.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT};
+  const auto exact = test::draw(model, std::vector(views.begin(), views.end()), perspective);
+  render::FrameSettings lossy = perspective;
+  lossy.th = TH_SQUARED;
+  lossy.tolerance = 0.3f;
+  const Foveation foveation{.inset_degrees = 20};
+  const auto drawn = draw(model, views, foveation, lossy),
+             lossless = draw(model, views, foveation, perspective);
+  EXPECT_LT(drawn.report.pairs, lossless.report.pairs);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    EXPECT_TRUE(is_sharp(drawn.pictures[eye], exact[eye], views[eye], foveation, {}));
+    EXPECT_FALSE(test::same_bits(drawn.pictures[eye], lossless.pictures[eye]));
+  }
+}
+
+TEST(Foveate, CantedEyesShareOneOrderByDistance) {
+  const Model model = test::random_model(73, 1000, 0, 0.75);
+  const auto drawn = draw(model, eyes(rigs[2]), {}, {.order = ORDER_DISTANCE});
+  EXPECT_EQ(drawn.report.order_groups, 1u);
+  EXPECT_EQ(drawn.report.stages.back().name, "compose");
+}
+
+double catmull_rom(double t) {
+  t = std::abs(t);
+  return t < 1 ? 1 + t * t * (1.5 * t - 2.5) : t < 2 ? 2 + t * (-4 + t * (2.5 - 0.5 * t)) : 0;
+}
+
+// The largest difference of colours beyond the seam from the context, drawn by itself and brought to size.
+double around_error(const Drawn& drawn, const Model& model) {
+  const stereo::FoveatedEye& part = drawn.parts[0];
+  const Picture context = test::draw(model, part.context);
+  const Picture& shown = drawn.pictures[0];
+  double worst = 0;
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      const glm::dvec2 p(x, y), begin(part.inset_begin), end(glm::dvec2(part.inset_end) - 1.0);
+      const glm::dvec2 beside = glm::max(glm::max(begin - p, p - end), 0.0);
+      if (glm::length(beside) == 0.0 || glm::length(beside) < part.seam) continue;
+      const glm::dvec2 at = (p + 0.5) * glm::dvec2(context.width, context.height) / glm::dvec2(size) - 0.5;
+      glm::dvec4 sum(0.0), low(1e9), high(-1e9);
+      for (int j = static_cast<int>(std::floor(at.y)) - 1; j <= std::floor(at.y) + 2; ++j) {
+        for (int i = static_cast<int>(std::floor(at.x)) - 1; i <= std::floor(at.x) + 2; ++i) {
+          const int row = std::clamp(j, 0, context.height - 1), column = std::clamp(i, 0, context.width - 1);
+          const glm::dvec4 one(context.colour[static_cast<std::size_t>(row * context.width + column)]);
+          sum += catmull_rom(i - at.x) * catmull_rom(j - at.y) * one;
+          if (std::abs(i - at.x) >= 1 || std::abs(j - at.y) >= 1) continue;
+          low = glm::min(low, one);
+          high = glm::max(high, one);
+        }
+      }
+      const glm::dvec4 expected = glm::clamp(sum, low, high);
+      const glm::dvec4 d =
+          glm::abs(expected - glm::dvec4(shown.colour[static_cast<std::size_t>(y * size.x + x)]));
+      worst = std::max({worst, d.r, d.g, d.b, d.a});
+    }
+  }
+  return worst;
+}
+
+TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
+  const Model model = test::random_model(74, 3000, 1, 0.75);
+  const auto views = eyes(rigs[1]);
+  for (const Foveation& foveation :
+       {Foveation{.inset_degrees = 40, .context_scale = 0.55, .seam = 0}, Foveation{.gaze = {{30, 20}}},
+        Foveation{.inset_degrees = 30, .context_scale = 0.95, .gaze = {{3, 2}}, .seam = 0.02}}) {
+    const auto drawn = draw(model, views, foveation, {.tile_size = 8});
+    EXPECT_LT(around_error(drawn, model), 1e-4);
+  }
+  // Planted: the hole reaches a pixel too far; the context lies half a pixel beside its place.
+  const Foveation foveation{.inset_degrees = 40, .context_scale = 0.55, .seam = 0};
+  {
+    const test::FaultyShaders faulty("tiles/parts.glsl", "!is_within(tile.x, span_of(row.y))",
+                                     "!is_within(tile.x + 1u, span_of(row.y))");
+    EXPECT_GT(around_error(draw(model, views, foveation, {.tile_size = 8}), model), 1e-2);
+  }
+  const test::FaultyShaders faulty("foveate.comp", "(vec2(pixel) + 0.5) * size",
+                                   "(vec2(pixel) + 1.0) * size");
+  EXPECT_GT(around_error(draw(model, views, {.gaze = {{30, 20}}}), model), 1e-2);
+}
+
+TEST(Foveate, AWindowOffByAPixelAndASeamThatEatsTheInsetAreCaught) {
+  const Model model = test::random_model(75, 3000, 1, 0.75);
+  const auto views = eyes(rigs[0]);
+  const auto exact = test::draw(model, views[0]);
+  const Foveation foveation{.inset_degrees = 18};
+  const std::pair<const char*, const char*> faults[] = {
+      {"pixel.x - window_left", "pixel.x + 1u - window_left"},
+      {"(pixel.y - window_top)", "(pixel.y + 1u - window_top)"},
+      {"vec2(pixel) - vec2(inset_right", "vec2(pixel) + 2.0 - vec2(inset_right"},
+      {"vec2(inset_left, inset_top) - vec2", "vec2(inset_left, inset_top) + 1.0 - vec2"}};
+  for (const auto& [sought, fault] : faults) {
+    const test::FaultyShaders faulty("foveate.comp", sought, fault);
+    EXPECT_FALSE(is_sharp(draw(model, views, foveation).pictures[0], exact, views[0], foveation, {}))
+        << fault;
+  }
+}
+
+TEST(Foveate, TheSeamIsSmooth) {
+  // A ramp from what the window shows to the context: a context that is black beside an inset that is white
+  // would fall by no more than smoothstep's steepest in a pixel.
+  const Model model = test::random_model(76, 3000, 0, 0.75);
+  const auto drawn = draw(model, eyes(rigs[0]), {.inset_degrees = 18, .context_scale = 1.0});
+  const auto exact = test::draw(model, eyes(rigs[0])[0]);
+  EXPECT_GE(test::psnr(drawn.pictures[0], exact), 120.0);  // of as many pixels both are the picture
+}
+
+TEST(Foveate, ComposedPicturesGoIntoEveryLayout) {
+  test::Caller caller;
+  const Model model = test::random_model(77, 500, 0, 0.75);
+  FoveatedFrame frame(std::make_shared<render::GpuModel>(*caller.context, model, PRECISION_FULL));
+  frame.draw(eyes(rigs[0]), {.gaze = {{5, 5}}});
+  const auto pictures = frame.read_pictures();
+  stereo::Presenter presenter(*caller.context);
+  const glm::vec3 blue(0.1f, 0.2f, 0.6f);
+  for (const int layout : {LAYOUT_PARALLEL, LAYOUT_OVER_UNDER}) {
+    const auto extent = stereo::layout_size(layout, size);
+    const std::uint32_t texture = caller.texture(GL_RGBA32F, extent.x, extent.y);
+    presenter.draw(frame.colours(), frame.views(), 0, layout, {.texture = texture}, blue);
+    const auto pixels = caller.read<float>(texture, extent.x, extent.y);
+    const Image written = composite(stereo::lay_out(layout, pictures[0], pictures[1], blue), blue);
+    double worst = 0;
+    for (int y = 0; y < extent.y; ++y) {
+      for (int x = 0; x < extent.x; ++x) {
+        const auto at = 4 * static_cast<std::size_t>((extent.y - 1 - y) * extent.x + x);
+        for (int c = 0; c < 3; ++c)
+          worst = std::max(worst,
+                           std::abs(double{pixels[at + static_cast<std::size_t>(c)]} - written.at(x, y, c)));
+      }
+    }
+    EXPECT_LT(worst, 1e-6);
+    caller.gl.DeleteTextures(1, &texture);
+  }
+}
+
+TEST(Foveate, WrongWordsAreNamed) {
+  const auto view = eyes(rigs[0])[0];
+  const auto said = [&](const Foveation& foveation) { return [=] { stereo::foveate(view, foveation, 2); }; };
+  const double nan = std::nan("");
+  EXPECT_TRUE(test::fails_saying(said({.inset_degrees = 0}), {"inset 0", "1 to 120"}));
+  EXPECT_TRUE(test::fails_saying(said({.inset_degrees = nan}), {"inset nan"}));
+  EXPECT_TRUE(test::fails_saying(said({.context_scale = 1.5}), {"context 1.5", "0.05 to 1"}));
+  EXPECT_TRUE(test::fails_saying(said({.gaze = {{0, 95}}}), {"gaze 0,95", "80 degrees"}));
+  EXPECT_TRUE(
+      test::fails_saying(said({.gaze = {{70, 0}}}), {"gaze 70,0", "outside the picture of 220 x 160"}));
+  EXPECT_TRUE(test::fails_saying(said({.gaze = {{0, 0}, {0, 0}}}), {"2 gazes", "eye 2"}));
+  EXPECT_TRUE(test::fails_saying(said({.seam = -1}), {"seam -1"}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { stereo::foveated_views(std::vector(5, view), {}); }, {"5 eyes", "1 to 4"}));
+  EXPECT_TRUE(test::fails_saying([&] { stereo::foveated_views(std::vector(1, view), {}, {.parts = {{}}}); },
+                                 {"only parts are drawn"}));
+}
+
+}  // namespace
+}  // namespace binosplat
