@@ -2,12 +2,12 @@
 // Programs that use OpenXR, run against the test runtime: what it is to play, and what it saw
 // (tests/xr/README.md).
 
-#include <cstdlib>
+#include <array>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "base/image.h"
 #include "support/program.h"
 
 namespace binosplat::test {
@@ -118,7 +118,8 @@ class XrStage {
   TempFolder folder_;
 };
 
-/// `frames` of a view at (x, y, z) and its like: two eyes of these sizes and angles in radians.
+/// A view of the script's: its size in px, its angles (left, right, up, down) in radians, its pose in the
+/// head.
 inline Json xr_view(int width, int height, const std::array<double, 4>& fov, const Json& pose) {
   Json view = pose;
   view["width"] = width;
