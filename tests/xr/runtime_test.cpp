@@ -184,5 +184,18 @@ TEST(XrRuntime, ScriptsThatMeanNothingAreRefused) {
   }
 }
 
+TEST(XrRuntime, KhronosValidationAgrees) {
+  const auto run = [](XrStage& stage, const std::string& word) {
+    return stage.validation(
+        run_program({word}, {.variables = stage.validated_variables(), .program = BINOSPLAT_XR_CLIENT}));
+  };
+  XrStage good, bad;
+  EXPECT_EQ(run(good, "depth"), "");
+  EXPECT_EQ(good.log().faults(), Strings());
+  EXPECT_EQ(good.log().frames().size(), 3u);
+  EXPECT_NE(run(bad, "view_layer_type").find("VUID-XrCompositionLayerProjectionView-type-type"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace binosplat::test
