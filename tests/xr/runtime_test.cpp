@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/display.h"
 #include "xr/xr_script.h"
 
 namespace binosplat::test {
@@ -142,7 +143,7 @@ TEST(XrRuntime, SessionsStopAndBeginAgain) {
 }
 
 TEST(XrRuntime, RecentringMovesLocalAndNotStage) {
-  for (const std::string space : {"", "stage"}) {
+  for (const std::string space : {"", "stage", "floor"}) {
     XrStage stage;
     stage.script = {{"frames", 3}, {"heads", {xr_pose({0.5, 1.6, 0})}}};
     stage.add_event({{"frame", 2}, {"recentre", xr_pose({0.5, 1.6, 1.0}, {0, 1, 0, 0})}});
@@ -152,6 +153,7 @@ TEST(XrRuntime, RecentringMovesLocalAndNotStage) {
     };
     EXPECT_NEAR(at(1)[0], 0.5 - 0.0315, 1e-6);
     EXPECT_NEAR(at(2)[0], space == "stage" ? 0.5 - 0.0315 : 0.0315, 1e-6);
+    EXPECT_NEAR(at(1)[1], space.empty() ? 0.0 : 1.6, 1e-6);
     EXPECT_NEAR(at(2)[2], space == "stage" ? 0.0 : 1.0, 1e-6);
   }
 }
@@ -195,6 +197,25 @@ TEST(XrRuntime, KhronosValidationAgrees) {
   EXPECT_EQ(good.log().frames().size(), 3u);
   EXPECT_NE(run(bad, "view_layer_type").find("VUID-XrCompositionLayerProjectionView-type-type"),
             std::string::npos);
+}
+
+TEST(XrRuntime, ContextsOfXlibAreAsGood) {
+  const VirtualDisplay display;
+  if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
+  XrStage stage;
+  stage.script = {{"frames", 2}};
+  auto variables = stage.validated_variables();
+  variables["DISPLAY"] = display.name();
+  variables["XR_ENABLE_API_LAYERS"] = "XR_APILAYER_LUNARG_core_validation";
+  const Outcome outcome =
+      run_program({"xlib", "depth"}, {.variables = variables, .program = BINOSPLAT_XR_CLIENT});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(stage.validation(outcome), "");
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  EXPECT_TRUE(log.clean()) << log.text();
+  EXPECT_EQ(log.all("session").at(0)["binding"], "xlib");
+  for (const Json& frame : log.frames()) expect_painted(log, frame, 1, {96, 80}, true);
 }
 
 }  // namespace
