@@ -1,23 +1,21 @@
 #pragma once
-// An X display without a screen (Xvfb), for programs that open windows.
+// A display of X without a screen.
 
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 
 namespace binosplat::test {
 
+/// Xvfb, for as long as this lives; name() is empty where it is not installed or does not start.
 class VirtualDisplay {
  public:
-  static bool is_there() { return std::system("command -v Xvfb > /dev/null") == 0; }
-
   VirtualDisplay() {
     int ends[2];
-    if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+    if (pipe(ends) != 0) return;
     server_ = fork();
     if (server_ == 0) {
       dup2(ends[1], 3);
@@ -26,19 +24,17 @@ class VirtualDisplay {
     }
     close(ends[1]);
     char number[16] = {};
-    const bool started = read(ends[0], number, sizeof(number) - 1) > 0;
+    if (read(ends[0], number, sizeof(number) - 1) > 0) name_ = ":" + std::to_string(std::atoi(number));
     close(ends[0]);
-    if (!started) throw std::runtime_error("Xvfb did not start");
-    name_ = ":" + std::to_string(std::atoi(number));
   }
   ~VirtualDisplay() {
+    if (server_ <= 0) return;
     kill(server_, SIGTERM);
     waitpid(server_, nullptr, 0);
   }
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
-  /// For the variable DISPLAY.
   const std::string& name() const { return name_; }
 
  private:

@@ -1,6 +1,7 @@
 // A small application of OpenXR that does all by the book, but for the faults that its arguments name: for
 // the tests of the runtime. Says which calls failed and how. Words that are no faults: depth (hands in depth,
-// too), quad (four views), array (one swapchain with a layer for each view), stage (the space of the layer).
+// too), quad (four views), actions (hands are read; gaze: eyes, too), mask, xlib (the binding), array (one
+// swapchain with a layer for each view), stage or floor (the space of the layer).
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -14,24 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "xr/runtime/openxr.h"
+#include "xr/client_actions.h"
+#include "xr/client_glx.h"
 
+namespace binosplat::xr_test {
 namespace {
-
-std::set<std::string> words;
-bool has(const char* word) { return words.count(word) != 0; }
-
-XrInstance instance = XR_NULL_HANDLE;
-
-XrResult say(const char* call, XrResult result) {
-  if (result == XR_SUCCESS || result == XR_EVENT_UNAVAILABLE) return result;
-  char text[XR_MAX_RESULT_STRING_SIZE] = "?";
-  if (instance != XR_NULL_HANDLE) xrResultToString(instance, result, text);
-  std::printf("%s: %s\n", call, instance != XR_NULL_HANDLE ? text : std::to_string(result).c_str());
-  std::fflush(stdout);
-  return result;
-}
-#define XR(name, ...) say(#name, name(__VA_ARGS__))
 
 constexpr XrPosef origin = {{0, 0, 0, 1}, {0, 0, 0}};
 
@@ -56,10 +44,17 @@ struct Client {
   bool running = false, over = false;
   int frame = 0;
   std::vector<XrView> last_views;
+  Actions actions;
 
   bool at(const char* word) const { return frame == 1 && has(word); }
 
+  XlibBinding xlib{};
+
   void make_context() {
+    if (has("xlib")) {
+      xlib = make_glx_context();
+      return;
+    }
     display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
     const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_NONE};
     eglInitialize(display, nullptr, nullptr);
@@ -71,8 +66,12 @@ struct Client {
   bool make_instance() {
     std::vector<const char*> extensions = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,
                                            XR_MNDX_EGL_ENABLE_EXTENSION_NAME};
+    if (has("binding_unasked")) extensions.pop_back();
     if (!has("depth_unasked")) extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
     if (has("quad")) extensions.push_back(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
+    if (has("gaze")) extensions.push_back(XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME);
+    if (has("floor") && !has("floor_unasked")) extensions.push_back(XR_LOCAL_FLOOR_NAME);
+    if (has("mask")) extensions.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
     XrInstanceCreateInfo info = {XR_TYPE_INSTANCE_CREATE_INFO};
     info.applicationInfo = {"client", 1, "", 0, XR_CURRENT_API_VERSION};
     if (has("no_name")) info.applicationInfo.applicationName[0] = '\0';
@@ -111,8 +110,9 @@ struct Client {
     if (!has("no_requirements")) say("requirements", get_requirements(instance, system, &requirements));
     const XrGraphicsBindingEGLMNDX binding = {
         XR_TYPE_GRAPHICS_BINDING_EGL_MNDX, nullptr, eglGetProcAddress, display, nullptr, context};
-    XrSessionCreateInfo info = {XR_TYPE_SESSION_CREATE_INFO, has("no_binding") ? nullptr : &binding, 0,
-                                system};
+    XrSessionCreateInfo info = {XR_TYPE_SESSION_CREATE_INFO, &binding, 0, system};
+    if (has("xlib")) info.next = &xlib;
+    if (has("no_binding")) info.next = nullptr;
     if (XR(xrCreateSession, instance, &info, &session) != XR_SUCCESS) return false;
     XrSession second = XR_NULL_HANDLE;
     if (has("second_session")) XR(xrCreateSession, instance, &info, &second);
@@ -125,6 +125,7 @@ struct Client {
     where.poseInReferenceSpace = origin;
     where.referenceSpaceType = has("unknown_space") ? XR_REFERENCE_SPACE_TYPE_UNBOUNDED_MSFT
                                : has("stage")       ? XR_REFERENCE_SPACE_TYPE_STAGE
+                               : has("floor")       ? XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_TEST
                                                     : XR_REFERENCE_SPACE_TYPE_LOCAL;
     if (has("bad_space")) where.poseInReferenceSpace.orientation.w = 2;
     if (XR(xrCreateReferenceSpace, session, &where, &space) != XR_SUCCESS) return false;
@@ -171,9 +172,34 @@ struct Client {
       if (event.type == XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) {
         state = reinterpret_cast<const XrEventDataSessionStateChanged&>(event).state;
         on_state();
+      } else if (event.type == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED) {
+        actions.say_profile();
+      } else if (event.type == XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR) {
+        say_mask(reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex);
       }
       event = {XR_TYPE_EVENT_DATA_BUFFER};
     }
+  }
+
+  /// How much of a view the lens hides.
+  void say_mask(std::uint32_t view) const {
+    PFN_xrGetVisibilityMaskKHR get_mask = nullptr;
+    XR(xrGetInstanceProcAddr, instance, "xrGetVisibilityMaskKHR",
+       reinterpret_cast<PFN_xrVoidFunction*>(&get_mask));
+    if (get_mask == nullptr) return;
+    const auto hidden = XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR;
+    XrVisibilityMaskKHR mask = {XR_TYPE_VISIBILITY_MASK_KHR};
+    say("mask", get_mask(session, type, view, hidden, &mask));
+    std::vector<XrVector2f> vertices(mask.vertexCountOutput);
+    std::vector<std::uint32_t> indices(mask.indexCountOutput);
+    mask.vertexCapacityInput = mask.vertexCountOutput;
+    mask.indexCapacityInput = has("small_mask") ? 1 : mask.indexCountOutput;
+    mask.vertices = vertices.data();
+    mask.indices = indices.data();
+    say("mask", get_mask(session, type, view, hidden, &mask));
+    std::printf("%d mask %u: %zu triangles", frame, view, indices.size() / 3);
+    for (const XrVector2f& v : vertices) std::printf(" %g,%g", v.x, v.y);
+    std::printf("\n");
   }
 
   void on_state() {
@@ -320,6 +346,7 @@ struct Client {
     }
     if (at("end_session_early")) XR(xrEndSession, session);
     const std::vector<XrView> views = locate(now.predictedDisplayTime);
+    if (has("actions")) actions.read(frame, space, now.predictedDisplayTime);
     const bool shows = now.shouldRender == XR_TRUE || has("always_shows");
     if (now.shouldRender == XR_TRUE && !has("never_draws")) {
       for (std::size_t k = 0; k < colours.size(); ++k) draw(colours[k], k, false);
@@ -344,6 +371,8 @@ struct Client {
     make_context();
     if (!make_instance()) return;
     if (find_system() && make_session() && make_chains()) {
+      if (has("actions")) actions.make(session);
+      if (has("mask")) say_mask(0);
       // A hundred frames of patience are the runtime's.
       while (!over && frame < 150) {
         poll();
@@ -361,6 +390,7 @@ struct Client {
         if (one != XR_NULL_HANDLE) XR(xrDestroySpace, one);
       }
     }
+    if (has("actions")) actions.destroy();
     if (session != XR_NULL_HANDLE) XR(xrDestroySession, session);
     if (has("used_after")) XR(xrEndSession, session);
     XR(xrDestroyInstance, instance);
@@ -368,8 +398,10 @@ struct Client {
 };
 
 }  // namespace
+}  // namespace binosplat::xr_test
 
 int main(int argc, char** argv) {
+  using namespace binosplat::xr_test;
   words.insert(argv + 1, argv + argc);
   Client().run();
   return 0;

@@ -2,12 +2,12 @@
 // Programs that use OpenXR, run against the test runtime: what it is to play, and what it saw
 // (tests/xr/README.md).
 
-#include <cstdlib>
+#include <array>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "base/image.h"
 #include "support/program.h"
 
 namespace binosplat::test {
@@ -104,6 +104,24 @@ class XrStage {
     return {{"XR_RUNTIME_JSON", BINOSPLAT_XR_RUNTIME}, {"BINOSPLAT_XR_SCRIPT", path.string()}};
   }
 
+  /// The same under Khronos' validation, which writes what it finds wrong where validation() reads it.
+  std::map<std::string, std::string> validated_variables() {
+    auto out = variables();
+    out["XR_API_LAYER_PATH"] = BINOSPLAT_XR_LAYERS ":/usr/share/openxr/1/api_layers/explicit.d";
+    out["XR_ENABLE_API_LAYERS"] = "XR_APILAYER_binosplat_egl:XR_APILAYER_LUNARG_core_validation";
+    out["XR_CORE_VALIDATION_EXPORT_TYPE"] = "text";
+    out["XR_CORE_VALIDATION_FILE_NAME"] = (folder_ / "validation.txt").string();
+    return out;
+  }
+
+  /// What it found wrong in a run; empty: nothing. It makes its file with its first finding, but says at once
+  /// that it is there.
+  std::string validation(const Outcome& outcome) const {
+    const bool there =
+        (outcome.out + outcome.err).find("Core Validation output type: text") != std::string::npos;
+    return there ? read_text(folder_ / "validation.txt") : "the validation layer was not there";
+  }
+
   void add_event(Json event) { script["events"].push_back(std::move(event)); }
 
   XrLog log() const {
@@ -119,7 +137,8 @@ class XrStage {
   TempFolder folder_;
 };
 
-/// `frames` of a view at (x, y, z) and its like: two eyes of these sizes and angles in radians.
+/// A view of the script's: its size in px, its angles (left, right, up, down) in radians, its pose in the
+/// head.
 inline Json xr_view(int width, int height, const std::array<double, 4>& fov, const Json& pose) {
   Json view = pose;
   view["width"] = width;

@@ -2,21 +2,11 @@
 
 #include <dlfcn.h>
 
+#include "xr/egl_as_xlib.h"
 #include "xr/runtime/state.h"
 
 namespace binosplat::xr_test {
 namespace {
-
-// XrGraphicsBindingOpenGLXlibKHR, without the headers of X, whose macros collide with half of everything.
-struct XlibBinding {
-  XrStructureType type;
-  const void* next;
-  void* display;
-  std::uint32_t visual;
-  void* config;
-  unsigned long drawable;
-  void* context;
-};
 
 using Proc = void (*)();
 using GetProc = Proc (*)(const char*);
@@ -106,6 +96,9 @@ Binding binding_from(const void* next, bool egl_enabled, bool xlib_enabled) {
     return from_egl(*egl);
   }
   if (const auto* xlib = chained<XlibBinding>(next, XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR)) {
+    if (xlib->visual == egl_visual) {
+      return from_egl(*reinterpret_cast<const XrGraphicsBindingEGLMNDX*>(xlib->drawable));
+    }
     require(xlib_enabled, XR_ERROR_GRAPHICS_DEVICE_INVALID, "XR_KHR_opengl_enable was not enabled");
     return from_xlib(*xlib);
   }

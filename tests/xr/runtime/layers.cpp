@@ -112,14 +112,15 @@ Json check_depth(Session& session, FrameRecord& frame, const XrCompositionLayerP
     r.fault("view " + std::to_string(index) + " has depth of " + text_of(size) + " and colours of " +
             text_of(colours));
   }
-  // One eye's depth stays one eye's depth.
+  // One view's depth stays one view's depth, whichever had it first.
   const std::pair place(swapchain.id, depth->subImage.imageArrayIndex);
+  bool others = false;
   for (const auto& [other, at] : session.depth_of_view) {
-    if (other != index && at == place) {
-      r.fault("view " + std::to_string(index) + " has the depth of view " + std::to_string(other));
-    }
+    if (other == index || at != place) continue;
+    others = true;
+    r.fault("view " + std::to_string(index) + " has the depth of view " + std::to_string(other));
   }
-  session.depth_of_view[index] = place;
+  if (!others) session.depth_of_view[index] = place;
   return {{"swapchain", swapchain.id},
           {"image", *swapchain.released},
           {"layer", depth->subImage.imageArrayIndex},

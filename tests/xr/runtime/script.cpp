@@ -25,9 +25,11 @@ const std::map<std::string, std::int64_t> formats = {
     {"GL_DEPTH32F_STENCIL8", GL_DEPTH32F_STENCIL8},
 };
 
-const std::map<std::string, XrReferenceSpaceType> spaces = {{"view", XR_REFERENCE_SPACE_TYPE_VIEW},
-                                                            {"local", XR_REFERENCE_SPACE_TYPE_LOCAL},
-                                                            {"stage", XR_REFERENCE_SPACE_TYPE_STAGE}};
+const std::map<std::string, XrReferenceSpaceType> spaces = {
+    {"view", XR_REFERENCE_SPACE_TYPE_VIEW},
+    {"local", XR_REFERENCE_SPACE_TYPE_LOCAL},
+    {"stage", XR_REFERENCE_SPACE_TYPE_STAGE},
+    {"local_floor", XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_TEST}};
 const std::map<std::string, XrEnvironmentBlendMode> blend_modes = {
     {"opaque", XR_ENVIRONMENT_BLEND_MODE_OPAQUE},
     {"additive", XR_ENVIRONMENT_BLEND_MODE_ADDITIVE},
@@ -77,10 +79,10 @@ ViewSpec eye(double side) {
 
 Script defaults() {
   Script script;
-  for (const char* name :
-       {XR_MNDX_EGL_ENABLE_EXTENSION_NAME, XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,
-        XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME, XR_KHR_VISIBILITY_MASK_EXTENSION_NAME,
-        XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME, XR_VARJO_QUAD_VIEWS_EXTENSION_NAME}) {
+  for (const char* name : {XR_MNDX_EGL_ENABLE_EXTENSION_NAME, XR_KHR_OPENGL_ENABLE_EXTENSION_NAME,
+                           XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
+                           XR_KHR_VISIBILITY_MASK_EXTENSION_NAME, XR_EXT_EYE_GAZE_INTERACTION_EXTENSION_NAME,
+                           XR_VARJO_QUAD_VIEWS_EXTENSION_NAME, XR_LOCAL_FLOOR_NAME}) {
     script.extensions.insert(name);
   }
   script.formats = {GL_SRGB8_ALPHA8,      GL_RGBA8,           GL_RGBA16F, GL_DEPTH_COMPONENT32F,

@@ -53,7 +53,8 @@ struct Script {
   std::map<XrViewConfigurationType, std::vector<ViewSpec>> views;
   std::map<XrViewConfigurationType, std::vector<Mask>> masks;
   std::vector<XrReferenceSpaceType> spaces = {XR_REFERENCE_SPACE_TYPE_VIEW, XR_REFERENCE_SPACE_TYPE_LOCAL,
-                                              XR_REFERENCE_SPACE_TYPE_STAGE};
+                                              XR_REFERENCE_SPACE_TYPE_STAGE,
+                                              XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_TEST};
   // Poses are given in a world of the script's own.
   Pose stage, local = {.position = {0.0, 1.6, 0.0}};
   std::vector<Pose> heads = {{.position = {0.0, 1.6, 0.0}}};  // by frame; the last one stays

@@ -29,8 +29,17 @@ Pose local_at(XrTime time) {
   return out;
 }
 
+/// What the application is offered: LOCAL_FLOOR only with its extension.
+std::vector<XrReferenceSpaceType> offered() {
+  std::vector<XrReferenceSpaceType> out = runtime().script.spaces;
+  if (runtime().instance()->extensions.count(XR_LOCAL_FLOOR_NAME) == 0) {
+    std::erase(out, XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_TEST);
+  }
+  return out;
+}
+
 void check_offered(XrReferenceSpaceType type) {
-  const auto& spaces = runtime().script.spaces;
+  const auto spaces = offered();
   require(std::count(spaces.begin(), spaces.end(), type) != 0, XR_ERROR_REFERENCE_SPACE_UNSUPPORTED,
           "reference space " + std::to_string(type) + " is not offered");
 }
@@ -41,14 +50,12 @@ void check_time(XrTime time) { require(time > 0, XR_ERROR_TIME_INVALID, "time " 
 
 std::optional<Pose> pose_of(const Space& space, XrTime time) {
   if (!space.reference) return pose_of_action(space, time);
-  switch (*space.reference) {
-    case XR_REFERENCE_SPACE_TYPE_VIEW:
-      return head_at(time) * space.offset;
-    case XR_REFERENCE_SPACE_TYPE_LOCAL:
-      return local_at(time) * space.offset;
-    default:
-      return runtime().script.stage * space.offset;
-  }
+  const XrReferenceSpaceType type = *space.reference;
+  if (type == XR_REFERENCE_SPACE_TYPE_VIEW) return head_at(time) * space.offset;
+  if (type == XR_REFERENCE_SPACE_TYPE_STAGE) return runtime().script.stage * space.offset;
+  Pose local = local_at(time);
+  if (type == XR_REFERENCE_SPACE_TYPE_LOCAL_FLOOR_TEST) local.position.y = runtime().script.stage.position.y;
+  return local * space.offset;
 }
 
 namespace api {
@@ -56,7 +63,7 @@ namespace api {
 XrResult EnumerateReferenceSpaces(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
                                   XrReferenceSpaceType* spaces) {
   runtime().get<Session>(handle);
-  const auto& all = runtime().script.spaces;
+  const auto all = offered();
   return fill(all.size(), capacity, count, spaces, [&](std::size_t k) { spaces[k] = all[k]; });
 }
 

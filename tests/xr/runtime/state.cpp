@@ -52,8 +52,10 @@ void Runtime::destroy(Object& object) {
       if (child->parent == doomed[k]) doomed.push_back(id);
     }
   }
+  // A set's actions go with it, as everybody lets them.
+  const bool set = dynamic_cast<ActionSet*>(&object) != nullptr;
   for (const std::uint64_t id : doomed) {
-    if (id != object.id) alive.push_back(objects[id]->kind() + (" " + std::to_string(id)));
+    if (id != object.id && !set) alive.push_back(objects[id]->kind() + (" " + std::to_string(id)));
   }
   log({{"what", "destroyed"}, {"kind", object.kind()}, {"id", object.id}, {"alive", alive}});
   for (auto id = doomed.rbegin(); id != doomed.rend(); ++id) {
