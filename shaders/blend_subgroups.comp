@@ -12,6 +12,7 @@
 #define ROUND (COLUMN == 1 ? 128 : 64)  // splats at a time: with more in shared memory there is room for fewer groups
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // and one that leaves no mark
+#define ANY(condition) subgroupAny(condition)
 #include "blending.glsl"
 
 layout(local_size_x = 32, local_size_y = BLOCKS) in;

@@ -3,7 +3,9 @@
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
 //   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
-//   MEDIAN      1: a pixel's depth is the median of what is seen in it, else the mean
+//   MEDIAN      1: a pixel's depth is the median of what is seen in it, else the mean; 2: at least of every second row
+//   CANVASES    above 0: the pictures of so many views go into images, and z_sums are depths, 0 where there is none
+//   ANY         whether something holds in an invocation that goes with this one
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -16,6 +18,10 @@
 #define LISTS_SHORT 0
 #define LISTS_LONG 1
 
+#ifndef ANY
+#define ANY(condition) (condition)
+#endif
+
 #ifndef SHOW
 #define SHOW SHOW_PICTURE
 #endif
@@ -23,7 +29,22 @@
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
 layout(std430, binding = 2) readonly buffer Values { uint values[]; };
+#if CANVASES
+layout(std430, binding = 4) readonly buffer Canvases { Canvas canvases[]; };
+layout(binding = 0) writeonly uniform image2D image_0;
+#if CANVASES > 1
+layout(binding = 1) writeonly uniform image2D image_1;
+#endif
+#if CANVASES > 2
+layout(binding = 2) writeonly uniform image2D image_2;
+#endif
+#if CANVASES > 3
+layout(binding = 3) writeonly uniform image2D image_3;
+#endif
+#include "shown.glsl"
+#else
 layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
+#endif
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 #if LISTS == LISTS_LONG
@@ -183,8 +204,12 @@ void blend(uint at[AHEAD]) {
       left[p] = 0.0;
     }
 #if MEDIAN
-    if (transmittance[p] >= 1.0 - float(COVERAGE_FOR_DEPTH) && left[p] < 1.0 - float(COVERAGE_FOR_DEPTH))
-      z_sum[p] = median_depth(at, weights[p], transmittance[p]);
+    const float half_light = 1.0 - float(COVERAGE_FOR_DEPTH);
+    bool is_half = transmittance[p] >= half_light && left[p] < half_light;
+    if ((MEDIAN == 1 || p == 0u) && ANY(is_half)) {  // seldom
+      float depth = median_depth(at, weights[p], transmittance[p]);
+      if (is_half) z_sum[p] = depth;
+    }
 #endif
   }
   for (uint k = 0u; k < AHEAD; ++k) {
@@ -332,6 +357,25 @@ void begin_pixels(uvec2 in_tile) {
   }
 }
 
+#if CANVASES
+void write_on_canvas(View view, uint p, vec4 pixel) {
+  Canvas canvas = canvases[view_index];
+  uvec2 at = first_pixel + uvec2(0u, p) - first_drawn(view);
+  ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + view.height - 1u - at.y);
+  vec4 shown = in_image(over(pixel, frame.background.rgb, canvas.keeps_alpha != 0u), canvas.linear != 0u, canvas.steps);
+  if (view_index == 0u) imageStore(image_0, to, shown);
+#if CANVASES > 1
+  if (view_index == 1u) imageStore(image_1, to, shown);
+#endif
+#if CANVASES > 2
+  if (view_index == 2u) imageStore(image_2, to, shown);
+#endif
+#if CANVASES > 3
+  if (view_index == 3u) imageStore(image_3, to, shown);
+#endif
+}
+#endif
+
 void write_pixels() {
   View view = views[view_index];
   for (uint p = 0u; p < COLUMN; ++p) {
@@ -348,12 +392,24 @@ void write_pixels() {
 #if SHOW != SHOW_PICTURE
     shown[to] = told[p];
 #else
+#if CANVASES
+    write_on_canvas(view, p, vec4(colour[p], left));
+#else
     colours[to] = vec4(colour[p], left);
+#endif
 #if PROJECTION == PROJECTION_TANGENT
     z_sum[p] *= sqrt(nearness[p]);  // of distances
 #endif
-#if MEDIAN
+#if CANVASES
+    if (left >= 1.0 - float(COVERAGE_FOR_DEPTH)) z_sum[p] = 0.0;
+#if !MEDIAN
+    z_sum[p] /= 1.0 - left;
+#endif
+#elif MEDIAN
     z_sum[p] *= 1.0 - left;
+#endif
+#if MEDIAN == 2
+    if (p > 0u) continue;
 #endif
     z_sums[to] = z_sum[p];
 #endif

@@ -91,8 +91,13 @@ EmbeddedReport EmbeddedRenderer::draw(std::span<const shared::View> views, std::
   for (const GLenum error : report.callers_errors)
     log_warning("OpenGL error 0x{:04x} was recorded before binosplat drew: it is the caller's", error);
   const gl::KeptState kept(*context_);
-  static_cast<render::FrameReport&>(report) = frame_->draw(views, settings);
-  for (std::size_t k = 0; k < targets.size(); ++k)
+  Canvases canvases;
+  if (layout == LAYOUT_SEPARATE) canvases = presenter_->canvases(targets, background);
+  render::FrameSettings over = settings;
+  if (background) over.background = *background;
+  static_cast<render::FrameReport&>(report) =
+      frame_->draw(views, over, {}, canvases.list, depth_rows(*context_, views, depths));
+  for (std::size_t k = 0; k < targets.size() && !report.on_canvases; ++k)
     presenter_->draw(*frame_, k, layout, targets[k], background);
   for (std::size_t k = 0; k < depths.size(); ++k) presenter_->draw_depth(*frame_, k, depths[k]);
   return report;

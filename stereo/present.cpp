@@ -44,13 +44,6 @@ Target texture_behind(const gl::Functions& gl, const Target& target) {
           .y = target.y};
 }
 
-/// Values above 0 of such an image's colours; 0: they are floats.
-std::uint32_t steps_of(GLenum format) {
-  if (format == GL_RGBA8) return 255;
-  if (format == GL_RGB10_A2) return 1023;
-  return format == GL_RGBA16 ? 65535 : 0;
-}
-
 InPlace in_place(const gl::Functions& gl, const Target& target) {
   if (target.texture == 0) return {};
   GLint kind = 0, format = 0, immutable = 0;
@@ -79,32 +72,47 @@ GLenum copied_from(const gl::Functions& gl, GLuint framebuffer) {
   return bits > 0 && bits <= 8 ? GL_RGBA8 : GL_RGBA32F;
 }
 
+glm::ivec2 size_of(const gl::Functions& gl, const DepthTarget& target) {
+  glm::ivec2 size(0);
+  gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_WIDTH, &size.x);
+  gl.GetTextureLevelParameteriv(target.texture, target.level, GL_TEXTURE_HEIGHT, &size.y);
+  gl.GetError();  // no texture: whoever draws into it says so
+  return size;
+}
+
 }  // namespace
 
 Presenter::~Presenter() {
-  const std::array framebuffers = {target_framebuffer_, scratch_framebuffer_};  // 0 is passed over
+  const std::array framebuffers = {target_framebuffer_, scratch_framebuffer_,
+                                   depth_framebuffer_};  // 0 is passed over
+  dispatcher_.context().gl().DeleteVertexArrays(1, &no_vertices_);
   dispatcher_.context().gl().DeleteFramebuffers(framebuffers.size(), framebuffers.data());
+}
+
+// Throws Error for what is no such texture.
+void Presenter::attach(std::uint32_t framebuffer, GLenum place, std::uint32_t texture, int level, int layer,
+                       const char* kind) {
+  const gl::Functions& gl = dispatcher_.context().gl();
+  if (layer < 0) {
+    gl.NamedFramebufferTexture(framebuffer, place, texture, level);
+  } else {
+    gl.NamedFramebufferTextureLayer(framebuffer, place, texture, level, layer);
+  }
+  const GLenum error = gl.GetError();
+  const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer, GL_DRAW_FRAMEBUFFER);
+  if (error == GL_NO_ERROR && status == GL_FRAMEBUFFER_COMPLETE) return;
+  gl.NamedFramebufferTexture(framebuffer, place, 0, 0);
+  fail(
+      "texture {}, level {}, layer {} cannot be drawn into (OpenGL error 0x{:04x}, status 0x{:04x}): "
+      "expected "
+      "a 2D texture, or a layer of an array, of a {}-renderable format",
+      texture, level, layer, error, status, kind);
 }
 
 std::uint32_t Presenter::framebuffer_of(const Target& target) {
   if (target.texture == 0) return target.framebuffer;
-  const gl::Functions& gl = dispatcher_.context().gl();
-  if (target_framebuffer_ == 0) gl.CreateFramebuffers(1, &target_framebuffer_);
-  if (target.layer < 0) {
-    gl.NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, target.texture, target.level);
-  } else {
-    gl.NamedFramebufferTextureLayer(target_framebuffer_, GL_COLOR_ATTACHMENT0, target.texture, target.level,
-                                    target.layer);
-  }
-  const GLenum error = gl.GetError();
-  const GLenum status = gl.CheckNamedFramebufferStatus(target_framebuffer_, GL_DRAW_FRAMEBUFFER);
-  if (error != GL_NO_ERROR || status != GL_FRAMEBUFFER_COMPLETE) {
-    fail(
-        "texture {}, level {}, layer {} cannot be drawn into (OpenGL error 0x{:04x}, status 0x{:04x}): "
-        "expected a "
-        "2D texture, or a layer of an array, of a colour-renderable format",
-        target.texture, target.level, target.layer, error, status);
-  }
+  if (target_framebuffer_ == 0) dispatcher_.context().gl().CreateFramebuffers(1, &target_framebuffer_);
+  attach(target_framebuffer_, GL_COLOR_ATTACHMENT0, target.texture, target.level, target.layer, "colour");
   return target_framebuffer_;
 }
 
@@ -171,7 +179,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
                        {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
                        {"keeps_alpha", background ? 0u : 1u},
                        {"linear", target.linear ? 1u : 0u},
-                       {"steps", steps_of(format)}});
+                       {"steps", render::steps_of(format)}});
     context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the picture is read next
   };
   const std::uint32_t framebuffer = framebuffer_of(target);
@@ -192,6 +200,43 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
     context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
 }
 
+Canvases Presenter::canvases(std::span<const Target> targets, const Background& background) {
+  Canvases found;
+  gl::Context& context = dispatcher_.context();
+  if (targets.size() > MAX_CANVASES) return {};
+  for (const Target& target : targets) {
+    framebuffer_of(target);  // throws where it is none
+    if (target.texture != 0)
+      context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
+    const Target texture = texture_behind(context.gl(), target);
+    const auto [format, by_view] = in_place(context.gl(), texture);
+    if (format == GL_NONE) return {};
+    render::Canvas& canvas = found.list.emplace_back();
+    canvas = {.texture = texture.texture,
+              .format = format,
+              .level = texture.level,
+              .layer = std::max(texture.layer, 0),
+              .x = target.x,
+              .y = target.y,
+              .keeps_alpha = !background,
+              .linear = target.linear};
+    if (!by_view) continue;
+    found.views.push_back(
+        std::make_unique<gl::Texture>(context, format, canvas.texture, canvas.level, canvas.layer));
+    canvas.texture = found.views.back()->id();
+    canvas.level = canvas.layer = 0;
+  }
+  return found;
+}
+
+int depth_rows(const gl::Context& context, std::span<const shared::View> views,
+               std::span<const DepthTarget> targets) {
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    if (2 * size_of(context.gl(), targets[k]).y > static_cast<int>(views[k].height)) return 1;
+  }
+  return 2;
+}
+
 void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target) {
   if (v >= frame.shape().asked) fail("view {} of a frame of {} views", v, frame.shape().asked);
   const double near = target.near_plane, far = target.far_plane;
@@ -199,35 +244,32 @@ void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const Dept
     fail("depths from {} to {}: expected two distances above zero, one of which may be infinite", near, far);
   const double farthest = std::isinf(near) ? 0.0 : std::isinf(far) ? 1.0 : far / (far - near);
   const double per_inverse = std::isinf(near) ? far : -near * farthest;
-  const shared::View& view = frame.views()[v];
   gl::Context& context = dispatcher_.context();
-  const gl::KeptState kept(context);
-  depths_.reserve(std::int64_t{view.width} * view.height * 4);
-  dispatcher_.start(context.program("present_depth.comp"),
-                    gl::Work::threads(std::uint64_t{view.width} * view.height, THREADS),
-                    {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}, {"Depths", depths_}},
-                    {{"first", view.pixel_offset},
-                     {"width", view.width},
-                     {"height", view.height},
-                     {"farthest", std::bit_cast<std::uint32_t>(static_cast<float>(farthest))},
-                     {"per_inverse", std::bit_cast<std::uint32_t>(static_cast<float>(per_inverse))}});
   const gl::Functions& gl = context.gl();
-  gl.MemoryBarrier(GL_PIXEL_BUFFER_BARRIER_BIT);
-  const gl::KeptUnpacking unpacking(context, depths_.id());
-  const auto width = static_cast<GLsizei>(view.width), height = static_cast<GLsizei>(view.height);
-  if (target.layer < 0) {
-    gl.TextureSubImage2D(target.texture, target.level, 0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT,
-                         nullptr);
-  } else {
-    gl.TextureSubImage3D(target.texture, target.level, 0, 0, target.layer, width, height, 1,
-                         GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+  const shared::View& view = frame.views()[v];
+  const gl::KeptState kept(context);
+  kept.set_plain();
+  if (depth_framebuffer_ == 0) {
+    gl.CreateFramebuffers(1, &depth_framebuffer_);
+    gl.NamedFramebufferDrawBuffer(depth_framebuffer_, GL_NONE);
+    gl.CreateVertexArrays(1, &no_vertices_);
   }
-  const GLenum error = gl.GetError();
-  if (error != GL_NO_ERROR)
-    fail(
-        "texture {}, level {}, layer {} takes no depths of {} x {} px (OpenGL error 0x{:04x}): expected a "
-        "texture of a depth format, as large",
-        target.texture, target.level, target.layer, width, height, error);
+  attach(depth_framebuffer_, GL_DEPTH_ATTACHMENT, target.texture, target.level, target.layer, "depth");
+  const glm::ivec2 size = size_of(gl, target);
+  {
+    const gl::KeptDrawing drawing(context, depth_framebuffer_, no_vertices_, size.x, size.y);
+    dispatcher_.draw_whole(context.program("present_depth.frag"),
+                           {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}},
+                           {{"first", view.pixel_offset},
+                            {"width", view.width},
+                            {"height", view.height},
+                            {"columns", static_cast<std::uint32_t>(size.x)},
+                            {"rows", static_cast<std::uint32_t>(size.y)},
+                            {"is_depth", frame.shape().canvases.empty() ? 0u : 1u},
+                            {"farthest", std::bit_cast<std::uint32_t>(static_cast<float>(farthest))},
+                            {"per_inverse", std::bit_cast<std::uint32_t>(static_cast<float>(per_inverse))}});
+  }
+  gl.NamedFramebufferTexture(depth_framebuffer_, GL_DEPTH_ATTACHMENT, 0, 0);
 }
 
 }  // namespace binosplat::stereo

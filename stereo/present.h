@@ -39,7 +39,8 @@ struct Target {
 /// Where a view's depths go: a 2D texture, or a layer of an array, of a depth format without stencil. What
 /// lies at z (world units, along the view's axis) has the depth far (1 - near / z) / (far - near), from 0 at
 /// `near_plane` to 1 at `far_plane`; either may be infinite, and near the farther one. What covers less than
-/// half of a pixel is infinitely far.
+/// half of a pixel is infinitely far. The texture may have fewer pixels than the view: GPUs of servers fill
+/// depths slowly, and a headset's runtime needs no more.
 struct DepthTarget {
   std::uint32_t texture = 0;
   int level = 0;
@@ -48,9 +49,19 @@ struct DepthTarget {
   double far_plane = std::numeric_limits<double>::infinity();
 };
 
+/// render::Canvas by view, and what they go by.
+struct Canvases {
+  std::vector<render::Canvas> list;
+  std::vector<std::unique_ptr<gl::Texture>> views;  // of textures of sRGB
+};
+
+/// Of how many rows a frame with canvases must know one's depth, 1 or 2, to fill these targets.
+int depth_rows(const gl::Context& context, std::span<const shared::View> views,
+               std::span<const DepthTarget> targets);
+
 class Presenter {
  public:
-  explicit Presenter(gl::Context& context) : dispatcher_(context), depths_(context, "depths to show") {}
+  explicit Presenter(gl::Context& context) : dispatcher_(context) {}
   ~Presenter();
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
@@ -75,12 +86,19 @@ class Presenter {
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Background& background);
 
-  /// Fills a target of the size of view `v` of the last frame with its depths. State as for draw(). Throws
+  /// What a frame's own blend may draw these targets by, one a view, each by itself (LAYOUT_SEPARATE): the
+  /// same bits as draw() writes afterwards, in less time. None where one of them takes a copy. Throws as
+  /// draw() does.
+  Canvases canvases(std::span<const Target> targets, const Background& background);
+
+  /// Fills all of a target with the depths of view `v` of the last frame. State as for draw(). Throws
   /// Error(bad_input) for a view that is not there, a target that is no such texture, and planes that bound
   /// nothing.
   void draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target);
 
  private:
+  void attach(std::uint32_t framebuffer, GLenum place, std::uint32_t texture, int level, int layer,
+              const char* kind);
   std::uint32_t framebuffer_of(const Target& target);
   const gl::Texture& scratch(const glm::ivec2& size, GLenum format);
   void copy(const glm::ivec2& size, std::uint32_t to, const glm::ivec2& corner);
@@ -89,7 +107,7 @@ class Presenter {
   // Made at first use: of the caller's textures, and of what is copied into framebuffers.
   std::uint32_t target_framebuffer_ = 0, scratch_framebuffer_ = 0;
   std::unique_ptr<gl::Texture> scratch_;
-  gl::Buffer depths_;  // float by pixel, lowest row first
+  std::uint32_t depth_framebuffer_ = 0, no_vertices_ = 0;
 };
 
 }  // namespace binosplat::stereo

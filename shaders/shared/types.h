@@ -92,6 +92,16 @@ struct Splat {
   vec4 colour;    // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by
 };
 
+// Where the blend writes a view's picture as it is shown, in the image of the view's number.
+struct Canvas {
+  uint left;         // px, its lower left corner
+  uint bottom;
+  uint steps;        // that the image's colours have above 0; 0: they are floats
+  uint keeps_alpha;  // 1: no background, but associated alpha
+  uint linear;       // 1: the image's numbers mean light, not what a screen takes
+  uint unused_1, unused_2, unused_3;
+};
+
 // A ray of a picture of its own, by where it meets a view's.
 struct PlacedRay {
   vec2 pixel;  // of the view; (0, 0) is the centre of the first
@@ -148,6 +158,7 @@ static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, toleran
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);
 static_assert(sizeof(Splat) == 48 && offsetof(Splat, conic) == 16 && offsetof(Splat, colour) == 32);
+static_assert(sizeof(Canvas) == 32 && offsetof(Canvas, linear) == 16);
 static_assert(sizeof(PlacedRay) == 16 && offsetof(PlacedRay, place) == 8);
 static_assert(sizeof(Counters) == 76 && offsetof(Counters, long_x) == 44 && offsetof(Counters, tall_x) == 60);
 static_assert(sizeof(DispatchArguments) == 48 && offsetof(DispatchArguments, threads_x) == 8 &&

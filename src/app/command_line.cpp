@@ -113,6 +113,8 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   std::vector<std::string> commands;
   for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
   if (std::find(commands.begin(), commands.end(), words[0]) != commands.end()) return words;
+  if (words[0].find("://") != std::string::npos)
+    fail("cannot read {}: it is an address, and only files are read: download it first", words[0]);
   std::error_code ignored;
   if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
     fail("{}: there is no such command and no such model{}\n  see: binosplat --help", words[0],

@@ -60,6 +60,13 @@ void Dispatcher::run(const Program& program, const Work& work, std::initializer_
   wait_for_writes();
 }
 
+void Dispatcher::draw_whole(const Program& program, std::initializer_list<Binding> bindings,
+                            std::initializer_list<Uniform> uniforms) {
+  bind(program, bindings, uniforms);
+  context_.gl().UseProgram(program.id());
+  context_.gl().DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 void Dispatcher::wait_for_writes() {
   context_.gl().MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }

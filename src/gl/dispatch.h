@@ -68,6 +68,10 @@ class Dispatcher {
   void start(const Program& program, const Work& work, std::initializer_list<Binding> bindings,
              std::initializer_list<Uniform> uniforms = {});
 
+  /// Draws all of the framebuffer that is bound, by a fragment shader (KeptDrawing of gl/state.h).
+  void draw_whole(const Program& program, std::initializer_list<Binding> bindings,
+                  std::initializer_list<Uniform> uniforms);
+
   /// The barrier that start() leaves out.
   void wait_for_writes();
 

@@ -14,12 +14,14 @@ namespace binosplat::gl {
   X(BindBufferRange, BINDBUFFERRANGE)                                                   \
   X(BindFramebuffer, BINDFRAMEBUFFER)                                                   \
   X(BindImageTexture, BINDIMAGETEXTURE)                                                 \
+  X(BindVertexArray, BINDVERTEXARRAY)                                                   \
   X(BlitNamedFramebuffer, BLITNAMEDFRAMEBUFFER)                                         \
   X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS)                           \
   X(Clear, CLEAR)                                                                       \
   X(ClearColor, CLEARCOLOR)                                                             \
   X(ClearNamedBufferData, CLEARNAMEDBUFFERDATA)                                         \
   X(ClientWaitSync, CLIENTWAITSYNC)                                                     \
+  X(ClipControl, CLIPCONTROL)                                                           \
   X(CompileShader, COMPILESHADER)                                                       \
   X(CopyNamedBufferSubData, COPYNAMEDBUFFERSUBDATA)                                     \
   X(CreateBuffers, CREATEBUFFERS)                                                       \
@@ -28,6 +30,7 @@ namespace binosplat::gl {
   X(CreateQueries, CREATEQUERIES)                                                       \
   X(CreateShader, CREATESHADER)                                                         \
   X(CreateTextures, CREATETEXTURES)                                                     \
+  X(CreateVertexArrays, CREATEVERTEXARRAYS)                                             \
   X(DebugMessageCallback, DEBUGMESSAGECALLBACK)                                         \
   X(DeleteBuffers, DELETEBUFFERS)                                                       \
   X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                                             \
@@ -36,10 +39,14 @@ namespace binosplat::gl {
   X(DeleteShader, DELETESHADER)                                                         \
   X(DeleteSync, DELETESYNC)                                                             \
   X(DeleteTextures, DELETETEXTURES)                                                     \
+  X(DeleteVertexArrays, DELETEVERTEXARRAYS)                                             \
+  X(DepthFunc, DEPTHFUNC)                                                               \
+  X(DepthMask, DEPTHMASK)                                                               \
   X(Disable, DISABLE)                                                                   \
   X(Disablei, DISABLEI)                                                                 \
   X(DispatchCompute, DISPATCHCOMPUTE)                                                   \
   X(DispatchComputeIndirect, DISPATCHCOMPUTEINDIRECT)                                   \
+  X(DrawArrays, DRAWARRAYS)                                                             \
   X(DrawBuffer, DRAWBUFFER)                                                             \
   X(Enable, ENABLE)                                                                     \
   X(Enablei, ENABLEI)                                                                   \
@@ -47,6 +54,7 @@ namespace binosplat::gl {
   X(Finish, FINISH)                                                                     \
   X(GenTextures, GENTEXTURES)                                                           \
   X(GetError, GETERROR)                                                                 \
+  X(GetFloati_v, GETFLOATI_V)                                                           \
   X(GetGraphicsResetStatus, GETGRAPHICSRESETSTATUS)                                     \
   X(GetInteger64i_v, GETINTEGER64I_V)                                                   \
   X(GetInteger64v, GETINTEGER64V)                                                       \
@@ -76,10 +84,11 @@ namespace binosplat::gl {
   X(MemoryBarrier, MEMORYBARRIER)                                                       \
   X(NamedBufferStorage, NAMEDBUFFERSTORAGE)                                             \
   X(NamedBufferSubData, NAMEDBUFFERSUBDATA)                                             \
+  X(NamedFramebufferDrawBuffer, NAMEDFRAMEBUFFERDRAWBUFFER)                             \
   X(NamedFramebufferTexture, NAMEDFRAMEBUFFERTEXTURE)                                   \
   X(NamedFramebufferTextureLayer, NAMEDFRAMEBUFFERTEXTURELAYER)                         \
   X(ObjectLabel, OBJECTLABEL)                                                           \
-  X(PixelStorei, PIXELSTOREI)                                                           \
+  X(PolygonMode, POLYGONMODE)                                                           \
   X(PopDebugGroup, POPDEBUGGROUP)                                                       \
   X(ProgramBinary, PROGRAMBINARY)                                                       \
   X(ProgramParameteri, PROGRAMPARAMETERI)                                               \
@@ -88,11 +97,10 @@ namespace binosplat::gl {
   X(QueryCounter, QUERYCOUNTER)                                                         \
   X(ShaderSource, SHADERSOURCE)                                                         \
   X(TextureStorage2D, TEXTURESTORAGE2D)                                                 \
-  X(TextureSubImage2D, TEXTURESUBIMAGE2D)                                               \
-  X(TextureSubImage3D, TEXTURESUBIMAGE3D)                                               \
   X(TextureView, TEXTUREVIEW)                                                           \
   X(UnmapNamedBuffer, UNMAPNAMEDBUFFER)                                                 \
-  X(UseProgram, USEPROGRAM)
+  X(UseProgram, USEPROGRAM)                                                             \
+  X(ViewportIndexedf, VIEWPORTINDEXEDF)
 
 using GetProcAddress = void (*(*)(const char* name))();
 

@@ -1,5 +1,5 @@
 #pragma once
-// A compiled compute shader and the names in it.
+// A compiled compute shader, or a fragment shader that all of a texture is drawn by, and the names in it.
 
 #include <cstdint>
 #include <string>
@@ -24,6 +24,7 @@ class Program {
     std::int32_t location;
   };
 
+  /// A name that ends with .frag is of a fragment shader, which goes behind whole.vert.
   /// Takes the program from the cache, or compiles and links it. Throws Error(no_gl) with the driver's log,
   /// places given as file:line.
   Program(const Functions& gl, const std::string& name, const Defines& defines,
@@ -36,12 +37,15 @@ class Program {
 
   std::uint32_t id() const { return id_; }
   const std::string& name() const { return name_; }
-  std::uint32_t local_size() const { return local_size_; }            // invocations of a work group
+  std::uint32_t local_size() const { return local_size_; }            // invocations of a work group; 1: none
   const std::vector<Block>& blocks() const { return blocks_; }        // those the shader really uses
   const std::vector<Uniform>& uniforms() const { return uniforms_; }  // likewise, outside blocks
 
  private:
-  void compile(const ShaderSource& source);
+  void compile(GLenum kind, const ShaderSource& source);
+  void link(const ShaderSource& source);
+  [[noreturn]] void refuse(const char* what, const std::string& log, const ShaderSource& source);
+  void read_local_size();
   void reflect();
 
   const Functions* gl_;

@@ -7,12 +7,15 @@ KeptState::KeptState(const Context& context) : gl_(context.gl()) {
   gl_.GetIntegerv(GL_SHADER_STORAGE_BUFFER_BINDING, &storage_);
   gl_.GetIntegerv(GL_UNIFORM_BUFFER_BINDING, &uniform_);
   gl_.GetIntegerv(GL_DISPATCH_INDIRECT_BUFFER_BINDING, &indirect_);
-  gl_.GetIntegeri_v(GL_IMAGE_BINDING_NAME, 0, &image_.texture);
-  gl_.GetIntegeri_v(GL_IMAGE_BINDING_LEVEL, 0, &image_.level);
-  gl_.GetIntegeri_v(GL_IMAGE_BINDING_LAYERED, 0, &image_.layered);
-  gl_.GetIntegeri_v(GL_IMAGE_BINDING_LAYER, 0, &image_.layer);
-  gl_.GetIntegeri_v(GL_IMAGE_BINDING_ACCESS, 0, &image_.access);
-  gl_.GetIntegeri_v(GL_IMAGE_BINDING_FORMAT, 0, &image_.format);
+  for (GLuint unit = 0; unit < images_.size(); ++unit) {
+    Image& image = images_[unit];
+    gl_.GetIntegeri_v(GL_IMAGE_BINDING_NAME, unit, &image.texture);
+    gl_.GetIntegeri_v(GL_IMAGE_BINDING_LEVEL, unit, &image.level);
+    gl_.GetIntegeri_v(GL_IMAGE_BINDING_LAYERED, unit, &image.layered);
+    gl_.GetIntegeri_v(GL_IMAGE_BINDING_LAYER, unit, &image.layer);
+    gl_.GetIntegeri_v(GL_IMAGE_BINDING_ACCESS, unit, &image.access);
+    gl_.GetIntegeri_v(GL_IMAGE_BINDING_FORMAT, unit, &image.format);
+  }
   scissors_ = gl_.IsEnabledi(GL_SCISSOR_TEST, 0);
   encodes_ = gl_.IsEnabled(GL_FRAMEBUFFER_SRGB);
   discards_ = gl_.IsEnabled(GL_RASTERIZER_DISCARD);
@@ -51,26 +54,55 @@ KeptState::~KeptState() {
   gl_.BindBuffer(GL_UNIFORM_BUFFER, static_cast<GLuint>(uniform_));
   gl_.BindBuffer(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(storage_));
   gl_.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, static_cast<GLuint>(indirect_));
-  gl_.BindImageTexture(0, static_cast<GLuint>(image_.texture), image_.level, image_.layered != 0,
-                       image_.layer, static_cast<GLenum>(image_.access), static_cast<GLenum>(image_.format));
+  for (GLuint unit = 0; unit < images_.size(); ++unit) {
+    const Image& image = images_[unit];
+    gl_.BindImageTexture(unit, static_cast<GLuint>(image.texture), image.level, image.layered != 0,
+                         image.layer, static_cast<GLenum>(image.access), static_cast<GLenum>(image.format));
+  }
   if (scissors_ != GL_FALSE) gl_.Enablei(GL_SCISSOR_TEST, 0);
   if (encodes_ != GL_FALSE) gl_.Enable(GL_FRAMEBUFFER_SRGB);
   if (discards_ != GL_FALSE) gl_.Enable(GL_RASTERIZER_DISCARD);
   gl_.UseProgram(static_cast<GLuint>(program_));
 }
 
-KeptUnpacking::KeptUnpacking(const Context& context, std::uint32_t buffer) : gl_(context.gl()) {
-  gl_.GetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &buffer_);
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    gl_.GetIntegerv(static_cast<GLenum>(names[k]), &values_[k]);
-    gl_.PixelStorei(static_cast<GLenum>(names[k]), names[k] == GL_UNPACK_ALIGNMENT ? 4 : 0);
+KeptDrawing::KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,
+                         int height)
+    : gl_(context.gl()) {
+  gl_.GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer_);
+  gl_.GetIntegerv(GL_VERTEX_ARRAY_BINDING, &vertices_);
+  gl_.GetIntegerv(GL_DEPTH_FUNC, &function_);
+  gl_.GetIntegerv(GL_DEPTH_WRITEMASK, &mask_);
+  gl_.GetIntegerv(GL_CLIP_ORIGIN, &origin_);
+  gl_.GetIntegerv(GL_CLIP_DEPTH_MODE, &clip_depth_);
+  gl_.GetIntegerv(GL_POLYGON_MODE, polygons_.data());
+  gl_.GetFloati_v(GL_VIEWPORT, 0, viewport_.data());
+  for (std::size_t k = 0; k < tests.size(); ++k) {
+    const auto test = static_cast<GLenum>(tests[k]);
+    enabled_[k] = gl_.IsEnabled(test);
+    if (enabled_[k] != GL_FALSE) gl_.Disable(test);
   }
-  gl_.BindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+  gl_.Enable(GL_DEPTH_TEST);  // without it nothing is written
+  gl_.DepthFunc(GL_ALWAYS);
+  gl_.DepthMask(GL_TRUE);
+  gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  gl_.PolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  gl_.BindVertexArray(vertices);
+  gl_.ViewportIndexedf(0, 0.0f, 0.0f, static_cast<float>(width), static_cast<float>(height));
 }
 
-KeptUnpacking::~KeptUnpacking() {
-  for (std::size_t k = 0; k < names.size(); ++k) gl_.PixelStorei(static_cast<GLenum>(names[k]), values_[k]);
-  gl_.BindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(buffer_));
+KeptDrawing::~KeptDrawing() {
+  gl_.ViewportIndexedf(0, viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+  gl_.BindVertexArray(static_cast<GLuint>(vertices_));
+  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(framebuffer_));
+  gl_.PolygonMode(GL_FRONT_AND_BACK, static_cast<GLenum>(polygons_[0]));
+  gl_.ClipControl(static_cast<GLenum>(origin_), static_cast<GLenum>(clip_depth_));
+  gl_.DepthMask(static_cast<GLboolean>(mask_));
+  gl_.DepthFunc(static_cast<GLenum>(function_));
+  gl_.Disable(GL_DEPTH_TEST);
+  for (std::size_t k = 0; k < tests.size(); ++k) {
+    if (enabled_[k] != GL_FALSE) gl_.Enable(static_cast<GLenum>(tests[k]));
+  }
 }
 
 }  // namespace binosplat::gl

@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "gl/context.h"
+#include "shared/limits.h"
 
 namespace binosplat::gl {
 
 /// Remembers all state that a frame, and pictures written into a texture or framebuffer, change, and sets it
 /// again when it goes: the program; storage and uniform buffers, those of the first storage_bindings_needed
-/// bindings, of binding 0 and the general ones; the buffer of indirect dispatches; the image of unit 0; the
-/// scissor test of index 0, the conversion to sRGB and the rasterizer's discarding.
+/// bindings, of binding 0 and the general ones; the buffer of indirect dispatches; the images of the first
+/// MAX_CANVASES units; the scissor test of index 0, the conversion to sRGB and the rasterizer's discarding.
 ///
-/// What fills textures from memory is kept by KeptUnpacking where it is needed.
+/// What triangles go by is kept by KeptDrawing where one is drawn.
 /// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers),
 /// and neither are other images, pixel store, clear values, viewports, masks, tests, blending or the debug
 /// callback. Not to be used within transform feedback or conditional rendering; queries that are active count
@@ -43,29 +44,34 @@ class KeptState {
 
   const Functions& gl_;
   GLint program_ = 0, storage_ = 0, uniform_ = 0, indirect_ = 0;
-  Image image_;
+  std::array<Image, MAX_CANVASES> images_;
   GLboolean scissors_ = 0, encodes_ = 0, discards_ = 0;
   std::array<Range, storage_bindings_needed> storages_;
   Range uniforms_;
 };
 
-/// Remembers how textures are filled from memory, sets it to rows that follow one another in a buffer, and
-/// sets it again when it goes.
-class KeptUnpacking {
+/// Remembers what a triangle into a texture of depths goes by, sets it so that the triangle writes all of the
+/// texture, and sets it again when it goes: the framebuffer and vertex array to draw with, viewport 0, clip
+/// control, polygon mode, and the tests of depth, stencil, faces and clip distances. Beside a KeptState.
+class KeptDrawing {
  public:
-  KeptUnpacking(const Context& context, std::uint32_t buffer);
-  ~KeptUnpacking();
-  KeptUnpacking(const KeptUnpacking&) = delete;
-  KeptUnpacking& operator=(const KeptUnpacking&) = delete;
+  KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,
+              int height);
+  ~KeptDrawing();
+  KeptDrawing(const KeptDrawing&) = delete;
+  KeptDrawing& operator=(const KeptDrawing&) = delete;
 
  private:
-  static constexpr std::array names = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST,   GL_UNPACK_ROW_LENGTH,
-                                       GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES,
-                                       GL_UNPACK_ALIGNMENT,  GL_UNPACK_IMAGE_HEIGHT};
+  static constexpr std::array tests = {GL_DEPTH_TEST,     GL_DEPTH_CLAMP,    GL_STENCIL_TEST,
+                                       GL_CULL_FACE,      GL_CLIP_DISTANCE0, GL_CLIP_DISTANCE1,
+                                       GL_CLIP_DISTANCE2, GL_CLIP_DISTANCE3, GL_CLIP_DISTANCE4,
+                                       GL_CLIP_DISTANCE5, GL_CLIP_DISTANCE6, GL_CLIP_DISTANCE7};
 
   const Functions& gl_;
-  GLint buffer_ = 0;
-  std::array<GLint, names.size()> values_{};
+  GLint framebuffer_ = 0, vertices_ = 0, function_ = 0, mask_ = 0, origin_ = 0, clip_depth_ = 0;
+  std::array<GLint, 2> polygons_{};
+  std::array<GLfloat, 4> viewport_{};
+  std::array<GLboolean, tests.size()> enabled_{};
 };
 
 }  // namespace binosplat::gl

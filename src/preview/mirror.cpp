@@ -24,35 +24,35 @@ Mirror::~Mirror() {
   glfwDestroyWindow(window_);
 }
 
-bool Mirror::step(const render::Frame* drawn, const glm::vec3& background) {
+bool Mirror::is_open() {
   glfwPollEvents();
-  if (drawn != nullptr) {
-    show(*drawn, background);
-    glfwSwapBuffers(window_);
-  }
   return glfwWindowShouldClose(window_) == GLFW_FALSE && glfwGetKey(window_, GLFW_KEY_ESCAPE) != GLFW_PRESS;
 }
 
-void Mirror::show(const render::Frame& frame, const glm::vec3& background) {
+void Mirror::show(const render::Frame& frame, std::uint32_t texture, const glm::ivec2& size,
+                  const glm::vec3& background) {
   const gl::Functions& gl = context_->gl();
-  const shared::View& eye = frame.views()[0];
-  const auto width = static_cast<int>(eye.width), height = static_cast<int>(eye.height);
-  if (picture_ == nullptr || !picture_->is(GL_RGBA8, width, height)) {
-    picture_.reset();  // its memory first
-    picture_ = std::make_unique<gl::Texture>(*context_, GL_RGBA8, width, height);
-    if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);
-    gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, picture_->id(), 0);
+  if (frame.shape().canvases.empty()) {
+    if (picture_ == nullptr || !picture_->is(GL_RGBA8, size.x, size.y)) {
+      picture_.reset();  // its memory first
+      picture_ = std::make_unique<gl::Texture>(*context_, GL_RGBA8, size.x, size.y);
+    }
+    texture = picture_->id();
+    presenter_->draw(frame, 0, LAYOUT_SEPARATE, {.texture = texture}, background);
   }
-  presenter_->draw(frame, 0, LAYOUT_SEPARATE, {.texture = picture_->id()}, background);
+  if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);
+  gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, texture, 0);
   glm::ivec2 window;
   glfwGetFramebufferSize(window_, &window.x, &window.y);
-  const double scale = std::min(double(window.x) / width, double(window.y) / height);
-  const glm::ivec2 size(scale * width, scale * height), corner = (window - size) / 2;
+  const double scale = std::min(double(window.x) / size.x, double(window.y) / size.y);
+  const glm::ivec2 shown(scale * size.x, scale * size.y), corner = (window - shown) / 2;
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   gl.ClearColor(0.0f, 0.0f, 0.0f, 1.0f);
   gl.Clear(GL_COLOR_BUFFER_BIT);
-  gl.BlitNamedFramebuffer(framebuffer_, 0, 0, 0, width, height, corner.x, corner.y, corner.x + size.x,
-                          corner.y + size.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  gl.BlitNamedFramebuffer(framebuffer_, 0, 0, 0, size.x, size.y, corner.x, corner.y, corner.x + shown.x,
+                          corner.y + shown.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);  // it is the runtime's
+  glfwSwapBuffers(window_);
 }
 
 }  // namespace binosplat::preview

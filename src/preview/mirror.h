@@ -21,19 +21,21 @@ class Mirror {
 
   gl::Context& context() { return *context_; }
 
-  /// Shows the first view of a frame, if there is one, as large as the window has room for. False once the
-  /// window is closed, or Escape was pressed in it.
-  bool step(const render::Frame* drawn, const glm::vec3& background);
+  /// False once the window is closed, or Escape was pressed in it.
+  bool is_open();
+
+  /// Shows the first view of a frame as large as the window has room for: from the lower left corner of this
+  /// texture, of so many px, where the frame went onto canvases.
+  void show(const render::Frame& frame, std::uint32_t texture, const glm::ivec2& size,
+            const glm::vec3& background);
 
  private:
-  void show(const render::Frame& frame, const glm::vec3& background);
-
   Glfw glfw_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<gl::Context> context_;
   std::unique_ptr<stereo::Presenter> presenter_;
   std::unique_ptr<gl::Texture> picture_;
-  std::uint32_t framebuffer_ = 0;  // of it
+  std::uint32_t framebuffer_ = 0;  // of what is shown
 };
 
 }  // namespace binosplat::preview

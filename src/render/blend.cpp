@@ -14,6 +14,8 @@ struct Variant {
   bool records = false;
   int sums = SUMS_NONE;
   int show = SHOW_PICTURE;
+
+  bool draws() const { return sums == SUMS_NONE && show == SHOW_PICTURE; }
 };
 
 // LISTS of blending.glsl.
@@ -37,19 +39,23 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
   // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
   const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
   const int ahead = is_long ? 8 : is_tangent && subgroups ? 3 : 4;
-  const bool draws = variant.sums == SUMS_NONE && variant.show == SHOW_PICTURE;
-  gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-                         {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
-                         {"PROBED", shape.probe ? "1" : "0"},
-                         {"PARTS", shape.draws_parts() ? "1" : "0"},
-                         {"LISTS", std::to_string(static_cast<int>(lists))},
-                         {"COLUMN", is_long ? "1" : "2"},
-                         {"AHEAD", std::to_string(ahead)},
-                         {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
-                         {"RECORDS", variant.records ? "1" : "0"},
-                         {"SUMS", std::to_string(variant.sums)},
-                         {"SHOW", std::to_string(variant.show)},
-                         {"MEDIAN", draws && shape.settings.depth == Depth::median ? "1" : "0"}};
+  const bool draws = variant.draws();
+  const bool on_canvases = draws && !shape.canvases.empty();
+  const int median = on_canvases && shape.depth_rows == 2 ? 2 : 1;
+  gl::Defines defines = {
+      {"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+      {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
+      {"PROBED", shape.probe ? "1" : "0"},
+      {"PARTS", shape.draws_parts() ? "1" : "0"},
+      {"LISTS", std::to_string(static_cast<int>(lists))},
+      {"COLUMN", is_long ? "1" : "2"},
+      {"AHEAD", std::to_string(ahead)},
+      {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
+      {"RECORDS", variant.records ? "1" : "0"},
+      {"SUMS", std::to_string(variant.sums)},
+      {"SHOW", std::to_string(variant.show)},
+      {"MEDIAN", draws && shape.settings.depth == Depth::median ? std::to_string(median) : "0"},
+      {"CANVASES", std::to_string(on_canvases ? shape.canvases.size() : 0)}};
   add_projection(defines, shape.perspective.projection);
   return context.program(name, defines);
 }
@@ -57,6 +63,13 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
 void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers, const Variant& variant,
          const gl::Buffer& measured, float scale = 0.0f) {
   gl::Context& context = dispatcher.context();
+  if (variant.draws()) {
+    for (std::size_t k = 0; k < shape.canvases.size(); ++k) {
+      const Canvas& to = shape.canvases[k];
+      context.gl().BindImageTexture(static_cast<GLuint>(k), to.texture, to.level, GL_FALSE, to.layer,
+                                    GL_WRITE_ONLY, to.format);
+    }
+  }
   const auto draw = [&](Lists lists, const gl::Work& work) {
     dispatcher.start(program(context, shape, variant, lists), work,
                      {{"Frame", buffers.parameters},
@@ -66,6 +79,7 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                       {"Values", buffers.values_of_tiles(shape)},
                       {"Splats", buffers.splats},
                       {"Colours", buffers.colours},
+                      {"Canvases", buffers.canvases},
                       {"ZSums", buffers.z_sums},
                       {"FrameCounters", buffers.counters},
                       {"LongLists", buffers.long_lists},
@@ -76,6 +90,8 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
   draw(Lists::of_long, gl::Work::indirect(buffers.counters, offsetof(shared::Counters, long_x)));
   draw(Lists::of_short, gl::Work::of_groups(shape.tile_count()));
   dispatcher.wait_for_writes();
+  if (variant.draws() && !shape.canvases.empty())
+    context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the pictures are read next
 }
 
 }  // namespace

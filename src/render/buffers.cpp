@@ -65,6 +65,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       tile_ranges(context, "ranges of tiles"),
       tile_values(context, "lists of tiles"),
       long_lists(context, "tiles with long lists"),
+      canvases(context, "canvases"),
       colours(context, "pixels"),
       z_sums(context, "depth of pixels"),
       shown(context, "what the blend comes by"),
@@ -76,6 +77,14 @@ FrameBuffers::FrameBuffers(gl::Context& context)
 void FrameBuffers::upload(const FrameShape& shape) {
   parameters.upload(std::vector{parameters_of(shape)});
   views.upload(shape.views);
+  std::vector<shared::Canvas> on_gpu;
+  for (const Canvas& c : shape.canvases)
+    on_gpu.push_back({.left = static_cast<std::uint32_t>(c.x),
+                      .bottom = static_cast<std::uint32_t>(c.y),
+                      .steps = steps_of(c.format),
+                      .keeps_alpha = c.keeps_alpha,
+                      .linear = c.linear});
+  if (!on_gpu.empty()) canvases.upload(on_gpu);
   if (shape.draws_parts()) part_rows.upload(shape.part_rows);
   if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = shape.settings.depth_table.bounds;
@@ -124,7 +133,7 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
     tile_values.reserve(tile_pair_capacity * 4);
   }
   long_lists.reserve(shape.tile_count() * 4LL);
-  colours.reserve(shape.pixel_count * 16);
+  if (shape.canvases.empty()) colours.reserve(shape.pixel_count * 16);
   z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));
   for (const OrderGroup& group : shape.groups) sort.reserve(order, group.key_bits);

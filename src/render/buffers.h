@@ -98,8 +98,9 @@ struct FrameBuffers {
   gl::Buffer tile_values;     // splats by these
   gl::Buffer long_lists;      // tiles with more than LONG_LIST pairs
 
-  gl::Buffer colours;  // vec4 by pixel: C, T
-  gl::Buffer z_sums;   // float by pixel
+  gl::Buffer canvases;  // Canvas by view, where pictures go into images; then nothing goes into
+  gl::Buffer colours;   // vec4 by pixel: C, T
+  gl::Buffer z_sums;    // float by pixel
 
   // Of show().
   gl::Buffer shown;        // float by pixel

@@ -47,9 +47,20 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
       buffers_(model_->context()) {}
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings,
-                        const Workings& workings) {
+                        const Workings& workings, std::span<const Canvas> canvases, int depth_rows) {
   begin(views, settings, workings);
-  return settings.quality == 0.0f ? attempt(workings) : draw_with_quality(views, settings, workings);
+  const bool fit = canvases.size() == views.size() && canvases.size() <= MAX_CANVASES;
+  if (!fit && !canvases.empty())
+    fail("{} canvases for {} views: expected one each, at most {}", canvases.size(), views.size(),
+         MAX_CANVASES);
+  if (settings.quality > 0.0f) return draw_with_quality(views, settings, workings, canvases, depth_rows);
+  if (!workings.stand_in) take_canvases(canvases, depth_rows);
+  return attempt(workings);
+}
+
+void Frame::take_canvases(std::span<const Canvas> canvases, int depth_rows) {
+  shape_.canvases.assign(canvases.begin(), canvases.end());
+  shape_.depth_rows = depth_rows;
 }
 
 FrameReport Frame::draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings,
@@ -79,11 +90,13 @@ void Frame::begin(std::span<const shared::View> views, const FrameSettings& sett
 }
 
 FrameReport Frame::draw_with_quality(std::span<const shared::View> views, const FrameSettings& settings,
-                                     const Workings& workings) {
+                                     const Workings& workings, std::span<const Canvas> canvases,
+                                     int depth_rows) {
   FrameReport report;
   if (!history_.goes_on(shape_)) tolerance_control_.forget();
   if (tolerance_control_.knows(settings) && history_.probed_lately(shape_)) {
     shape_.settings.tolerance = tolerance_control_.tolerance();
+    if (!workings.stand_in) take_canvases(canvases, depth_rows);
     report = attempt(workings);
   } else {
     do {
@@ -179,6 +192,7 @@ void Frame::fill(FrameReport& report) const {
   report.tolerance = shape_.settings.tolerance;
   report.remembered = shape_.remembers;
   report.recorded = shape_.records;
+  report.on_canvases = !shape_.canvases.empty();
 }
 
 }  // namespace binosplat::render

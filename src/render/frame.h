@@ -40,6 +40,7 @@ struct FrameReport {
   float tolerance = 0.0f;             // K or kappa that the frame went by
   bool remembered = false;            // it went by what an earlier frame measured
   bool recorded = false;              // it measured for later ones
+  bool on_canvases = false;           // its pictures are on the canvases that it was given, and nowhere else
   double quality = 0.0;  // with settings.quality: its PSNR in dB, as this and earlier frames' probes tell
 };
 
@@ -64,8 +65,12 @@ class Frame {
   /// alone. A frame that overflows its buffers is drawn again with larger ones. After GpuModel::reload() a
   /// tolerance that was found stays, but no measured transmittance. Throws Error: bad views or settings
   /// (bad_input), no room (out_of_memory).
+  ///
+  /// With canvases, one a view and at most MAX_CANVASES, pictures go there and not into colours(), and
+  /// z_sums() are depths, 0 where a pixel has none, of one of `depth_rows` (1 or 2) rows; unless the frame
+  /// needs its pictures for a probe, or something stands in for its blend: the report tells.
   FrameReport draw(std::span<const shared::View> views, const FrameSettings& settings = {},
-                   const Workings& workings = {});
+                   const Workings& workings = {}, std::span<const Canvas> canvases = {}, int depth_rows = 1);
 
   /// As draw() with settings.tolerance, but no further than stage `last`: what it leaves is read from
   /// buffers(). Only a frame drawn to its end is one that the next goes by.
@@ -110,10 +115,11 @@ class Frame {
   ModelBuffers& model_buffers() { return *model_buffers_; }
 
  private:
+  void take_canvases(std::span<const Canvas> canvases, int depth_rows);
   void begin(std::span<const shared::View> views, const FrameSettings& settings, const Workings& workings,
              const std::optional<Probe>& probe = {});
   FrameReport draw_with_quality(std::span<const shared::View> views, const FrameSettings& settings,
-                                const Workings& workings);
+                                const Workings& workings, std::span<const Canvas> canvases, int depth_rows);
   FrameReport attempt(const Workings& workings, Stage last = Stage::probe);
   void run_stages(const Workings& workings, Stage last, FrameReport& report);
   void fill(FrameReport& report) const;

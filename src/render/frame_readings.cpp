@@ -11,6 +11,7 @@ namespace binosplat::render {
 
 std::vector<Picture> Frame::read_pictures() const {
   if (!pictures_stood_in_.empty()) return pictures_stood_in_;
+  if (!shape_.canvases.empty()) fail("the pictures went onto canvases, and are whose those are");
   const auto pixels = static_cast<std::size_t>(shape_.pixel_count);
   const auto colours = buffers_.colours.read<glm::vec4>(pixels);
   const auto z_sums = buffers_.z_sums.read<float>(pixels);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "render/canvas.h"
 #include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
@@ -53,7 +54,9 @@ struct FrameShape {
   std::optional<Probe> probe;
   std::vector<OrderGroup> groups;
   std::vector<glm::uvec2>
-      part_rows;  // of all views' rows of tiles (tiles/parts.glsl), where any draws a part
+      part_rows;                 // of all views' rows of tiles (tiles/parts.glsl), where any draws a part
+  std::vector<Canvas> canvases;  // where pictures go; empty: into the frame's own buffer
+  int depth_rows = 1;            // with canvases: depths are wanted of one of so many rows, 1 or 2
   std::uint32_t supertile_count = 0;  // over all views
   std::int64_t pixel_count = 0;       // over all views
   // Of Scaffold-GS; K is 0 for other models.

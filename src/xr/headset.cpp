@@ -49,8 +49,8 @@ class Viewer {
     last_.reset();
     try {
       while (session.poll()) {
-        const bool drawn = session.running() && draw(session, hands, walk);
-        if (!beside_.step(drawn ? &frame_ : nullptr) && !leaving_) {
+        if (session.running()) draw(session, hands, walk);
+        if (!beside_.step() && !leaving_) {
           leaving_ = true;
           session.request_exit();
         }
@@ -72,16 +72,15 @@ class Viewer {
   }
 
  private:
-  /// A frame of the runtime's; false where nothing was to be drawn.
-  bool draw(Session& session, Hands& hands, Walk& walk) {
+  /// A frame of the runtime's.
+  void draw(Session& session, Hands& hands, Walk& walk) {
     const FrameTime time = session.begin_frame();
     const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
     if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
     if (time.is_shown) tracked_ = !views.empty();
     if (views.empty()) {
       last_.reset();
-      session.end_frame(time, nullptr);
-      return false;
+      return session.end_frame(time, nullptr);
     }
     if (session.take_recentred()) frame_.forget();
     if (time.display - looked_ >= between_looks) {
@@ -100,12 +99,16 @@ class Viewer {
     settings.quality = effort.quality;
     if (effort.quality > 0.0f) settings.th = TH_SQUARED;
     const auto start = Clock::now();
-    projection_->draw(frame_, views, walk.stage(), settings, effort.scale);
+    Projection::DrawnLeft drawn_left;
+    if (beside_.show)
+      drawn_left = [this](std::uint32_t texture, const glm::ivec2& size) {
+        beside_.show(frame_, texture, size);
+      };
+    projection_->draw(frame_, views, walk.stage(), settings, effort.scale, drawn_left);
     const double ms = ms_since(start);
     times_.push_back(ms);
     if (budget_) budget_->took(ms, 1e-6 * static_cast<double>(time.period));
     session.end_frame(time, projection_->layer());
-    return true;
   }
 
   void make_projection(const Session& session) {

@@ -13,7 +13,11 @@ namespace binosplat::xr {
 namespace {
 
 // Beyond it all is equally far, m.
-constexpr float far_metres = 1000.0f;
+constexpr double far_metres = 1000.0;
+
+// Depths have so many times fewer pixels along each side: a runtime moves pictures by them, for which no edge
+// need be sharp, and GPUs of servers fill depths slowly (an H200 two full pictures in 1.8 ms).
+constexpr int depth_step = 4;
 
 struct ColourFormat {
   std::int64_t format;
@@ -151,8 +155,8 @@ std::vector<render::ViewPart> Projection::parts_of(std::span<const XrView> locat
 }
 
 render::FrameReport Projection::draw(render::Frame& frame, std::span<const XrView> located,
-                                     const stereo::Stage& stage, render::FrameSettings settings,
-                                     double part) {
+                                     const stereo::Stage& stage, render::FrameSettings settings, double part,
+                                     const DrawnLeft& drawn_left) {
   const std::size_t count = eyes_.size();
   if (located.size() != count)
     throw Error(ExitCode::no_gl, fmt::format("{} located {} views of {}", session_.instance().runtime(),
@@ -168,35 +172,55 @@ render::FrameReport Projection::draw(render::Frame& frame, std::span<const XrVie
   }
   const stereo::HeadViews head = stereo::views_from_xr(drawn, stage, sizes, settings_.near_plane);
   settings.parts = parts_of(located, sizes);
-  render::FrameReport report = frame.draw(head.views, settings);
+  std::vector<stereo::Target> targets(count);
+  std::vector<stereo::DepthTarget> depths(has_depths ? count : 0);
   const double near_plane = settings_.near_plane;
   const double far_plane = std::max(far_metres * stage.units_per_metre, 2.0 * near_plane);
+  for (std::size_t k = 0; k < count; ++k) {
+    targets[place_of(k, count)] = {.texture = eyes_[k].colours->acquire(), .linear = linear_};
+    if (has_depths)
+      depths[place_of(k, count)] = {
+          .texture = eyes_[k].depths->acquire(), .near_plane = near_plane, .far_plane = far_plane};
+  }
+  // What is shown beside the headset comes from textures of what a screen takes, or from the frame.
+  stereo::Canvases canvases;
+  if (!linear_) canvases = presenter_.canvases(targets, settings_.background);
+  const render::FrameReport report = frame.draw(head.views, settings, {}, canvases.list, 2);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (!report.on_canvases) presenter_.draw(frame, k, LAYOUT_SEPARATE, targets[k], settings_.background);
+    if (has_depths) presenter_.draw_depth(frame, k, depths[k]);
+  }
+  if (drawn_left) drawn_left(targets[0].texture, sizes[0]);
+  submit(located, sizes, near_plane / stage.units_per_metre, far_plane / stage.units_per_metre);
+  return report;
+}
+
+// What was drawn, with exactly the poses and angles that it was drawn from.
+void Projection::submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes,
+                        double near_metres, double far_metres) {
+  const std::size_t count = eyes_.size();
+  const bool has_depths = eyes_[0].depths != nullptr;
   views_.assign(count, {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
   depth_infos_.assign(has_depths ? count : 0, {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR});
   for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t at = place_of(k, count);
+    const glm::ivec2& size = sizes[place_of(k, count)];
     views_[k].pose = located[k].pose;
     views_[k].fov = located[k].fov;
-    views_[k].subImage = eyes_[k].colours->part(sizes[at]);
-    presenter_.draw(frame, at, LAYOUT_SEPARATE, {.texture = eyes_[k].colours->acquire(), .linear = linear_},
-                    settings_.background);
+    views_[k].subImage = eyes_[k].colours->part(size);
     eyes_[k].colours->release();
     if (!has_depths) continue;
-    presenter_.draw_depth(
-        frame, at, {.texture = eyes_[k].depths->acquire(), .near_plane = near_plane, .far_plane = far_plane});
     eyes_[k].depths->release();
     XrCompositionLayerDepthInfoKHR& info = depth_infos_[k];
-    info.subImage = eyes_[k].depths->part(sizes[at]);
+    info.subImage = eyes_[k].depths->part(eyes_[k].depths->size());
     info.minDepth = 0.0f;
     info.maxDepth = 1.0f;
-    info.nearZ = static_cast<float>(near_plane / stage.units_per_metre);
-    info.farZ = static_cast<float>(far_plane / stage.units_per_metre);
+    info.nearZ = static_cast<float>(near_metres);
+    info.farZ = static_cast<float>(far_metres);
     views_[k].next = &info;
   }
   layer_.space = session_.space();
   layer_.viewCount = static_cast<std::uint32_t>(count);
   layer_.views = views_.data();
-  return report;
 }
 
 const XrCompositionLayerBaseHeader* Projection::layer() const {

@@ -2,6 +2,7 @@
 // What a headset shows: a frame's pictures and depths in the runtime's textures, with exactly the poses and
 // angles that they were drawn from.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,9 +27,13 @@ class Projection {
   /// Makes textures of the recommended sizes times the scale, at most the largest that the runtime allows.
   Projection(const Session& session, gl::Context& context, const ProjectionSettings& settings);
 
-  /// Draws the located views, each `part` of its texture's sides, at a place of the model's world.
+  /// Draws the located views, each `part` of its texture's sides, at a place of the model's world. Calls
+  /// `drawn_left`, if any, while the left eye's texture may still be read: its picture lies there in the
+  /// lower left corner, so large, in display values if the frame has drawn onto canvases.
+  using DrawnLeft = std::function<void(std::uint32_t texture, const glm::ivec2& size)>;
   render::FrameReport draw(render::Frame& frame, std::span<const XrView> located, const stereo::Stage& stage,
-                           render::FrameSettings settings, double part = 1.0);
+                           render::FrameSettings settings, double part = 1.0,
+                           const DrawnLeft& drawn_left = {});
 
   /// Whether the runtime recommends other sizes now: a new Projection would have them.
   bool outdated() const { return sizes_ != sizes_now(); }
@@ -49,6 +54,8 @@ class Projection {
     Visible visible;
   };
   std::vector<glm::ivec2> sizes_now() const;
+  void submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double near_metres,
+              double far_metres);
   void make_colours();
   void make_depths();
   std::vector<render::ViewPart> parts_of(std::span<const XrView> located,

@@ -10,6 +10,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "demo/room.h"
+#include "formats/cameras_file.h"
+#include "formats/model_file.h"
 #include "preview/panel.h"
 #include "stereo/layout.h"
 
@@ -66,38 +68,51 @@ struct Bench {
     }
   }
 
-  // What a headset's textures take beyond a frame, and what the median of depths does to that.
-  void headset(const Model& model, const Camera& head) {
+  // A headset's frame: what textures of colours and depths take beyond the frame itself, drawn in turn.
+  void headset(const std::string& name, const Model& model, const Camera& head) {
     render::Frame frame(*context, model);
     const auto views = stereo::make_rig(head, {}).views;
-    std::array<std::vector<double>, 2> times;  // by depth
+    stereo::Presenter presenter(*context);
+    const glm::ivec2 size(head.width, head.height), few = (size + 3) / 4;
+    std::array<stereo::Target, 2> colours;
+    std::array<stereo::DepthTarget, 2> depths, whole;
+    const auto depth_texture = [&](const glm::ivec2& of) {
+      std::uint32_t texture = 0;
+      context->gl().CreateTextures(GL_TEXTURE_2D, 1, &texture);
+      context->gl().TextureStorage2D(texture, 1, GL_DEPTH_COMPONENT32F, of.x, of.y);
+      return texture;
+    };
+    for (std::size_t eye = 0; eye < 2; ++eye) {
+      colours[eye].texture = target(size, GL_SRGB8_ALPHA8).first;
+      depths[eye].texture = depth_texture(few);
+      whole[eye].texture = depth_texture(size);
+    }
+    // Frames in the frame's own buffers, and in the headset's textures with the mean depth or the median.
+    std::array<std::vector<double>, 3> times;
     for (int n = -3; n < frames; ++n) {
-      for (const Depth depth : {Depth::mean, Depth::median}) {
-        const double ms = frame.draw(views, {.depth = depth}).total_ms;
-        if (n >= 0) times[static_cast<std::size_t>(depth)].push_back(ms);
+      for (std::size_t kind = 0; kind < 3; ++kind) {
+        const stereo::Canvases canvases = presenter.canvases(colours, glm::vec3(0.0f));
+        const std::span<const render::Canvas> list =
+            kind == 0 ? std::span<const render::Canvas>() : std::span<const render::Canvas>(canvases.list);
+        const double ms =
+            frame.draw(views, {.depth = kind == 2 ? Depth::median : Depth::mean}, {}, list, 2).total_ms;
+        if (n >= 0) times[kind].push_back(ms);
       }
     }
-    fmt::print("\nBoth eyes for a headset: a frame with the mean depth {:.3f} ms, with the median {:.3f}",
-               quantile(times[0], 0.5), quantile(times[1], 0.5));
-    stereo::Presenter presenter(*context);
-    const glm::ivec2 size(head.width, head.height);
-    const auto both = [&](const char* what, const auto& draw) {
-      fmt::print("; {} {:.3f}", what, time(dispatcher, frames, [&] {
-                   for (std::size_t eye = 0; eye < 2; ++eye) draw(eye);
-                 }));
+    const auto of_depths = [&](std::span<const stereo::DepthTarget> to) {
+      return time(dispatcher, frames, [&] {
+        for (std::size_t eye = 0; eye < 2; ++eye) presenter.draw_depth(frame, eye, to[eye]);
+      });
     };
-    const std::array colours = {target(size, GL_SRGB8_ALPHA8).first, target(size, GL_SRGB8_ALPHA8).first};
-    both("colours",
-         [&](std::size_t eye) { presenter.draw(frame, eye, LAYOUT_SEPARATE, {.texture = colours[eye]}); });
-    for (const GLenum format : {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24}) {
-      std::array<std::uint32_t, 2> depths{};
-      context->gl().CreateTextures(GL_TEXTURE_2D, 2, depths.data());
-      for (const std::uint32_t depth : depths)
-        context->gl().TextureStorage2D(depth, 1, format, size.x, size.y);
-      both(format == GL_DEPTH_COMPONENT24 ? "depths of 24 bits" : "depths of 32 bits",
-           [&](std::size_t eye) { presenter.draw_depth(frame, eye, {.texture = depths[eye]}); });
-    }
-    fmt::print("\n");
+    const double alone = quantile(times[0], 0.5), mean = quantile(times[1], 0.5),
+                 median = quantile(times[2], 0.5);
+    const double quarter = of_depths(depths), all = of_depths(whole);
+    frame.draw(views);
+    const double presented = time(dispatcher, frames, [&] {
+      for (std::size_t eye = 0; eye < 2; ++eye) presenter.draw(frame, eye, LAYOUT_SEPARATE, colours[eye]);
+    });
+    fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {:+.3f} |\n", name, alone,
+               presented, mean, median, quarter, all, median + quarter - alone);
   }
 
   // As into a window of full HD, which no shader can write.
@@ -141,14 +156,26 @@ struct Bench {
   }
 };
 
-void run(int frames, int shrink) {
+namespace fs = std::filesystem;
+
+void run(int frames, int shrink, const std::vector<std::string>& models) {
   Bench bench{.frames = frames};
   fmt::print("{}, {}, medians in ms\n\n", bench.context->renderer(), bench.context->version());
   Demo demo = demo_room();
   const Camera headset = stereo::apply_preset(demo.cameras.at(0), "headset");
   const Camera head = resized(headset, headset.width / shrink / 2 * 2, headset.height / shrink);
   bench.layouts(demo.model, head);
-  bench.headset(demo.model, head);
+  fmt::print(
+      "\n| both eyes for a headset | frame alone | then presented | into textures, mean depth | median | "
+      "depths, "
+      "1/4 of the sides | depths, whole | the headset adds |\n|---|---|---|---|---|---|---|---|\n");
+  bench.headset("demo:room", demo.model, head);
+  for (const std::string& file : models) {
+    const Model model = load_model(file);
+    const Camera camera = load_cameras(fs::path(file).parent_path() / "cameras.json").at(0);
+    const Camera whole = stereo::apply_preset(camera, "headset");
+    bench.headset(fs::path(file).filename().string(), model, resized(whole, head.width, head.height));
+  }
   bench.copied(demo.model, headset);
   bench.widgets(std::move(demo.model), head);
 }
@@ -161,9 +188,11 @@ int main(int argc, char** argv) {
   int frames = 50, shrink = 1;
   app.add_option("--frames", frames, "Frames that the medians are of")->check(CLI::Range(1, 10000));
   app.add_option("--shrink", shrink, "Pictures so many times smaller")->check(CLI::Range(1, 64));
+  std::vector<std::string> models;
+  app.add_option("MODEL", models, "Models to draw for a headset, too, each beside its cameras.json");
   CLI11_PARSE(app, argc, argv);
   try {
-    binosplat::run(frames, shrink);
+    binosplat::run(frames, shrink, models);
   } catch (const std::exception& error) {
     fmt::print(stderr, "present_bench: {}\n", error.what());
     return 2;

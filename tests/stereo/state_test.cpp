@@ -83,6 +83,14 @@ struct State : testing::Test {
           return values;
         });
     add(
+        "last image",
+        [this] { gl.BindImageTexture(MAX_CANVASES - 1, array, 0, GL_FALSE, 1, GL_READ_ONLY, GL_RGBA16F); },
+        [this] {
+          GLint name = 0;
+          gl.GetIntegeri_v(GL_IMAGE_BINDING_NAME, MAX_CANVASES - 1, &name);
+          return Values{double(name)};
+        });
+    add(
         "scissor test", [this] { gl.Enablei(GL_SCISSOR_TEST, 0); },
         [this] { return Values{double(gl.IsEnabledi(GL_SCISSOR_TEST, 0))}; });
     add(
@@ -271,12 +279,26 @@ TEST_F(State, IsTheSameAfterAFrame) {
       changed_by([&] { renderer = std::make_unique<EmbeddedRenderer>(caller.get_proc_address(), model); });
   EXPECT_EQ(made, std::set<std::string>()) << "by uploading the model";
   const Targets targets(caller);
-  const auto drawn = changed_by([&] { renderer->draw(views(), targets.both); });
+  const std::array depths = {DepthTarget{.texture = caller.texture(GL_DEPTH_COMPONENT32F, 40, 32)},
+                             DepthTarget{.texture = caller.texture(GL_DEPTH_COMPONENT24, 20, 16)}};
+  const auto drawn = changed_by(
+      [&] { renderer->draw(views(), targets.both, LAYOUT_SEPARATE, glm::vec3(0.0f), {}, depths); });
   EXPECT_EQ(drawn, std::set<std::string>());
+  const std::array in_place = {targets.both[0], Target{.texture = caller.texture(GL_SRGB8_ALPHA8, 40, 32)}};
+  const auto on_canvases = changed_by([&] { EXPECT_TRUE(renderer->draw(views(), in_place).on_canvases); });
+  EXPECT_EQ(on_canvases, std::set<std::string>());
 
   // And the pictures are those of a plain context: none of that state reached them.
   const auto odd = caller.read<float>(targets.textures[0], 40, 32),
              odd_copy = caller.read<float>(targets.textures[1], 40, 32);
+  const auto depths_of = [](const test::Caller& of, std::uint32_t id) {
+    std::vector<float> all(40 * 32);
+    of.gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    of.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    of.GetTextureSubImage(id, 0, 0, 0, 0, 40, 32, 1, GL_DEPTH_COMPONENT, GL_FLOAT, 4 * 40 * 32, all.data());
+    return all;
+  };
+  const std::vector<float> odd_depths = depths_of(caller, depths[0].texture);
   const auto refused = changed_by([&] {
     EXPECT_THROW(renderer->draw(views(), std::array{targets.both[0], Target{.texture = 4711}}), Error);
   });
@@ -284,6 +306,13 @@ TEST_F(State, IsTheSameAfterAFrame) {
   test::Caller plain;
   EmbeddedRenderer other(plain.get_proc_address(), model);
   const Targets plain_targets(plain);
+  const auto both_views = views();
+  const std::array plain_depth = {DepthTarget{.texture = plain.texture(GL_DEPTH_COMPONENT32F, 40, 32)}};
+  other.draw(std::span(both_views).first(1), std::span(&plain_targets.both[0], 1), LAYOUT_SEPARATE,
+             glm::vec3(0.0f), {}, plain_depth);
+  const std::vector<float> plain_depths = depths_of(plain, plain_depth[0].texture);
+  EXPECT_EQ(plain_depths, odd_depths);
+  EXPECT_LT(*std::min_element(plain_depths.begin(), plain_depths.end()), 0.9f) << "no depth was drawn";
   other.draw(views(), plain_targets.both);
   EXPECT_EQ(plain.read<float>(plain_targets.textures[0], 40, 32), odd);
   EXPECT_EQ(plain.read<float>(plain_targets.textures[1], 40, 32), odd_copy);
@@ -297,7 +326,9 @@ TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   const auto careless = changed_by([&] {
     frame.draw(views());
     kept.set_plain();
-    gl.BindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+    for (const GLuint unit : {0u, MAX_CANVASES - 1u})
+      gl.BindImageTexture(unit, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
+    gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, 13, frame.colours().id(), 0, 16);
     gl.BindBufferRange(GL_SHADER_STORAGE_BUFFER, 8, frame.colours().id(), 0, 16);
   });
   std::set<std::string> expected;

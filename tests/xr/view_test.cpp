@@ -143,19 +143,23 @@ TEST_F(XrView, DepthIsTheMedian) {
     const double near = info["near"], far = info["far"];
     EXPECT_EQ(near, static_cast<double>(static_cast<float>(near_default)));
     const std::vector<float> depths = log.depths(frame, k);
-    const auto differing = [&](const Picture& picture) {
+    // A quarter of the sides, of the pixel in the middle of each 4 x 4, in rows of even number.
+    ASSERT_EQ(depths.size(), width / 4u * (height / 4u));
+    const auto differing = [&](const Picture& picture, int x = 2) {
       int count = 0;
       for (std::size_t p = 0; p < depths.size(); ++p) {
-        const double cover = 1.0 - picture.colour[p].a;
-        const double z = cover > 0.5 ? picture.z_sum[p] / cover : far;
+        const std::size_t from = (p / 24 * 4 + 2) * width + p % 24 * 4 + static_cast<std::size_t>(x);
+        const double cover = 1.0 - picture.colour[from].a;
+        const double z = cover > 0.5 ? picture.z_sum[from] / cover : far;
         const double expected = std::clamp(far / (far - near) * (1.0 - near / z), 0.0, 1.0);
         count += std::abs(expected - depths[p]) > 2e-6 ? 1 : 0;
       }
       return count;
     };
     EXPECT_EQ(differing(median[k]), 0) << k;
-    EXPECT_GT(differing(mean[k]), 100) << "the mean goes unnoticed";
-    EXPECT_GT(differing(median[1 - k]), 100) << "the other eye's go unnoticed";
+    EXPECT_GT(differing(mean[k]), 50) << "the mean goes unnoticed";
+    EXPECT_GT(differing(median[1 - k]), 50) << "the other eye's go unnoticed";
+    EXPECT_GT(differing(median[k], 0), 50) << "another pixel's go unnoticed";
   }
 }
 

@@ -36,9 +36,13 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   settings.start = into_axes(start.cameras.front(), model.axes);
   settings.up = glm::transpose(world_from_axes(model.axes)) * start.up;
   settings.units_per_metre = choices.rig.units_per_metre;
-  const xr::Beside beside = {
-      .step = [&](const render::Frame* drawn) { return !mirror || mirror->step(drawn, choices.background); },
-      .levels = scene.levels};
+  xr::Beside beside = {
+      .step = [&] { return !mirror || mirror->is_open(); }, .show = {}, .levels = scene.levels};
+  if (mirror) {
+    beside.show = [&](const render::Frame& frame, std::uint32_t texture, const glm::ivec2& size) {
+      mirror->show(frame, texture, size, choices.background);
+    };
+  }
   xr::run(instance, context, std::move(model), settings, beside);
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+// A caller with two textures, and eyes as OpenXR gives them, for tests of stereo/embed.h.
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "stereo/embed.h"
+#include "support/caller.h"
+
+namespace binosplat::stereo {
+
+constexpr glm::ivec2 size(72, 64);
+constexpr std::array<glm::ivec2, 2> sizes = {size, size};
+
+/// Eyes as a Quest gives them: 49 degrees outwards and 37 inwards, each turned outwards by `cant` degrees.
+inline std::array<XrEye, 2> quest_eyes(double cant = 0.0) {
+  std::array<XrEye, 2> eyes;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double side = k == 0 ? -1.0 : 1.0;
+    eyes[k].position = {side * 0.0315, 1.6, 0.0};
+    const glm::dquat turn = glm::angleAxis(glm::radians(-side * cant), glm::dvec3(0, 1, 0));
+    eyes[k].orientation = {turn.x, turn.y, turn.z, turn.w};
+    eyes[k].fov = {glm::radians(k == 0 ? -49.0 : -37.0), glm::radians(k == 0 ? 37.0 : 49.0),
+                   glm::radians(45.0), glm::radians(-48.0)};
+  }
+  return eyes;
+}
+
+/// The head of quest_eyes() is at the origin of the model's world, which looks along z with y down.
+inline const Stage stage = {.origin = {0.0, 1.6, 0.0}};
+
+struct Embed : testing::Test {
+  test::Caller caller;
+  const std::array<std::uint32_t, 2> textures = {caller.texture(GL_RGBA32F, size.x, size.y),
+                                                 caller.texture(GL_RGBA32F, size.x, size.y)};
+  const std::array<Target, 2> targets = {Target{.texture = textures[0]}, Target{.texture = textures[1]}};
+
+  std::vector<float> read(std::size_t eye) const { return caller.read<float>(textures[eye], size.x, size.y); }
+};
+
+}  // namespace binosplat::stereo

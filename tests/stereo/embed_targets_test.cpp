@@ -1,0 +1,179 @@
+// Where binosplat draws in another program: depths, light, and textures that the blend itself writes.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "stereo/embed_fixture.h"
+#include "support/models.h"
+
+namespace binosplat::stereo {
+namespace {
+
+/// Depths of a layer, rows from OpenGL's bottom.
+std::vector<float> read_depths(const test::Caller& caller, std::uint32_t id, int layer = 0) {
+  std::vector<float> depths(static_cast<std::size_t>(size.x * size.y));
+  caller.GetTextureSubImage(id, 0, 0, 0, layer, size.x, size.y, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
+                            static_cast<GLsizei>(4 * depths.size()), depths.data());
+  return depths;
+}
+
+TEST_F(Embed, DepthsAreAsOpenGLKeepsThem) {
+  const Model model = test::random_model(3, 400, 0);
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  render::Frame frame(renderer.context(), model);
+  frame.draw(views);
+  const std::vector<Picture> pictures = frame.read_pictures();
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const std::uint32_t layers = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y, 3);
+  const std::array<std::uint32_t, 2> formats = {caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y),
+                                                caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y)};
+  for (const auto& [near, far] :
+       {std::pair(0.2, 50.0), std::pair(0.2, inf), std::pair(inf, 0.2), std::pair(50.0, 0.2)}) {
+    const auto depth_of = [near = near, far = far](double z) {
+      if (std::isinf(near)) return far / z;
+      return (std::isinf(far) ? 1.0 : far / (far - near)) * (1.0 - near / z);
+    };
+    const auto differing = [&](const std::vector<float>& depths, const Picture& picture,
+                               bool flipped = false) {
+      int count = 0;
+      for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+          const auto at = static_cast<std::size_t>(y * size.x + x);
+          const double cover = 1.0 - picture.colour[at].a;
+          const double z = cover > 0.5 ? picture.z_sum[at] / cover : 1e30;
+          const int row = flipped ? y : size.y - 1 - y;
+          const double is = depths[static_cast<std::size_t>(row * size.x + x)];
+          count += std::abs(is - std::clamp(depth_of(z), 0.0, 1.0)) > 1e-6 ? 1 : 0;
+        }
+      }
+      return count;
+    };
+    renderer.draw(
+        views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f), {},
+        std::array{DepthTarget{.texture = formats[0], .near_plane = near, .far_plane = far},
+                   DepthTarget{.texture = layers, .layer = 2, .near_plane = near, .far_plane = far}});
+    EXPECT_EQ(differing(read_depths(caller, formats[0]), pictures[0]), 0) << near << " " << far;
+    EXPECT_EQ(differing(read_depths(caller, layers, 2), pictures[1]), 0) << near << " " << far;
+    EXPECT_GT(differing(read_depths(caller, formats[0]), pictures[1]), 100) << "the other eye goes unnoticed";
+    EXPECT_GT(differing(read_depths(caller, formats[0]), pictures[0], true), 100)
+        << "upside down goes unnoticed";
+    renderer.draw(std::span(&views[0], 1), std::span(&targets[0], 1), LAYOUT_SEPARATE, glm::vec3(0.0f), {},
+                  std::array{DepthTarget{.texture = formats[1], .near_plane = near, .far_plane = far}});
+    EXPECT_EQ(differing(read_depths(caller, formats[1]), pictures[0]), 0) << "24 bits";
+  }
+  const auto refused = [&](const DepthTarget& target) {
+    EXPECT_THROW(renderer.draw(std::span(&views[0], 1), std::span(&targets[0], 1), LAYOUT_SEPARATE,
+                               glm::vec3(0.0f), {}, std::array{target}),
+                 Error);
+  };
+  refused({.texture = textures[0]});  // of colours
+  refused({.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y, 2), .layer = 2});
+  refused({.texture = formats[0], .near_plane = 0.0});
+  refused({.texture = formats[0], .near_plane = inf, .far_plane = inf});
+  EXPECT_THROW(renderer.draw(views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f), {},
+                             std::array{DepthTarget{.texture = formats[0]}}),
+               Error)
+      << "one for two views";
+}
+
+// In place, the blend itself writes what the presenter writes afterwards.
+TEST_F(Embed, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
+  const Model model = test::random_model(3, 400, 0);
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  const std::uint32_t depth = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
+  for (const GLenum format : {GL_SRGB8_ALPHA8, GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F}) {
+    for (const bool linear : {false, true}) {
+      for (const Background& background : {Background(glm::vec3(0.2f, 0.5f, 0.1f)), Background()}) {
+        // A picture beside the corner, in a layer.
+        const std::uint32_t texture = caller.texture(format, 2 * size.x, 2 * size.y, 3);
+        const Target to = {.texture = texture, .layer = 1, .x = 5, .y = 9, .linear = linear};
+        const Target other = {.texture = texture, .layer = 2, .x = 5, .y = 9, .linear = linear};
+        const Target third = {.texture = texture, .layer = 0, .x = 5, .y = 9, .linear = !linear};
+        const auto written = [&](int layer) {
+          return caller.read<float>(texture, 2 * size.x, 2 * size.y, layer);
+        };
+        const EmbeddedReport in_place =
+            renderer.draw(std::span(&views[0], 1), std::span(&to, 1), LAYOUT_SEPARATE, background, {},
+                          std::array{DepthTarget{.texture = depth}});
+        EXPECT_TRUE(in_place.on_canvases) << format;
+        render::Frame frame(renderer.context(), model);
+        frame.draw(std::span(&views[0], 1));
+        Presenter presenter(renderer.context());
+        presenter.draw(frame, 0, LAYOUT_SEPARATE, other, background);
+        presenter.draw(frame, 0, LAYOUT_SEPARATE, third, background);
+        EXPECT_EQ(written(1), written(2)) << format << linear;
+        EXPECT_NE(written(1), written(0)) << "light for display values goes unnoticed";
+        EXPECT_THROW(frame.draw(views, {}, {}, presenter.canvases(std::span(&to, 1), background).list), Error)
+            << "one for two views";
+        caller.gl.DeleteTextures(1, &texture);
+      }
+    }
+  }
+  // A copy is needed for one of them: none is written in place.
+  const std::array mixed = {targets[0], Target{.texture = caller.texture(GL_RGB8, size.x, size.y)}};
+  EXPECT_FALSE(renderer.draw(views, mixed, LAYOUT_SEPARATE, glm::vec3(0.0f)).on_canvases);
+}
+
+// Textures of fewer pixels take the depth in the middle of each of theirs.
+TEST_F(Embed, SmallerTexturesOfDepths) {
+  const Model model = test::random_model(3, 400, 0);
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  const std::array copied = {Target{.texture = caller.texture(GL_RGB8, size.x, size.y)}};
+  const std::uint32_t whole = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
+  for (const Depth kind : {Depth::mean, Depth::median}) {
+    const auto draw = [&](std::span<const Target> to, std::uint32_t texture) {
+      return renderer.draw(std::span(&views[0], 1), to, LAYOUT_SEPARATE, glm::vec3(0.0f), {.depth = kind},
+                           std::array{DepthTarget{.texture = texture}});
+    };
+    EXPECT_FALSE(draw(copied, whole).on_canvases);
+    const std::vector<float> all = read_depths(caller, whole);
+    for (const int step : {1, 2, 4}) {
+      const glm::ivec2 few = size / step;
+      const std::uint32_t texture = caller.texture(GL_DEPTH_COMPONENT32F, few.x, few.y);
+      EXPECT_TRUE(draw(std::span(&targets[0], 1), texture).on_canvases);
+      std::vector<float> depths(static_cast<std::size_t>(few.x * few.y));
+      caller.GetTextureSubImage(texture, 0, 0, 0, 0, few.x, few.y, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
+                                static_cast<GLsizei>(4 * depths.size()), depths.data());
+      int differ = 0, unlike = 0;
+      for (int y = 0; y < few.y; ++y) {
+        for (int x = 0; x < few.x; ++x) {
+          int row = (2 * (few.y - 1 - y) + 1) * step / 2;  // from the top
+          if (step > 1) row -= row % 2;
+          const int from = (size.y - 1 - row) * size.x + (2 * x + 1) * step / 2;
+          const float is = depths[static_cast<std::size_t>(y * few.x + x)];
+          differ += std::abs(is - all[static_cast<std::size_t>(from)]) > 1e-6f ? 1 : 0;
+          unlike += std::abs(is - all[static_cast<std::size_t>(from == 0 ? 1 : from - 1)]) > 1e-6f ? 1 : 0;
+        }
+      }
+      EXPECT_EQ(differ, 0) << step;
+      EXPECT_GT(unlike, 50) << "a pixel beside goes unnoticed";
+    }
+  }
+}
+
+// Numbers that mean light.
+TEST_F(Embed, LinearTargetsHoldLight) {
+  const Model model = test::random_model(3, 400, 0);
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  const std::array<Target, 2> linear = {targets[0], Target{.texture = textures[1], .linear = true}};
+  const std::array same = {views[0], views[0]};
+  renderer.draw(same, linear, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  const std::vector<float> shown = read(0), light = read(1);
+  int differ = 0;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const double v = shown[k];
+    const double wanted = k % 4 == 3 ? 1.0 : v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(light[k], wanted, 1e-4 * std::max(1.0, wanted));
+    differ += std::abs(light[k] - v) > 0.01 ? 1 : 0;
+  }
+  EXPECT_GT(differ, 1000) << "display values go unnoticed";
+}
+
+}  // namespace
+}  // namespace binosplat::stereo
