@@ -46,7 +46,7 @@ void finish(Session& session, const FrameRecord& frame, Json& line) {
 
 }  // namespace
 
-XrResult WaitFrame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* state) {
+XrResult wait_frame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* state) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   check_if_any(info, XR_TYPE_FRAME_WAIT_INFO);
@@ -71,7 +71,7 @@ XrResult WaitFrame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* 
   return session.state == XR_SESSION_STATE_LOSS_PENDING ? XR_SESSION_LOSS_PENDING : XR_SUCCESS;
 }
 
-XrResult BeginFrame(XrSession handle, const XrFrameBeginInfo* info) {
+XrResult begin_frame(XrSession handle, const XrFrameBeginInfo* info) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   check_if_any(info, XR_TYPE_FRAME_BEGIN_INFO);
@@ -84,7 +84,7 @@ XrResult BeginFrame(XrSession handle, const XrFrameBeginInfo* info) {
   return discards ? XR_FRAME_DISCARDED : XR_SUCCESS;
 }
 
-XrResult EndFrame(XrSession handle, const XrFrameEndInfo* info) {
+XrResult end_frame(XrSession handle, const XrFrameEndInfo* info) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_FRAME_END_INFO);

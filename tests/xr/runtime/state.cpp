@@ -47,9 +47,10 @@ void Runtime::destroy(Object& object) {
   Json alive = Json::array();
   // Children of children first; ids grow from parents to children.
   std::vector<std::uint64_t> doomed = {object.id};
-  for (std::size_t k = 0; k < doomed.size(); ++k) {
+  for (std::size_t done = 0; done < doomed.size();) {
+    const std::uint64_t parent = doomed[done++];
     for (const auto& [id, child] : objects) {
-      if (child->parent == doomed[k]) doomed.push_back(id);
+      if (child->parent == parent) doomed.push_back(id);
     }
   }
   // A set's actions go with it, as everybody lets them.
