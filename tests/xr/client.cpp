@@ -1,6 +1,7 @@
 // A small application of OpenXR that does all by the book, but for the faults that its arguments name: for
 // the tests of the runtime. Says which calls failed and how. Words that are no faults: depth (hands in depth,
-// too), quad (four views), actions (hands are read; gaze: eyes, too), mask, xlib (the binding), array (one
+// too), quad (four views), actions (hands are read; gaze: eyes, too), mask, xlib (the binding), again (a
+// second session after a lost one), sizes (what is recommended), depth24 and stencil (formats), array (one
 // swapchain with a layer for each view), stage or floor (the space of the layer).
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
@@ -132,11 +133,17 @@ struct Client {
     return XR(xrCreateReferenceSpace, session, &where, &other_space) == XR_SUCCESS;
   }
 
+  static GLenum depth_format() {
+    return has("depth24")   ? GL_DEPTH_COMPONENT24
+           : has("stencil") ? GL_DEPTH24_STENCIL8
+                            : GL_DEPTH_COMPONENT32F;
+  }
+
   bool make_chain(Chain& chain, const XrViewConfigurationView& size, bool depth, std::uint32_t layers) const {
     XrSwapchainCreateInfo info = {XR_TYPE_SWAPCHAIN_CREATE_INFO};
     info.usageFlags = depth != has("wrong_usage") ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                                   : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
-    info.format = has("unknown_format") ? GL_R8 : depth ? GL_DEPTH_COMPONENT32F : GL_SRGB8_ALPHA8;
+    info.format = has("unknown_format") ? GL_R8 : depth ? depth_format() : GL_SRGB8_ALPHA8;
     info.sampleCount = has("samples") ? 4 : 1;
     info.width = has("big_swapchain") ? 5000 : size.recommendedImageRectWidth;
     info.height = size.recommendedImageRectHeight;
@@ -226,7 +233,11 @@ struct Client {
       const auto z = static_cast<GLint>(layer);
       if (depth) {
         const float value = (upper ? 0.5f : 0.25f) + static_cast<float>(view) / 16;
-        glClearTexSubImage(image, 0, 0, y, z, chain.width, rows, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &value);
+        const auto packed = static_cast<GLuint>(value * 0xFFFFFF) << 8;
+        const bool stencil = has("stencil");
+        glClearTexSubImage(
+            image, 0, 0, y, z, chain.width, rows, 1, stencil ? GL_DEPTH_STENCIL : GL_DEPTH_COMPONENT,
+            stencil ? GL_UNSIGNED_INT_24_8 : GL_FLOAT, stencil ? static_cast<const void*>(&packed) : &value);
       } else {
         const std::array<GLubyte, 4> value = {static_cast<GLubyte>(upper ? 200 : 100),
                                               static_cast<GLubyte>(10 * view), static_cast<GLubyte>(frame),
@@ -367,20 +378,36 @@ struct Client {
     ++frame;
   }
 
-  void run() {
-    make_context();
-    if (!make_instance()) return;
-    if (find_system() && make_session() && make_chains()) {
-      if (has("actions")) actions.make(session);
-      if (has("mask")) say_mask(0);
-      // A hundred frames of patience are the runtime's.
-      while (!over && frame < 150) {
-        poll();
-        if (running && !over) run_frame();
+  /// The sizes that the runtime recommends now, where they are others than before.
+  void say_sizes() {
+    std::vector<XrViewConfigurationView> now(sizes.size(), {XR_TYPE_VIEW_CONFIGURATION_VIEW});
+    auto count = static_cast<std::uint32_t>(now.size());
+    XR(xrEnumerateViewConfigurationViews, instance, system, type, count, &count, now.data());
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const std::uint32_t width = now[k].recommendedImageRectWidth,
+                          height = now[k].recommendedImageRectHeight;
+      if (width != sizes[k].recommendedImageRectWidth || height != sizes[k].recommendedImageRectHeight) {
+        std::printf("%d view %zu: %u x %u\n", frame, k, width, height);
       }
     }
-    if (has("leaves_all")) return;
-    if (!has("leaves_children") && session != XR_NULL_HANDLE) {
+    sizes = now;
+  }
+
+  void run_session() {
+    running = over = false;
+    if (!make_session() || !make_chains()) return;
+    if (has("actions")) actions.make(session);
+    if (has("mask")) say_mask(0);
+    // A hundred frames of patience are the runtime's.
+    while (!over && frame < 150) {
+      poll();
+      if (has("sizes")) say_sizes();
+      if (running && !over) run_frame();
+    }
+  }
+
+  void destroy_session() {
+    if (!has("leaves_children")) {
       for (const auto* chains : {&colours, &depths}) {
         for (const Chain& chain : *chains) {
           if (chain.handle != XR_NULL_HANDLE) XR(xrDestroySwapchain, chain.handle);
@@ -391,7 +418,19 @@ struct Client {
       }
     }
     if (has("actions")) actions.destroy();
-    if (session != XR_NULL_HANDLE) XR(xrDestroySession, session);
+    XR(xrDestroySession, session);
+  }
+
+  void run() {
+    make_context();
+    if (!make_instance()) return;
+    if (find_system()) run_session();
+    if (has("leaves_all")) return;
+    if (session != XR_NULL_HANDLE) destroy_session();
+    if (has("again") && state == XR_SESSION_STATE_LOSS_PENDING) {
+      run_session();
+      destroy_session();
+    }
     if (has("used_after")) XR(xrEndSession, session);
     XR(xrDestroyInstance, instance);
   }

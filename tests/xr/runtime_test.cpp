@@ -61,12 +61,13 @@ void expect_painted(const XrLog& log, const Json& frame, std::size_t view, std::
   if (!depth) return;
   const auto depths = log.depths(frame, view);
   ASSERT_EQ(depths.size(), count / 4);
-  EXPECT_EQ(depths.front(), 0.5f + static_cast<float>(view) / 16);
-  EXPECT_EQ(depths.back(), 0.25f + static_cast<float>(view) / 16);
+  EXPECT_NEAR(depths.front(), 0.5 + static_cast<double>(view) / 16, 1e-7);
+  EXPECT_NEAR(depths.back(), 0.25 + static_cast<double>(view) / 16, 1e-7);
 }
 
 TEST(XrRuntime, PixelsArriveTheRightWayUp) {
-  for (const Strings& words : {Strings{"depth"}, Strings{"depth", "array"}}) {
+  for (const Strings& words : {Strings{"depth"}, Strings{"depth", "array"}, Strings{"depth", "depth24"},
+                               Strings{"depth", "stencil"}}) {
     for (const bool immutable : {true, false}) {
       XrStage stage;
       stage.script = {{"frames", 2}, {"immutable", immutable}};
@@ -135,6 +136,14 @@ TEST(XrRuntime, SessionsStopAndBeginAgain) {
   const XrLog log = good_log(stage);
   EXPECT_EQ(log.all("begin").size(), 2u);
   EXPECT_EQ(log.frames().size(), 5u);
+  XrStage second;
+  second.script = {{"frames", 3}};
+  second.add_event({{"frame", 1}, {"state", "loss_pending"}});
+  run_client(second, {"again"});
+  EXPECT_EQ(second.log().faults(), Strings());
+  EXPECT_EQ(second.log().all("session").size(), 2u);
+  EXPECT_EQ(second.log().frames().size(), 3u) << "frames are counted on";
+  EXPECT_TRUE(second.log().clean());
   XrStage lost;
   lost.add_event({{"frame", 1}, {"state", "loss_pending"}});
   EXPECT_EQ(run_client(lost).out, "xrEndFrame: XR_SESSION_LOSS_PENDING\n");
@@ -156,6 +165,13 @@ TEST(XrRuntime, RecentringMovesLocalAndNotStage) {
     EXPECT_NEAR(at(1)[1], space.empty() ? 0.0 : 1.6, 1e-6);
     EXPECT_NEAR(at(2)[2], space == "stage" ? 0.0 : 1.0, 1e-6);
   }
+}
+
+TEST(XrRuntime, RecommendedSizesChange) {
+  XrStage stage;
+  stage.add_event({{"frame", 1}, {"view", {{"index", 1}, {"width", 64}, {"height", 60}}}});
+  EXPECT_EQ(run_client(stage, {"sizes"}).out, "1 view 1: 64 x 60\n");
+  EXPECT_EQ(stage.log().faults(), Strings());
 }
 
 TEST(XrRuntime, ScriptedResultsAreReturned) {

@@ -34,11 +34,11 @@ void finish(Session& session, const FrameRecord& frame, Json& line) {
   Runtime& r = runtime();
   line["faults"] = frame.faults;
   session.begun.reset();
-  session.ended_frames++;
+  r.ended_frames++;
   r.log(line);
-  if (session.ended_frames <= r.script.invisible_frames) show_slowly(session, session.ended_frames);
+  if (r.ended_frames <= r.script.invisible_frames) show_slowly(session, r.ended_frames);
   apply_events(session, frame.number + 1);
-  if (session.ended_frames == r.script.frames && session.state < XR_SESSION_STATE_STOPPING) {
+  if (r.ended_frames >= r.script.frames && session.state < XR_SESSION_STATE_STOPPING) {
     session.then = "exiting";
     walk_to(session, XR_SESSION_STATE_STOPPING);
   }
@@ -54,12 +54,12 @@ XrResult wait_frame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState*
   check_running(session);
   require(!session.waited, XR_ERROR_CALL_ORDER_INVALID,
           "the frame before was not begun: this would wait for ever");
-  if (session.next_frame >= r.script.frames + patience) {
+  if (r.next_frame >= r.script.frames + patience) {
     session.lost = true;
     refuse(XR_ERROR_SESSION_LOST, "the application does not stop");
   }
   FrameRecord frame;
-  frame.number = session.next_frame++;
+  frame.number = r.next_frame++;
   apply_events(session, frame.number);
   frame.time = r.time_of(frame.number);
   frame.should_render = is_shown(session) && r.script.not_rendered.count(frame.number) == 0;

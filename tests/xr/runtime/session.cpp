@@ -154,8 +154,8 @@ XrResult begin_session(XrSession handle, const XrSessionBeginInfo* info) {
   session.configuration = info->primaryViewConfigurationType;
   session.running = true;
   r.log({{"what", "begin"}, {"configuration", name_of(session.configuration)}});
-  if (r.script.invisible_frames == 0 || session.next_frame > 0) walk_to(session, XR_SESSION_STATE_FOCUSED);
-  apply_events(session, session.next_frame);
+  if (r.script.invisible_frames == 0 || r.next_frame > 0) walk_to(session, XR_SESSION_STATE_FOCUSED);
+  apply_events(session, r.next_frame);
   return XR_SUCCESS;
 }
 

@@ -75,7 +75,7 @@ int Runtime::frame() {
   const Session* of = session();
   if (of == nullptr) return 0;
   if (of->begun) return of->begun->number;
-  return of->waited ? of->waited->number : of->next_frame;
+  return of->waited ? of->waited->number : next_frame;
 }
 
 int Runtime::frame_of(XrTime time) const {
