@@ -44,10 +44,10 @@ TEST(XrRuntime, FramesRunToTheEnd) {
 }
 
 /// What xr/client.cpp paints, or with another upper half.
-void expect_painted(const XrLog& log, const Json& frame, std::size_t view, std::array<int, 2> size,
+void expect_painted(const XrLog& log, const Json& frame, std::size_t view, std::array<std::size_t, 2> size,
                     bool depth) {
   const std::string pixels = log.colours(frame, view);
-  const auto count = static_cast<std::size_t>(4 * size[0] * size[1]);
+  const std::size_t count = std::size_t{4} * size[0] * size[1];
   ASSERT_EQ(pixels.size(), count);
   const auto expect_row = [&](std::size_t at, int red) {
     EXPECT_EQ(static_cast<unsigned char>(pixels[at]), red) << frame.dump();
@@ -94,7 +94,6 @@ TEST(XrRuntime, WrongPicturesAreSeenInPixels) {
 }
 
 TEST(XrRuntime, FourViewsHaveTheirOwnSizes) {
-  const Json centre = xr_pose({0, 0, 0});
   XrStage stage;
   stage.script["frames"] = 2;
   stage.script["views"]["quad"] = {xr_view(64, 48, {-0.8, 0.7, 0.7, -0.7}, xr_pose({-0.03, 0, 0})),
@@ -105,7 +104,9 @@ TEST(XrRuntime, FourViewsHaveTheirOwnSizes) {
   ASSERT_EQ(log.frames().size(), 2u);
   for (const Json& frame : log.frames()) {
     for (std::size_t view = 0; view < 4; ++view) {
-      expect_painted(log, frame, view, view < 2 ? std::array{64, 48} : std::array{40, 36}, true);
+      expect_painted(log, frame, view,
+                     view < 2 ? std::array<std::size_t, 2>{64, 48} : std::array<std::size_t, 2>{40, 36},
+                     true);
     }
     EXPECT_EQ(XrLog::view(frame, 2)["fov"][0], -0.2f);
   }
