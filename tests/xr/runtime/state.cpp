@@ -59,15 +59,16 @@ void Runtime::destroy(Object& object) {
     if (id != object.id && !set) alive.push_back(objects[id]->kind() + (" " + std::to_string(id)));
   }
   log({{"what", "destroyed"}, {"kind", object.kind()}, {"id", object.id}, {"alive", alive}});
-  for (auto id = doomed.rbegin(); id != doomed.rend(); ++id) {
-    auto* swapchain = dynamic_cast<Swapchain*>(objects[*id].get());
+  std::reverse(doomed.begin(), doomed.end());
+  for (const std::uint64_t id : doomed) {
+    auto* swapchain = dynamic_cast<Swapchain*>(objects[id].get());
     const Session* of = session();
     if (swapchain != nullptr && of != nullptr) {
       const Current current(of->binding);
       of->binding.DeleteTextures(static_cast<GLsizei>(swapchain->textures.size()),
                                  swapchain->textures.data());
     }
-    objects.erase(*id);
+    objects.erase(id);
   }
 }
 
