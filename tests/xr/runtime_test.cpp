@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "support/display.h"
 #include "xr/xr_script.h"
 
@@ -166,6 +168,14 @@ TEST(XrRuntime, RecentringMovesLocalAndNotStage) {
     EXPECT_NEAR(at(1)[1], space.empty() ? 0.0 : 1.6, 1e-6);
     EXPECT_NEAR(at(2)[2], space == "stage" ? 0.0 : 1.0, 1e-6);
   }
+}
+
+TEST(XrRuntime, FramesTakeTheirTimeWhereTheyAreTold) {
+  XrStage stage;
+  stage.script = {{"frames", 4}, {"sleep", true}, {"period", 50'000'000}};
+  const auto begin = std::chrono::steady_clock::now();
+  good_log(stage);
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(200));
 }
 
 TEST(XrRuntime, RecommendedSizesChange) {

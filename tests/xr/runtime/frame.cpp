@@ -67,7 +67,11 @@ XrResult wait_frame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState*
   state->predictedDisplayPeriod = r.script.period;
   state->shouldRender = frame.should_render ? XR_TRUE : XR_FALSE;
   session.waited = frame;
-  if (r.script.sleep) std::this_thread::sleep_for(std::chrono::nanoseconds(r.script.period));
+  if (r.script.sleep) {
+    r.mutex.unlock();  // other threads may end a frame meanwhile
+    std::this_thread::sleep_for(std::chrono::nanoseconds(r.script.period));
+    r.mutex.lock();
+  }
   return session.state == XR_SESSION_STATE_LOSS_PENDING ? XR_SESSION_LOSS_PENDING : XR_SUCCESS;
 }
 
