@@ -17,7 +17,6 @@
 #include "binosplat/stereo/embed.h"
 
 using namespace binosplat;
-
 XrInstance instance = XR_NULL_HANDLE;
 
 // Every call of OpenXR goes through this one: a negative result is an error.
@@ -55,7 +54,6 @@ XrSession make_session(XrSystemId system) {
   const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE)
     throw std::runtime_error("no context of OpenGL 4.5 core");
-
   // OpenXR asks for this call before a session, whatever it answers.
   PFN_xrGetOpenGLGraphicsRequirementsKHR get_requirements = nullptr;
   XR(xrGetInstanceProcAddr, instance, "xrGetOpenGLGraphicsRequirementsKHR",
@@ -162,38 +160,35 @@ int main(int argc, char** argv) try {
   std::uint32_t count = 0;
   XR(xrEnumerateViewConfigurationViews, instance, system, stereo_views, 2, &count, sizes.data());
   const XrSession session = make_session(system);
-  const std::array<Swapchain, 2> swapchains = {make_swapchain(session, sizes[0]),
-                                               make_swapchain(session, sizes[1])};
-
+  const std::array swapchains = {make_swapchain(session, sizes[0]), make_swapchain(session, sizes[1])};
   // LOCAL begins where the head is at the start, which here is the origin of the model's world.
-  const XrReferenceSpaceCreateInfo where = {
-      XR_TYPE_REFERENCE_SPACE_CREATE_INFO, nullptr, XR_REFERENCE_SPACE_TYPE_LOCAL, {{0, 0, 0, 1}, {0, 0, 0}}};
+  XrReferenceSpaceCreateInfo where = {XR_TYPE_REFERENCE_SPACE_CREATE_INFO};
+  where.referenceSpaceType = XR_REFERENCE_SPACE_TYPE_LOCAL;
+  where.poseInReferenceSpace.orientation.w = 1.0f;
   XrSpace space = XR_NULL_HANDLE;
   XR(xrCreateReferenceSpace, session, &where, &space);
   const stereo::Stage stage = stereo::stage_of(model);
-  {
-    stereo::EmbeddedRenderer renderer(eglGetProcAddress, model);
-    bool running = false;
-    while (handle_events(session, running)) {
-      if (!running) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        continue;
-      }
-      XrFrameState frame = {XR_TYPE_FRAME_STATE};
-      XR(xrWaitFrame, session, nullptr, &frame);
-      XR(xrBeginFrame, session, nullptr);
-      std::array<XrCompositionLayerProjectionView, 2> views{};
-      const bool drawn = frame.shouldRender == XR_TRUE &&
-                         draw(session, space, frame.predictedDisplayTime, renderer, stage, swapchains, views);
-      const XrCompositionLayerProjection layer = {
-          XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, views.data()};
-      const auto* layers = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
-      XrFrameEndInfo end = {XR_TYPE_FRAME_END_INFO, nullptr, frame.predictedDisplayTime};
-      end.environmentBlendMode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
-      end.layerCount = drawn ? 1 : 0;
-      end.layers = &layers;
-      XR(xrEndFrame, session, &end);
+  stereo::EmbeddedRenderer renderer(eglGetProcAddress, model);
+  bool running = false;
+  while (handle_events(session, running)) {
+    if (!running) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      continue;
     }
+    XrFrameState frame = {XR_TYPE_FRAME_STATE};
+    XR(xrWaitFrame, session, nullptr, &frame);
+    XR(xrBeginFrame, session, nullptr);
+    std::array<XrCompositionLayerProjectionView, 2> views{};
+    const bool drawn = frame.shouldRender == XR_TRUE &&
+                       draw(session, space, frame.predictedDisplayTime, renderer, stage, swapchains, views);
+    const XrCompositionLayerProjection layer = {
+        XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, views.data()};
+    const auto* layers = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
+    XrFrameEndInfo end = {XR_TYPE_FRAME_END_INFO, nullptr, frame.predictedDisplayTime};
+    end.environmentBlendMode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+    end.layerCount = drawn ? 1 : 0;
+    end.layers = &layers;
+    XR(xrEndFrame, session, &end);
   }
   XR(xrDestroySpace, space);
   for (const Swapchain& swapchain : swapchains) XR(xrDestroySwapchain, swapchain.handle);

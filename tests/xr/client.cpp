@@ -1,11 +1,10 @@
 // A small application of OpenXR that does all by the book, but for the faults that its arguments name: for
 // the tests of the runtime. Says which calls failed and how. Words that are no faults: depth (hands in depth,
-// too), quad (four views), actions (hands are read; gaze: eyes, too), mask, xlib (the binding), array (one
+// too), quad (four views), actions (hands are read; gaze: eyes, too), mask, xlib (the binding), again (a
+// second session after a lost one), sizes (what is recommended), depth24 and stencil (formats), array (one
 // swapchain with a layer for each view), stage or floor (the space of the layer).
-#define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <GL/glcorearb.h>
 
 #include <algorithm>
 #include <array>
@@ -17,18 +16,12 @@
 
 #include "xr/client_actions.h"
 #include "xr/client_glx.h"
+#include "xr/client_images.h"
 
 namespace binosplat::xr_test {
 namespace {
 
 constexpr XrPosef origin = {{0, 0, 0, 1}, {0, 0, 0}};
-
-struct Chain {  // a swapchain and what is held of it
-  XrSwapchain handle = XR_NULL_HANDLE;
-  std::vector<XrSwapchainImageOpenGLKHR> images;
-  std::uint32_t index = 0;
-  int width = 0, height = 0;
-};
 
 struct Client {
   EGLDisplay display = EGL_NO_DISPLAY;
@@ -136,7 +129,7 @@ struct Client {
     XrSwapchainCreateInfo info = {XR_TYPE_SWAPCHAIN_CREATE_INFO};
     info.usageFlags = depth != has("wrong_usage") ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                                   : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
-    info.format = has("unknown_format") ? GL_R8 : depth ? GL_DEPTH_COMPONENT32F : GL_SRGB8_ALPHA8;
+    info.format = has("unknown_format") ? GL_R8 : depth ? depth_format() : GL_SRGB8_ALPHA8;
     info.sampleCount = has("samples") ? 4 : 1;
     info.width = has("big_swapchain") ? 5000 : size.recommendedImageRectWidth;
     info.height = size.recommendedImageRectHeight;
@@ -175,31 +168,11 @@ struct Client {
       } else if (event.type == XR_TYPE_EVENT_DATA_INTERACTION_PROFILE_CHANGED) {
         actions.say_profile();
       } else if (event.type == XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR) {
-        say_mask(reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event).viewIndex);
+        const auto& changed = reinterpret_cast<const XrEventDataVisibilityMaskChangedKHR&>(event);
+        say_mask(session, type, changed.viewIndex, frame);
       }
       event = {XR_TYPE_EVENT_DATA_BUFFER};
     }
-  }
-
-  /// How much of a view the lens hides.
-  void say_mask(std::uint32_t view) const {
-    PFN_xrGetVisibilityMaskKHR get_mask = nullptr;
-    XR(xrGetInstanceProcAddr, instance, "xrGetVisibilityMaskKHR",
-       reinterpret_cast<PFN_xrVoidFunction*>(&get_mask));
-    if (get_mask == nullptr) return;
-    const auto hidden = XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR;
-    XrVisibilityMaskKHR mask = {XR_TYPE_VISIBILITY_MASK_KHR};
-    say("mask", get_mask(session, type, view, hidden, &mask));
-    std::vector<XrVector2f> vertices(mask.vertexCountOutput);
-    std::vector<std::uint32_t> indices(mask.indexCountOutput);
-    mask.vertexCapacityInput = mask.vertexCountOutput;
-    mask.indexCapacityInput = has("small_mask") ? 1 : mask.indexCountOutput;
-    mask.vertices = vertices.data();
-    mask.indices = indices.data();
-    say("mask", get_mask(session, type, view, hidden, &mask));
-    std::printf("%d mask %u: %zu triangles", frame, view, indices.size() / 3);
-    for (const XrVector2f& v : vertices) std::printf(" %g,%g", v.x, v.y);
-    std::printf("\n");
   }
 
   void on_state() {
@@ -213,26 +186,6 @@ struct Client {
       running = false;
     } else if (state == XR_SESSION_STATE_EXITING || state == XR_SESSION_STATE_LOSS_PENDING) {
       over = true;
-    }
-  }
-
-  // The upper half in one colour, the lower half in another: both tell eye and frame.
-  void paint(const Chain& chain, std::size_t view, bool depth, std::uint32_t layer) const {
-    const bool turned = has("upside_down");
-    for (int half = 0; half < 2; ++half) {
-      const bool upper = (half == 1) != turned;
-      const GLuint image = chain.images[chain.index].image;
-      const int y = half * chain.height / 2, rows = chain.height - chain.height / 2;
-      const auto z = static_cast<GLint>(layer);
-      if (depth) {
-        const float value = (upper ? 0.5f : 0.25f) + static_cast<float>(view) / 16;
-        glClearTexSubImage(image, 0, 0, y, z, chain.width, rows, 1, GL_DEPTH_COMPONENT, GL_FLOAT, &value);
-      } else {
-        const std::array<GLubyte, 4> value = {static_cast<GLubyte>(upper ? 200 : 100),
-                                              static_cast<GLubyte>(10 * view), static_cast<GLubyte>(frame),
-                                              255};
-        glClearTexSubImage(image, 0, 0, y, z, chain.width, rows, 1, GL_RGBA, GL_UNSIGNED_BYTE, value.data());
-      }
     }
   }
 
@@ -256,11 +209,11 @@ struct Client {
     const std::size_t layers = has("array") ? sizes.size() : 1;
     for (std::size_t k = 0; k < layers; ++k) {
       const std::size_t view = has("pictures_swapped") ? 1 - (first + k) : first + k;
-      paint(chain, view, depth, static_cast<std::uint32_t>(k));
+      paint(chain, view, depth, static_cast<std::uint32_t>(k), frame);
     }
     if (hit && at("not_released")) return;
     XR(xrReleaseSwapchainImage, chain.handle, nullptr);
-    if (hit && at("drawn_after_release")) paint(chain, first + 1, depth, 0);
+    if (hit && at("drawn_after_release")) paint(chain, first + 1, depth, 0, frame);
   }
 
   std::vector<XrView> locate(XrTime time) const {
@@ -367,20 +320,36 @@ struct Client {
     ++frame;
   }
 
-  void run() {
-    make_context();
-    if (!make_instance()) return;
-    if (find_system() && make_session() && make_chains()) {
-      if (has("actions")) actions.make(session);
-      if (has("mask")) say_mask(0);
-      // A hundred frames of patience are the runtime's.
-      while (!over && frame < 150) {
-        poll();
-        if (running && !over) run_frame();
+  /// The sizes that the runtime recommends now, where they are others than before.
+  void say_sizes() {
+    std::vector<XrViewConfigurationView> now(sizes.size(), {XR_TYPE_VIEW_CONFIGURATION_VIEW});
+    auto count = static_cast<std::uint32_t>(now.size());
+    XR(xrEnumerateViewConfigurationViews, instance, system, type, count, &count, now.data());
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const std::uint32_t width = now[k].recommendedImageRectWidth,
+                          height = now[k].recommendedImageRectHeight;
+      if (width != sizes[k].recommendedImageRectWidth || height != sizes[k].recommendedImageRectHeight) {
+        std::printf("%d view %zu: %u x %u\n", frame, k, width, height);
       }
     }
-    if (has("leaves_all")) return;
-    if (!has("leaves_children") && session != XR_NULL_HANDLE) {
+    sizes = now;
+  }
+
+  void run_session() {
+    running = over = false;
+    if (!make_session() || !make_chains()) return;
+    if (has("actions")) actions.make(session);
+    if (has("mask")) say_mask(session, type, 0, frame);
+    // A hundred frames of patience are the runtime's.
+    while (!over && frame < 150) {
+      poll();
+      if (has("sizes")) say_sizes();
+      if (running && !over) run_frame();
+    }
+  }
+
+  void destroy_session() {
+    if (!has("leaves_children")) {
       for (const auto* chains : {&colours, &depths}) {
         for (const Chain& chain : *chains) {
           if (chain.handle != XR_NULL_HANDLE) XR(xrDestroySwapchain, chain.handle);
@@ -391,7 +360,19 @@ struct Client {
       }
     }
     if (has("actions")) actions.destroy();
-    if (session != XR_NULL_HANDLE) XR(xrDestroySession, session);
+    XR(xrDestroySession, session);
+  }
+
+  void run() {
+    make_context();
+    if (!make_instance()) return;
+    if (find_system()) run_session();
+    if (has("leaves_all")) return;
+    if (session != XR_NULL_HANDLE) destroy_session();
+    if (has("again") && state == XR_SESSION_STATE_LOSS_PENDING) {
+      run_session();
+      destroy_session();
+    }
     if (has("used_after")) XR(xrEndSession, session);
     XR(xrDestroyInstance, instance);
   }

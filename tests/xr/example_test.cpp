@@ -128,10 +128,27 @@ TEST(XrExample, FollowsTheSession) {
   EXPECT_TRUE(log.clean()) << log.text();
 }
 
+TEST(XrExample, LeavesWhereTheRuntimeIsLeaving) {
+  for (const Json& event :
+       {Json{{"frame", 1}, {"instance_loss", true}}, Json{{"frame", 1}, {"state", "loss_pending"}}}) {
+    XrStage stage;
+    stage.add_event(event);
+    const Outcome outcome = run_example(stage);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(stage.log().frames().size(), 1u);
+    EXPECT_EQ(stage.log().faults(), Strings());
+    EXPECT_TRUE(stage.log().clean()) << stage.log().text();
+  }
+}
+
 TEST(XrExample, SaysWhatIsMissing) {
   const std::vector<std::pair<Json, std::string>> cases = {
       {{{"system", "XR_ERROR_FORM_FACTOR_UNAVAILABLE"}},
        "xrGetSystem failed: XR_ERROR_FORM_FACTOR_UNAVAILABLE (-35)"},
+      {{{"gl_min", {4, 7}}, {"gl_max", {4, 9}}},
+       "xrCreateSession failed: XR_ERROR_GRAPHICS_DEVICE_INVALID (-38)"},
+      {{{"events", {{{"frame", 1}, {"fail", "xrWaitFrame"}, {"result", "XR_ERROR_SESSION_LOST"}}}}},
+       "xrWaitFrame failed: XR_ERROR_SESSION_LOST (-17)"},
       {{{"formats", {"GL_RGBA8"}}}, "xrCreateSwapchain failed: XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED (-26)"},
       {{{"extensions", {"XR_KHR_opengl_enable"}}}, "xrCreateInstance failed: no instance (-9)"}};
   for (const auto& [script, text] : cases) {

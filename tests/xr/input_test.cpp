@@ -108,14 +108,14 @@ TEST(XrInput, FaultsAreSeen) {
       {"unknown_user", "xrGetActionStateBoolean", "XR_ERROR_PATH_UNSUPPORTED"},
       {"strong_vibration", "xrApplyHapticFeedback", "XR_ERROR_VALIDATION_FAILURE"},
       {"vibrating_button", "xrApplyHapticFeedback", "XR_ERROR_ACTION_TYPE_MISMATCH"}};
-  for (const auto& [word, function, result] : faults) {
+  for (const auto& fault : faults) {
     XrStage stage;
-    run_client(stage, {"actions", word});
+    run_client(stage, {"actions", fault[0]});
     const auto lines = stage.log().all("fault");
     const bool seen = std::any_of(lines.begin(), lines.end(), [&](const Json& line) {
-      return line["function"] == function && line["result"] == result;
+      return line["function"] == fault[1] && line["result"] == fault[2];
     });
-    EXPECT_TRUE(seen) << word << "\n" << stage.log().text();
+    EXPECT_TRUE(seen) << fault[0] << "\n" << stage.log().text();
   }
   XrStage stage;
   stage.script["masks"]["stereo"] = {

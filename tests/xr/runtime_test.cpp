@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "support/display.h"
 #include "xr/xr_script.h"
 
@@ -44,10 +46,10 @@ TEST(XrRuntime, FramesRunToTheEnd) {
 }
 
 /// What xr/client.cpp paints, or with another upper half.
-void expect_painted(const XrLog& log, const Json& frame, std::size_t view, std::array<int, 2> size,
+void expect_painted(const XrLog& log, const Json& frame, std::size_t view, std::array<std::size_t, 2> size,
                     bool depth) {
   const std::string pixels = log.colours(frame, view);
-  const auto count = static_cast<std::size_t>(4 * size[0] * size[1]);
+  const std::size_t count = std::size_t{4} * size[0] * size[1];
   ASSERT_EQ(pixels.size(), count);
   const auto expect_row = [&](std::size_t at, int red) {
     EXPECT_EQ(static_cast<unsigned char>(pixels[at]), red) << frame.dump();
@@ -61,12 +63,13 @@ void expect_painted(const XrLog& log, const Json& frame, std::size_t view, std::
   if (!depth) return;
   const auto depths = log.depths(frame, view);
   ASSERT_EQ(depths.size(), count / 4);
-  EXPECT_EQ(depths.front(), 0.5f + static_cast<float>(view) / 16);
-  EXPECT_EQ(depths.back(), 0.25f + static_cast<float>(view) / 16);
+  EXPECT_NEAR(depths.front(), 0.5 + static_cast<double>(view) / 16, 1e-7);
+  EXPECT_NEAR(depths.back(), 0.25 + static_cast<double>(view) / 16, 1e-7);
 }
 
 TEST(XrRuntime, PixelsArriveTheRightWayUp) {
-  for (const Strings& words : {Strings{"depth"}, Strings{"depth", "array"}}) {
+  for (const Strings& words : {Strings{"depth"}, Strings{"depth", "array"}, Strings{"depth", "depth24"},
+                               Strings{"depth", "stencil"}}) {
     for (const bool immutable : {true, false}) {
       XrStage stage;
       stage.script = {{"frames", 2}, {"immutable", immutable}};
@@ -93,7 +96,6 @@ TEST(XrRuntime, WrongPicturesAreSeenInPixels) {
 }
 
 TEST(XrRuntime, FourViewsHaveTheirOwnSizes) {
-  const Json centre = xr_pose({0, 0, 0});
   XrStage stage;
   stage.script["frames"] = 2;
   stage.script["views"]["quad"] = {xr_view(64, 48, {-0.8, 0.7, 0.7, -0.7}, xr_pose({-0.03, 0, 0})),
@@ -104,7 +106,9 @@ TEST(XrRuntime, FourViewsHaveTheirOwnSizes) {
   ASSERT_EQ(log.frames().size(), 2u);
   for (const Json& frame : log.frames()) {
     for (std::size_t view = 0; view < 4; ++view) {
-      expect_painted(log, frame, view, view < 2 ? std::array{64, 48} : std::array{40, 36}, true);
+      expect_painted(log, frame, view,
+                     view < 2 ? std::array<std::size_t, 2>{64, 48} : std::array<std::size_t, 2>{40, 36},
+                     true);
     }
     EXPECT_EQ(XrLog::view(frame, 2)["fov"][0], -0.2f);
   }
@@ -135,6 +139,14 @@ TEST(XrRuntime, SessionsStopAndBeginAgain) {
   const XrLog log = good_log(stage);
   EXPECT_EQ(log.all("begin").size(), 2u);
   EXPECT_EQ(log.frames().size(), 5u);
+  XrStage second;
+  second.script = {{"frames", 3}};
+  second.add_event({{"frame", 1}, {"state", "loss_pending"}});
+  run_client(second, {"again"});
+  EXPECT_EQ(second.log().faults(), Strings());
+  EXPECT_EQ(second.log().all("session").size(), 2u);
+  EXPECT_EQ(second.log().frames().size(), 3u) << "frames are counted on";
+  EXPECT_TRUE(second.log().clean());
   XrStage lost;
   lost.add_event({{"frame", 1}, {"state", "loss_pending"}});
   EXPECT_EQ(run_client(lost).out, "xrEndFrame: XR_SESSION_LOSS_PENDING\n");
@@ -156,6 +168,21 @@ TEST(XrRuntime, RecentringMovesLocalAndNotStage) {
     EXPECT_NEAR(at(1)[1], space.empty() ? 0.0 : 1.6, 1e-6);
     EXPECT_NEAR(at(2)[2], space == "stage" ? 0.0 : 1.0, 1e-6);
   }
+}
+
+TEST(XrRuntime, FramesTakeTheirTimeWhereTheyAreTold) {
+  XrStage stage;
+  stage.script = {{"frames", 4}, {"sleep", true}, {"period", 50'000'000}};
+  const auto begin = std::chrono::steady_clock::now();
+  good_log(stage);
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(200));
+}
+
+TEST(XrRuntime, RecommendedSizesChange) {
+  XrStage stage;
+  stage.add_event({{"frame", 1}, {"view", {{"index", 1}, {"width", 64}, {"height", 60}}}});
+  EXPECT_EQ(run_client(stage, {"sizes"}).out, "1 view 1: 64 x 60\n");
+  EXPECT_EQ(stage.log().faults(), Strings());
 }
 
 TEST(XrRuntime, ScriptedResultsAreReturned) {

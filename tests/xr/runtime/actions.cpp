@@ -50,7 +50,7 @@ bool fits(XrActionType type, const std::string& component) {
 
 }  // namespace
 
-XrResult CreateActionSet(XrInstance handle, const XrActionSetCreateInfo* info, XrActionSet* out) {
+XrResult create_action_set(XrInstance handle, const XrActionSetCreateInfo* info, XrActionSet* out) {
   const auto& instance = runtime().get<Instance>(handle);
   checked(info, XR_TYPE_ACTION_SET_CREATE_INFO);
   check_name(info->actionSetName, info->localizedActionSetName);
@@ -62,12 +62,12 @@ XrResult CreateActionSet(XrInstance handle, const XrActionSetCreateInfo* info, X
   return XR_SUCCESS;
 }
 
-XrResult DestroyActionSet(XrActionSet handle) {
+XrResult destroy_action_set(XrActionSet handle) {
   runtime().destroy(runtime().get<ActionSet>(handle, true));
   return XR_SUCCESS;
 }
 
-XrResult CreateAction(XrActionSet handle, const XrActionCreateInfo* info, XrAction* out) {
+XrResult create_action(XrActionSet handle, const XrActionCreateInfo* info, XrAction* out) {
   const auto& set = runtime().get<ActionSet>(handle);
   checked(info, XR_TYPE_ACTION_CREATE_INFO);
   require(!set.attached, XR_ERROR_ACTIONSETS_ALREADY_ATTACHED, "set " + set.name + " is attached already");
@@ -90,13 +90,13 @@ XrResult CreateAction(XrActionSet handle, const XrActionCreateInfo* info, XrActi
   return XR_SUCCESS;
 }
 
-XrResult DestroyAction(XrAction handle) {
+XrResult destroy_action(XrAction handle) {
   runtime().destroy(runtime().get<Action>(handle, true));
   return XR_SUCCESS;
 }
 
-XrResult SuggestInteractionProfileBindings(XrInstance handle,
-                                           const XrInteractionProfileSuggestedBinding* info) {
+XrResult suggest_interaction_profile_bindings(XrInstance handle,
+                                              const XrInteractionProfileSuggestedBinding* info) {
   Runtime& r = runtime();
   r.get<Instance>(handle);
   checked(info, XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING);
@@ -125,7 +125,7 @@ XrResult SuggestInteractionProfileBindings(XrInstance handle,
   return XR_SUCCESS;
 }
 
-XrResult AttachSessionActionSets(XrSession handle, const XrSessionActionSetsAttachInfo* info) {
+XrResult attach_session_action_sets(XrSession handle, const XrSessionActionSetsAttachInfo* info) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO);

@@ -1,93 +1,94 @@
 #pragma once
-// Every function that the runtime offers, by its name without "xr": the table of entry points is made of it.
+// Every function that the runtime offers, by its name in snake case: the table of entry points is made of it.
 
 #include "xr/runtime/state.h"
 
 namespace binosplat::xr_test::api {
 
-XrResult EnumerateInstanceExtensionProperties(const char* layer, std::uint32_t capacity, std::uint32_t* count,
-                                              XrExtensionProperties* properties);
-XrResult CreateInstance(const XrInstanceCreateInfo* info, XrInstance* out);
-XrResult DestroyInstance(XrInstance handle);
-XrResult GetInstanceProperties(XrInstance handle, XrInstanceProperties* properties);
-XrResult PollEvent(XrInstance handle, XrEventDataBuffer* event);
-XrResult ResultToString(XrInstance handle, XrResult value, char* buffer);
-XrResult StructureTypeToString(XrInstance handle, XrStructureType value, char* buffer);
-XrResult StringToPath(XrInstance handle, const char* text, XrPath* path);
-XrResult PathToString(XrInstance handle, XrPath path, std::uint32_t capacity, std::uint32_t* count,
-                      char* buffer);
+XrResult enumerate_instance_extension_properties(const char* layer, std::uint32_t capacity,
+                                                 std::uint32_t* count, XrExtensionProperties* properties);
+XrResult create_instance(const XrInstanceCreateInfo* info, XrInstance* out);
+XrResult destroy_instance(XrInstance handle);
+XrResult get_instance_properties(XrInstance handle, XrInstanceProperties* properties);
+XrResult poll_event(XrInstance handle, XrEventDataBuffer* event);
+XrResult result_to_string(XrInstance handle, XrResult value, char* buffer);
+XrResult structure_type_to_string(XrInstance handle, XrStructureType value, char* buffer);
+XrResult string_to_path(XrInstance handle, const char* text, XrPath* path);
+XrResult path_to_string(XrInstance handle, XrPath path, std::uint32_t capacity, std::uint32_t* count,
+                        char* buffer);
 
-XrResult GetSystem(XrInstance handle, const XrSystemGetInfo* info, XrSystemId* system);
-XrResult GetSystemProperties(XrInstance handle, XrSystemId system, XrSystemProperties* properties);
-XrResult EnumerateEnvironmentBlendModes(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
-                                        std::uint32_t capacity, std::uint32_t* count,
-                                        XrEnvironmentBlendMode* modes);
-XrResult EnumerateViewConfigurations(XrInstance handle, XrSystemId system, std::uint32_t capacity,
-                                     std::uint32_t* count, XrViewConfigurationType* types);
-XrResult GetViewConfigurationProperties(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
-                                        XrViewConfigurationProperties* properties);
-XrResult EnumerateViewConfigurationViews(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
-                                         std::uint32_t capacity, std::uint32_t* count,
-                                         XrViewConfigurationView* views);
-XrResult GetOpenGLGraphicsRequirementsKHR(XrInstance handle, XrSystemId system,
+XrResult get_system(XrInstance handle, const XrSystemGetInfo* info, XrSystemId* system);
+XrResult get_system_properties(XrInstance handle, XrSystemId system, XrSystemProperties* properties);
+XrResult enumerate_environment_blend_modes(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
+                                           std::uint32_t capacity, std::uint32_t* count,
+                                           XrEnvironmentBlendMode* modes);
+XrResult enumerate_view_configurations(XrInstance handle, XrSystemId system, std::uint32_t capacity,
+                                       std::uint32_t* count, XrViewConfigurationType* types);
+XrResult get_view_configuration_properties(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
+                                           XrViewConfigurationProperties* properties);
+XrResult enumerate_view_configuration_views(XrInstance handle, XrSystemId system,
+                                            XrViewConfigurationType type, std::uint32_t capacity,
+                                            std::uint32_t* count, XrViewConfigurationView* views);
+XrResult get_opengl_graphics_requirements(XrInstance handle, XrSystemId system,
                                           XrGraphicsRequirementsOpenGLKHR* requirements);
 
-XrResult CreateSession(XrInstance handle, const XrSessionCreateInfo* info, XrSession* out);
-XrResult DestroySession(XrSession handle);
-XrResult BeginSession(XrSession handle, const XrSessionBeginInfo* info);
-XrResult EndSession(XrSession handle);
-XrResult RequestExitSession(XrSession handle);
+XrResult create_session(XrInstance handle, const XrSessionCreateInfo* info, XrSession* out);
+XrResult destroy_session(XrSession handle);
+XrResult begin_session(XrSession handle, const XrSessionBeginInfo* info);
+XrResult end_session(XrSession handle);
+XrResult request_exit_session(XrSession handle);
 
-XrResult EnumerateReferenceSpaces(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
-                                  XrReferenceSpaceType* spaces);
-XrResult CreateReferenceSpace(XrSession handle, const XrReferenceSpaceCreateInfo* info, XrSpace* out);
-XrResult GetReferenceSpaceBoundsRect(XrSession handle, XrReferenceSpaceType type, XrExtent2Df* bounds);
-XrResult CreateActionSpace(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* out);
-XrResult LocateSpace(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation* location);
-XrResult DestroySpace(XrSpace handle);
-XrResult LocateViews(XrSession handle, const XrViewLocateInfo* info, XrViewState* state,
-                     std::uint32_t capacity, std::uint32_t* count, XrView* views);
+XrResult enumerate_reference_spaces(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
+                                    XrReferenceSpaceType* spaces);
+XrResult create_reference_space(XrSession handle, const XrReferenceSpaceCreateInfo* info, XrSpace* out);
+XrResult get_reference_space_bounds_rect(XrSession handle, XrReferenceSpaceType type, XrExtent2Df* bounds);
+XrResult create_action_space(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* out);
+XrResult locate_space(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation* location);
+XrResult destroy_space(XrSpace handle);
+XrResult locate_views(XrSession handle, const XrViewLocateInfo* info, XrViewState* state,
+                      std::uint32_t capacity, std::uint32_t* count, XrView* views);
 
-XrResult EnumerateSwapchainFormats(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
-                                   std::int64_t* formats);
-XrResult CreateSwapchain(XrSession handle, const XrSwapchainCreateInfo* info, XrSwapchain* out);
-XrResult DestroySwapchain(XrSwapchain handle);
-XrResult EnumerateSwapchainImages(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,
-                                  XrSwapchainImageBaseHeader* images);
-XrResult AcquireSwapchainImage(XrSwapchain handle, const XrSwapchainImageAcquireInfo* info,
-                               std::uint32_t* index);
-XrResult WaitSwapchainImage(XrSwapchain handle, const XrSwapchainImageWaitInfo* info);
-XrResult ReleaseSwapchainImage(XrSwapchain handle, const XrSwapchainImageReleaseInfo* info);
+XrResult enumerate_swapchain_formats(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
+                                     std::int64_t* formats);
+XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, XrSwapchain* out);
+XrResult destroy_swapchain(XrSwapchain handle);
+XrResult enumerate_swapchain_images(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,
+                                    XrSwapchainImageBaseHeader* images);
+XrResult acquire_swapchain_image(XrSwapchain handle, const XrSwapchainImageAcquireInfo* info,
+                                 std::uint32_t* index);
+XrResult wait_swapchain_image(XrSwapchain handle, const XrSwapchainImageWaitInfo* info);
+XrResult release_swapchain_image(XrSwapchain handle, const XrSwapchainImageReleaseInfo* info);
 
-XrResult WaitFrame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* state);
-XrResult BeginFrame(XrSession handle, const XrFrameBeginInfo* info);
-XrResult EndFrame(XrSession handle, const XrFrameEndInfo* info);
+XrResult wait_frame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* state);
+XrResult begin_frame(XrSession handle, const XrFrameBeginInfo* info);
+XrResult end_frame(XrSession handle, const XrFrameEndInfo* info);
 
-XrResult CreateActionSet(XrInstance handle, const XrActionSetCreateInfo* info, XrActionSet* out);
-XrResult DestroyActionSet(XrActionSet handle);
-XrResult CreateAction(XrActionSet handle, const XrActionCreateInfo* info, XrAction* out);
-XrResult DestroyAction(XrAction handle);
-XrResult SuggestInteractionProfileBindings(XrInstance handle,
-                                           const XrInteractionProfileSuggestedBinding* info);
-XrResult AttachSessionActionSets(XrSession handle, const XrSessionActionSetsAttachInfo* info);
-XrResult GetCurrentInteractionProfile(XrSession handle, XrPath user, XrInteractionProfileState* state);
-XrResult GetActionStateBoolean(XrSession handle, const XrActionStateGetInfo* info,
-                               XrActionStateBoolean* state);
-XrResult GetActionStateFloat(XrSession handle, const XrActionStateGetInfo* info, XrActionStateFloat* state);
-XrResult GetActionStateVector2f(XrSession handle, const XrActionStateGetInfo* info,
-                                XrActionStateVector2f* state);
-XrResult GetActionStatePose(XrSession handle, const XrActionStateGetInfo* info, XrActionStatePose* state);
-XrResult SyncActions(XrSession handle, const XrActionsSyncInfo* info);
-XrResult EnumerateBoundSourcesForAction(XrSession handle, const XrBoundSourcesForActionEnumerateInfo* info,
-                                        std::uint32_t capacity, std::uint32_t* count, XrPath* sources);
-XrResult GetInputSourceLocalizedName(XrSession handle, const XrInputSourceLocalizedNameGetInfo* info,
-                                     std::uint32_t capacity, std::uint32_t* count, char* buffer);
-XrResult ApplyHapticFeedback(XrSession handle, const XrHapticActionInfo* info,
-                             const XrHapticBaseHeader* feedback);
-XrResult StopHapticFeedback(XrSession handle, const XrHapticActionInfo* info);
+XrResult create_action_set(XrInstance handle, const XrActionSetCreateInfo* info, XrActionSet* out);
+XrResult destroy_action_set(XrActionSet handle);
+XrResult create_action(XrActionSet handle, const XrActionCreateInfo* info, XrAction* out);
+XrResult destroy_action(XrAction handle);
+XrResult suggest_interaction_profile_bindings(XrInstance handle,
+                                              const XrInteractionProfileSuggestedBinding* info);
+XrResult attach_session_action_sets(XrSession handle, const XrSessionActionSetsAttachInfo* info);
+XrResult get_current_interaction_profile(XrSession handle, XrPath user, XrInteractionProfileState* state);
+XrResult get_action_state_boolean(XrSession handle, const XrActionStateGetInfo* info,
+                                  XrActionStateBoolean* out);
+XrResult get_action_state_float(XrSession handle, const XrActionStateGetInfo* info, XrActionStateFloat* out);
+XrResult get_action_state_vector2f(XrSession handle, const XrActionStateGetInfo* info,
+                                   XrActionStateVector2f* out);
+XrResult get_action_state_pose(XrSession handle, const XrActionStateGetInfo* info, XrActionStatePose* out);
+XrResult sync_actions(XrSession handle, const XrActionsSyncInfo* info);
+XrResult enumerate_bound_sources_for_action(XrSession handle,
+                                            const XrBoundSourcesForActionEnumerateInfo* info,
+                                            std::uint32_t capacity, std::uint32_t* count, XrPath* sources);
+XrResult get_input_source_localized_name(XrSession handle, const XrInputSourceLocalizedNameGetInfo* info,
+                                         std::uint32_t capacity, std::uint32_t* count, char* buffer);
+XrResult apply_haptic_feedback(XrSession handle, const XrHapticActionInfo* info,
+                               const XrHapticBaseHeader* feedback);
+XrResult stop_haptic_feedback(XrSession handle, const XrHapticActionInfo* info);
 
-XrResult GetVisibilityMaskKHR(XrSession handle, XrViewConfigurationType type, std::uint32_t view,
-                              XrVisibilityMaskTypeKHR mask_type, XrVisibilityMaskKHR* mask);
+XrResult get_visibility_mask(XrSession handle, XrViewConfigurationType type, std::uint32_t view,
+                             XrVisibilityMaskTypeKHR mask_type, XrVisibilityMaskKHR* mask);
 
 }  // namespace binosplat::xr_test::api
 

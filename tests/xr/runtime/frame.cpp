@@ -34,11 +34,11 @@ void finish(Session& session, const FrameRecord& frame, Json& line) {
   Runtime& r = runtime();
   line["faults"] = frame.faults;
   session.begun.reset();
-  session.ended_frames++;
+  r.ended_frames++;
   r.log(line);
-  if (session.ended_frames <= r.script.invisible_frames) show_slowly(session, session.ended_frames);
+  if (r.ended_frames <= r.script.invisible_frames) show_slowly(session, r.ended_frames);
   apply_events(session, frame.number + 1);
-  if (session.ended_frames == r.script.frames && session.state < XR_SESSION_STATE_STOPPING) {
+  if (r.ended_frames >= r.script.frames && session.state < XR_SESSION_STATE_STOPPING) {
     session.then = "exiting";
     walk_to(session, XR_SESSION_STATE_STOPPING);
   }
@@ -46,7 +46,7 @@ void finish(Session& session, const FrameRecord& frame, Json& line) {
 
 }  // namespace
 
-XrResult WaitFrame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* state) {
+XrResult wait_frame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* state) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   check_if_any(info, XR_TYPE_FRAME_WAIT_INFO);
@@ -54,12 +54,12 @@ XrResult WaitFrame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* 
   check_running(session);
   require(!session.waited, XR_ERROR_CALL_ORDER_INVALID,
           "the frame before was not begun: this would wait for ever");
-  if (session.next_frame >= r.script.frames + patience) {
+  if (r.next_frame >= r.script.frames + patience) {
     session.lost = true;
     refuse(XR_ERROR_SESSION_LOST, "the application does not stop");
   }
   FrameRecord frame;
-  frame.number = session.next_frame++;
+  frame.number = r.next_frame++;
   apply_events(session, frame.number);
   frame.time = r.time_of(frame.number);
   frame.should_render = is_shown(session) && r.script.not_rendered.count(frame.number) == 0;
@@ -67,11 +67,15 @@ XrResult WaitFrame(XrSession handle, const XrFrameWaitInfo* info, XrFrameState* 
   state->predictedDisplayPeriod = r.script.period;
   state->shouldRender = frame.should_render ? XR_TRUE : XR_FALSE;
   session.waited = frame;
-  if (r.script.sleep) std::this_thread::sleep_for(std::chrono::nanoseconds(r.script.period));
+  if (r.script.sleep) {
+    r.mutex.unlock();  // other threads may end a frame meanwhile
+    std::this_thread::sleep_for(std::chrono::nanoseconds(r.script.period));
+    r.mutex.lock();
+  }
   return session.state == XR_SESSION_STATE_LOSS_PENDING ? XR_SESSION_LOSS_PENDING : XR_SUCCESS;
 }
 
-XrResult BeginFrame(XrSession handle, const XrFrameBeginInfo* info) {
+XrResult begin_frame(XrSession handle, const XrFrameBeginInfo* info) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   check_if_any(info, XR_TYPE_FRAME_BEGIN_INFO);
@@ -84,7 +88,7 @@ XrResult BeginFrame(XrSession handle, const XrFrameBeginInfo* info) {
   return discards ? XR_FRAME_DISCARDED : XR_SUCCESS;
 }
 
-XrResult EndFrame(XrSession handle, const XrFrameEndInfo* info) {
+XrResult end_frame(XrSession handle, const XrFrameEndInfo* info) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_FRAME_END_INFO);

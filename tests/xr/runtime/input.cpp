@@ -139,7 +139,7 @@ std::optional<Pose> pose_of_action(const Space& space, XrTime time) {
 
 namespace api {
 
-XrResult SyncActions(XrSession handle, const XrActionsSyncInfo* info) {
+XrResult sync_actions(XrSession handle, const XrActionsSyncInfo* info) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_ACTIONS_SYNC_INFO);
@@ -159,8 +159,8 @@ XrResult SyncActions(XrSession handle, const XrActionsSyncInfo* info) {
   return focused ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 
-XrResult GetActionStateBoolean(XrSession handle, const XrActionStateGetInfo* info,
-                               XrActionStateBoolean* out) {
+XrResult get_action_state_boolean(XrSession handle, const XrActionStateGetInfo* info,
+                                  XrActionStateBoolean* out) {
   const Action& action = action_of(handle, info, XR_ACTION_TYPE_BOOLEAN_INPUT);
   checked(out, XR_TYPE_ACTION_STATE_BOOLEAN);
   const ActionState state = state_of(action, info->subactionPath);
@@ -171,7 +171,7 @@ XrResult GetActionStateBoolean(XrSession handle, const XrActionStateGetInfo* inf
   return XR_SUCCESS;
 }
 
-XrResult GetActionStateFloat(XrSession handle, const XrActionStateGetInfo* info, XrActionStateFloat* out) {
+XrResult get_action_state_float(XrSession handle, const XrActionStateGetInfo* info, XrActionStateFloat* out) {
   const Action& action = action_of(handle, info, XR_ACTION_TYPE_FLOAT_INPUT);
   checked(out, XR_TYPE_ACTION_STATE_FLOAT);
   const ActionState state = state_of(action, info->subactionPath);
@@ -182,8 +182,8 @@ XrResult GetActionStateFloat(XrSession handle, const XrActionStateGetInfo* info,
   return XR_SUCCESS;
 }
 
-XrResult GetActionStateVector2f(XrSession handle, const XrActionStateGetInfo* info,
-                                XrActionStateVector2f* out) {
+XrResult get_action_state_vector2f(XrSession handle, const XrActionStateGetInfo* info,
+                                   XrActionStateVector2f* out) {
   const Action& action = action_of(handle, info, XR_ACTION_TYPE_VECTOR2F_INPUT);
   checked(out, XR_TYPE_ACTION_STATE_VECTOR2F);
   const ActionState state = state_of(action, info->subactionPath);
@@ -195,14 +195,14 @@ XrResult GetActionStateVector2f(XrSession handle, const XrActionStateGetInfo* in
   return XR_SUCCESS;
 }
 
-XrResult GetActionStatePose(XrSession handle, const XrActionStateGetInfo* info, XrActionStatePose* out) {
+XrResult get_action_state_pose(XrSession handle, const XrActionStateGetInfo* info, XrActionStatePose* out) {
   const Action& action = action_of(handle, info, XR_ACTION_TYPE_POSE_INPUT);
   checked(out, XR_TYPE_ACTION_STATE_POSE);
   out->isActive = state_of(action, info->subactionPath).active ? XR_TRUE : XR_FALSE;
   return XR_SUCCESS;
 }
 
-XrResult GetCurrentInteractionProfile(XrSession handle, XrPath user, XrInteractionProfileState* state) {
+XrResult get_current_interaction_profile(XrSession handle, XrPath user, XrInteractionProfileState* state) {
   const auto& session = runtime().get<Session>(handle);
   checked(state, XR_TYPE_INTERACTION_PROFILE_STATE);
   require(session.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action set is attached");
@@ -212,8 +212,9 @@ XrResult GetCurrentInteractionProfile(XrSession handle, XrPath user, XrInteracti
   return XR_SUCCESS;
 }
 
-XrResult EnumerateBoundSourcesForAction(XrSession handle, const XrBoundSourcesForActionEnumerateInfo* info,
-                                        std::uint32_t capacity, std::uint32_t* count, XrPath* sources) {
+XrResult enumerate_bound_sources_for_action(XrSession handle,
+                                            const XrBoundSourcesForActionEnumerateInfo* info,
+                                            std::uint32_t capacity, std::uint32_t* count, XrPath* sources) {
   Runtime& r = runtime();
   const auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_BOUND_SOURCES_FOR_ACTION_ENUMERATE_INFO);
@@ -226,8 +227,8 @@ XrResult EnumerateBoundSourcesForAction(XrSession handle, const XrBoundSourcesFo
   return fill(all.size(), capacity, count, sources, [&](std::size_t k) { sources[k] = path_of(all[k]); });
 }
 
-XrResult GetInputSourceLocalizedName(XrSession handle, const XrInputSourceLocalizedNameGetInfo* info,
-                                     std::uint32_t capacity, std::uint32_t* count, char* buffer) {
+XrResult get_input_source_localized_name(XrSession handle, const XrInputSourceLocalizedNameGetInfo* info,
+                                         std::uint32_t capacity, std::uint32_t* count, char* buffer) {
   const auto& session = runtime().get<Session>(handle);
   checked(info, XR_TYPE_INPUT_SOURCE_LOCALIZED_NAME_GET_INFO);
   require(session.attached, XR_ERROR_ACTIONSET_NOT_ATTACHED, "no action set is attached");
@@ -250,8 +251,8 @@ void check_haptic(XrSession handle, const XrHapticActionInfo* info) {
 
 }  // namespace
 
-XrResult ApplyHapticFeedback(XrSession handle, const XrHapticActionInfo* info,
-                             const XrHapticBaseHeader* feedback) {
+XrResult apply_haptic_feedback(XrSession handle, const XrHapticActionInfo* info,
+                               const XrHapticBaseHeader* feedback) {
   Runtime& r = runtime();
   check_haptic(handle, info);
   const auto& vibration =
@@ -266,7 +267,7 @@ XrResult ApplyHapticFeedback(XrSession handle, const XrHapticActionInfo* info,
   return r.session()->state == XR_SESSION_STATE_FOCUSED ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 
-XrResult StopHapticFeedback(XrSession handle, const XrHapticActionInfo* info) {
+XrResult stop_haptic_feedback(XrSession handle, const XrHapticActionInfo* info) {
   check_haptic(handle, info);
   return XR_SUCCESS;
 }

@@ -24,8 +24,8 @@ XrPath path_of(const std::string& text) {
 
 namespace api {
 
-XrResult EnumerateInstanceExtensionProperties(const char* layer, std::uint32_t capacity, std::uint32_t* count,
-                                              XrExtensionProperties* properties) {
+XrResult enumerate_instance_extension_properties(const char* layer, std::uint32_t capacity,
+                                                 std::uint32_t* count, XrExtensionProperties* properties) {
   require(layer == nullptr, XR_ERROR_API_LAYER_NOT_PRESENT, "a runtime has no layers");
   const auto& all = runtime().script.extensions;
   const std::vector<std::string> names(all.begin(), all.end());
@@ -36,7 +36,7 @@ XrResult EnumerateInstanceExtensionProperties(const char* layer, std::uint32_t c
   });
 }
 
-XrResult CreateInstance(const XrInstanceCreateInfo* info, XrInstance* out) {
+XrResult create_instance(const XrInstanceCreateInfo* info, XrInstance* out) {
   checked(info, XR_TYPE_INSTANCE_CREATE_INFO);
   Runtime& r = runtime();
   require(r.instance() == nullptr, XR_ERROR_LIMIT_REACHED, "a second instance");
@@ -61,12 +61,12 @@ XrResult CreateInstance(const XrInstanceCreateInfo* info, XrInstance* out) {
   return XR_SUCCESS;
 }
 
-XrResult DestroyInstance(XrInstance handle) {
+XrResult destroy_instance(XrInstance handle) {
   runtime().destroy(runtime().get<Instance>(handle, true));
   return XR_SUCCESS;
 }
 
-XrResult GetInstanceProperties(XrInstance handle, XrInstanceProperties* properties) {
+XrResult get_instance_properties(XrInstance handle, XrInstanceProperties* properties) {
   runtime().get<Instance>(handle);
   checked(properties, XR_TYPE_INSTANCE_PROPERTIES);
   properties->runtimeVersion = XR_MAKE_VERSION(1, 0, 0);
@@ -74,7 +74,7 @@ XrResult GetInstanceProperties(XrInstance handle, XrInstanceProperties* properti
   return XR_SUCCESS;
 }
 
-XrResult PollEvent(XrInstance handle, XrEventDataBuffer* event) {
+XrResult poll_event(XrInstance handle, XrEventDataBuffer* event) {
   auto& instance = runtime().get<Instance>(handle);
   checked(event, XR_TYPE_EVENT_DATA_BUFFER);
   if (instance.events.empty()) return XR_EVENT_UNAVAILABLE;
@@ -83,19 +83,19 @@ XrResult PollEvent(XrInstance handle, XrEventDataBuffer* event) {
   return XR_SUCCESS;
 }
 
-XrResult ResultToString(XrInstance handle, XrResult value, char* buffer) {
+XrResult result_to_string(XrInstance handle, XrResult value, char* buffer) {
   runtime().get<Instance>(handle, true);
   std::strncpy(buffer, name_of(value), XR_MAX_RESULT_STRING_SIZE - 1);
   return XR_SUCCESS;
 }
 
-XrResult StructureTypeToString(XrInstance handle, XrStructureType value, char* buffer) {
+XrResult structure_type_to_string(XrInstance handle, XrStructureType value, char* buffer) {
   runtime().get<Instance>(handle, true);
   std::strncpy(buffer, name_of(value), XR_MAX_STRUCTURE_NAME_SIZE - 1);
   return XR_SUCCESS;
 }
 
-XrResult StringToPath(XrInstance handle, const char* text, XrPath* path) {
+XrResult string_to_path(XrInstance handle, const char* text, XrPath* path) {
   Runtime& r = runtime();
   r.get<Instance>(handle);
   const std::string name = text == nullptr ? "" : text;
@@ -107,8 +107,8 @@ XrResult StringToPath(XrInstance handle, const char* text, XrPath* path) {
   return XR_SUCCESS;
 }
 
-XrResult PathToString(XrInstance handle, XrPath path, std::uint32_t capacity, std::uint32_t* count,
-                      char* buffer) {
+XrResult path_to_string(XrInstance handle, XrPath path, std::uint32_t capacity, std::uint32_t* count,
+                        char* buffer) {
   runtime().get<Instance>(handle);
   return fill_text(text_of(path), capacity, count, buffer);
 }

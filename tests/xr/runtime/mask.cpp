@@ -4,8 +4,8 @@
 
 namespace binosplat::xr_test::api {
 
-XrResult GetVisibilityMaskKHR(XrSession handle, XrViewConfigurationType type, std::uint32_t view,
-                              XrVisibilityMaskTypeKHR mask_type, XrVisibilityMaskKHR* mask) {
+XrResult get_visibility_mask(XrSession handle, XrViewConfigurationType type, std::uint32_t view,
+                             XrVisibilityMaskTypeKHR mask_type, XrVisibilityMaskKHR* mask) {
   Runtime& r = runtime();
   r.get<Session>(handle);
   checked(mask, XR_TYPE_VISIBILITY_MASK_KHR);

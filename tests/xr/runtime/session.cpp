@@ -112,7 +112,7 @@ void apply_events(Session& session, int frame) {
 
 namespace api {
 
-XrResult CreateSession(XrInstance handle, const XrSessionCreateInfo* info, XrSession* out) {
+XrResult create_session(XrInstance handle, const XrSessionCreateInfo* info, XrSession* out) {
   Runtime& r = runtime();
   const auto& instance = r.get<Instance>(handle);
   checked(info, XR_TYPE_SESSION_CREATE_INFO);
@@ -138,12 +138,12 @@ XrResult CreateSession(XrInstance handle, const XrSessionCreateInfo* info, XrSes
   return XR_SUCCESS;
 }
 
-XrResult DestroySession(XrSession handle) {
+XrResult destroy_session(XrSession handle) {
   runtime().destroy(runtime().get<Session>(handle, true));
   return XR_SUCCESS;
 }
 
-XrResult BeginSession(XrSession handle, const XrSessionBeginInfo* info) {
+XrResult begin_session(XrSession handle, const XrSessionBeginInfo* info) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_SESSION_BEGIN_INFO);
@@ -154,12 +154,12 @@ XrResult BeginSession(XrSession handle, const XrSessionBeginInfo* info) {
   session.configuration = info->primaryViewConfigurationType;
   session.running = true;
   r.log({{"what", "begin"}, {"configuration", name_of(session.configuration)}});
-  if (r.script.invisible_frames == 0 || session.next_frame > 0) walk_to(session, XR_SESSION_STATE_FOCUSED);
-  apply_events(session, session.next_frame);
+  if (r.script.invisible_frames == 0 || r.next_frame > 0) walk_to(session, XR_SESSION_STATE_FOCUSED);
+  apply_events(session, r.next_frame);
   return XR_SUCCESS;
 }
 
-XrResult EndSession(XrSession handle) {
+XrResult end_session(XrSession handle) {
   auto& session = runtime().get<Session>(handle);
   require(session.running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
   require(session.state == XR_SESSION_STATE_STOPPING, XR_ERROR_SESSION_NOT_STOPPING,
@@ -172,7 +172,7 @@ XrResult EndSession(XrSession handle) {
   return XR_SUCCESS;
 }
 
-XrResult RequestExitSession(XrSession handle) {
+XrResult request_exit_session(XrSession handle) {
   auto& session = runtime().get<Session>(handle);
   require(session.running, XR_ERROR_SESSION_NOT_RUNNING, "the session does not run");
   runtime().log({{"what", "exit requested"}, {"frame", runtime().frame()}});

@@ -60,14 +60,14 @@ std::optional<Pose> pose_of(const Space& space, XrTime time) {
 
 namespace api {
 
-XrResult EnumerateReferenceSpaces(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
-                                  XrReferenceSpaceType* spaces) {
+XrResult enumerate_reference_spaces(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
+                                    XrReferenceSpaceType* spaces) {
   runtime().get<Session>(handle);
   const auto all = offered();
   return fill(all.size(), capacity, count, spaces, [&](std::size_t k) { spaces[k] = all[k]; });
 }
 
-XrResult CreateReferenceSpace(XrSession handle, const XrReferenceSpaceCreateInfo* info, XrSpace* out) {
+XrResult create_reference_space(XrSession handle, const XrReferenceSpaceCreateInfo* info, XrSpace* out) {
   const auto& session = runtime().get<Session>(handle);
   checked(info, XR_TYPE_REFERENCE_SPACE_CREATE_INFO);
   check_offered(info->referenceSpaceType);
@@ -80,7 +80,7 @@ XrResult CreateReferenceSpace(XrSession handle, const XrReferenceSpaceCreateInfo
   return XR_SUCCESS;
 }
 
-XrResult GetReferenceSpaceBoundsRect(XrSession handle, XrReferenceSpaceType type, XrExtent2Df* bounds) {
+XrResult get_reference_space_bounds_rect(XrSession handle, XrReferenceSpaceType type, XrExtent2Df* bounds) {
   runtime().get<Session>(handle);
   check_offered(type);
   if (type != XR_REFERENCE_SPACE_TYPE_STAGE) {
@@ -91,7 +91,7 @@ XrResult GetReferenceSpaceBoundsRect(XrSession handle, XrReferenceSpaceType type
   return XR_SUCCESS;
 }
 
-XrResult CreateActionSpace(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* out) {
+XrResult create_action_space(XrSession handle, const XrActionSpaceCreateInfo* info, XrSpace* out) {
   const auto& session = runtime().get<Session>(handle);
   checked(info, XR_TYPE_ACTION_SPACE_CREATE_INFO);
   const auto& action = runtime().get<Action>(info->action);
@@ -108,7 +108,7 @@ XrResult CreateActionSpace(XrSession handle, const XrActionSpaceCreateInfo* info
   return XR_SUCCESS;
 }
 
-XrResult LocateSpace(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation* location) {
+XrResult locate_space(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation* location) {
   Runtime& r = runtime();
   const auto& space = r.get<Space>(handle);
   const auto& from = r.get<Space>(base);
@@ -131,13 +131,13 @@ XrResult LocateSpace(XrSpace handle, XrSpace base, XrTime time, XrSpaceLocation*
   return XR_SUCCESS;
 }
 
-XrResult DestroySpace(XrSpace handle) {
+XrResult destroy_space(XrSpace handle) {
   runtime().destroy(runtime().get<Space>(handle, true));
   return XR_SUCCESS;
 }
 
-XrResult LocateViews(XrSession handle, const XrViewLocateInfo* info, XrViewState* state,
-                     std::uint32_t capacity, std::uint32_t* count, XrView* views) {
+XrResult locate_views(XrSession handle, const XrViewLocateInfo* info, XrViewState* state,
+                      std::uint32_t capacity, std::uint32_t* count, XrView* views) {
   Runtime& r = runtime();
   auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_VIEW_LOCATE_INFO);

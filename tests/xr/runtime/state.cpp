@@ -47,9 +47,10 @@ void Runtime::destroy(Object& object) {
   Json alive = Json::array();
   // Children of children first; ids grow from parents to children.
   std::vector<std::uint64_t> doomed = {object.id};
-  for (std::size_t k = 0; k < doomed.size(); ++k) {
+  for (std::size_t done = 0; done < doomed.size();) {
+    const std::uint64_t parent = doomed[done++];
     for (const auto& [id, child] : objects) {
-      if (child->parent == doomed[k]) doomed.push_back(id);
+      if (child->parent == parent) doomed.push_back(id);
     }
   }
   // A set's actions go with it, as everybody lets them.
@@ -58,15 +59,16 @@ void Runtime::destroy(Object& object) {
     if (id != object.id && !set) alive.push_back(objects[id]->kind() + (" " + std::to_string(id)));
   }
   log({{"what", "destroyed"}, {"kind", object.kind()}, {"id", object.id}, {"alive", alive}});
-  for (auto id = doomed.rbegin(); id != doomed.rend(); ++id) {
-    auto* swapchain = dynamic_cast<Swapchain*>(objects[*id].get());
+  std::reverse(doomed.begin(), doomed.end());
+  for (const std::uint64_t id : doomed) {
+    auto* swapchain = dynamic_cast<Swapchain*>(objects[id].get());
     const Session* of = session();
     if (swapchain != nullptr && of != nullptr) {
       const Current current(of->binding);
       of->binding.DeleteTextures(static_cast<GLsizei>(swapchain->textures.size()),
                                  swapchain->textures.data());
     }
-    objects.erase(*id);
+    objects.erase(id);
   }
 }
 
@@ -74,7 +76,7 @@ int Runtime::frame() {
   const Session* of = session();
   if (of == nullptr) return 0;
   if (of->begun) return of->begun->number;
-  return of->waited ? of->waited->number : of->next_frame;
+  return of->waited ? of->waited->number : next_frame;
 }
 
 int Runtime::frame_of(XrTime time) const {

@@ -56,8 +56,6 @@ struct Session : Object {
   bool running = false, lost = false;
   std::string then = "exiting";  // what comes after STOPPING: "exiting" or "ready"
   XrViewConfigurationType configuration = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-  int next_frame = 0;  // that xrWaitFrame gives out
-  int ended_frames = 0;
   std::optional<FrameRecord> waited, begun;  // not yet begun, not yet ended
   std::map<std::size_t, std::pair<std::uint64_t, std::uint32_t>> depth_of_view;  // swapchain, array index
   bool attached = false;
@@ -121,6 +119,9 @@ class Runtime {
   std::map<XrPath, std::string> paths;
   std::set<std::string> suggested;  // interaction profiles that have bindings
   int applied = -1;                 // events of frames up to this one have happened
+  // Counted on from session to session.
+  int next_frame = 0;  // that xrWaitFrame gives out
+  int ended_frames = 0;
 
   Instance* instance();
   Session* session();

@@ -6,14 +6,14 @@
 
 namespace binosplat::xr_test::api {
 
-XrResult EnumerateSwapchainFormats(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
-                                   std::int64_t* formats) {
+XrResult enumerate_swapchain_formats(XrSession handle, std::uint32_t capacity, std::uint32_t* count,
+                                     std::int64_t* formats) {
   runtime().get<Session>(handle);
   const auto& all = runtime().script.formats;
   return fill(all.size(), capacity, count, formats, [&](std::size_t k) { formats[k] = all[k]; });
 }
 
-XrResult CreateSwapchain(XrSession handle, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
+XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, XrSwapchain* out) {
   Runtime& r = runtime();
   const auto& session = r.get<Session>(handle);
   checked(info, XR_TYPE_SWAPCHAIN_CREATE_INFO);
@@ -53,15 +53,15 @@ XrResult CreateSwapchain(XrSession handle, const XrSwapchainCreateInfo* info, Xr
   return XR_SUCCESS;
 }
 
-XrResult DestroySwapchain(XrSwapchain handle) {
+XrResult destroy_swapchain(XrSwapchain handle) {
   auto& swapchain = runtime().get<Swapchain>(handle, true);
   if (!swapchain.acquired.empty()) runtime().fault("an image was not released");
   runtime().destroy(swapchain);
   return XR_SUCCESS;
 }
 
-XrResult EnumerateSwapchainImages(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,
-                                  XrSwapchainImageBaseHeader* images) {
+XrResult enumerate_swapchain_images(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,
+                                    XrSwapchainImageBaseHeader* images) {
   const auto& swapchain = runtime().get<Swapchain>(handle);
   auto* out = reinterpret_cast<XrSwapchainImageOpenGLKHR*>(images);
   return fill(swapchain.textures.size(), capacity, count, images, [&](std::size_t k) {
@@ -70,8 +70,8 @@ XrResult EnumerateSwapchainImages(XrSwapchain handle, std::uint32_t capacity, st
   });
 }
 
-XrResult AcquireSwapchainImage(XrSwapchain handle, const XrSwapchainImageAcquireInfo* info,
-                               std::uint32_t* index) {
+XrResult acquire_swapchain_image(XrSwapchain handle, const XrSwapchainImageAcquireInfo* info,
+                                 std::uint32_t* index) {
   auto& swapchain = runtime().get<Swapchain>(handle);
   check_if_any(info, XR_TYPE_SWAPCHAIN_IMAGE_ACQUIRE_INFO);
   require(index != nullptr, XR_ERROR_VALIDATION_FAILURE, "nowhere to put an index");
@@ -84,7 +84,7 @@ XrResult AcquireSwapchainImage(XrSwapchain handle, const XrSwapchainImageAcquire
   return XR_SUCCESS;
 }
 
-XrResult WaitSwapchainImage(XrSwapchain handle, const XrSwapchainImageWaitInfo* info) {
+XrResult wait_swapchain_image(XrSwapchain handle, const XrSwapchainImageWaitInfo* info) {
   auto& swapchain = runtime().get<Swapchain>(handle);
   checked(info, XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
   require(!swapchain.acquired.empty(), XR_ERROR_CALL_ORDER_INVALID, "no image is acquired");
@@ -93,7 +93,7 @@ XrResult WaitSwapchainImage(XrSwapchain handle, const XrSwapchainImageWaitInfo* 
   return XR_SUCCESS;
 }
 
-XrResult ReleaseSwapchainImage(XrSwapchain handle, const XrSwapchainImageReleaseInfo* info) {
+XrResult release_swapchain_image(XrSwapchain handle, const XrSwapchainImageReleaseInfo* info) {
   Runtime& r = runtime();
   auto& swapchain = r.get<Swapchain>(handle);
   check_if_any(info, XR_TYPE_SWAPCHAIN_IMAGE_RELEASE_INFO);

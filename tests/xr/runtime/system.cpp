@@ -21,7 +21,7 @@ void check_system(XrSystemId system) {
 
 namespace api {
 
-XrResult GetSystem(XrInstance handle, const XrSystemGetInfo* info, XrSystemId* system) {
+XrResult get_system(XrInstance handle, const XrSystemGetInfo* info, XrSystemId* system) {
   Runtime& r = runtime();
   r.get<Instance>(handle);
   checked(info, XR_TYPE_SYSTEM_GET_INFO);
@@ -32,7 +32,7 @@ XrResult GetSystem(XrInstance handle, const XrSystemGetInfo* info, XrSystemId* s
   return XR_SUCCESS;
 }
 
-XrResult GetSystemProperties(XrInstance handle, XrSystemId system, XrSystemProperties* properties) {
+XrResult get_system_properties(XrInstance handle, XrSystemId system, XrSystemProperties* properties) {
   const auto& instance = runtime().get<Instance>(handle);
   check_system(system);
   checked(properties, XR_TYPE_SYSTEM_PROPERTIES);
@@ -50,9 +50,9 @@ XrResult GetSystemProperties(XrInstance handle, XrSystemId system, XrSystemPrope
   return XR_SUCCESS;
 }
 
-XrResult EnumerateEnvironmentBlendModes(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
-                                        std::uint32_t capacity, std::uint32_t* count,
-                                        XrEnvironmentBlendMode* modes) {
+XrResult enumerate_environment_blend_modes(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
+                                           std::uint32_t capacity, std::uint32_t* count,
+                                           XrEnvironmentBlendMode* modes) {
   runtime().get<Instance>(handle);
   check_system(system);
   views_of(type);
@@ -60,8 +60,8 @@ XrResult EnumerateEnvironmentBlendModes(XrInstance handle, XrSystemId system, Xr
   return fill(all.size(), capacity, count, modes, [&](std::size_t k) { modes[k] = all[k]; });
 }
 
-XrResult EnumerateViewConfigurations(XrInstance handle, XrSystemId system, std::uint32_t capacity,
-                                     std::uint32_t* count, XrViewConfigurationType* types) {
+XrResult enumerate_view_configurations(XrInstance handle, XrSystemId system, std::uint32_t capacity,
+                                       std::uint32_t* count, XrViewConfigurationType* types) {
   const auto& instance = runtime().get<Instance>(handle);
   check_system(system);
   std::vector<XrViewConfigurationType> all;
@@ -76,8 +76,8 @@ XrResult EnumerateViewConfigurations(XrInstance handle, XrSystemId system, std::
   return fill(all.size(), capacity, count, types, [&](std::size_t k) { types[k] = all[k]; });
 }
 
-XrResult GetViewConfigurationProperties(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
-                                        XrViewConfigurationProperties* properties) {
+XrResult get_view_configuration_properties(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
+                                           XrViewConfigurationProperties* properties) {
   runtime().get<Instance>(handle);
   check_system(system);
   checked(properties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES);
@@ -87,9 +87,9 @@ XrResult GetViewConfigurationProperties(XrInstance handle, XrSystemId system, Xr
   return XR_SUCCESS;
 }
 
-XrResult EnumerateViewConfigurationViews(XrInstance handle, XrSystemId system, XrViewConfigurationType type,
-                                         std::uint32_t capacity, std::uint32_t* count,
-                                         XrViewConfigurationView* views) {
+XrResult enumerate_view_configuration_views(XrInstance handle, XrSystemId system,
+                                            XrViewConfigurationType type, std::uint32_t capacity,
+                                            std::uint32_t* count, XrViewConfigurationView* views) {
   runtime().get<Instance>(handle);
   check_system(system);
   const std::vector<ViewSpec>& all = views_of(type);
@@ -103,7 +103,7 @@ XrResult EnumerateViewConfigurationViews(XrInstance handle, XrSystemId system, X
   });
 }
 
-XrResult GetOpenGLGraphicsRequirementsKHR(XrInstance handle, XrSystemId system,
+XrResult get_opengl_graphics_requirements(XrInstance handle, XrSystemId system,
                                           XrGraphicsRequirementsOpenGLKHR* requirements) {
   auto& instance = runtime().get<Instance>(handle);
   check_system(system);
