@@ -30,18 +30,7 @@ layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 1) readonly buffer Ranges { uint ranges[]; };
 layout(std430, binding = 2) readonly buffer Values { uint values[]; };
 #if CANVASES
-layout(std430, binding = 4) readonly buffer Canvases { Canvas canvases[]; };
-layout(binding = 0) writeonly uniform image2D image_0;
-#if CANVASES > 1
-layout(binding = 1) writeonly uniform image2D image_1;
-#endif
-#if CANVASES > 2
-layout(binding = 2) writeonly uniform image2D image_2;
-#endif
-#if CANVASES > 3
-layout(binding = 3) writeonly uniform image2D image_3;
-#endif
-#include "shown.glsl"
+#include "canvases.glsl"
 #else
 layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
 #endif
@@ -357,25 +346,6 @@ void begin_pixels(uvec2 in_tile) {
   }
 }
 
-#if CANVASES
-void write_on_canvas(View view, uint p, vec4 pixel) {
-  Canvas canvas = canvases[view_index];
-  uvec2 at = first_pixel + uvec2(0u, p) - first_drawn(view);
-  ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + view.height - 1u - at.y);
-  vec4 shown = in_image(over(pixel, frame.background.rgb, canvas.keeps_alpha != 0u), canvas.linear != 0u, canvas.steps);
-  if (view_index == 0u) imageStore(image_0, to, shown);
-#if CANVASES > 1
-  if (view_index == 1u) imageStore(image_1, to, shown);
-#endif
-#if CANVASES > 2
-  if (view_index == 2u) imageStore(image_2, to, shown);
-#endif
-#if CANVASES > 3
-  if (view_index == 3u) imageStore(image_3, to, shown);
-#endif
-}
-#endif
-
 void write_pixels() {
   View view = views[view_index];
   for (uint p = 0u; p < COLUMN; ++p) {
@@ -393,7 +363,8 @@ void write_pixels() {
     shown[to] = told[p];
 #else
 #if CANVASES
-    write_on_canvas(view, p, vec4(colour[p], left));
+    uvec2 at = first_pixel + uvec2(0u, p) - first_drawn(view);
+    write_on_canvas(view_index, view, at, vec4(colour[p], left), frame.background.rgb);
 #else
     colours[to] = vec4(colour[p], left);
 #endif
@@ -406,7 +377,9 @@ void write_pixels() {
     z_sum[p] /= 1.0 - left;
 #endif
 #elif MEDIAN
-    z_sum[p] *= 1.0 - left;
+    precise float cover = 1.0 - left;
+    precise float z = z_sum[p] * cover;
+    z_sum[p] = z;
 #endif
 #if MEDIAN == 2
     if (p > 0u) continue;

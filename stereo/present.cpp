@@ -258,16 +258,16 @@ void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const Dept
   const glm::ivec2 size = size_of(gl, target);
   {
     const gl::KeptDrawing drawing(context, depth_framebuffer_, no_vertices_, size.x, size.y);
-    dispatcher_.draw_whole(context.program("present_depth.frag"),
-                           {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}},
-                           {{"first", view.pixel_offset},
-                            {"width", view.width},
-                            {"height", view.height},
-                            {"columns", static_cast<std::uint32_t>(size.x)},
-                            {"rows", static_cast<std::uint32_t>(size.y)},
-                            {"is_depth", frame.shape().canvases.empty() ? 0u : 1u},
-                            {"farthest", std::bit_cast<std::uint32_t>(static_cast<float>(farthest))},
-                            {"per_inverse", std::bit_cast<std::uint32_t>(static_cast<float>(per_inverse))}});
+    dispatcher_.draw_whole(
+        context.program("present_depth.frag", {{"IS_DEPTH", frame.shape().canvases.empty() ? "0" : "1"}}),
+        {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}},
+        {{"first", view.pixel_offset},
+         {"width", view.width},
+         {"height", view.height},
+         {"columns", static_cast<std::uint32_t>(size.x)},
+         {"rows", static_cast<std::uint32_t>(size.y)},
+         {"farthest", std::bit_cast<std::uint32_t>(static_cast<float>(farthest))},
+         {"per_inverse", std::bit_cast<std::uint32_t>(static_cast<float>(per_inverse))}});
   }
   gl.NamedFramebufferTexture(depth_framebuffer_, GL_DEPTH_ATTACHMENT, 0, 0);
 }

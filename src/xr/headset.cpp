@@ -39,7 +39,7 @@ class Viewer {
   bool run_session() {
     Session session(instance_);
     const struct Ended {  // before the session
-      std::optional<Projection>& projection;
+      std::unique_ptr<Projection>& projection;
       ~Ended() { projection.reset(); }
     } ended{projection_};
     Hands hands(session);
@@ -113,7 +113,7 @@ class Viewer {
 
   void make_projection(const Session& session) {
     projection_.reset();  // its memory first
-    projection_.emplace(session, context_, settings_.projection);
+    projection_ = std::make_unique<Projection>(session, context_, settings_.projection);
     projection_->take_masks();
     log_info("{}: {}", instance_.headset(), projection_->description());
   }
@@ -149,10 +149,10 @@ class Viewer {
   render::Frame frame_;
   std::future<Model> levels_;
   std::optional<Budget> budget_;
-  std::optional<Projection> projection_;  // of the session at hand
-  std::optional<XrTime> last_;            // when the last frame was seen
-  XrTime looked_ = 0;                     // when it was asked which sizes the runtime recommends
-  std::vector<double> times_;             // ms
+  std::unique_ptr<Projection> projection_;  // of the session at hand
+  std::optional<XrTime> last_;              // when the last frame was seen
+  XrTime looked_ = 0;                       // when it was asked which sizes the runtime recommends
+  std::vector<double> times_;               // ms
   bool tracked_ = true, leaving_ = false;
 };
 

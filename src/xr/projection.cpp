@@ -130,9 +130,9 @@ void Projection::make_depths() {
       std::find_first_of(depth_formats.begin(), depth_formats.end(), offered.begin(), offered.end());
   if (format == depth_formats.end()) return;
   for (std::size_t k = 0; k < eyes_.size(); ++k)
-    eyes_[k].depths = std::make_unique<Swapchain>(
-        session_, *format, sizes_[k],
-        XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT);
+    eyes_[k].depths =
+        std::make_unique<Swapchain>(session_, *format, (sizes_[k] + depth_step - 1) / depth_step,
+                                    XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
 }
 
 void Projection::take_masks() {

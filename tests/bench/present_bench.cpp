@@ -158,8 +158,9 @@ struct Bench {
 
 namespace fs = std::filesystem;
 
-void run(int frames, int shrink, const std::vector<std::string>& models) {
+void run(int frames, int shrink, const std::vector<std::string>& models, const std::string& shaders) {
   Bench bench{.frames = frames};
+  if (!shaders.empty()) bench.context->set_shader_folder(shaders);
   fmt::print("{}, {}, medians in ms\n\n", bench.context->renderer(), bench.context->version());
   Demo demo = demo_room();
   const Camera headset = stereo::apply_preset(demo.cameras.at(0), "headset");
@@ -190,9 +191,11 @@ int main(int argc, char** argv) {
   app.add_option("--shrink", shrink, "Pictures so many times smaller")->check(CLI::Range(1, 64));
   std::vector<std::string> models;
   app.add_option("MODEL", models, "Models to draw for a headset, too, each beside its cameras.json");
+  std::string shaders;
+  app.add_option("--shader-dir", shaders, "Read the shaders there");
   CLI11_PARSE(app, argc, argv);
   try {
-    binosplat::run(frames, shrink, models);
+    binosplat::run(frames, shrink, models, shaders);
   } catch (const std::exception& error) {
     fmt::print(stderr, "present_bench: {}\n", error.what());
     return 2;

@@ -285,7 +285,8 @@ TEST_F(State, IsTheSameAfterAFrame) {
       [&] { renderer->draw(views(), targets.both, LAYOUT_SEPARATE, glm::vec3(0.0f), {}, depths); });
   EXPECT_EQ(drawn, std::set<std::string>());
   const std::array in_place = {targets.both[0], Target{.texture = caller.texture(GL_SRGB8_ALPHA8, 40, 32)}};
-  const auto on_canvases = changed_by([&] { EXPECT_TRUE(renderer->draw(views(), in_place).on_canvases); });
+  const auto on_canvases = changed_by(
+      [&] { EXPECT_TRUE(renderer->draw(views(), in_place, LAYOUT_SEPARATE, {}, {}, depths).on_canvases); });
   EXPECT_EQ(on_canvases, std::set<std::string>());
 
   // And the pictures are those of a plain context: none of that state reached them.

@@ -123,8 +123,9 @@ TEST_F(XrView, ShowsWhatAFrameDrawsToTheBit) {
       const std::vector<Picture> pictures = expected(frame, start());
       for (std::size_t k = 0; k < 2; ++k) {
         EXPECT_EQ(log.colours(frame, k), bytes_of(pictures[k])) << test.name << " eye " << k;
-        if (pictures[0].colour.size() == pictures[1].colour.size())
+        if (pictures[0].colour.size() == pictures[1].colour.size()) {
           EXPECT_NE(log.colours(frame, k), bytes_of(pictures[1 - k])) << "swapped eyes go unnoticed";
+        }
       }
     }
     const bool moves = test.heads.size() > 1;
@@ -144,7 +145,7 @@ TEST_F(XrView, DepthIsTheMedian) {
     EXPECT_EQ(near, static_cast<double>(static_cast<float>(near_default)));
     const std::vector<float> depths = log.depths(frame, k);
     // A quarter of the sides, of the pixel in the middle of each 4 x 4, in rows of even number.
-    ASSERT_EQ(depths.size(), width / 4u * (height / 4u));
+    ASSERT_EQ(depths.size(), (width / 4u) * (height / 4u));
     const auto differing = [&](const Picture& picture, int x = 2) {
       int count = 0;
       for (std::size_t p = 0; p < depths.size(); ++p) {

@@ -1,0 +1,33 @@
+// Images of the caller's, in which the blend writes views' pictures as they are shown.
+//   CANVASES    how many views there are
+#include "shared/types.h"
+#include "shown.glsl"
+
+layout(std430, binding = 4) readonly buffer Canvases { Canvas canvases[]; };
+layout(binding = 0) writeonly uniform image2D image_0;
+#if CANVASES > 1
+layout(binding = 1) writeonly uniform image2D image_1;
+#endif
+#if CANVASES > 2
+layout(binding = 2) writeonly uniform image2D image_2;
+#endif
+#if CANVASES > 3
+layout(binding = 3) writeonly uniform image2D image_3;
+#endif
+
+// A blended pixel `at` of the nth view, from its top left.
+void write_on_canvas(uint nth, View view, uvec2 at, vec4 pixel, vec3 background) {
+  Canvas canvas = canvases[nth];
+  ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + view.height - 1u - at.y);
+  vec4 shown = in_image(over(pixel, background, canvas.keeps_alpha != 0u), canvas.linear != 0u, canvas.steps);
+  if (nth == 0u) imageStore(image_0, to, shown);
+#if CANVASES > 1
+  if (nth == 1u) imageStore(image_1, to, shown);
+#endif
+#if CANVASES > 2
+  if (nth == 2u) imageStore(image_2, to, shown);
+#endif
+#if CANVASES > 3
+  if (nth == 3u) imageStore(image_3, to, shown);
+#endif
+}
