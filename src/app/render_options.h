@@ -11,6 +11,7 @@
 #include "app/rig_options.h"
 #include "app/scene_options.h"
 #include "app/shard.h"
+#include "stereo/foveate.h"
 
 namespace binosplat::app {
 
@@ -21,6 +22,7 @@ struct RenderOptions {
   DrawingOptions drawing;
   ContextOptions context;
   OutputOptions output;
+  std::optional<stereo::Foveation> foveate;
   Shard shard;                     // of the views
   bool resume = false;             // what is there of this run is not drawn again
   std::vector<std::string> given;  // options_given(), for resume
