@@ -9,12 +9,13 @@ if(TARGET binosplat_view)
   install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)  # ./demo builds without it
 endif()
 # The program's own words, for man and shells.
-foreach(text man bash fish)
+foreach(text man bash fish zsh)
   add_custom_command(TARGET binosplat POST_BUILD COMMAND binosplat --print ${text} > ${PROJECT_BINARY_DIR}/binosplat.${text} VERBATIM)
 endforeach()
 install(FILES ${PROJECT_BINARY_DIR}/binosplat.man RENAME binosplat.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${PROJECT_BINARY_DIR}/binosplat.bash RENAME binosplat
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${PROJECT_BINARY_DIR}/binosplat.zsh RENAME _binosplat DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES ${PROJECT_BINARY_DIR}/binosplat.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 if(TARGET binosplat_python)
   # Where this Python looks for modules, below the prefix: of a Debian package Debian's own place.
@@ -42,7 +43,7 @@ install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY tests/bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/tests/bench)
 install(FILES src/render/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/src/render)
-install(FILES examples/embed.cpp examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+install(FILES examples/embed.cpp examples/openxr.cpp examples/CMakeLists.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 set(CPACK_GENERATOR "DEB;TGZ")
 set(CPACK_PACKAGE_NAME binosplat)

@@ -3,6 +3,7 @@
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
 //   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
+//   MEDIAN      1: a pixel's depth is the median of what is seen in it, else the mean
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -98,6 +99,15 @@ void measure(uint at, uint p, float weight) {
 #endif
 }
 
+// The depth at which half of the light is gone; of the splats at hand some leave less than that.
+float median_depth(uint at[AHEAD], float weights[AHEAD], float light) {
+  for (uint k = 0u; k < AHEAD; ++k) {
+    light -= weights[k];
+    if (light < 1.0 - float(COVERAGE_FOR_DEPTH)) return batch_colour[at[k]].a;
+  }
+  return 0.0;
+}
+
 // What a tile measured of a splat, to the buffer.
 #if SUMS != SUMS_NONE
 void pass_on(uint splat, ivec4 sums) {
@@ -172,6 +182,10 @@ void blend(uint at[AHEAD]) {
       least[p] = -last;
       left[p] = 0.0;
     }
+#if MEDIAN
+    if (transmittance[p] >= 1.0 - float(COVERAGE_FOR_DEPTH) && left[p] < 1.0 - float(COVERAGE_FOR_DEPTH))
+      z_sum[p] = median_depth(at, weights[p], transmittance[p]);
+#endif
   }
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 c = batch_colour[at[k]];
@@ -187,14 +201,16 @@ void blend(uint at[AHEAD]) {
       precise float r = fma(weight, c.r, colour[p].r);
       precise float g = fma(weight, c.g, colour[p].g);
       precise float b = fma(weight, c.b, colour[p].b);
+#if !MEDIAN
       precise float z = fma(weight, c.a, z_sum[p]);
+      z_sum[p] = z;
+#endif
 #if SHOW == SHOW_VISIBLE
       if (weight > 0.0) told[p] += 1.0;
 #elif SHOW == SHOW_LIGHT
       told[p] += weight * batch_light[at[k]];
 #endif
       colour[p] = vec3(r, g, b);
-      z_sum[p] = z;
     }
   }
   for (uint p = 0u; p < COLUMN; ++p) transmittance[p] = left[p];
@@ -335,6 +351,9 @@ void write_pixels() {
     colours[to] = vec4(colour[p], left);
 #if PROJECTION == PROJECTION_TANGENT
     z_sum[p] *= sqrt(nearness[p]);  // of distances
+#endif
+#if MEDIAN
+    z_sum[p] *= 1.0 - left;
 #endif
     z_sums[to] = z_sum[p];
 #endif

@@ -15,6 +15,7 @@ uniform uint columns, rows;   // of the picture
 uniform uint left, bottom;    // of it in the image
 uniform uint background_r, background_g, background_b;  // bits of floats
 uniform uint keeps_alpha;     // 1: no background, but associated alpha
+uniform uint linear;          // 1: the image's numbers mean light, not what a screen takes
 uniform uint steps;           // that the image's colours have above 0; 0: they are floats
 
 vec4 over(vec4 colour) {
@@ -35,12 +36,18 @@ vec4 pixel_at(uvec2 at) {
   return over(colour / float(from.columns * from.rows));
 }
 
+vec3 light_of(vec3 shown_as) {
+  vec3 low = shown_as / 12.92, high = pow((max(shown_as, vec3(0.0)) + 0.055) / 1.055, vec3(2.4));
+  return mix(high, low, lessThanEqual(shown_as, vec3(0.04045)));
+}
+
 void main() {
   uint across = (columns + PRESENT_COLUMNS - 1u) / PRESENT_COLUMNS;
   uint group = group_index();
   uvec2 at = uvec2(group % across, group / across) * gl_WorkGroupSize.xy + gl_LocalInvocationID.xy;
   if (at.x >= columns || at.y >= rows) return;
   vec4 pixel = pixel_at(at);
+  if (linear != 0u) pixel.rgb = light_of(pixel.rgb);
   // GPUs may round by themselves to within 0.6 of a step; files hold the nearest.
   if (steps != 0u) pixel.rgb = floor(clamp(pixel.rgb, 0.0, 1.0) * float(steps) + 0.5) / float(steps);
   imageStore(shown, ivec2(left + at.x, bottom + rows - 1u - at.y), pixel);

@@ -48,6 +48,12 @@ Stage stage_of(const Model& model, const glm::dvec3& origin = glm::dvec3(0.0), d
 EyePair eyes_from_xr(const std::array<XrEye, 2>& eyes, const Stage& stage,
                      const std::array<glm::ivec2, 2>& sizes, double near_plane = near_default);
 
+/// The same of any number of views of one head, each with its size, such as both eyes' wide pictures and the
+/// insets in them. Those of one orientation and, but for rounding, one depth share their order if they follow
+/// one another: put an eye's views side by side.
+HeadViews views_from_xr(std::span<const XrEye> eyes, const Stage& stage, std::span<const glm::ivec2> sizes,
+                        double near_plane = near_default);
+
 /// What a frame took, and the errors that OpenGL had recorded before it began: the caller's own.
 struct EmbeddedReport : render::FrameReport {
   std::vector<GLenum> callers_errors;
@@ -61,13 +67,14 @@ class EmbeddedRenderer {
   EmbeddedRenderer(gl::GetProcAddress get_proc_address, const Model& model);
 
   /// Draws all views in one frame and each into its target (LAYOUT_SEPARATE), or two views into one target in
-  /// another layout (stereo/present.h). Waits until the frame is done, not for the targets. An error that
+  /// another layout (stereo/present.h), and their depths (settings.depth says which) into as many depth
+  /// targets, if any. Waits until the frame is done, not for the targets. An error that
   /// OpenGL recorded before is the caller's: it is logged, reported, and does not stop the frame. Throws
   /// Error as render::Frame and Presenter do, and std::runtime_error for an OpenGL error of binosplat's own;
   /// the state is restored then, too.
   EmbeddedReport draw(std::span<const shared::View> views, std::span<const Target> targets,
                       int layout = LAYOUT_SEPARATE, const Background& background = std::nullopt,
-                      const render::FrameSettings& settings = {});
+                      const render::FrameSettings& settings = {}, std::span<const DepthTarget> depths = {});
 
   gl::Context& context() { return *context_; }
 

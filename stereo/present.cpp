@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 
 #include "base/error.h"
 #include "gl/state.h"
@@ -169,6 +170,7 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
                        {"background_g", std::bit_cast<std::uint32_t>(behind.g)},
                        {"background_b", std::bit_cast<std::uint32_t>(behind.b)},
                        {"keeps_alpha", background ? 0u : 1u},
+                       {"linear", target.linear ? 1u : 0u},
                        {"steps", steps_of(format)}});
     context.gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however the picture is read next
   };
@@ -188,6 +190,44 @@ void Presenter::draw(const gl::Buffer& colours, std::span<const shared::View> vi
   // What is the caller's to delete is not held on to.
   if (target.texture != 0)
     context.gl().NamedFramebufferTexture(target_framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);
+}
+
+void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target) {
+  if (v >= frame.shape().asked) fail("view {} of a frame of {} views", v, frame.shape().asked);
+  const double near = target.near_plane, far = target.far_plane;
+  if (!(near > 0.0 && far > 0.0 && near != far))
+    fail("depths from {} to {}: expected two distances above zero, one of which may be infinite", near, far);
+  const double farthest = std::isinf(near) ? 0.0 : std::isinf(far) ? 1.0 : far / (far - near);
+  const double per_inverse = std::isinf(near) ? far : -near * farthest;
+  const shared::View& view = frame.views()[v];
+  gl::Context& context = dispatcher_.context();
+  const gl::KeptState kept(context);
+  depths_.reserve(std::int64_t{view.width} * view.height * 4);
+  dispatcher_.start(context.program("present_depth.comp"),
+                    gl::Work::threads(std::uint64_t{view.width} * view.height, THREADS),
+                    {{"Colours", frame.colours()}, {"ZSums", frame.z_sums()}, {"Depths", depths_}},
+                    {{"first", view.pixel_offset},
+                     {"width", view.width},
+                     {"height", view.height},
+                     {"farthest", std::bit_cast<std::uint32_t>(static_cast<float>(farthest))},
+                     {"per_inverse", std::bit_cast<std::uint32_t>(static_cast<float>(per_inverse))}});
+  const gl::Functions& gl = context.gl();
+  gl.MemoryBarrier(GL_PIXEL_BUFFER_BARRIER_BIT);
+  const gl::KeptUnpacking unpacking(context, depths_.id());
+  const auto width = static_cast<GLsizei>(view.width), height = static_cast<GLsizei>(view.height);
+  if (target.layer < 0) {
+    gl.TextureSubImage2D(target.texture, target.level, 0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                         nullptr);
+  } else {
+    gl.TextureSubImage3D(target.texture, target.level, 0, 0, target.layer, width, height, 1,
+                         GL_DEPTH_COMPONENT, GL_FLOAT, nullptr);
+  }
+  const GLenum error = gl.GetError();
+  if (error != GL_NO_ERROR)
+    fail(
+        "texture {}, level {}, layer {} takes no depths of {} x {} px (OpenGL error 0x{:04x}): expected a "
+        "texture of a depth format, as large",
+        target.texture, target.level, target.layer, width, height, error);
 }
 
 }  // namespace binosplat::stereo

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -13,6 +14,7 @@
 #include "gl/dispatch.h"
 #include "gl/texture.h"
 #include "render/frame.h"
+#include "scene/camera.h"
 #include "shared/axes.h"
 
 namespace binosplat::stereo {
@@ -29,11 +31,26 @@ struct Target {
   std::uint32_t framebuffer = 0;  // 0: the default framebuffer
   int x = 0;                      // px, lower left corner of the picture in it, as glViewport counts
   int y = 0;
+  /// Its numbers mean light, not what a screen takes, as OpenXR's runtimes have it of every format but
+  /// sRGB's: colours are converted. Of a format that is written without a copy.
+  bool linear = false;
+};
+
+/// Where a view's depths go: a 2D texture, or a layer of an array, of a depth format without stencil. What
+/// lies at z (world units, along the view's axis) has the depth far (1 - near / z) / (far - near), from 0 at
+/// `near_plane` to 1 at `far_plane`; either may be infinite, and near the farther one. What covers less than
+/// half of a pixel is infinitely far.
+struct DepthTarget {
+  std::uint32_t texture = 0;
+  int level = 0;
+  int layer = -1;  // of an array texture; -1: not one
+  double near_plane = near_default;
+  double far_plane = std::numeric_limits<double>::infinity();
 };
 
 class Presenter {
  public:
-  explicit Presenter(gl::Context& context) : dispatcher_(context) {}
+  explicit Presenter(gl::Context& context) : dispatcher_(context), depths_(context, "depths to show") {}
   ~Presenter();
   Presenter(const Presenter&) = delete;
   Presenter& operator=(const Presenter&) = delete;
@@ -58,6 +75,11 @@ class Presenter {
   void draw(const gl::Buffer& colours, std::span<const shared::View> views, std::size_t first, int layout,
             const Target& target, const Background& background);
 
+  /// Fills a target of the size of view `v` of the last frame with its depths. State as for draw(). Throws
+  /// Error(bad_input) for a view that is not there, a target that is no such texture, and planes that bound
+  /// nothing.
+  void draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target);
+
  private:
   std::uint32_t framebuffer_of(const Target& target);
   const gl::Texture& scratch(const glm::ivec2& size, GLenum format);
@@ -67,6 +89,7 @@ class Presenter {
   // Made at first use: of the caller's textures, and of what is copied into framebuffers.
   std::uint32_t target_framebuffer_ = 0, scratch_framebuffer_ = 0;
   std::unique_ptr<gl::Texture> scratch_;
+  gl::Buffer depths_;  // float by pixel, lowest row first
 };
 
 }  // namespace binosplat::stereo

@@ -56,10 +56,20 @@ shared::View shifted_view(const Camera& eye, const Camera& head, double offset, 
   return view;
 }
 
-/// Both eyes sort by the distance from one point, so that a head that turns about it changes nothing.
-void share_centre(EyePair& pair, const glm::dvec3& centre, const glm::vec3& anchor) {
-  for (shared::View& view : pair.views)
+/// All sort by the distance from one point, so that a head that turns about it changes nothing.
+void share_centre(std::span<shared::View> views, const glm::dvec3& centre, const glm::vec3& anchor) {
+  for (shared::View& view : views)
     view.centre = glm::vec4(glm::vec3(centre - glm::dvec3(anchor)), view.centre.w);
+}
+
+bool are_parallel(const Camera& a, const Camera& b) {
+  double turned = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) turned = std::max(turned, std::abs(a.rotation[i][j] - b.rotation[i][j]));
+  }
+  const double apart = std::abs(glm::dot(a.rotation[2], b.position - a.position));
+  const double reach = std::max(glm::length(a.position), glm::length(b.position));
+  return turned <= parallel_tolerance && apart <= parallel_tolerance * reach;
 }
 
 }  // namespace
@@ -89,28 +99,33 @@ EyePair make_rig(const Camera& head, const RigSettings& settings) {
       pair.views[k] = make_view(eye, anchor, settings.near_plane);
     }
   }
-  share_centre(pair, head.position, anchor);
+  share_centre(pair.views, head.position, anchor);
   return pair;
 }
 
-EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane) {
+HeadViews views_of_head(std::span<const Camera> cameras, double near_plane) {
   check_near(near_plane);
-  const glm::dvec3 middle = 0.5 * (left.position + right.position);
+  glm::dvec3 middle(0.0);
+  for (const Camera& camera : cameras) middle += camera.position;
+  middle /= static_cast<double>(cameras.size());
   const glm::vec3 anchor(middle);
+  HeadViews head;
+  for (const Camera& camera : cameras) {
+    shared::View& view = head.views.emplace_back(make_view(camera, anchor, near_plane));
+    const bool parallel = are_parallel(cameras[0], camera);
+    if (parallel) view.row_z = head.views[0].row_z;
+    head.parallel = head.parallel && parallel;
+  }
+  share_centre(head.views, middle, anchor);
+  return head;
+}
+
+EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane) {
   EyePair pair;
   pair.cameras = {left, right};
-  for (std::size_t k = 0; k < 2; ++k) pair.views[k] = make_view(pair.cameras[k], anchor, near_plane);
-  share_centre(pair, middle, anchor);
-
-  double turned = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j)
-      turned = std::max(turned, std::abs(left.rotation[i][j] - right.rotation[i][j]));
-  }
-  const double apart = std::abs(glm::dot(left.rotation[2], right.position - left.position));
-  const double reach = std::max(glm::length(left.position), glm::length(right.position));
-  pair.parallel = turned <= parallel_tolerance && apart <= parallel_tolerance * reach;
-  if (pair.parallel) pair.views[1].row_z = pair.views[0].row_z;
+  const HeadViews head = views_of_head(pair.cameras, near_plane);
+  pair.views = {head.views[0], head.views[1]};
+  pair.parallel = head.parallel;
   return pair;
 }
 

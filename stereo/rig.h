@@ -8,6 +8,7 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,14 @@ EyePair make_rig(const Camera& head, const RigSettings& settings);
 /// translations within 1e-9 of their distance from the origin, they are parallel and the left's third row
 /// serves both.
 EyePair rig_from_eyes(const Camera& left, const Camera& right, double near_plane = near_default);
+
+/// The views of a head's cameras, two or more, the same way: those that are parallel to the first share its
+/// third row, all are of one anchor, and sorted by distance from the point between them all.
+struct HeadViews {
+  std::vector<shared::View> views;
+  bool parallel = true;  // all to the first
+};
+HeadViews views_of_head(std::span<const Camera> cameras, double near_plane = near_default);
 
 /// The cameras called NAME_left and NAME_right, or nothing if either is missing.
 std::optional<std::array<Camera, 2>> find_eyes(const std::vector<Camera>& cameras, std::string_view name);

@@ -57,14 +57,6 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-bool has_display() {
-  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
-    const char* value = std::getenv(name);
-    if (value != nullptr && *value != '\0') return true;
-  }
-  return false;
-}
-
 void note(const std::string& value) {
   note_input(value);
   std::error_code ignored;
@@ -94,6 +86,14 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     }
   }
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
+
+bool has_display() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && *value != '\0') return true;
+  }
+  return false;
 }
 
 void check_arguments(int argc, const char* const* argv) {

@@ -11,6 +11,9 @@ namespace binosplat::app {
 /// Throws Error for an argument that is empty, as an unset variable of a script leaves it.
 void check_arguments(int argc, const char* const* argv);
 
+/// Whether a window could be opened, as far as the environment tells.
+bool has_display();
+
 /// What the program is given, with the sub-command that is meant where it begins with a model: `view` where
 /// there are a display and the preview, else `render`; says so. Throws Error for a word that is neither.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);

@@ -204,13 +204,48 @@ std::string fish_completion(const CLI::App& program) {
   return text;
 }
 
+std::string zsh_completion(const CLI::App& program) {
+  const Parts parts(program);
+  const auto quoted = [](const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; };
+  // What ends a part of a word's description.
+  const auto escaped = [](std::string text) {
+    for (const char* mark : {"\\", "[", "]", ":"}) text = replaced(text, mark, std::string("\\") + mark);
+    return text;
+  };
+  std::string text =
+      "#compdef binosplat\n# zsh completion for binosplat\n_binosplat() {\n  local -a commands=(\n";
+  for (const Part& part : parts.commands)
+    text += fmt::format("    {}\n", quoted(part.name + ":" + escaped(part.description)));
+  text +=
+      "  )\n  if ((CURRENT == 2)); then\n    _describe command commands\n    _files\n    return\n  fi\n"
+      "  local command=$words[2]\n  shift words\n  ((CURRENT--))\n  case $command in\n";
+  for (const Part& part : parts.commands) {
+    text += fmt::format("    {})\n      _arguments \\\n", part.name);
+    for (const CLI::Option* option : part.options()) {
+      const std::string help = escaped(in_one_line(option->get_description()));
+      std::string value;
+      if (takes_value(*option)) {
+        const std::vector<std::string> taken = words_of(*option);
+        value =
+            fmt::format(":{}:{}", escaped(option->get_type_name()),
+                        takes_words_only(*option) ? fmt::format("({})", fmt::join(taken, " ")) : "_files");
+      }
+      for (const std::string& name : option->get_lnames())
+        text += fmt::format("        {} \\\n", quoted(fmt::format("--{}[{}]{}", name, help, value)));
+    }
+    text += "        '*:file:_files'\n      ;;\n";
+  }
+  return text + "  esac\n}\n_binosplat \"$@\"\n";
+}
+
 void add_print(CLI::App& program) {
   const auto print = [&program](const std::string& asked) {
     std::string text;
     if (asked == "man") text = manual_page(program);
     if (asked == "bash") text = bash_completion(program);
     if (asked == "fish") text = fish_completion(program);
-    if (text.empty()) fail("--print {}: expected man, bash or fish", asked);
+    if (asked == "zsh") text = zsh_completion(program);
+    if (text.empty()) fail("--print {}: expected man, bash, fish or zsh", asked);
     // As --version ends: well, and without a sub-command.
     throw CLI::CallForVersion(text, 0);
   };

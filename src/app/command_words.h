@@ -13,8 +13,9 @@ std::string manual_page(const CLI::App& program);
 /// What makes a shell complete sub-commands, options, the words that they take, and files.
 std::string bash_completion(const CLI::App& program);
 std::string fish_completion(const CLI::App& program);
+std::string zsh_completion(const CLI::App& program);
 
-/// Adds --print man|bash|fish, which is for packages, to the whole program; help does not show it.
+/// Adds --print man|bash|fish|zsh, which is for packages, to the whole program; help does not show it.
 void add_print(CLI::App& program);
 
 }  // namespace binosplat::app

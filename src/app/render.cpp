@@ -176,7 +176,8 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
-    const render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
+    render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
+    of_shot.depth = output.exr_depth;
     if (work.followed) drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < drawing.frames; ++n) {
       drawn.report = panorama   ? draw(*panorama, drawn.shot, report.model.axes, report.near_plane)
@@ -187,7 +188,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     }
     const std::vector<Picture> pictures = panorama   ? panorama->read_pictures()
                                           : foveated ? foveated->read_pictures()
-                                                     : frame.read_pictures(output.exr_depth);
+                                                     : frame.read_pictures();
     if (foveated) drawn.foveated = foveated->parts();
     all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
     if (output.detail_report)

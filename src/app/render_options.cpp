@@ -78,9 +78,10 @@ void check_parts(const RenderOptions& o) {
 }
 
 // What a window that goes where its user goes does not do.
-constexpr std::array render_only = {"--mono",    "--only",   "--preset",      "--orbit",
-                                    "--path",    "--frames", "--calibration", "--reference-until",
-                                    "--backend", "--device"};
+constexpr std::array render_only = {"--mono", "--only",   "--preset",      "--orbit",
+                                    "--path", "--frames", "--calibration", "--reference-until"};
+// What a window's system decides, and a headset does not.
+constexpr std::array not_in_windows = {"--backend", "--device"};
 
 std::string keys_text() {
   std::string text = "Keys and buttons in the window:\n";
@@ -118,15 +119,22 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   add_look_options(sub, o.output, true);
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
+  add_headset_options(sub, o.headset);
   sub.option_defaults()->group("Options");
   sub.get_option("--size")->description("Pixels of the window (1280x720, or more where displays are dense)");
   sub.get_option("--view")->description("The camera to start at, by name (the first)");
   for (const char* name : render_only) sub.get_option(name)->group("");  // understood, but in no help
+  for (const char* name : not_in_windows) sub.get_option(name)->group("Headset");
   sub.footer(keys_text());
-  sub.parse_complete_callback([&sub] {
+  sub.parse_complete_callback([&sub, &o] {
     for (const char* name : render_only) {
       if (sub.count(name) > 0) fail("{} is for `binosplat render`: leave it out", name);
     }
+    for (const char* name : not_in_windows) {
+      if (sub.count(name) > 0 && !o.headset.xr)
+        fail("{} is for `binosplat render`, and for --xr: leave it out", name);
+    }
+    check(o.headset, sub);
   });
 }
 

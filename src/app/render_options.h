@@ -7,6 +7,7 @@
 #include "app/camera_options.h"
 #include "app/context_options.h"
 #include "app/drawing_options.h"
+#include "app/headset_options.h"
 #include "app/output_options.h"
 #include "app/rig_options.h"
 #include "app/scene_options.h"
@@ -23,6 +24,7 @@ struct RenderOptions {
   ContextOptions context;
   OutputOptions output;
   std::optional<stereo::Foveation> foveate;
+  HeadsetOptions headset;          // of the preview
   Shard shard;                     // of the views
   bool resume = false;             // what is there of this run is not drawn again
   std::vector<std::string> given;  // options_given(), for resume

@@ -79,6 +79,7 @@ namespace binosplat::gl {
   X(NamedFramebufferTexture, NAMEDFRAMEBUFFERTEXTURE)                                   \
   X(NamedFramebufferTextureLayer, NAMEDFRAMEBUFFERTEXTURELAYER)                         \
   X(ObjectLabel, OBJECTLABEL)                                                           \
+  X(PixelStorei, PIXELSTOREI)                                                           \
   X(PopDebugGroup, POPDEBUGGROUP)                                                       \
   X(ProgramBinary, PROGRAMBINARY)                                                       \
   X(ProgramParameteri, PROGRAMPARAMETERI)                                               \
@@ -87,6 +88,8 @@ namespace binosplat::gl {
   X(QueryCounter, QUERYCOUNTER)                                                         \
   X(ShaderSource, SHADERSOURCE)                                                         \
   X(TextureStorage2D, TEXTURESTORAGE2D)                                                 \
+  X(TextureSubImage2D, TEXTURESUBIMAGE2D)                                               \
+  X(TextureSubImage3D, TEXTURESUBIMAGE3D)                                               \
   X(TextureView, TEXTUREVIEW)                                                           \
   X(UnmapNamedBuffer, UNMAPNAMEDBUFFER)                                                 \
   X(UseProgram, USEPROGRAM)

@@ -59,4 +59,18 @@ KeptState::~KeptState() {
   gl_.UseProgram(static_cast<GLuint>(program_));
 }
 
+KeptUnpacking::KeptUnpacking(const Context& context, std::uint32_t buffer) : gl_(context.gl()) {
+  gl_.GetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &buffer_);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    gl_.GetIntegerv(static_cast<GLenum>(names[k]), &values_[k]);
+    gl_.PixelStorei(static_cast<GLenum>(names[k]), names[k] == GL_UNPACK_ALIGNMENT ? 4 : 0);
+  }
+  gl_.BindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+}
+
+KeptUnpacking::~KeptUnpacking() {
+  for (std::size_t k = 0; k < names.size(); ++k) gl_.PixelStorei(static_cast<GLenum>(names[k]), values_[k]);
+  gl_.BindBuffer(GL_PIXEL_UNPACK_BUFFER, static_cast<GLuint>(buffer_));
+}
+
 }  // namespace binosplat::gl

@@ -14,6 +14,7 @@ namespace binosplat::gl {
 /// bindings, of binding 0 and the general ones; the buffer of indirect dispatches; the image of unit 0; the
 /// scissor test of index 0, the conversion to sRGB and the rasterizer's discarding.
 ///
+/// What fills textures from memory is kept by KeptUnpacking where it is needed.
 /// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers),
 /// and neither are other images, pixel store, clear values, viewports, masks, tests, blending or the debug
 /// callback. Not to be used within transform feedback or conditional rendering; queries that are active count
@@ -46,6 +47,25 @@ class KeptState {
   GLboolean scissors_ = 0, encodes_ = 0, discards_ = 0;
   std::array<Range, storage_bindings_needed> storages_;
   Range uniforms_;
+};
+
+/// Remembers how textures are filled from memory, sets it to rows that follow one another in a buffer, and
+/// sets it again when it goes.
+class KeptUnpacking {
+ public:
+  KeptUnpacking(const Context& context, std::uint32_t buffer);
+  ~KeptUnpacking();
+  KeptUnpacking(const KeptUnpacking&) = delete;
+  KeptUnpacking& operator=(const KeptUnpacking&) = delete;
+
+ private:
+  static constexpr std::array names = {GL_UNPACK_SWAP_BYTES, GL_UNPACK_LSB_FIRST,   GL_UNPACK_ROW_LENGTH,
+                                       GL_UNPACK_SKIP_ROWS,  GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES,
+                                       GL_UNPACK_ALIGNMENT,  GL_UNPACK_IMAGE_HEIGHT};
+
+  const Functions& gl_;
+  GLint buffer_ = 0;
+  std::array<GLint, names.size()> values_{};
 };
 
 }  // namespace binosplat::gl

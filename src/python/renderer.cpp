@@ -57,8 +57,7 @@ class Renderer {
     thread_->run([this] { on_gpu_.reset(); });
   }
 
-  Drawn draw(const std::vector<shared::View>& views, render::FrameSettings settings, Depth depth,
-             bool follow) {
+  Drawn draw(const std::vector<shared::View>& views, render::FrameSettings settings, bool follow) {
     settings.precision = precision_;
     return thread_->run([&] {
       if (!on_gpu_) fail("this Renderer is closed");
@@ -66,7 +65,7 @@ class Renderer {
       if (!follow) frame.start_over();
       Drawn drawn;
       drawn.report = frame.draw(views, settings);
-      for (const Picture& picture : frame.read_pictures(depth))
+      for (const Picture& picture : frame.read_pictures())
         drawn.views.push_back(images_of(picture, settings.background));
       return drawn;
     });
@@ -165,12 +164,12 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
   settings.background = {background[0], background[1], background[2]};
   check(settings, given, renderer.model().scaffold != nullptr);
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
-  const auto which = static_cast<Depth>(find_choice("depth", depth, depths));
+  settings.depth = static_cast<Depth>(find_choice("depth", depth, depths));
   const auto views = views_of(view, renderer.model().axes, near_plane);
   Drawn drawn;
   {
     const py::gil_scoped_release release;
-    drawn = renderer.draw(views, settings, which, follow);
+    drawn = renderer.draw(views, settings, follow);
   }
   const py::dict report = dict_of(drawn.report);
   py::list pictures;

@@ -37,6 +37,7 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
   // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
   const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
   const int ahead = is_long ? 8 : is_tangent && subgroups ? 3 : 4;
+  const bool draws = variant.sums == SUMS_NONE && variant.show == SHOW_PICTURE;
   gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
                          {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
                          {"PROBED", shape.probe ? "1" : "0"},
@@ -47,7 +48,8 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"RECORDS", variant.records ? "1" : "0"},
                          {"SUMS", std::to_string(variant.sums)},
-                         {"SHOW", std::to_string(variant.show)}};
+                         {"SHOW", std::to_string(variant.show)},
+                         {"MEDIAN", draws && shape.settings.depth == Depth::median ? "1" : "0"}};
   add_projection(defines, shape.perspective.projection);
   return context.program(name, defines);
 }

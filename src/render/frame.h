@@ -72,10 +72,9 @@ class Frame {
   FrameReport draw_until(Stage last, std::span<const shared::View> views, const FrameSettings& settings = {},
                          const Workings& workings = {}, const std::optional<Probe>& probe = {});
 
-  /// The pictures of the last frame drawn, one a view. Instead of the mean of what is seen their depth may be
-  /// the median, at which T falls below a half: z_sum is then (1 - T) times that, and the lists are walked
-  /// again. Throws Error for the median where something else stood in for the blend.
-  std::vector<Picture> read_pictures(Depth depth = Depth::mean);
+  /// The pictures of the last frame drawn, one a view; where something else stood in for blend, with the mean
+  /// depth whatever the settings say.
+  std::vector<Picture> read_pictures() const;
 
   /// The next frame goes by nothing that earlier ones measured, as a first one does.
   void forget() { history_.forget(); }
@@ -101,6 +100,8 @@ class Frame {
   /// The pictures on the GPU: vec4 (C, T) by pixel, a view's from its pixel_offset on. Not where something
   /// else stood in for blend, whose pictures never get there.
   const gl::Buffer& colours() const { return buffers_.colours; }
+  /// Their Z by pixel, likewise.
+  const gl::Buffer& z_sums() const { return buffers_.z_sums; }
   /// The views of the last frame drawn, with tiles, offsets and groups; a probe's comes last.
   const std::vector<shared::View>& views() const { return shape_.views; }
   const FrameShape& shape() const { return shape_; }

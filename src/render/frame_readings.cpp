@@ -9,17 +9,7 @@
 
 namespace binosplat::render {
 
-std::vector<Picture> Frame::read_pictures(Depth depth) {
-  if (depth == Depth::median) {
-    const std::vector<Image> medians = read_shown(SHOW_MEDIAN_DEPTH);
-    std::vector<Picture> pictures = read_pictures();
-    for (std::size_t v = 0; v < pictures.size(); ++v) {
-      Picture& picture = pictures[v];
-      for (std::size_t k = 0; k < picture.z_sum.size(); ++k)
-        picture.z_sum[k] = (1.0f - picture.colour[k].a) * std::max(medians[v].data[k], 0.0f);
-    }
-    return pictures;
-  }
+std::vector<Picture> Frame::read_pictures() const {
   if (!pictures_stood_in_.empty()) return pictures_stood_in_;
   const auto pixels = static_cast<std::size_t>(shape_.pixel_count);
   const auto colours = buffers_.colours.read<glm::vec4>(pixels);

@@ -1,4 +1,4 @@
-// --print man|bash|fish: what the help says, for man and for shells.
+// --print man|bash|fish|zsh: what the help says, for man and for shells.
 
 #include <regex>
 
@@ -31,18 +31,22 @@ std::string in_roff(const std::string& option) {
 }
 
 TEST(CommandWords, HaveEveryOption) {
-  const std::string man = printed("man"), bash = printed("bash"), fish = printed("fish");
+  const std::string man = printed("man"), bash = printed("bash"), fish = printed("fish"),
+                    zsh = printed("zsh");
   for (const char* command : {"render", "compare", "trim", "study", "bench"}) {
     const std::size_t begin = man.find(std::string(".SH binosplat ") + command);
     ASSERT_NE(begin, std::string::npos) << command;
     const std::string page = man.substr(begin, man.find(".SH", begin + 1) - begin);
     const std::size_t row = bash.find(std::string("[") + command + "]=");
     const std::string words = bash.substr(row, bash.find('\n', row) - row);
+    const std::size_t part = zsh.find(std::string("    ") + command + ")\n");
+    const std::string of_zsh = zsh.substr(part, zsh.find(";;", part) - part);
     const std::set<std::string> options = options_of(command);
     EXPECT_GT(options.size(), 5u) << command;
     for (const std::string& option : options) {
       EXPECT_NE(page.find(in_roff(option)), std::string::npos) << command << " " << option;
       EXPECT_NE(words.find(option), std::string::npos) << command << " " << option;
+      EXPECT_NE(of_zsh.find("'" + option + "["), std::string::npos) << command << " " << option;
       EXPECT_NE(fish.find("-l " + option.substr(2) + " "), std::string::npos) << command << " " << option;
     }
     EXPECT_EQ(page.find(in_roff("--no-such-option")), std::string::npos);
@@ -65,6 +69,34 @@ TEST(CommandWords, CompleteInBash) {
   EXPECT_EQ(completed("binosplat render m.ply --layout cr"), "cross-eyed\n");
   EXPECT_EQ(completed("binosplat compare --lay"), "\n");
   EXPECT_EQ(completed("binosplat render m"), "\n") << "a file is meant";
+}
+
+// By a zsh that somebody types into.
+TEST(CommandWords, CompleteInZsh) {
+  if (std::system("zsh --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no zsh here";
+  const test::TempFolder folder;
+  test::write_text(folder / "_binosplat", printed("zsh"));
+  const auto completed = [&](const std::string& typed) {
+    const std::string said = (folder / "said").string();
+    test::write_text(folder / "type",
+                     "zmodload zsh/zpty; zpty z zsh -f -i\n"
+                     "zpty -w z 'PROMPT=; fpath=(" +
+                         folder.path().string() +
+                         " $fpath); autoload -U compinit; compinit -u -D; "
+                         "binosplat() { print -- \"<$*>\" > " +
+                         said +
+                         "; exit }'\n"
+                         "zpty -w -n z $'binosplat " +
+                         typed +
+                         "\\t\\n'\n"
+                         "while zpty -r z line; do :; done\n");
+    EXPECT_EQ(std::system(("timeout 20 zsh -f " + (folder / "type").string() + " > /dev/null").c_str()), 0);
+    return test::read_text(said);
+  };
+  EXPECT_EQ(completed("rend"), "<render>\n");
+  EXPECT_EQ(completed("render --exr-dep"), "<render --exr-depth>\n");
+  EXPECT_EQ(completed("render --layout cross"), "<render --layout cross-eyed>\n");
+  EXPECT_EQ(completed("compare --exr-dep"), "<compare --exr-dep>\n");
 }
 
 TEST(CommandWords, AreOfTextsThatThereAre) {

@@ -10,6 +10,7 @@
 #include "app/scene.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
+#include "support/display.h"
 #include "support/fixtures.h"
 
 namespace binosplat {
@@ -60,15 +61,14 @@ TEST(View, HelpHasKeysAndNoOptionThatIsRefused) {
   ASSERT_TRUE(good(outcome));
   for (const char* said : {"--layout", "Escape", "F12", "full screen"})
     EXPECT_NE(outcome.out.find(said), std::string::npos) << said;
-  for (const char* refused :
-       {"--mono", "--only", "--preset", "--path", "--calibration", "--device", "multi-view"})
+  for (const char* refused : {"--mono", "--only", "--preset", "--path", "--calibration", "multi-view"})
     EXPECT_EQ(outcome.out.find(refused), std::string::npos) << refused;
 }
 
 /// A display without a screen, and hands on it.
 struct ViewOnADisplay : test::SceneTest {
   std::string display;
-  pid_t server = -1;
+  std::optional<test::VirtualDisplay> screen;
 
   void SetUp() override {
     if (std::getenv("BINOSPLAT_LONG") == nullptr) GTEST_SKIP() << "takes a minute: BINOSPLAT_LONG=1";
@@ -76,22 +76,9 @@ struct ViewOnADisplay : test::SceneTest {
       GTEST_SKIP() << "Xvfb and xdotool are not installed";
     if (!is_built()) GTEST_SKIP() << "the preview is not built";
     add_cameras();
-    int ends[2];
-    ASSERT_EQ(pipe(ends), 0);
-    server = fork();
-    if (server == 0) {
-      dup2(ends[1], 3);
-      execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp", nullptr);
-      _exit(127);
-    }
-    close(ends[1]);
-    char number[16] = {};
-    ASSERT_GT(read(ends[0], number, sizeof(number) - 1), 0) << "Xvfb did not start";
-    display = fmt::format(":{}", std::atoi(number));
-  }
-  void TearDown() override {
-    if (server > 0) kill(server, SIGTERM);
-    if (server > 0) waitpid(server, nullptr, 0);
+    screen.emplace();
+    display = screen->name();
+    ASSERT_NE(display, "") << "Xvfb did not start";
   }
 
   Program view(std::vector<std::string> more = {}) {

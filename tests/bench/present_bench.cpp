@@ -66,6 +66,40 @@ struct Bench {
     }
   }
 
+  // What a headset's textures take beyond a frame, and what the median of depths does to that.
+  void headset(const Model& model, const Camera& head) {
+    render::Frame frame(*context, model);
+    const auto views = stereo::make_rig(head, {}).views;
+    std::array<std::vector<double>, 2> times;  // by depth
+    for (int n = -3; n < frames; ++n) {
+      for (const Depth depth : {Depth::mean, Depth::median}) {
+        const double ms = frame.draw(views, {.depth = depth}).total_ms;
+        if (n >= 0) times[static_cast<std::size_t>(depth)].push_back(ms);
+      }
+    }
+    fmt::print("\nBoth eyes for a headset: a frame with the mean depth {:.3f} ms, with the median {:.3f}",
+               quantile(times[0], 0.5), quantile(times[1], 0.5));
+    stereo::Presenter presenter(*context);
+    const glm::ivec2 size(head.width, head.height);
+    const auto both = [&](const char* what, const auto& draw) {
+      fmt::print("; {} {:.3f}", what, time(dispatcher, frames, [&] {
+                   for (std::size_t eye = 0; eye < 2; ++eye) draw(eye);
+                 }));
+    };
+    const std::array colours = {target(size, GL_SRGB8_ALPHA8).first, target(size, GL_SRGB8_ALPHA8).first};
+    both("colours",
+         [&](std::size_t eye) { presenter.draw(frame, eye, LAYOUT_SEPARATE, {.texture = colours[eye]}); });
+    for (const GLenum format : {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT24}) {
+      std::array<std::uint32_t, 2> depths{};
+      context->gl().CreateTextures(GL_TEXTURE_2D, 2, depths.data());
+      for (const std::uint32_t depth : depths)
+        context->gl().TextureStorage2D(depth, 1, format, size.x, size.y);
+      both(format == GL_DEPTH_COMPONENT24 ? "depths of 24 bits" : "depths of 32 bits",
+           [&](std::size_t eye) { presenter.draw_depth(frame, eye, {.texture = depths[eye]}); });
+    }
+    fmt::print("\n");
+  }
+
   // As into a window of full HD, which no shader can write.
   void copied(const Model& model, const Camera& head) {
     render::Frame frame(*context, model);
@@ -114,6 +148,7 @@ void run(int frames, int shrink) {
   const Camera headset = stereo::apply_preset(demo.cameras.at(0), "headset");
   const Camera head = resized(headset, headset.width / shrink / 2 * 2, headset.height / shrink);
   bench.layouts(demo.model, head);
+  bench.headset(demo.model, head);
   bench.copied(demo.model, headset);
   bench.widgets(std::move(demo.model), head);
 }

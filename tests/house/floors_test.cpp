@@ -38,10 +38,11 @@ const std::map<std::string, std::set<std::string>> may_see = {
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"preview",
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
+    {"xr", {"stereo", "measure", "render", "primitives", "gl", "reference", "scene", "base", "shared"}},
     {"python",
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"app",
-     {"demo", "preview", "study", "stereo", "measure", "render", "primitives", "gl", "reference", "formats",
+     {"demo", "preview", "xr", "study", "stereo", "measure", "render", "primitives", "gl", "reference", "formats",
       "scene", "base", "shared"}},
 };
 

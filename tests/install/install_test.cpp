@@ -60,7 +60,7 @@ TEST(Install, AnotherProgramDrawsWithIt) {
     if (!entry.is_regular_file()) continue;
     EXPECT_EQ(test::read_text(entry.path()).find(BINOSPLAT_SOURCE_DIR), std::string::npos) << entry.path();
   }
-  ASSERT_TRUE(succeeds(folder, "cmake -S " + prefix + "/share/doc/binosplat/examples -B " + build +
+  ASSERT_TRUE(succeeds(folder, "cmake -G Ninja -S " + prefix + "/share/doc/binosplat/examples -B " + build +
                                    " -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=" + prefix +
                                    " -DCMAKE_CXX_COMPILER=" + BINOSPLAT_CXX + " -DCMAKE_CXX_FLAGS='" +
                                    BINOSPLAT_CXX_FLAGS + " " + sanitize + "'"));

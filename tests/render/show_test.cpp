@@ -106,6 +106,28 @@ TEST_F(ShowTest, OfPairsAndOtherTiles) {
   }
 }
 
+// The blend that keeps the median finds it in steps of several splats.
+TEST_F(ShowTest, PicturesWithTheMedianDepthAreTheSameOtherwise) {
+  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+    render::FrameSettings settings{.projection = projection};
+    frame.draw(std::vector{view}, settings);
+    const Picture mean = frame.read_pictures()[0];
+    const Image told = frame.read_shown(SHOW_MEDIAN_DEPTH)[0];
+    settings.depth = Depth::median;
+    frame.draw(std::vector{view}, settings);
+    const Picture median = frame.read_pictures()[0];
+    EXPECT_EQ(median.colour, mean.colour);
+    std::size_t differ = 0, from_mean = 0;
+    for (std::size_t k = 0; k < told.data.size(); ++k) {
+      const float expected = (1.0f - mean.colour[k].a) * std::max(told.data[k], 0.0f);
+      differ += median.z_sum[k] == expected ? 0 : 1;
+      from_mean += mean.z_sum[k] == expected ? 0 : 1;
+    }
+    EXPECT_EQ(differ, 0u) << projection_choices[projection].name;
+    EXPECT_GT(from_mean, told.data.size() / 10) << "the mean goes unnoticed";
+  }
+}
+
 TEST_F(ShowTest, TheReferencesOwnBlendHasNone) {
   frame.draw(std::vector{view}, {}, test::given(render::Stage::blend));
   EXPECT_THROW(frame.read_shown(SHOW_ALPHAS), Error);

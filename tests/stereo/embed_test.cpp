@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -219,6 +220,143 @@ TEST_F(Embed, ALostGpuIsSaid) {
               std::string::npos)
         << error.what();
   }
+}
+
+/// Depths of a layer, rows from OpenGL's bottom.
+std::vector<float> read_depths(const test::Caller& caller, std::uint32_t id, int layer = 0) {
+  std::vector<float> depths(static_cast<std::size_t>(size.x * size.y));
+  caller.GetTextureSubImage(id, 0, 0, 0, layer, size.x, size.y, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
+                            static_cast<GLsizei>(4 * depths.size()), depths.data());
+  return depths;
+}
+
+TEST_F(Embed, DepthsAreAsOpenGLKeepsThem) {
+  const Model model = test::random_model(3, 400, 0);
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  render::Frame frame(renderer.context(), model);
+  frame.draw(views);
+  const std::vector<Picture> pictures = frame.read_pictures();
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const std::uint32_t layers = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y, 3);
+  const std::array<std::uint32_t, 2> formats = {caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y),
+                                                caller.texture(GL_DEPTH_COMPONENT24, size.x, size.y)};
+  for (const auto& [near, far] :
+       {std::pair(0.2, 50.0), std::pair(0.2, inf), std::pair(inf, 0.2), std::pair(50.0, 0.2)}) {
+    const auto depth_of = [near = near, far = far](double z) {
+      if (std::isinf(near)) return far / z;
+      return (std::isinf(far) ? 1.0 : far / (far - near)) * (1.0 - near / z);
+    };
+    const auto differing = [&](const std::vector<float>& depths, const Picture& picture,
+                               bool flipped = false) {
+      int count = 0;
+      for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+          const auto at = static_cast<std::size_t>(y * size.x + x);
+          const double cover = 1.0 - picture.colour[at].a;
+          const double z = cover > 0.5 ? picture.z_sum[at] / cover : 1e30;
+          const int row = flipped ? y : size.y - 1 - y;
+          const double is = depths[static_cast<std::size_t>(row * size.x + x)];
+          count += std::abs(is - std::clamp(depth_of(z), 0.0, 1.0)) > 1e-6 ? 1 : 0;
+        }
+      }
+      return count;
+    };
+    renderer.draw(
+        views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f), {},
+        std::array{DepthTarget{.texture = formats[0], .near_plane = near, .far_plane = far},
+                   DepthTarget{.texture = layers, .layer = 2, .near_plane = near, .far_plane = far}});
+    EXPECT_EQ(differing(read_depths(caller, formats[0]), pictures[0]), 0) << near << " " << far;
+    EXPECT_EQ(differing(read_depths(caller, layers, 2), pictures[1]), 0) << near << " " << far;
+    EXPECT_GT(differing(read_depths(caller, formats[0]), pictures[1]), 100) << "the other eye goes unnoticed";
+    EXPECT_GT(differing(read_depths(caller, formats[0]), pictures[0], true), 100)
+        << "upside down goes unnoticed";
+    renderer.draw(std::span(&views[0], 1), std::span(&targets[0], 1), LAYOUT_SEPARATE, glm::vec3(0.0f), {},
+                  std::array{DepthTarget{.texture = formats[1], .near_plane = near, .far_plane = far}});
+    EXPECT_EQ(differing(read_depths(caller, formats[1]), pictures[0]), 0) << "24 bits";
+  }
+  const auto refused = [&](const DepthTarget& target) {
+    EXPECT_THROW(renderer.draw(std::span(&views[0], 1), std::span(&targets[0], 1), LAYOUT_SEPARATE,
+                               glm::vec3(0.0f), {}, std::array{target}),
+                 Error);
+  };
+  refused({.texture = textures[0]});  // of colours
+  refused({.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x - 1, size.y)});
+  refused({.texture = formats[0], .near_plane = 0.0});
+  refused({.texture = formats[0], .near_plane = inf, .far_plane = inf});
+  EXPECT_THROW(renderer.draw(views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f), {},
+                             std::array{DepthTarget{.texture = formats[0]}}),
+               Error)
+      << "one for two views";
+}
+
+TEST_F(Embed, DepthsLeaveTheCallersUnpackingAlone) {
+  const Model model = ball({0.0, 0.0, 1.5});
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  std::uint32_t buffer = 0;
+  caller.gl.CreateBuffers(1, &buffer);
+  caller.gl.NamedBufferStorage(buffer, 64, nullptr, 0);
+  caller.gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer);
+  const std::pair<GLenum, GLint> set[] = {{GL_UNPACK_ROW_LENGTH, 7}, {GL_UNPACK_ALIGNMENT, 2},
+                                          {GL_UNPACK_SKIP_ROWS, 1},  {GL_UNPACK_SKIP_PIXELS, 3},
+                                          {GL_UNPACK_SWAP_BYTES, 1}, {GL_UNPACK_IMAGE_HEIGHT, 5}};
+  for (const auto& [name, value] : set) caller.PixelStorei(name, value);
+  const std::uint32_t depth = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
+  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  renderer.draw(std::span(&views[0], 1), std::span(&targets[0], 1), LAYOUT_SEPARATE, glm::vec3(0.0f), {},
+                std::array{DepthTarget{.texture = depth}});
+  for (const auto& [name, value] : set) {
+    GLint now = 0;
+    caller.gl.GetIntegerv(name, &now);
+    EXPECT_EQ(now, value) << name;
+  }
+  GLint bound = 0;
+  caller.gl.GetIntegerv(GL_PIXEL_UNPACK_BUFFER_BINDING, &bound);
+  EXPECT_EQ(bound, static_cast<GLint>(buffer));
+  const std::vector<float> depths = read_depths(caller, depth);
+  EXPECT_LT(*std::min_element(depths.begin(), depths.end()), 1.0f);
+}
+
+// Numbers that mean light.
+TEST_F(Embed, LinearTargetsHoldLight) {
+  const Model model = test::random_model(3, 400, 0);
+  EmbeddedRenderer renderer(caller.get_proc_address(), model);
+  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  const std::array<Target, 2> linear = {targets[0], Target{.texture = textures[1], .linear = true}};
+  const std::array same = {views[0], views[0]};
+  renderer.draw(same, linear, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  const std::vector<float> shown = read(0), light = read(1);
+  int differ = 0;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    const double v = shown[k];
+    const double wanted = k % 4 == 3 ? 1.0 : v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(light[k], wanted, 1e-4 * std::max(1.0, wanted));
+    differ += std::abs(light[k] - v) > 0.01 ? 1 : 0;
+  }
+  EXPECT_GT(differ, 1000) << "display values go unnoticed";
+}
+
+// Both eyes and an inset in each, as headsets with four views have them.
+TEST_F(Embed, FourViewsOfParallelEyesShareOneOrder) {
+  const Model model = test::random_model(3, 200, 0);
+  render::Frame frame(*caller.context, model);
+  auto eyes = quest_eyes();
+  XrEye left = eyes[0], right = eyes[1];
+  left.fov = right.fov = {-0.2, 0.2, 0.2, -0.2};
+  const std::array four = {eyes[0], left, eyes[1], right};
+  const std::array<glm::ivec2, 4> of_four = {size, size, size, size};
+  const HeadViews head = views_from_xr(four, stage, of_four);
+  EXPECT_TRUE(head.parallel);
+  EXPECT_EQ(frame.draw(head.views).order_groups, 1u);
+  const EyePair pair = eyes_from_xr(eyes, stage, sizes);
+  EXPECT_EQ(std::memcmp(&head.views[0], &pair.views[0], sizeof(shared::View)), 0);
+  EXPECT_EQ(std::memcmp(&head.views[2], &pair.views[1], sizeof(shared::View)), 0);
+  const auto canted = quest_eyes(8.0);
+  const std::array turned = {canted[0], canted[0], canted[1], canted[1]};
+  const HeadViews apart = views_from_xr(turned, stage, of_four);
+  EXPECT_FALSE(apart.parallel);
+  EXPECT_EQ(frame.draw(apart.views).order_groups, 2u) << "an eye's views share theirs";
+  EXPECT_EQ(frame.draw(apart.views, {.order = ORDER_DISTANCE}).order_groups, 1u);
 }
 
 }  // namespace

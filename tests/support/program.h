@@ -81,13 +81,14 @@ struct Surroundings {
   std::filesystem::path folder;                  // the working folder; empty: this one's
   std::map<std::string, std::string> variables;  // of the environment, in addition
   std::map<int, rlim_t> limits;                  // RLIMIT_FSIZE and its like
+  std::filesystem::path program = BINOSPLAT_PROGRAM;
 };
 
 /// A run under way.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const Surroundings& surroundings = {}) {
-    arguments.insert(arguments.begin(), BINOSPLAT_PROGRAM);
+    arguments.insert(arguments.begin(), surroundings.program.string());
     pid_ = fork();
     if (pid_ < 0) throw std::runtime_error("fork failed");
     if (pid_ == 0) become(arguments, surroundings);

@@ -15,6 +15,7 @@
 #include "app/render_options.h"
 #include "app/render_outputs.h"
 #include "app/shots.h"
+#include "app/viewer/headset.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "preview/window.h"
@@ -115,9 +116,20 @@ preview::Opened open(const Wanted& wanted) {
   return opened;
 }
 
+#ifndef BINOSPLAT_XR
+void view_in_headset(const RenderOptions&, const preview::Opened&, const preview::Choices&) {
+  throw Error(
+      ExitCode::no_gl,
+      "--xr: this binosplat was built without OpenXR's headers (on Debian libopenxr-dev): install them and "
+      "build it again, as ./demo --view does");
+}
+#endif
+
 void view(const RenderOptions& o) {
   check_view(o);
   const fs::path folder = o.output.output;
+  const preview::Opened opened = open({folder, o.scene, o.camera, o.rig, settings_of(o.drawing)});
+  if (o.headset.xr) return view_in_headset(o, opened, choices_of(o));
   preview::WindowSettings window;
   window.size = o.camera.lens.size;
   window.shader_folder = o.context.shader_dir;
@@ -126,8 +138,7 @@ void view(const RenderOptions& o) {
     const fs::path own = folder.empty() ? folder : folder / default_folder(file).filename();
     return open({own, {.name = file}, {}, {.units_per_metre = metre}, {}});
   };
-  preview::run(open({folder, o.scene, o.camera, o.rig, settings_of(o.drawing)}), choices_of(o), window,
-               open_other);
+  preview::run(opened, choices_of(o), window, open_other);
 }
 
 int end(ExitCode code, const std::string& text) {

@@ -1,0 +1,45 @@
+#include "app/viewer/headset.h"
+
+#include <optional>
+
+#include "app/command_line.h"
+#include "app/context_options.h"
+#include "base/log.h"
+#include "preview/mirror.h"
+#include "scene/axes.h"
+#include "xr/binding.h"
+#include "xr/headset.h"
+
+namespace binosplat::app {
+
+void view_in_headset(const RenderOptions& o, const preview::Opened& scene, preview::Choices choices) {
+  // A headset that is not there is said before a model is read.
+  const xr::Instance instance;
+  log_info("{} on {}", instance.headset(), instance.runtime());
+  std::unique_ptr<preview::Mirror> mirror;
+  std::unique_ptr<gl::Context> own;
+  if (o.headset.mirror && has_display()) {
+    mirror = std::make_unique<preview::Mirror>(instance.has(xr::egl_extension));
+  } else {
+    own = open_context(o.context);
+  }
+  gl::Context& context = mirror ? mirror->context() : *own;
+  if (!o.context.shader_dir.empty()) context.set_shader_folder(o.context.shader_dir);
+
+  Model model = scene.load();
+  const preview::Start start = scene.start(model, choices);
+  log_info("{}: {} Gaussians", scene.name, model.count());
+  xr::HeadsetSettings settings;
+  settings.projection = {o.headset.scale, choices.rig.near_plane, choices.background};
+  settings.frame = choices.settings;
+  settings.budget_ms = o.headset.budget_ms;
+  settings.start = into_axes(start.cameras.front(), model.axes);
+  settings.up = glm::transpose(world_from_axes(model.axes)) * start.up;
+  settings.units_per_metre = choices.rig.units_per_metre;
+  const xr::Beside beside = {
+      .step = [&](const render::Frame* drawn) { return !mirror || mirror->step(drawn, choices.background); },
+      .levels = scene.levels};
+  xr::run(instance, context, std::move(model), settings, beside);
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,35 @@
+#pragma once
+// --frame-budget: as much quality as a frame's time allows.
+
+#include "render/settings.h"
+
+namespace binosplat::xr {
+
+/// How much is drawn.
+struct Effort {
+  float quality = 0.0f;  // dB, as FrameSettings; 0: exactly
+  double scale = 1.0;    // of both sides of the pictures
+};
+
+/// Exact frames where these are in time; else less quality, down to 37 dB, and then smaller pictures, down to
+/// half of both sides.
+class Budget {
+ public:
+  /// `ms` for a frame.
+  explicit Budget(double ms) : ms_(ms) {}
+
+  Effort effort() const;
+
+  /// What a frame of this effort took. One that is late by a third, or two in a row that are late, lessen the
+  /// effort; a second of frames that take less than three quarters of the time raise it again, and where that
+  /// was too much, it takes longer to be tried again.
+  void took(double ms, double period_ms);
+
+ private:
+  double ms_;
+  int step_ = 0;  // less and less effort
+  int late_ = 0;  // frames in a row
+  double early_ms_ = 0.0, wait_ms_ = 1000.0;
+};
+
+}  // namespace binosplat::xr

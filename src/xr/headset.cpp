@@ -1,0 +1,185 @@
+#include "xr/headset.h"
+
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/statistics.h"
+#include "xr/budget.h"
+#include "xr/hands.h"
+
+namespace binosplat::xr {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double own_share = 0.8;         // of a frame's time: the runtime draws, too
+constexpr double eyes_above_floor = 1.6;  // m, of somebody who stands
+constexpr int sessions_most = 10;         // one after the other, where they are lost
+constexpr milliseconds between_sessions{500};
+constexpr XrDuration between_looks = 1'000'000'000;  // ns
+constexpr milliseconds between_polls{10};            // while no frames are wanted
+
+class Viewer {
+ public:
+  Viewer(const Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
+         const Beside& beside)
+      : instance_(instance),
+        context_(context),
+        settings_(settings),
+        beside_(beside),
+        model_(std::move(model)),
+        frame_(context, model_, settings.frame.precision) {}
+
+  /// False where the session was lost.
+  bool run_session() {
+    Session session(instance_);
+    const struct Ended {  // before the session
+      std::optional<Projection>& projection;
+      ~Ended() { projection.reset(); }
+    } ended{projection_};
+    Hands hands(session);
+    make_projection(session);
+    Walk walk(start_of(settings_, session.on_floor()));
+    frame_.start_over();
+    last_.reset();
+    try {
+      while (session.poll()) {
+        const bool drawn = session.running() && draw(session, hands, walk);
+        if (!beside_.step(drawn ? &frame_ : nullptr) && !leaving_) {
+          leaving_ = true;
+          session.request_exit();
+        }
+        if (!session.running()) std::this_thread::sleep_for(between_polls);
+      }
+    } catch (const Lost& lost) {
+      if (lost.instance)
+        throw Error(ExitCode::no_gl,
+                    fmt::format("{} has ended: start it, and then this again", instance_.runtime()));
+      return leaving_;
+    }
+    return true;
+  }
+
+  void tell() const {
+    if (times_.empty()) return log_info("no frame was drawn");
+    log_info("{} frames were drawn, in {:.1f} ms each (median), {:.1f} at most", times_.size(),
+             quantile(times_, 0.5), quantile(times_, 1.0));
+  }
+
+ private:
+  /// A frame of the runtime's; false where nothing was to be drawn.
+  bool draw(Session& session, Hands& hands, Walk& walk) {
+    const FrameTime time = session.begin_frame();
+    const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
+    if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
+    if (time.is_shown) tracked_ = !views.empty();
+    if (views.empty()) {
+      last_.reset();
+      session.end_frame(time, nullptr);
+      return false;
+    }
+    if (session.take_recentred()) frame_.forget();
+    if (time.display - looked_ >= between_looks) {
+      looked_ = time.display;
+      if (projection_->outdated()) make_projection(session);
+    }
+    if (session.take_masks_changed()) projection_->take_masks();
+    follow(hands, walk, views, time);
+    follow_levels();
+    if (settings_.budget_ms && !budget_) {
+      const double period_ms = 1e-6 * static_cast<double>(time.period);
+      budget_.emplace(*settings_.budget_ms > 0.0 ? *settings_.budget_ms : own_share * period_ms);
+    }
+    const Effort effort = budget_ ? budget_->effort() : Effort{settings_.frame.quality, 1.0};
+    render::FrameSettings settings = settings_.frame;
+    settings.quality = effort.quality;
+    if (effort.quality > 0.0f) settings.th = TH_SQUARED;
+    const auto start = Clock::now();
+    projection_->draw(frame_, views, walk.stage(), settings, effort.scale);
+    const double ms = ms_since(start);
+    times_.push_back(ms);
+    if (budget_) budget_->took(ms, 1e-6 * static_cast<double>(time.period));
+    session.end_frame(time, projection_->layer());
+    return true;
+  }
+
+  void make_projection(const Session& session) {
+    projection_.reset();  // its memory first
+    projection_.emplace(session, context_, settings_.projection);
+    projection_->take_masks();
+    log_info("{}: {}", instance_.headset(), projection_->description());
+  }
+
+  /// To where hands take the head.
+  void follow(Hands& hands, Walk& walk, const std::vector<XrView>& views, const FrameTime& time) {
+    const Deeds deeds = hands.read(time.display);
+    stereo::XrEye head = eye_of(views[0].pose);
+    head.position = 0.5 * (head.position + eye_of(views[1].pose).position);
+    if (deeds.resets) walk.reset();
+    if (last_) walk.step(head, deeds.hands, 1e-9 * static_cast<double>(time.display - *last_));
+    last_ = time.display;
+  }
+
+  /// Takes the levels that were read, and has those read that the last frame's views need.
+  void follow_levels() {
+    if (!beside_.levels) return;
+    if (!levels_.valid()) {
+      if (frame_.views().empty()) return;
+      const auto read = beside_.levels(std::span(frame_.views()).first(frame_.shape().asked));
+      if (read) levels_ = std::async(std::launch::async, read);
+    } else if (levels_.wait_for(milliseconds(0)) == std::future_status::ready) {
+      model_ = levels_.get();
+      frame_.model()->reload();
+    }
+  }
+
+  const Instance& instance_;
+  gl::Context& context_;
+  const HeadsetSettings& settings_;
+  const Beside& beside_;
+  Model model_;
+  render::Frame frame_;
+  std::future<Model> levels_;
+  std::optional<Budget> budget_;
+  std::optional<Projection> projection_;  // of the session at hand
+  std::optional<XrTime> last_;            // when the last frame was seen
+  XrTime looked_ = 0;                     // when it was asked which sizes the runtime recommends
+  std::vector<double> times_;             // ms
+  bool tracked_ = true, leaving_ = false;
+};
+
+}  // namespace
+
+stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor) {
+  const glm::dvec3 up = glm::normalize(settings.up);
+  const Camera& start = settings.start;
+  glm::dvec3 forward = start.rotation[2] - glm::dot(start.rotation[2], up) * up;
+  // Straight up or down: where its upper edge points.
+  if (glm::length(forward) < 1e-3) forward = -start.rotation[1] + glm::dot(start.rotation[1], up) * up;
+  forward = glm::normalize(forward);
+  stereo::Stage stage;
+  stage.axes = glm::dmat3(glm::cross(forward, up), up, -forward);
+  stage.units_per_metre = settings.units_per_metre;
+  stage.origin = start.position;
+  if (on_floor) stage.origin -= eyes_above_floor * settings.units_per_metre * up;
+  return stage;
+}
+
+void run(const Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
+         const Beside& beside) {
+  Viewer viewer(instance, context, std::move(model), settings, beside);
+  for (int n = 1; !viewer.run_session(); ++n) {
+    if (n == sessions_most)
+      throw Error(ExitCode::no_gl, fmt::format("{} loses every session", instance.runtime()));
+    log_warning("{} lost the session: it is begun again", instance.runtime());
+    std::this_thread::sleep_for(between_sessions);
+  }
+  viewer.tell();
+}
+
+}  // namespace binosplat::xr

@@ -1,0 +1,42 @@
+#pragma once
+// A model in a headset, until its user has seen enough.
+
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "scene/model.h"
+#include "xr/projection.h"
+
+namespace binosplat::xr {
+
+struct HeadsetSettings {
+  ProjectionSettings projection;
+  render::FrameSettings frame;
+  std::optional<double> budget_ms;  // of a frame: quality and size follow it; 0: what the runtime has for one
+  /// Where a standing viewer's eyes are at first, and what is up: world units, in the model's own frame.
+  Camera start;
+  glm::dvec3 up{0.0, -1.0, 0.0};
+  double units_per_metre = 1.0;
+};
+
+/// What goes on beside the headset.
+struct Beside {
+  /// Called after each frame, and while none is wanted; false ends it all. May show the left eye's picture.
+  std::function<bool(const render::Frame* drawn)> step;
+  /// Of a model with levels of detail: what reads the levels that these views need, in a thread of its own
+  /// and one at a time; nothing where they are the last ones that were read. May be empty.
+  std::function<std::function<Model()>(std::span<const shared::View> views)> levels;
+};
+
+/// Where OpenXR's space lies at first: its origin at the start camera, 1.6 m lower where it lies on the
+/// floor, upright, and with the start camera's heading.
+stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor);
+
+/// Draws with the OpenGL context that is current. A session that the runtime loses is followed by another, if
+/// the headset is there again within some seconds. Throws Error(no_gl) for what a runtime refuses or loses,
+/// and as render::Frame does.
+void run(const Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
+         const Beside& beside);
+
+}  // namespace binosplat::xr

@@ -1,0 +1,72 @@
+#pragma once
+// What a headset shows: a frame's pictures and depths in the runtime's textures, with exactly the poses and
+// angles that they were drawn from.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "render/frame.h"
+#include "stereo/embed.h"
+#include "xr/swapchain.h"
+#include "xr/visibility.h"
+
+namespace binosplat::xr {
+
+/// How the views of a headset are drawn.
+struct ProjectionSettings {
+  double scale = 1.0;                // of the sizes that the runtime recommends
+  double near_plane = near_default;  // world units
+  glm::vec3 background{0.0f};
+};
+
+class Projection {
+ public:
+  /// Makes textures of the recommended sizes times the scale, at most the largest that the runtime allows.
+  Projection(const Session& session, gl::Context& context, const ProjectionSettings& settings);
+
+  /// Draws the located views, each `part` of its texture's sides, at a place of the model's world.
+  render::FrameReport draw(render::Frame& frame, std::span<const XrView> located, const stereo::Stage& stage,
+                           render::FrameSettings settings, double part = 1.0);
+
+  /// Whether the runtime recommends other sizes now: a new Projection would have them.
+  bool outdated() const { return sizes_ != sizes_now(); }
+
+  /// Asks the runtime anew what its lenses show.
+  void take_masks();
+
+  /// The frame that was drawn last, for Session::end_frame.
+  const XrCompositionLayerBaseHeader* layer() const;
+
+  /// "GL_SRGB8_ALPHA8", and whether depths go with it: for people.
+  std::string description() const;
+  std::size_t view_count() const { return eyes_.size(); }
+
+ private:
+  struct Eye {
+    std::unique_ptr<Swapchain> colours, depths;
+    Visible visible;
+  };
+  std::vector<glm::ivec2> sizes_now() const;
+  void make_colours();
+  void make_depths();
+  std::vector<render::ViewPart> parts_of(std::span<const XrView> located,
+                                         std::span<const glm::ivec2> sizes) const;
+
+  const Session& session_;
+  ProjectionSettings settings_;
+  stereo::Presenter presenter_;
+  std::int64_t format_ = 0;
+  bool linear_ = false;  // numbers of the format mean light
+  std::vector<glm::ivec2> sizes_;
+  std::vector<Eye> eyes_;
+  std::vector<XrCompositionLayerDepthInfoKHR> depth_infos_;
+  std::vector<XrCompositionLayerProjectionView> views_;
+  XrCompositionLayerProjection layer_;
+};
+
+/// As stereo::XrEye has it.
+stereo::XrEye eye_of(const XrPosef& pose, const XrFovf& fov = {});
+
+}  // namespace binosplat::xr

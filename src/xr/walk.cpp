@@ -1,0 +1,84 @@
+#include "xr/walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+namespace binosplat::xr {
+
+namespace {
+
+constexpr double metres_a_second = 1.5;
+constexpr double degrees_a_push = 30.0;
+constexpr double pushed = 0.7, let_go = 0.4;  // of a stick
+constexpr double slack = 0.15;                // sticks at rest are hardly ever at 0
+constexpr double scale_most = 100.0;          // either way, of what the model began with
+
+double beyond_slack(double push) {
+  return std::copysign(std::max(0.0, std::abs(push) - slack) / (1.0 - slack), push);
+}
+
+// Where the head looks, level; forwards where it looks straight up or down.
+glm::dvec3 forward_of(const stereo::XrEye& head) {
+  const glm::dvec4& q = head.orientation;
+  const glm::dvec3 ahead = glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(0.0, 0.0, -1.0);
+  const glm::dvec3 level(ahead.x, 0.0, ahead.z);
+  return glm::length(level) > 1e-3 ? glm::normalize(level) : glm::dvec3(0.0, 0.0, -1.0);
+}
+
+}  // namespace
+
+void Walk::turn(double radians, const glm::dvec3& about) {
+  const glm::dmat3 turned = stage_.axes * glm::mat3_cast(glm::angleAxis(radians, glm::dvec3(0.0, 1.0, 0.0)));
+  stage_.origin += stage_.units_per_metre * (stage_.axes * about - turned * about);
+  stage_.axes = turned;
+}
+
+void Walk::scale(double factor, const glm::dvec3& about) {
+  const double wanted = std::clamp(stage_.units_per_metre * factor, start_.units_per_metre / scale_most,
+                                   start_.units_per_metre * scale_most);
+  stage_.origin += (stage_.units_per_metre - wanted) * (stage_.axes * about);
+  stage_.units_per_metre = wanted;
+}
+
+void Walk::shift(const glm::dvec3& metres) {
+  stage_.origin += stage_.units_per_metre * (stage_.axes * metres);
+}
+
+// What a hand held stays in it.
+void Walk::grab(const std::array<Hand, 2>& hands) {
+  const auto holds = [&](std::size_t k) {
+    return hands[k].grabs && last_[k].grabs && hands[k].position && last_[k].position;
+  };
+  if (holds(0) && holds(1)) {
+    const glm::dvec3 before = *last_[1].position - *last_[0].position;
+    const glm::dvec3 now = *hands[1].position - *hands[0].position;
+    shift(0.5 * (*last_[0].position + *last_[1].position - *hands[0].position - *hands[1].position));
+    const glm::dvec3 middle = 0.5 * (*hands[0].position + *hands[1].position);
+    if (glm::length(before) > 1e-3 && glm::length(now) > 1e-3)
+      scale(glm::length(before) / glm::length(now), middle);
+    const auto heading = [](const glm::dvec3& v) { return std::atan2(-v.z, v.x); };
+    if (std::hypot(before.x, before.z) > 1e-2 && std::hypot(now.x, now.z) > 1e-2)
+      turn(heading(before) - heading(now), middle);
+    return;
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (holds(k)) return shift(*last_[k].position - *hands[k].position);
+  }
+}
+
+void Walk::step(const stereo::XrEye& head, const std::array<Hand, 2>& hands, double seconds) {
+  grab(hands);
+  last_ = hands;
+  const glm::dvec3 forward = forward_of(head), right(-forward.z, 0.0, forward.x);
+  const double metres = metres_a_second * seconds;
+  shift(metres * (beyond_slack(hands[0].stick.x) * right + beyond_slack(hands[0].stick.y) * forward));
+  const glm::dvec2 push = hands[1].stick;
+  if (std::abs(push.y) > std::abs(push.x)) shift({0.0, metres * beyond_slack(push.y), 0.0});
+  if (std::abs(push.x) < let_go) turned_ = false;
+  if (turned_ || std::abs(push.x) < pushed || std::abs(push.x) < std::abs(push.y)) return;
+  turned_ = true;
+  turn(glm::radians(push.x > 0.0 ? -degrees_a_push : degrees_a_push), head.position);
+}
+
+}  // namespace binosplat::xr

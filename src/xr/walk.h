@@ -1,0 +1,43 @@
+#pragma once
+// How hands move a head through a model: where the space that heads are located in lies in the model's world.
+// Pure maths; the space is OpenXR's, x right, y up, z backward, metres.
+
+#include <array>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "stereo/embed.h"
+
+namespace binosplat::xr {
+
+/// What a hand does at a moment.
+struct Hand {
+  std::optional<glm::dvec3> position;  // m, in the space; none: not there
+  glm::dvec2 stick{0.0};               // right and forward, each from -1 to 1
+  bool grabs = false;
+};
+
+class Walk {
+ public:
+  explicit Walk(const stereo::Stage& start) : start_(start), stage_(start) {}
+
+  const stereo::Stage& stage() const { return stage_; }
+  void reset() { stage_ = start_; }
+
+  /// So many seconds later. The left stick walks, level and towards where the head looks; the right one
+  /// turns by 30 degrees a push, and pushed forward or back raises or lowers. A hand that grabs holds the
+  /// world where it is; two turn it about the vertical and scale it, too.
+  void step(const stereo::XrEye& head, const std::array<Hand, 2>& hands, double seconds);
+
+ private:
+  void turn(double radians, const glm::dvec3& about);
+  void scale(double factor, const glm::dvec3& about);
+  void shift(const glm::dvec3& metres);
+  void grab(const std::array<Hand, 2>& hands);
+
+  stereo::Stage start_, stage_;
+  std::array<Hand, 2> last_;
+  bool turned_ = false;  // by the push at hand
+};
+
+}  // namespace binosplat::xr

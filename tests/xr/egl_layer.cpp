@@ -1,0 +1,84 @@
+// A layer of OpenXR's loader between a program and Khronos' validation, whose builds do not know EGL's
+// binding and refuse it: it hands on an Xlib binding in its place, which the test runtime knows
+// (xr/runtime/gl.cpp).
+
+#include "xr/egl_as_xlib.h"
+
+namespace {
+
+using binosplat::xr_test::XlibBinding;
+
+// As the loader's specification has them.
+struct LoaderInfo {
+  std::uint32_t type, version;
+  std::size_t size;
+  std::uint32_t min_interface, max_interface;
+  XrVersion min_api, max_api;
+};
+struct LayerInfo;
+using CreateInstance = XrResult (*)(const XrInstanceCreateInfo*, const LayerInfo*, XrInstance*);
+struct LayerRequest {
+  std::uint32_t type, version;
+  std::size_t size;
+  std::uint32_t interface_version;
+  XrVersion api_version;
+  PFN_xrGetInstanceProcAddr get;
+  CreateInstance create;
+};
+struct NextInfo {
+  std::uint32_t type, version;
+  std::size_t size;
+  char name[XR_MAX_API_LAYER_NAME_SIZE];
+  PFN_xrGetInstanceProcAddr get;
+  CreateInstance create;
+  NextInfo* next;
+};
+struct LayerInfo {
+  std::uint32_t type, version;
+  std::size_t size;
+  XrInstance loader_instance;
+  char settings[512];
+  NextInfo* next;
+};
+
+PFN_xrGetInstanceProcAddr next_get = nullptr;
+PFN_xrCreateSession next_create_session = nullptr;
+
+XrResult create_session(XrInstance instance, const XrSessionCreateInfo* info, XrSession* session) {
+  const auto* egl = static_cast<const XrGraphicsBindingEGLMNDX*>(info->next);
+  if (egl == nullptr || egl->type != XR_TYPE_GRAPHICS_BINDING_EGL_MNDX) {
+    return next_create_session(instance, info, session);
+  }
+  const XlibBinding xlib = binosplat::xr_test::as_xlib(*egl);
+  XrSessionCreateInfo other = *info;
+  other.next = &xlib;
+  return next_create_session(instance, &other, session);
+}
+
+XrResult get(XrInstance instance, const char* name, PFN_xrVoidFunction* function) {
+  const XrResult result = next_get(instance, name, function);
+  if (std::strcmp(name, "xrCreateSession") == 0 && result == XR_SUCCESS) {
+    next_create_session = reinterpret_cast<PFN_xrCreateSession>(*function);
+    *function = reinterpret_cast<PFN_xrVoidFunction>(create_session);
+  }
+  return result;
+}
+
+XrResult create_instance(const XrInstanceCreateInfo* info, const LayerInfo* layer, XrInstance* instance) {
+  next_get = layer->next->get;
+  LayerInfo below = *layer;
+  below.next = layer->next->next;
+  return layer->next->create(info, &below, instance);
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) XrResult
+xrNegotiateLoaderApiLayerInterface(  // NOLINT(readability-identifier-naming): the loader's own name
+    const LoaderInfo*, const char*, LayerRequest* request) {
+  request->interface_version = 1;
+  request->api_version = XR_CURRENT_API_VERSION;
+  request->get = get;
+  request->create = create_instance;
+  return XR_SUCCESS;
+}

@@ -1,0 +1,157 @@
+// examples/openxr.cpp against the test runtime: what it draws, how it goes, and what the validation layer
+// says.
+
+#include <gtest/gtest.h>
+
+#include "formats/model_file.h"
+#include "stereo/embed.h"
+#include "support/caller.h"
+#include "support/ply.h"
+#include "xr/xr_script.h"
+
+namespace binosplat::test {
+namespace {
+
+using Strings = std::vector<std::string>;
+constexpr int width = 96, height = 80;
+
+/// Gaussians around the head, small enough for llvmpipe.
+void write_model(const std::filesystem::path& path) {
+  PlyFile file = inria_file(1, 300);
+  Uniform uniform(5);
+  for (std::size_t row = 0; row < file.rows.size(); ++row) {
+    for (const char* axis : {"x", "y", "z"}) file.at(row, axis) = static_cast<float>(uniform(-3, 3));
+    for (const char* scale : {"scale_0", "scale_1", "scale_2"}) {
+      file.at(row, scale) = static_cast<float>(uniform(-3, -1));
+    }
+  }
+  write_text(path, to_bytes(file));
+}
+
+/// A head that moves, between eyes that are canted and whose angles differ.
+Json moving_script() {
+  const Json left = xr_view(width, height, {-0.855, 0.646, 0.7, -0.75},
+                            xr_pose({-0.0315, 0, 0}, {0, 0.04361939, 0, 0.99904822}));
+  const Json right = xr_view(width, height, {-0.646, 0.8, 0.7, -0.7},
+                             xr_pose({0.0315, 0, 0}, {0, -0.04361939, 0, 0.99904822}));
+  return {{"frames", 3},
+          {"views", {{"stereo", {left, right}}}},
+          {"heads",
+           {xr_pose({0, 1.6, 0}), xr_pose({0.1, 1.5, 0.2}, {0, 0.38268343, 0, 0.92387953}),
+            xr_pose({0.2, 1.7, -0.1}, {0.1305262, 0, 0, 0.9914449})}}};
+}
+
+Outcome run_example(XrStage& stage, std::map<std::string, std::string> more = {}) {
+  write_model(stage.folder() / "model.ply");
+  more.merge(stage.variables());
+  return run_program({(stage.folder() / "model.ply").string()},
+                     {.variables = more, .program = BINOSPLAT_XR_EXAMPLE});
+}
+
+glm::dvec4 four(const Json& json) { return {json[0], json[1], json[2], json[3]}; }
+
+/// A frame's picture as the example is expected to draw it, from what the runtime located.
+struct Expected : Caller {
+  explicit Expected(const std::filesystem::path& file)
+      : model(load_model(file)), renderer(get_proc_address(), model) {}
+
+  std::array<std::string, 2> draw(const Json& frame) {
+    std::array<stereo::XrEye, 2> eyes;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Json& view = frame["located"][0]["views"][k];
+      const Json& at = view["pose"]["position"];
+      const glm::dvec4 fov = four(view["fov"]);
+      eyes[k].position = {at[0], at[1], at[2]};
+      eyes[k].orientation = four(view["pose"]["orientation"]);
+      eyes[k].fov = {fov[0], fov[1], fov[2], fov[3]};
+    }
+    const glm::ivec2 size(width, height);
+    const auto pair = stereo::eyes_from_xr(eyes, stereo::stage_of(model), {size, size});
+    const std::array<stereo::Target, 2> targets = {
+        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, width, height)},
+        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, width, height)}};
+    renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+    std::array<std::string, 2> out;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto pixels = read<unsigned char>(targets[k].texture, width, height);
+      for (int row = height - 1; row >= 0; --row) {
+        const auto begin = pixels.begin() + 4 * row * width;
+        out[k].append(begin, begin + 4 * width);
+      }
+    }
+    return out;
+  }
+
+  const Model model;
+  stereo::EmbeddedRenderer renderer;
+};
+
+TEST(XrExample, SubmitsToTheBitWhatOthersDraw) {
+  XrStage stage;
+  stage.script = moving_script();
+  const Outcome outcome = run_example(stage);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  EXPECT_TRUE(log.clean()) << log.text();
+  ASSERT_EQ(log.frames().size(), 3u);
+  Expected expected(stage.folder() / "model.ply");
+  for (const Json& frame : log.frames()) {
+    const auto pictures = expected.draw(frame);
+    ASSERT_NE(pictures[0], pictures[1]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_TRUE(log.colours(frame, k) == pictures[k]) << "frame " << frame["frame"] << " view " << k;
+      EXPECT_FALSE(log.colours(frame, k) == pictures[1 - k]) << "swapped eyes go unnoticed";
+    }
+  }
+}
+
+TEST(XrExample, FollowsTheSession) {
+  XrStage stage;
+  stage.script = moving_script();
+  stage.script["frames"] = 8;
+  stage.script["invisible_frames"] = 1;
+  stage.script["not_rendered"] = {2};
+  stage.add_event({{"frame", 3}, {"flags", {"orientation_valid"}}});
+  stage.add_event({{"frame", 4}, {"flags", {"orientation_valid", "position_valid"}}});
+  stage.add_event({{"frame", 5}, {"state", "synchronized"}});
+  stage.add_event({{"frame", 6}, {"state", "stopping"}, {"then", "ready"}});
+  stage.add_event({{"frame", 7}, {"recentre", xr_pose({0, 1.6, 1})}});
+  const Outcome outcome = run_example(stage);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  std::string shown;
+  for (const Json& frame : log.frames()) shown += frame["layers"].empty() ? '-' : 'x';
+  EXPECT_EQ(shown, "-x--x-xx");
+  EXPECT_EQ(log.all("begin").size(), 2u);
+  EXPECT_TRUE(log.clean()) << log.text();
+}
+
+TEST(XrExample, SaysWhatIsMissing) {
+  const std::vector<std::pair<Json, std::string>> cases = {
+      {{{"system", "XR_ERROR_FORM_FACTOR_UNAVAILABLE"}},
+       "xrGetSystem failed: XR_ERROR_FORM_FACTOR_UNAVAILABLE (-35)"},
+      {{{"formats", {"GL_RGBA8"}}}, "xrCreateSwapchain failed: XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED (-26)"},
+      {{{"extensions", {"XR_KHR_opengl_enable"}}}, "xrCreateInstance failed: no instance (-9)"}};
+  for (const auto& [script, text] : cases) {
+    XrStage stage;
+    stage.script = script;
+    const Outcome outcome = run_example(stage);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.err.find("openxr: " + text), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(XrExample, PassesKhronosValidation) {
+  XrStage stage;
+  stage.script = moving_script();
+  const Outcome outcome = run_example(stage, stage.validated_variables());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(stage.log().faults(), Strings());
+  EXPECT_EQ(stage.log().frames().size(), 3u);
+  EXPECT_EQ(stage.validation(outcome), "");
+}
+
+}  // namespace
+}  // namespace binosplat::test

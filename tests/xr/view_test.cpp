@@ -1,0 +1,421 @@
+// `binosplat view --xr` against the test runtime: what the headset is given is what a frame draws, to the
+// bit.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.h"
+#include "formats/model_file.h"
+#include "formats/model_output.h"
+#include "support/display.h"
+#include "support/gl.h"
+#include "support/models.h"
+#include "xr/headset.h"
+#include "xr/walk.h"
+#include "xr/xr_script.h"
+
+namespace binosplat::test {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+constexpr int width = 96, height = 80;  // of a view, as the runtime has it by itself
+constexpr std::array<double, 4> left_fov = {-0.855, 0.646, 0.7, -0.7}, right_fov = {-0.646, 0.855, 0.7, -0.7};
+
+glm::dvec4 turned(double degrees) {  // to the left
+  const double half = 0.5 * glm::radians(degrees);
+  return {0.0, std::sin(half), 0.0, std::cos(half)};
+}
+
+Json head(const glm::dvec3& p, double degrees = 0.0) {
+  const glm::dvec4 q = turned(degrees);
+  return xr_pose({p.x, p.y, p.z}, {q.x, q.y, q.z, q.w});
+}
+
+struct XrView : testing::Test {
+  TempFolder folder;
+  std::string file = (folder / "model.ply").string();
+  Model model;
+  XrStage stage;
+
+  XrView() {
+    OutputFile written(file);
+    write_model(written, random_model(5, 300, 1), ModelFormat::ply);
+    written.commit();
+    model = load_model(file);
+    stage.script = {{"frames", 2}};
+  }
+
+  Outcome view(Strings more = {}, const std::map<std::string, std::string>& variables = {}) {
+    Strings words = {"view",   file,   "--xr",  "--no-mirror", "--eye",
+                     "0,0,-1", "--at", "0,0,1", "--up",        "0,-1,0"};
+    words.insert(words.end(), more.begin(), more.end());
+    std::map<std::string, std::string> all = stage.variables();
+    for (const auto& [name, value] : variables) all[name] = value;
+    return run_program(words, {.variables = all});
+  }
+
+  /// What a frame of this line should be: all views as they were located, in a place of the world.
+  std::vector<Picture> expected(const Json& frame, const stereo::Stage& at,
+                                const render::FrameSettings& settings = {.depth = Depth::median}) const {
+    const Json& located = frame["located"][0]["views"];
+    std::vector<stereo::XrEye> eyes;
+    std::vector<glm::ivec2> sizes;
+    for (std::size_t k = 0; k < located.size(); ++k) {
+      const auto p = located[k]["pose"]["position"].get<std::array<float, 3>>();
+      const auto q = located[k]["pose"]["orientation"].get<std::array<float, 4>>();
+      const auto f = located[k]["fov"].get<std::array<float, 4>>();
+      eyes.push_back(xr::eye_of({{q[0], q[1], q[2], q[3]}, {p[0], p[1], p[2]}}, {f[0], f[1], f[2], f[3]}));
+      const auto rect = XrLog::view(frame, k)["rect"].get<std::array<int, 4>>();
+      sizes.emplace_back(rect[2], rect[3]);
+    }
+    render::Frame drawn(gl_context(), model);
+    drawn.draw(stereo::views_from_xr(eyes, at, sizes).views, settings);
+    return drawn.read_pictures();
+  }
+
+  /// Where the program begins: the script's own stage is a floor.
+  static stereo::Stage start() {
+    xr::HeadsetSettings settings;
+    settings.start.position = {0, 0, -1};
+    return xr::start_of(settings, true);
+  }
+};
+
+std::string bytes_of(const Picture& picture) {
+  const Image image = quantised(on_black(picture));
+  std::string bytes;
+  for (std::size_t k = 0; k < image.data.size(); ++k) {
+    bytes += static_cast<char>(std::lround(255.0f * image.data[k]));
+    if (k % 3 == 2) bytes += static_cast<char>(255);
+  }
+  return bytes;
+}
+
+TEST_F(XrView, ShowsWhatAFrameDrawsToTheBit) {
+  const std::array<double, 4> up_fov = {-0.6, 0.5, 0.4, -0.8};
+  const struct {
+    const char* name;
+    Json views, heads;
+  } cases[] = {
+      {"still", {}, {head({0, 1.6, 0})}},
+      {"moving", {}, {head({0, 1.6, 0}), head({0.1, 1.5, -0.2}, 20)}},
+      {"canted",
+       {xr_view(width, height, left_fov, head({-0.03, 0, 0}, 8)),
+        xr_view(width, height, right_fov, head({0.03, 0, 0}, -8))},
+       {head({0, 1.6, 0}), head({0, 1.6, 0.1}, 5)}},
+      {"of two sizes, asymmetric",
+       {xr_view(64, 72, up_fov, head({-0.03, 0.01, 0})), xr_view(88, 56, right_fov, head({0.03, 0.01, 0}))},
+       {head({0.2, 1.6, 0})}},
+  };
+  for (const auto& test : cases) {
+    stage.script = {{"frames", 2}, {"heads", test.heads}};
+    if (!test.views.empty()) stage.script["views"]["stereo"] = test.views;
+    const Outcome outcome = view();
+    ASSERT_EQ(outcome.code, 0) << test.name << outcome.err;
+    const XrLog log = stage.log();
+    EXPECT_EQ(log.faults(), Strings()) << test.name;
+    EXPECT_TRUE(log.clean()) << log.text();
+    ASSERT_EQ(log.frames().size(), 2u);
+    for (const Json& frame : log.frames()) {
+      const std::vector<Picture> pictures = expected(frame, start());
+      for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_EQ(log.colours(frame, k), bytes_of(pictures[k])) << test.name << " eye " << k;
+        if (pictures[0].colour.size() == pictures[1].colour.size())
+          EXPECT_NE(log.colours(frame, k), bytes_of(pictures[1 - k])) << "swapped eyes go unnoticed";
+      }
+    }
+    const bool moves = test.heads.size() > 1;
+    EXPECT_EQ(log.colours(log.frames()[0], 0) != log.colours(log.frames()[1], 0), moves) << test.name;
+  }
+}
+
+TEST_F(XrView, DepthIsTheMedian) {
+  ASSERT_EQ(view().code, 0);
+  const XrLog log = stage.log();
+  const Json frame = log.frames().at(0);
+  const std::vector<Picture> median = expected(frame, start());
+  const std::vector<Picture> mean = expected(frame, start(), {});
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Json& info = XrLog::view(frame, k)["depth"];
+    const double near = info["near"], far = info["far"];
+    EXPECT_EQ(near, static_cast<double>(static_cast<float>(near_default)));
+    const std::vector<float> depths = log.depths(frame, k);
+    const auto differing = [&](const Picture& picture) {
+      int count = 0;
+      for (std::size_t p = 0; p < depths.size(); ++p) {
+        const double cover = 1.0 - picture.colour[p].a;
+        const double z = cover > 0.5 ? picture.z_sum[p] / cover : far;
+        const double expected = std::clamp(far / (far - near) * (1.0 - near / z), 0.0, 1.0);
+        count += std::abs(expected - depths[p]) > 2e-6 ? 1 : 0;
+      }
+      return count;
+    };
+    EXPECT_EQ(differing(median[k]), 0) << k;
+    EXPECT_GT(differing(mean[k]), 100) << "the mean goes unnoticed";
+    EXPECT_GT(differing(median[1 - k]), 100) << "the other eye's go unnoticed";
+  }
+}
+
+// The same pictures by every way into a texture.
+TEST_F(XrView, WritesEveryFormat) {
+  ASSERT_EQ(view().code, 0);
+  const std::string srgb = stage.log().colours(stage.log().frames().at(0), 0);
+  stage.script["immutable"] = false;
+  ASSERT_EQ(view().code, 0);
+  EXPECT_EQ(stage.log().colours(stage.log().frames().at(0), 0), srgb) << "through a copy";
+  for (const char* format : {"GL_RGBA16F", "GL_RGBA8"}) {
+    stage.script = {{"frames", 1}, {"formats", {format}}};
+    const Outcome outcome = view();
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const XrLog log = stage.log();
+    EXPECT_EQ(log.faults(), Strings());
+    const std::string light = log.colours(log.frames().at(0), 0);
+    ASSERT_EQ(light.size(), srgb.size());
+    int off = 0, same = 0;
+    for (std::size_t k = 0; k < light.size(); ++k) {
+      const double shown = static_cast<unsigned char>(srgb[k]) / 255.0;
+      const double wanted = k % 4 == 3         ? 1.0
+                            : shown <= 0.04045 ? shown / 12.92
+                                               : std::pow((shown + 0.055) / 1.055, 2.4);
+      const double is = static_cast<unsigned char>(light[k]) / 255.0;
+      off += std::abs(is - wanted) > 3.0 / 255.0 ? 1 : 0;
+      same += k % 4 != 3 && light[k] == srgb[k] && srgb[k] != 0 && srgb[k] != static_cast<char>(255) ? 1 : 0;
+    }
+    EXPECT_EQ(off, 0) << format;
+    EXPECT_LT(same, static_cast<int>(light.size() / 20))
+        << format << ": display values as light go unnoticed";
+  }
+  stage.script = {{"frames", 1}, {"formats", {"GL_SRGB8"}}};
+  const Outcome none = view();
+  EXPECT_EQ(none.code, 3);
+  EXPECT_NE(none.err.find("offers no textures"), std::string::npos) << none.err;
+}
+
+TEST_F(XrView, DrawsNothingThatNobodySees) {
+  stage.script = {{"frames", 5}, {"not_rendered", {1}}};
+  stage.add_event({{"frame", 3}, {"flags", {"position_valid"}}});
+  stage.add_event({{"frame", 4}, {"flags", {"position_valid", "orientation_valid"}}});
+  const Outcome outcome = view();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  ASSERT_EQ(log.frames().size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k)
+    EXPECT_EQ(log.frames()[k]["layers"].size(), k == 1 || k == 3 ? 0u : 1u) << k;
+  EXPECT_NE(outcome.err.find("not tracked"), std::string::npos) << outcome.err;
+}
+
+TEST_F(XrView, FollowsStatesAndRecentring) {
+  stage.script = {{"frames", 6}, {"spaces", {"view", "local"}}};
+  stage.add_event({{"frame", 1}, {"state", "synchronized"}});
+  stage.add_event({{"frame", 2}, {"state", "focused"}});
+  stage.add_event({{"frame", 4}, {"recentre", head({0.3, 1.6, 0.2}, 15)}});
+  const Outcome outcome = view();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  xr::HeadsetSettings settings;
+  settings.start.position = {0, 0, -1};
+  const stereo::Stage no_floor = xr::start_of(settings, false);
+  for (const Json& frame : log.frames()) {
+    if (frame["layers"].empty()) continue;
+    EXPECT_EQ(log.colours(frame, 0), bytes_of(expected(frame, no_floor)[0])) << frame["frame"];
+  }
+  EXPECT_NE(log.colours(log.frames().at(3), 0), log.colours(log.frames().at(5), 0));
+}
+
+TEST_F(XrView, OutlivesALostSessionButNotALostRuntime) {
+  stage.script = {{"frames", 4}};
+  stage.add_event({{"frame", 1}, {"fail", "xrEndFrame"}, {"result", "XR_ERROR_SESSION_LOST"}, {"times", 1}});
+  const Outcome again = view();
+  EXPECT_EQ(again.code, 0) << again.err << stage.log().text();
+  EXPECT_EQ(stage.log().all("session").size(), 2u) << stage.log().text();
+  EXPECT_NE(again.err.find("lost the session"), std::string::npos) << again.err;
+  EXPECT_TRUE(stage.log().clean()) << stage.log().text();
+
+  stage.script = {{"frames", 4}};
+  stage.add_event({{"frame", 1}, {"state", "loss_pending"}});
+  EXPECT_EQ(view().code, 0);
+  EXPECT_EQ(stage.log().all("session").size(), 2u) << stage.log().text();
+
+  stage.script = {{"frames", 4}};
+  stage.add_event({{"frame", 1}, {"instance_loss", true}});
+  const Outcome ended = view();
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("has ended"), std::string::npos) << ended.err;
+  EXPECT_EQ(stage.log().faults(), Strings());
+}
+
+TEST_F(XrView, HandsWalkAndTurn) {
+  stage.script = {
+      {"frames", 4}, {"profile", "/interaction_profiles/oculus/touch_controller"}, {"period", 100000000}};
+  stage.add_event({{"frame", 1}, {"input", {{"/user/hand/left/input/thumbstick", {0.0, 1.0}}}}});
+  stage.add_event({{"frame", 2},
+                   {"input",
+                    {{"/user/hand/left/input/thumbstick", {0.0, 0.0}},
+                     {"/user/hand/right/input/thumbstick", {1.0, 0.0}}}}});
+  stage.add_event({{"frame", 3}, {"input", {{"/user/hand/left/input/menu/click", true}}}});
+  const Outcome outcome = view();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  xr::Walk walk(start());
+  const stereo::XrEye eyes = {.position = {0, 1.6, 0}};
+  std::array<xr::Hand, 2> hands;
+  const auto shown = [&](std::size_t frame) {
+    return log.colours(log.frames().at(frame), 0) == bytes_of(expected(log.frames()[frame], walk.stage())[0]);
+  };
+  EXPECT_TRUE(shown(0));
+  hands[0].stick = {0, 1};
+  EXPECT_FALSE(shown(1)) << "a walk goes unnoticed";
+  walk.step(eyes, hands, 0.1);
+  EXPECT_TRUE(shown(1));
+  hands[0].stick = {0, 0};
+  hands[1].stick = {1, 0};
+  walk.step(eyes, hands, 0.1);
+  EXPECT_TRUE(shown(2));
+  walk.reset();
+  hands[1].stick = {1, 0};
+  EXPECT_TRUE(shown(3)) << "the menu button resets";
+}
+
+TEST_F(XrView, FourViewsShareOneOrder) {
+  const Json middle = head({0, 1.6, 0});
+  const auto eye = [](double x) { return head({x, 0, 0}); };
+  const std::array<double, 4> inset = {-0.2, 0.25, 0.2, -0.2};
+  stage.script = {{"frames", 2}, {"heads", {middle}}};
+  stage.script["views"]["quad"] = {xr_view(48, 40, left_fov, eye(-0.03)),
+                                   xr_view(48, 40, right_fov, eye(0.03)), xr_view(64, 56, inset, eye(-0.03)),
+                                   xr_view(64, 56, inset, eye(0.03))};
+  const Outcome outcome = view();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  const Json frame = log.frames().at(0);
+  ASSERT_EQ(frame["layers"][0]["views"].size(), 4u);
+  const std::vector<Picture> pictures = expected(frame, start());
+  for (std::size_t k = 2; k < 4; ++k) EXPECT_EQ(log.colours(frame, k), bytes_of(pictures[k])) << k;
+  for (std::size_t k = 0; k < 2; ++k) {
+    // Under the inset nothing need be drawn; all else is.
+    const std::string shown = log.colours(frame, k), whole = bytes_of(pictures[k]);
+    int differ_outside = 0;
+    for (int p = 0; p < 48 * 40; ++p) {
+      const bool outside = p % 48 < 8 || p % 48 >= 40 || p / 48 < 8 || p / 48 >= 32;
+      if (outside && std::memcmp(&shown[4 * p], &whole[4 * p], 4) != 0) ++differ_outside;
+    }
+    EXPECT_EQ(differ_outside, 0) << k;
+  }
+  EXPECT_NE(outcome.err.find("48 x 40, 48 x 40, 64 x 56, 64 x 56 px"), std::string::npos) << outcome.err;
+}
+
+TEST_F(XrView, LeavesOutWhatNoLensShows) {
+  // A triangle that hides the upper right corner's tiles, of the left eye only.
+  const Json triangle = {{"vertices", {{-2.0, -2.0}, {-2.0, 2.0}, {1.6, -2.0}}}, {"indices", {0, 1, 2}}};
+  stage.script["masks"]["stereo"] = {{{"visible", triangle}}};
+  ASSERT_EQ(view().code, 0);
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  const Json frame = log.frames().at(0);
+  const std::vector<Picture> pictures = expected(frame, start());
+  const std::string shown = log.colours(frame, 0), whole = bytes_of(pictures[0]);
+  EXPECT_EQ(log.colours(frame, 1), bytes_of(pictures[1]));
+  const auto equal = [&](int x, int y) {
+    const std::size_t at = 4 * static_cast<std::size_t>(y * width + x);
+    return std::memcmp(&shown[at], &whole[at], 4) == 0;
+  };
+  int seen_differ = 0, hidden_black = 0, hidden = 0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double u = std::tan(-0.855) + (x + 0.5) / width * (std::tan(0.646) - std::tan(-0.855));
+      const double v = std::tan(0.7) - (y + 0.5) / height * 2.0 * std::tan(0.7);
+      const double edge = -2.0 + 4.0 * (1.6 - u) / 3.6;  // of the triangle, at this x
+      if (v < edge) seen_differ += equal(x, y) ? 0 : 1;
+      const std::size_t at = 4 * static_cast<std::size_t>(y * width + x);
+      if (x >= 80 && y < 16) {
+        ++hidden;
+        hidden_black += shown[at] == 0 && shown[at + 1] == 0 && shown[at + 2] == 0 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_EQ(seen_differ, 0);
+  EXPECT_EQ(hidden_black, hidden);
+  EXPECT_NE(shown, whole);
+}
+
+TEST_F(XrView, SizesAndBudget) {
+  stage.script["frames"] = 3;
+  ASSERT_EQ(view({"--scale", "0.5", "--frame-budget", "0.001"}).code, 0);
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  EXPECT_EQ(log.all("swapchain").at(0)["width"], width / 2);
+  EXPECT_EQ(XrLog::view(log.frames()[0], 0)["rect"], Json({0, 0, width / 2, height / 2}));
+}
+
+TEST_F(XrView, TakesNewSizesAndMasks) {
+  stage.script = {{"frames", 3}, {"period", 1000000000}};
+  for (int k = 0; k < 2; ++k)
+    stage.add_event({{"frame", 2}, {"view", {{"index", k}, {"width", 64}, {"height", 48}}}});
+  const Outcome outcome = view();
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const XrLog log = stage.log();
+  EXPECT_EQ(log.faults(), Strings()) << log.text();
+  EXPECT_EQ(XrLog::view(log.frames()[1], 0)["rect"], Json({0, 0, width, height}));
+  EXPECT_EQ(XrLog::view(log.frames()[2], 0)["rect"], Json({0, 0, 64, 48}));
+  EXPECT_EQ(log.colours(log.frames()[2], 0), bytes_of(expected(log.frames()[2], start())[0]));
+}
+
+TEST_F(XrView, SaysInOneLineWhatIsMissing) {
+  const auto ends = [&](const Outcome& outcome, int code, const char* with) {
+    EXPECT_EQ(outcome.code, code) << outcome.err;
+    EXPECT_NE(outcome.err.find(with), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  };
+  write_text(folder / "libopenxr_loader.so.1", "no library");
+  ends(view({}, {{"LD_LIBRARY_PATH", folder.path().string()}}), 3, "apt install libopenxr-loader1");
+  ends(view({}, {{"XR_RUNTIME_JSON", (folder / "none.json").string()}}), 3, "no OpenXR runtime");
+  stage.script["system"] = "XR_ERROR_FORM_FACTOR_UNAVAILABLE";
+  ends(view(), 3, "has no headset");
+  stage.script = {{"extensions", {"XR_KHR_composition_layer_depth"}}};
+  ends(view(), 3, "takes no OpenGL");
+  for (const Strings& wrong : {Strings{"--layout", "anaglyph"}, {"--size", "640x400"}, {"--ipd", "0.06"}})
+    ends(view(wrong), 2, "a headset decides that itself");
+  ends(view({"--frame-budget", "5", "--quality", "40"}), 2, "choose one");
+  ends(view({"--frame-budget", "-1"}), 2, "milliseconds");
+  ends(run_program({"view", file, "--scale", "2"}), 2, "add --xr");
+}
+
+// Beside a window, which shows the left eye; with a context of GLX where the runtime takes none of EGL. The
+// core validation of Debian 12 knows no other, and looks on.
+TEST_F(XrView, IsValidBesideAWindow) {
+  const VirtualDisplay display;
+  if (display.name().empty()) GTEST_SKIP() << "Xvfb is not installed";
+  const Strings words = {"view", file, "--xr", "--eye", "0,0,-1", "--at", "0,0,1", "--up", "0,-1,0"};
+  for (const bool egl : {true, false}) {
+    stage.script = {{"frames", 2}};
+    if (!egl)
+      stage.script["extensions"] = {"XR_KHR_opengl_enable", "XR_KHR_composition_layer_depth",
+                                    "XR_KHR_visibility_mask", "XR_EXT_eye_gaze_interaction"};
+    std::map<std::string, std::string> variables = stage.variables();
+    variables["DISPLAY"] = display.name();
+    if (!egl) {
+      variables["XR_ENABLE_API_LAYERS"] = "XR_APILAYER_LUNARG_core_validation";
+      variables["XR_CORE_VALIDATION_EXPORT_TYPE"] = "text";
+    }
+    const Outcome outcome = run_program(words, {.variables = variables});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const XrLog log = stage.log();
+    EXPECT_EQ(log.all("session").at(0)["binding"], egl ? "egl" : "xlib");
+    EXPECT_EQ(log.faults(), Strings()) << log.text();
+    EXPECT_EQ(log.colours(log.frames()[0], 0), bytes_of(expected(log.frames()[0], start())[0]));
+    const std::string said = outcome.out + outcome.err;
+    EXPECT_EQ(said.find("VALID_"), std::string::npos) << said;
+    EXPECT_EQ(said.find("Core Validation") != std::string::npos, !egl)
+        << "apt install openxr-layer-corevalidation: " << said;
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::test

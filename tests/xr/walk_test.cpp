@@ -1,0 +1,191 @@
+// What needs no runtime: how hands move a head, what lenses show, and how much a frame's time allows.
+
+#include "xr/walk.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+
+#include "xr/budget.h"
+#include "xr/headset.h"
+#include "xr/visibility.h"
+
+namespace binosplat::xr {
+namespace {
+
+constexpr double upm = 2.0;  // world units per metre
+
+const stereo::Stage start = {.origin = {1.0, 2.0, 3.0}, .units_per_metre = upm};
+
+/// Where a point of the space lies in the world.
+glm::dvec3 in_world(const stereo::Stage& stage, const glm::dvec3& p) {
+  return stage.origin + stage.units_per_metre * (stage.axes * p);
+}
+
+stereo::XrEye head_at(const glm::dvec3& position, double degrees = 0.0) {
+  const glm::dquat turn = glm::angleAxis(glm::radians(degrees), glm::dvec3(0, 1, 0));
+  return {.position = position, .orientation = {turn.x, turn.y, turn.z, turn.w}};
+}
+
+std::array<Hand, 2> sticks(const glm::dvec2& left, const glm::dvec2& right = glm::dvec2(0.0)) {
+  std::array<Hand, 2> hands;
+  hands[0].stick = left;
+  hands[1].stick = right;
+  return hands;
+}
+
+TEST(Walk, GoesWhereTheHeadLooks) {
+  Walk walk(start);
+  walk.step(head_at({0, 1.6, 0}, 90.0), sticks({0, 1}), 0.5);  // turned to the left: looks along -x
+  const glm::dvec3 moved = glm::transpose(start.axes) * (walk.stage().origin - start.origin) / upm;
+  EXPECT_NEAR(glm::length(moved - glm::dvec3(-0.75, 0, 0)), 0.0, 1e-12) << "1.5 m/s";
+  walk.reset();
+  walk.step(head_at({0, 1.6, 0}), sticks({0.1, 0.1}), 1.0);
+  EXPECT_EQ(walk.stage().origin, start.origin) << "a stick at rest is never quite at rest";
+}
+
+TEST(Walk, TurnsAboutTheHeadOnceAPush) {
+  Walk walk(start);
+  const stereo::XrEye head = head_at({0.4, 1.6, -0.3});
+  const glm::dvec3 before = in_world(walk.stage(), head.position);
+  walk.step(head, sticks({}, {1, 0}), 0.01);
+  walk.step(head, sticks({}, {1, 0}), 0.01);
+  EXPECT_NEAR(glm::length(in_world(walk.stage(), head.position) - before), 0.0, 1e-12);
+  // To the right: what was ahead is to the left.
+  const glm::dvec3 ahead = glm::transpose(start.axes) * (walk.stage().axes * glm::dvec3(0, 0, -1));
+  EXPECT_NEAR(ahead.x, std::sin(glm::radians(30.0)), 1e-12);
+  EXPECT_NEAR(ahead.z, -std::cos(glm::radians(30.0)), 1e-12);
+  walk.step(head, sticks({}, {0, 0}), 0.01);
+  walk.step(head, sticks({}, {1, 0}), 0.01);
+  EXPECT_NEAR((glm::transpose(start.axes) * (walk.stage().axes * glm::dvec3(0, 0, -1))).x,
+              std::sin(glm::radians(60.0)), 1e-12);
+}
+
+std::array<Hand, 2> holding(const glm::dvec3& left, const glm::dvec3& right, bool both) {
+  std::array<Hand, 2> hands;
+  hands[0] = {.position = left, .grabs = both};
+  hands[1] = {.position = right, .grabs = true};
+  return hands;
+}
+
+TEST(Walk, WhatAHandHoldsStaysInIt) {
+  Walk walk(start);
+  const stereo::XrEye head = head_at({0, 1.6, 0});
+  const glm::dvec3 from(0.2, 1.2, -0.4), to(0.5, 1.0, -0.1);
+  walk.step(head, holding({}, from, false), 0.01);
+  const glm::dvec3 held = in_world(walk.stage(), from);
+  walk.step(head, holding({}, to, false), 0.01);
+  EXPECT_NEAR(glm::length(in_world(walk.stage(), to) - held), 0.0, 1e-12);
+  EXPECT_EQ(walk.stage().units_per_metre, upm);
+}
+
+TEST(Walk, TwoHandsTurnAndScale) {
+  Walk walk(start);
+  const stereo::XrEye head = head_at({0, 1.6, 0});
+  const glm::dvec3 left(-0.2, 1.2, -0.4), right(0.2, 1.2, -0.4);
+  const glm::dvec3 left_to(-0.1, 1.3, -0.9), right_to(-0.1, 1.3, -0.1);  // twice as far apart, turned
+  walk.step(head, holding(left, right, true), 0.01);
+  const glm::dvec3 held[] = {in_world(walk.stage(), left), in_world(walk.stage(), right)};
+  walk.step(head, holding(left_to, right_to, true), 0.01);
+  EXPECT_NEAR(walk.stage().units_per_metre, upm / 2.0, 1e-12);
+  EXPECT_NEAR(glm::length(in_world(walk.stage(), left_to) - held[0]), 0.0, 1e-9);
+  EXPECT_NEAR(glm::length(in_world(walk.stage(), right_to) - held[1]), 0.0, 1e-9);
+  EXPECT_NEAR(glm::length(in_world(walk.stage(), left_to) - held[1]), 0.4 * upm, 1e-9)
+      << "hands that are swapped would go unnoticed";
+}
+
+TEST(Headset, BeginsWhereTheCameraStands) {
+  HeadsetSettings settings;
+  settings.start.position = {1, 2, 3};
+  settings.start.rotation =
+      glm::dmat3(glm::mat3_cast(glm::angleAxis(0.7, glm::dvec3(1, 0, 0))));  // looks down
+  settings.units_per_metre = upm;
+  const stereo::Stage standing = start_of(settings, false), floor = start_of(settings, true);
+  EXPECT_EQ(standing.origin, settings.start.position);
+  EXPECT_NEAR(glm::length(in_world(floor, {0, 1.6, 0}) - settings.start.position), 0.0, 1e-12);
+  EXPECT_NEAR(glm::length(standing.axes[1] - settings.up), 0.0, 1e-12) << "upright";
+  EXPECT_NEAR(glm::length(standing.axes[2] - glm::dvec3(0, 0, -1)), 0.0, 1e-12) << "heading";
+  EXPECT_NEAR(glm::determinant(standing.axes), 1.0, 1e-12);
+}
+
+TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
+  const XrFovf fov = {-0.8f, 0.6f, 0.7f, -0.5f};
+  const glm::ivec2 size(320, 256);
+  constexpr int tile = 16;
+  // A disk, as lenses show.
+  Visible disk;
+  disk.vertices.push_back({0.0f, 0.05f});
+  constexpr std::uint32_t around = 40;
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const double angle = 2.0 * M_PI * k / around;
+    disk.vertices.push_back(
+        {static_cast<float>(0.55 * std::cos(angle)), static_cast<float>(0.05 + 0.45 * std::sin(angle))});
+    disk.indices.insert(disk.indices.end(), {0, k + 1, (k + 1) % around + 1});
+  }
+  const auto columns = visible_columns(disk, fov, size, tile);
+  ASSERT_EQ(columns.size(), 16u);
+  const double left = std::tan(fov.angleLeft), right = std::tan(fov.angleRight);
+  const double up = std::tan(fov.angleUp), down = std::tan(fov.angleDown);
+  std::size_t missed = 0, needless = 0, upside_down = 0;
+  for (std::size_t row = 0; row < columns.size(); ++row) {
+    for (unsigned column = 0; column < 20; ++column) {
+      double nearest = 1e9;  // of the disk's middle, in its radii
+      for (int p = 0; p < tile * tile; ++p) {
+        const double x = left + (column * tile + p % tile + 0.5) / size.x * (right - left);
+        const double y = up - (row * tile + p / tile + 0.5) / size.y * (up - down);
+        nearest = std::min(nearest, std::hypot(x / 0.55, (y - 0.05) / 0.45));
+      }
+      const bool drawn = column >= columns[row].x && column < columns[row].y;
+      const auto& mirrored = columns[columns.size() - 1 - row];
+      missed += nearest < 0.99 && !drawn ? 1 : 0;
+      needless += nearest > 1.1 && drawn ? 1 : 0;
+      upside_down += nearest < 0.99 && !(column >= mirrored.x && column < mirrored.y) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(missed, 0u);
+  EXPECT_EQ(needless, 0u);
+  EXPECT_GT(upside_down, 5u) << "the wrong way up goes unnoticed";
+  EXPECT_TRUE(visible_columns({}, fov, size, tile).empty()) << "no mask: all";
+  disk.vertices[3] = {NAN, 0.0f};
+  EXPECT_EQ(visible_columns(disk, fov, size, tile).size(), 16u) << "numbers that are none";
+}
+
+TEST(Budget, FollowsTheTime) {
+  constexpr double period = 11.1;
+  Budget budget(10.0);
+  EXPECT_EQ(budget.effort().quality, 0.0f) << "exact while that is in time";
+  for (int n = 0; n < 100; ++n) budget.took(9.0, period);
+  EXPECT_EQ(budget.effort().quality, 0.0f);
+  budget.took(10.5, period);
+  EXPECT_EQ(budget.effort().quality, 0.0f) << "one frame may be late";
+  budget.took(10.5, period);
+  EXPECT_GT(budget.effort().quality, 40.0f);
+  for (int n = 0; n < 4; ++n) budget.took(20.0, period);
+  EXPECT_EQ(budget.effort().quality, 37.0f);
+  EXPECT_LT(budget.effort().scale, 1.0);
+  for (int n = 0; n < 50; ++n) budget.took(20.0, period);
+  EXPECT_EQ(budget.effort().scale, 0.5) << "no less";
+  const double before = budget.effort().scale;
+  for (int n = 0; n < 100; ++n) budget.took(9.0, period);
+  EXPECT_EQ(budget.effort().scale, before) << "more might be too much";
+  for (int n = 0; n < 60000; ++n) budget.took(3.0, period);
+  EXPECT_EQ(budget.effort().quality, 0.0f);
+}
+
+// A scene that is just too much at one effort is not tried again and again.
+TEST(Budget, DoesNotSwingToAndFro) {
+  Budget budget(10.0);
+  int changes = 0;
+  double last = budget.effort().quality;
+  for (int n = 0; n < 9000; ++n) {  // 100 s
+    budget.took(budget.effort().quality == 0.0f ? 12.0 : 7.0, 11.1);
+    changes += budget.effort().quality != last ? 1 : 0;
+    last = budget.effort().quality;
+  }
+  EXPECT_LE(changes, 13);
+  EXPECT_GE(changes, 3) << "it is tried again";
+}
+
+}  // namespace
+}  // namespace binosplat::xr

@@ -1,0 +1,150 @@
+#pragma once
+// Programs that use OpenXR, run against the test runtime: what it is to play, and what it saw
+// (tests/xr/README.md).
+
+#include <array>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+
+namespace binosplat::test {
+
+using Json = nlohmann::ordered_json;
+
+inline Json xr_pose(const std::array<double, 3>& position,
+                    const std::array<double, 4>& orientation = {0, 0, 0, 1}) {
+  return {{"position", position}, {"orientation", orientation}};
+}
+
+/// What the runtime left of a run.
+struct XrLog {
+  std::filesystem::path folder;
+  std::vector<Json> lines;
+
+  /// Lines of one "what".
+  std::vector<Json> all(const std::string& what) const {
+    std::vector<Json> out;
+    for (const Json& line : lines) {
+      if (line["what"] == what) out.push_back(line);
+    }
+    return out;
+  }
+
+  std::vector<Json> frames() const { return all("frame"); }
+
+  /// "FUNCTION: TEXT (RESULT)" of each; a program that does all right has none.
+  std::vector<std::string> faults() const {
+    std::vector<std::string> out;
+    for (const Json& line : all("fault")) {
+      out.push_back(line["function"].get<std::string>() + ": " + line["text"].get<std::string>() + " (" +
+                    line["result"].get<std::string>() + ")");
+    }
+    return out;
+  }
+
+  /// The states of the session, as READY, SYNCHRONIZED.
+  std::vector<std::string> states() const {
+    std::vector<std::string> out;
+    for (const Json& line : all("state")) {
+      out.push_back(line["state"].get<std::string>().substr(std::string("XR_SESSION_STATE_").size()));
+    }
+    return out;
+  }
+
+  /// A view of a frame's line, of its first layer.
+  static const Json& view(const Json& frame, std::size_t index) {
+    return frame.at("layers").at(0).at("views").at(index);
+  }
+
+  /// Pixels of a view as they were submitted, RGBA8, the top row first.
+  std::string colours(const Json& frame, std::size_t index) const {
+    return read_text(folder / view(frame, index).at("colour").get<std::string>());
+  }
+
+  /// The same of depth, as the texture has it, in 0..1.
+  std::vector<float> depths(const Json& frame, std::size_t index) const {
+    const std::string bytes =
+        read_text(folder / view(frame, index).at("depth").at("file").get<std::string>());
+    std::vector<float> out(bytes.size() / sizeof(float));
+    std::memcpy(out.data(), bytes.data(), out.size() * sizeof(float));
+    return out;
+  }
+
+  /// Whether nothing was left: every object destroyed, children before their parents.
+  bool clean() const {
+    for (const Json& line : all("destroyed")) {
+      if (!line["alive"].empty()) return false;
+    }
+    const auto destroyed = all("destroyed");
+    return all("left").empty() && !destroyed.empty() && destroyed.back()["kind"] == "instance";
+  }
+
+  /// All lines, for the message of a test that fails.
+  std::string text() const {
+    std::string out;
+    for (const Json& line : lines) out += line.dump() + "\n";
+    return out;
+  }
+};
+
+/// A script and the folder that its runs leave their log in.
+class XrStage {
+ public:
+  Json script = Json::object();
+
+  /// What a program is to be run with: Surroundings::variables.
+  std::map<std::string, std::string> variables() {
+    script["folder"] = folder_.path().string();
+    std::filesystem::remove(folder_ / "log.jsonl");  // of the run before
+    const auto path = folder_ / "script.json";
+    write_text(path, script.dump(1));
+    return {{"XR_RUNTIME_JSON", BINOSPLAT_XR_RUNTIME}, {"BINOSPLAT_XR_SCRIPT", path.string()}};
+  }
+
+  /// The same under Khronos' validation, which writes what it finds wrong where validation() reads it.
+  std::map<std::string, std::string> validated_variables() {
+    auto out = variables();
+    out["XR_API_LAYER_PATH"] = BINOSPLAT_XR_LAYERS ":/usr/share/openxr/1/api_layers/explicit.d";
+    out["XR_ENABLE_API_LAYERS"] = "XR_APILAYER_binosplat_egl:XR_APILAYER_LUNARG_core_validation";
+    out["XR_CORE_VALIDATION_EXPORT_TYPE"] = "text";
+    out["XR_CORE_VALIDATION_FILE_NAME"] = (folder_ / "validation.txt").string();
+    return out;
+  }
+
+  /// What it found wrong in a run; empty: nothing. It makes its file with its first finding, but says at once
+  /// that it is there.
+  std::string validation(const Outcome& outcome) const {
+    const bool there =
+        (outcome.out + outcome.err).find("Core Validation output type: text") != std::string::npos;
+    return there ? read_text(folder_ / "validation.txt") : "the validation layer was not there";
+  }
+
+  void add_event(Json event) { script["events"].push_back(std::move(event)); }
+
+  XrLog log() const {
+    XrLog out = {folder_.path(), {}};
+    std::ifstream in(folder_ / "log.jsonl");
+    for (std::string line; std::getline(in, line);) out.lines.push_back(Json::parse(line));
+    return out;
+  }
+
+  const std::filesystem::path& folder() const { return folder_.path(); }
+
+ private:
+  TempFolder folder_;
+};
+
+/// A view of the script's: its size in px, its angles (left, right, up, down) in radians, its pose in the
+/// head.
+inline Json xr_view(int width, int height, const std::array<double, 4>& fov, const Json& pose) {
+  Json view = pose;
+  view["width"] = width;
+  view["height"] = height;
+  view["fov"] = fov;
+  return view;
+}
+
+}  // namespace binosplat::test
