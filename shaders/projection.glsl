@@ -3,6 +3,10 @@
 //   ORDER        ORDER_ of shared/axes.h
 //   PROJECTION   PROJECTION_ of shared/axes.h; its file is projection/NAME.glsl
 #include "shared/axes.h"
+#ifndef PARTS
+#define PARTS 0
+#endif
+
 // Columns: the Gaussian's axes in the world, each as long as its standard deviation. M of docs/method.md 2.
 mat3 scaled_axes(Gaussian g) {
   precise float w = g.rotation.x;
@@ -41,11 +45,11 @@ struct LowPass {
 };
 
 // (Q.xx, Q.xy, Q.yy, sqrt(det C2)), and the share of its mass that a Gaussian keeps under the low-pass: sqrt(det P / det C2), P
-// being C2 without it (Mip-Splatting, Yu 2024). With s L the low-pass, det P = |across x down|^2 and
-// det C2 = det P + s (L.yy |across|^2 - 2 L.xy across . down + L.xx |down|^2) + s^2 det L, where what is in brackets is a sum of
-// squares, too: all are positive, so that what is long and thin keeps its width, which xx yy - xy^2 would lose. What is not
-// drawn is told by w = 0.
-vec4 conic_of(vec3 across, vec3 down, LowPass low, out float kept) {
+// being C2 without it (Mip-Splatting, Yu 2024), or with the share `free` of it alone. With s L the low-pass, det P = |across x
+// down|^2 and det C2 = det P + s (L.yy |across|^2 - 2 L.xy across . down + L.xx |down|^2) + s^2 det L, where what is in brackets
+// is a sum of squares, too: all are positive, so that what is long and thin keeps its width, which xx yy - xy^2 would lose. What
+// is not drawn is told by w = 0.
+vec4 conic_of(vec3 across, vec3 down, LowPass low, float free, out float kept) {
   const float s = float(KERNEL_PX2);
   precise float xx = dot_precise(across, across) + s * (low.scale.x * low.scale.x * (1.0 + low.slope.x * low.slope.x));
   precise float xy = dot_precise(across, down) + s * (low.slope.x * low.slope.y);
@@ -69,10 +73,17 @@ vec4 conic_of(vec3 across, vec3 down, LowPass low, out float kept) {
   det += low_pass * (dot_precise(lean, lean) + low_pass * dot_precise(low.slope, low.slope));
 #endif
   if (!(det > 0.0)) return vec4(0.0);
+#if PARTS && !ANTIALIASED
+  precise float free_pass = free * low_pass;
+  det_p += free_pass * (dot_precise(width, width) + dot_precise(height, height) + free_pass);
+#if PROJECTION == PROJECTION_TANGENT
+  det_p += free_pass * (dot_precise(lean, lean) + free_pass * dot_precise(low.slope, low.slope));
+#endif
+#endif
   precise vec3 q = unit * vec3(yy, -xy, xx) * unit / det * unit * unit;
   precise float root = sqrt(det);
   precise float share = sqrt(det_p) / root;
-  kept = min(share, 1.0);
+  kept = free == 1.0 ? 1.0 : min(share, 1.0);
   precise float root_det = root / unit / unit;
   return vec4(q, root_det);
 }
@@ -102,10 +113,22 @@ void axes_on_picture(View view, vec2 slope, vec2 gain, mat3 axes, out vec3 acros
   down = onto_axes(jy, axes);
 }
 
+// The share of the low-pass by which no Gaussian loses weight: none in anti-aliased models, and otherwise all, as trained; but in
+// a picture of fewer pixels only what it is in the one that has all, so that thin Gaussians are as bright in both.
+float free_of(View view) {
+#if ANTIALIASED
+  return 0.0;
+#elif PARTS
+  return view.low_pass_share;
+#else
+  return 1.0;
+#endif
+}
+
 // What a splat has whatever the projection, but for its colour. `kept` as conic_of() has it.
 void finish(Gaussian g, float kept, inout Splat splat) {
   splat.opacity = g.position.w;
-#if ANTIALIASED
+#if ANTIALIASED || PARTS
   splat.opacity *= kept;
 #endif
   splat.colour = vec4(0.0);

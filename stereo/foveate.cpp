@@ -98,6 +98,7 @@ FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::si
     (k == 0 ? out.context.width : out.context.height) = std::max(pixels, 1u);
     out.context.lens[k] = static_cast<float>(eye.lens[k] * scale);
     out.context.lens[k + 2] = static_cast<float>(eye.lens[k + 2] * scale);
+    out.context_part.low_pass_share *= static_cast<float>(scale);
     // What no pixel beside the inset is made of.
     const auto begin = static_cast<std::uint32_t>(std::ceil(out.inset_begin[k] * scale)) + reach;
     const auto end = static_cast<std::uint32_t>(std::floor(out.inset_end[k] * scale));

@@ -12,7 +12,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   precise vec2 gain = view.lens.xy / v.z;
   axes_on_picture(view, slope, gain, axes, across, down);
   float kept;
-  splat.conic = conic_of(across, down, LowPass(vec2(0.0), vec2(1.0)), kept);
+  splat.conic = conic_of(across, down, LowPass(vec2(0.0), vec2(1.0)), free_of(view), kept);
   if (splat.conic.w == 0.0) return false;
   precise vec2 mean = view.lens.xy * (v.xy / v.z) + view.lens.zw - 0.5;
   splat.mean = mean;

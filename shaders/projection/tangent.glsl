@@ -84,7 +84,7 @@ bool project(View view, Gaussian g, mat3 axes, out Splat splat) {
   axes_on_picture(view, slope, gain, axes, across, down);
   precise float stretch = sqrt(view.lens.x / view.lens.y);
   float kept;
-  splat.conic = conic_of(across, down, LowPass(slope, vec2(stretch, 1.0 / stretch)), kept);
+  splat.conic = conic_of(across, down, LowPass(slope, vec2(stretch, 1.0 / stretch)), free_of(view), kept);
   if (splat.conic.w == 0.0) return false;
   splat.depth = distance;
   // Wide: not both eigenvalues of Q, in slopes of the picture, are above WIDE_LEVEL.

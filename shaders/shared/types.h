@@ -42,7 +42,7 @@ struct View {
   uint top;               // `height` are its own
   uint first_row;         // of its tiles among the rows that say which are drawn (tiles/parts.glsl)
   float tolerance_share;  // of the frame's tolerance
-  uint unused;
+  float low_pass_share;   // of the low-pass, px^2, by which no Gaussian loses weight (projection.glsl)
 };
 
 // What holds for all of a frame. It lies in a uniform block, whose std140 agrees with std430 where there are
@@ -153,7 +153,7 @@ struct DispatchArguments {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(View) == 192 && offsetof(View, slopes) == 96 && offsetof(View, unused) == 188);
+static_assert(sizeof(View) == 192 && offsetof(View, slopes) == 96 && offsetof(View, low_pass_share) == 188);
 static_assert(sizeof(FrameParameters) == 80 && offsetof(FrameParameters, tolerance) == 16);
 static_assert(sizeof(Gaussian) == 48 && offsetof(Gaussian, scale) == 32);
 static_assert(sizeof(Anchor) == 64 && offsetof(Anchor, scale) == 48);

@@ -49,20 +49,6 @@ std::size_t edits(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
-// "; did you mean WORD?", if one of the words is near enough.
-std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  std::string nearest;
-  for (const std::string& other : words) {
-    const std::size_t count = other.starts_with(word) && word.size() > 3 ? 1 : edits(word, other);
-    if (count < least) {
-      least = count;
-      nearest = other;
-    }
-  }
-  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
-}
-
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -88,6 +74,19 @@ void note_pictures_in(const std::string& folder) {
 }
 
 }  // namespace
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::string nearest;
+  for (const std::string& other : words) {
+    const std::size_t count = other.starts_with(word) && word.size() > 3 ? 1 : edits(word, other);
+    if (count < least) {
+      least = count;
+      nearest = other;
+    }
+  }
+  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
 
 bool has_display() {
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {

@@ -18,6 +18,9 @@ bool has_display();
 /// there are a display and the preview, else `render`; says so. Throws Error for a word that is neither.
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv);
 
+/// "; did you mean WORD?", if one of the words is near enough.
+std::string suggestion(const std::string& word, const std::vector<std::string>& words);
+
 /// What a command line that cannot be parsed is told: what is wrong, what may be meant, and where to look;
 /// `name` is the command's whole name, to which that of the sub-command comes where the mistake is its own.
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error);

@@ -12,6 +12,7 @@
 #include "app/option_checks.h"
 #include "formats/image_file.h"
 #include "measure/comparison.h"
+#include "measure/foveated.h"
 #include "study/fields.h"
 
 namespace binosplat::app {
@@ -30,6 +31,7 @@ struct CompareOptions {
   std::optional<double> max_memory;  // MB
   std::string difference;
   std::string json;
+  std::optional<measure::Gaze> gaze;
 };
 
 using measure::Comparison;
@@ -83,6 +85,39 @@ void print(const CompareOptions& options, const Comparison& found, const Image& 
   }
 }
 
+// "1830,1600,100".
+measure::Gaze parse_gaze(const std::string& text) {
+  const glm::dvec3 v = parse_three("--foveate-at", text);
+  return {v.x, v.y, v.z};
+}
+
+void print(const measure::FoveatedComparison& found) {
+  fmt::print("\n{:<20}{:>10}{:>14}{:>10}{:>14}\n", "from the gaze", "pixels", "PSNR", "visible",
+             "99 % below");
+  for (const measure::Ring& ring : found.rings) {
+    fmt::print("{:<20}{:>8.2f} %{:>14}{:>8.2f} %{:>8.2f} times\n",
+               fmt::format("{} to {} degrees", ring.from, ring.to), 100 * ring.share,
+               std::isinf(ring.psnr) ? "infinite" : fmt::format("{:.2f} dB", ring.psnr), 100 * ring.visible,
+               ring.most);
+  }
+  fmt::print(
+      "visible        {:.2f} % of all pixels: the difference reaches the threshold of an eye that looks "
+      "there\n",
+      100 * found.visible);
+}
+
+nlohmann::ordered_json to_json(const measure::FoveatedComparison& found, const measure::Gaze& gaze) {
+  nlohmann::ordered_json json =
+      study::object("x", gaze.x, "y", gaze.y, "fov_degrees", gaze.fov_degrees, "visible", found.visible,
+                    "rings", nlohmann::ordered_json::array());
+  for (const measure::Ring& ring : found.rings) {
+    json["rings"].push_back(study::object("from_degrees", ring.from, "to_degrees", ring.to, "share",
+                                          ring.share, "psnr_db", ring.psnr, "visible", ring.visible,
+                                          "times_threshold_99", ring.most));
+  }
+  return json;
+}
+
 nlohmann::ordered_json to_json(const CompareOptions& options, const Comparison& found, const Image& image) {
   const auto& largest = found.largest;
   return study::object(
@@ -104,6 +139,9 @@ ExitCode compare(const CompareOptions& options) {
   measure::make_shown(a, b);
   const Comparison found = measure::compare(a, b, options.pixels_per_degree);
   print(options, found, a);
+  std::optional<measure::FoveatedComparison> foveated;
+  if (options.gaze) foveated = measure::compare_foveated(a, b, *options.gaze);
+  if (foveated) print(*foveated);
   if (!options.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));
     const Uninterrupted hold;
@@ -111,7 +149,11 @@ ExitCode compare(const CompareOptions& options) {
     fmt::print("difference     {} (times {}: white is {:.4g} of 255 and more)\n", options.difference, gain,
                255.0 / gain);
   }
-  if (!options.json.empty()) save_json(options.json, to_json(options, found, a));
+  if (!options.json.empty()) {
+    auto json = to_json(options, found, a);
+    if (foveated) json["foveated"] = to_json(*foveated, *options.gaze);
+    save_json(options.json, json);
+  }
   if (options.min_psnr && !(found.psnr >= *options.min_psnr)) {
     throw Error(ExitCode::fell_short,
                 fmt::format("{:.4f} dB fall short of --min-psnr {}", found.psnr, *options.min_psnr));
@@ -130,6 +172,12 @@ void add_compare(CLI::App& program, Command& command) {
   sub->add_option("--ppd", options->pixels_per_degree, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(CLI::Range(1.0, 1000.0).description(""))
       ->type_name("N");
+  sub->add_option_function<std::string>(
+         "--foveate-at", [options](const std::string& text) { options->gaze = parse_gaze(text); },
+         "What an eye sees of it that looks at pixel X,Y of a picture FOV degrees\nacross: PSNR by degrees "
+         "from "
+         "there, and the share of the pixels whose\ndifference can be seen")
+      ->type_name("X,Y,FOV");
   sub->add_option(
          "--max-memory", options->max_memory,
          "Refuse pictures that take more than so many MB to compare\n(three quarters of the machine's)")
@@ -144,7 +192,8 @@ void add_compare(CLI::App& program, Command& command) {
       "OpenEXR is brought back to display values by its header; values are clamped to 0 to 1.\n"
       "Examples:\n"
       "  binosplat compare drawn.png photo.jpg\n"
-      "  binosplat compare a.exr b.png --min-psnr 50 --difference error.png");
+      "  binosplat compare a.exr b.png --min-psnr 50 --difference error.png\n"
+      "  binosplat compare foveated.png exact.png --foveate-at 1830,1600,100");
   sub->callback([options, &command] { command = [options] { return compare(*options); }; });
 }
 

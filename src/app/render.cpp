@@ -14,6 +14,7 @@
 #include "app/detail.h"
 #include "app/empty_view.h"
 #include "app/followed.h"
+#include "app/foveate_options.h"
 #include "app/load_scene.h"
 #include "app/photos.h"
 #include "app/render_options.h"
@@ -63,11 +64,13 @@ std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& bac
 
 // What the model takes on the GPU, and the shot that takes most.
 render::MemoryNeeds memory_needs(render::FrameSettings settings, const Model& model,
-                                 const std::vector<Shot>& shots, std::optional<double> vr180_near) {
+                                 const std::vector<Shot>& shots, std::optional<double> vr180_near,
+                                 const std::optional<stereo::Foveation>& foveate) {
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
   render::MemoryNeeds most;
   for (const Shot& shot : shots) {
     const auto needs = vr180_near ? vr180_memory(shot, model, *vr180_near)
+                       : foveate  ? foveated_memory(views_of(shot), *foveate, settings, model)
                                   : render::memory_needs(render::make_shape(views_of(shot), settings, model));
     most = {needs.model, std::max(most.frame, needs.frame)};
   }
@@ -156,6 +159,9 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
                                        report.model.axes, settings);
   std::optional<stereo::Panorama> panorama;
   if (work.plan.vr180) panorama.emplace(gpu_model, work.shots[0].eyes[0].camera.width);
+  const std::optional<stereo::Foveation>& foveate = report.options.foveate;
+  std::optional<stereo::FoveatedFrame> foveated;
+  if (foveate) foveated.emplace(gpu_model);
   if (work.screen) report.convergence = find_screen(frame, settings, *work.screen);
   if (work.screen && report.convergence) {
     for (Shot& shot : work.shots) converge(shot, *report.convergence);
@@ -166,7 +172,7 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
   std::size_t done = 0;
   for (Shot& shot : work.shots) {
     // Single pictures do not depend on which were drawn before them.
-    if (!work.list.path) frame.start_over();
+    if (!work.list.path) (foveated ? foveated->frame() : frame).start_over();
     Drawn& drawn = report.drawn.emplace_back();
     drawn.shot = std::move(shot);
     const std::vector<shared::View> views = views_of(drawn.shot);
@@ -174,12 +180,16 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     of_shot.depth = output.exr_depth;
     if (work.followed) drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
     for (int n = 0; n < drawing.frames; ++n) {
-      drawn.report = panorama ? draw(*panorama, drawn.shot, report.model.axes, report.near_plane)
-                              : frame.draw(views, of_shot, workings);
+      drawn.report = panorama   ? draw(*panorama, drawn.shot, report.model.axes, report.near_plane)
+                     : foveated ? foveated->draw(views, *foveate, of_shot, workings)
+                                : frame.draw(views, of_shot, workings);
       report.times.add(drawn.report);
       progress.update(++done);
     }
-    const std::vector<Picture> pictures = panorama ? panorama->read_pictures() : frame.read_pictures();
+    const std::vector<Picture> pictures = panorama   ? panorama->read_pictures()
+                                          : foveated ? foveated->read_pictures()
+                                                     : frame.read_pictures();
+    if (foveated) drawn.foveated = foveated->parts();
     all_empty = all_empty && std::all_of(pictures.begin(), pictures.end(), is_empty);
     if (output.detail_report)
       drawn.levels->finest_psnr = work.followed->against_finest(context, views, pictures, of_shot);
@@ -287,7 +297,7 @@ ExitCode render(const RenderOptions& o) {
                       model,
                       *context,
                       near_plane,
-                      memory_needs(settings, model, work.shots, vr180_near),
+                      memory_needs(settings, model, work.shots, vr180_near, o.foveate),
                       finite(o.rig.convergence),
                       {},
                       {}};

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <array>
 
+#include "app/foveate_options.h"
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/error.h"
@@ -103,6 +104,7 @@ void add_picture_options(CLI::App& sub, RenderOptions& o, bool in_window) {
 void add_options(CLI::App& sub, RenderOptions& o) {
   add_picture_options(sub, o, false);
   add_vr180_option(sub, o.camera.lens);
+  add_foveate_option(sub, o.foveate);
   add_tour_options(sub, o.camera);
   add_output_options(sub, o.output);
   add_shard_option(sub, o.shard, "Draw every Nth view from the Ith on: one job of N");
@@ -152,6 +154,7 @@ void check(const RenderOptions& o) {
     fail("--exr-depth median: the GPU's blend tells it, which --reference-until blend leaves out");
   check_parts(o);
   check_vr180(o);
+  check_foveate(o);
   check(o.context);
 }
 

@@ -12,6 +12,7 @@
 #include "app/rig_options.h"
 #include "app/scene_options.h"
 #include "app/shard.h"
+#include "stereo/foveate.h"
 
 namespace binosplat::app {
 
@@ -22,6 +23,7 @@ struct RenderOptions {
   DrawingOptions drawing;
   ContextOptions context;
   OutputOptions output;
+  std::optional<stereo::Foveation> foveate;
   HeadsetOptions headset;          // of the preview
   Shard shard;                     // of the views
   bool resume = false;             // what is there of this run is not drawn again

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "app/command.h"
+#include "app/foveate_options.h"
 #include "app/load_scene.h"
 #include "base/log.h"
 #include "base/statistics.h"
@@ -142,6 +143,12 @@ void print_levels(const RenderReport& report) {
   fmt::print("\n");
 }
 
+ordered_json foveated_json(const stereo::FoveatedEye& eye) {
+  const auto two = [](const glm::uvec2& v) { return ordered_json::array({v.x, v.y}); };
+  return object("inset_begin", two(eye.inset_begin), "inset_end", two(eye.inset_end), "seam_px", eye.seam,
+                "window", two(eye.window.size), "context", two({eye.context.width, eye.context.height}));
+}
+
 ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
                        const std::optional<double>& convergence) {
   const render::FrameReport& r = drawn.report;
@@ -157,6 +164,7 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
                     "probed_psnr_db", given(drawing.quality.has_value(), r.quality), "photo_psnr_db",
                     drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
+  for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
   if (drawn.most_shown)
     json["show"] = object("what", show_choices[options.output.show].name, "most", *drawn.most_shown);
@@ -271,6 +279,10 @@ void print(const RenderReport& report) {
       fmt::print("  colours: {}: 0 (dark blue) to {} and more (yellow)\n",
                  show_choices[report.options.output.show].name, *drawn.most_shown);
     if (drawn.levels) fmt::print("{}\n", levels_text(*drawn.levels));
+    for (std::size_t k = 0; k < drawn.foveated.size(); ++k) {
+      const std::string& side = drawn.shot.eyes[k].side;
+      fmt::print("  {}{}{}\n", side, side.empty() ? "" : ": ", describe(drawn.foveated[k]));
+    }
     if (drawn.comfort) print_comfort(drawn);
   }
   warn_of_discomfort(report.drawn);

@@ -56,7 +56,8 @@ struct Drawn {
   std::optional<double> most_shown;  // with --show: the number of the brightest colour
   std::optional<double> photo_psnr;  // dB
   std::optional<Comfort> comfort;
-  std::optional<ShotLevels> levels;  // with --detail
+  std::optional<ShotLevels> levels;           // with --detail
+  std::vector<stereo::FoveatedEye> foveated;  // with --foveate, by eye
 };
 
 struct RenderReport {

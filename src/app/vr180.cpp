@@ -15,7 +15,8 @@ constexpr const char* refused[] = {"--fov",        "--convergence",     "--cant"
                                    "--projection", "--tiles",           "--th",          "--tolerance",
                                    "--quality",    "--transmittance",   "--calibration", "--show",
                                    "--detail",     "--reference-until", "--photos",      "--precision",
-                                   "--decode",     "--exr-depth",       "--tile",        "--only"};
+                                   "--decode",     "--exr-depth",       "--tile",        "--only",
+                                   "--foveate"};
 
 std::vector<Camera> eyes_of(const Shot& shot, const std::string& axes) {
   std::vector<Camera> eyes;

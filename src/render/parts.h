@@ -27,9 +27,17 @@ struct ViewPart {
   glm::uvec2 hole_begin{0}, hole_end{0};
   /// The view goes by so many times the frame's tolerance; 0: it is exact.
   float tolerance_share = 1.0f;
+  /// Of a picture with fewer pixels than the one it stands for: the square of how many times fewer along an
+  /// axis, below 1. The low-pass is as many px wide in every picture, so that thin Gaussians would be fatter
+  /// and brighter in the smaller one; so they lose as much weight as they gain area. Nothing changes where
+  /// the model is anti-aliased, whose Gaussians do so by themselves.
+  float low_pass_share = 1.0f;
 
   bool is_window() const { return corner != glm::uvec2(0) || size != glm::uvec2(0); }
-  bool is_whole() const { return !is_window() && columns.empty() && hole_begin == hole_end; }
+  /// Whether all of the view is drawn, as it would be without a part but for the tolerance.
+  bool is_whole() const {
+    return !is_window() && columns.empty() && hole_begin == hole_end && low_pass_share == 1.0f;
+  }
 };
 
 /// Throws Error for parts that are not one for each of so many views, and that do not go with the settings.

@@ -52,6 +52,7 @@ void add_view(FrameShape& shape, shared::View view, const ViewPart& part,
   view.left = view.top = 0;
   take_window(part, view);
   view.tolerance_share = part.tolerance_share;
+  view.low_pass_share = part.low_pass_share;
   const auto tiles_in = [&](std::uint32_t pixels, std::uint32_t first) {
     const std::uint32_t all = (pixels + tile - 1) / tile;
     return all <= first ? 0 : (all - first + tiles.step - 1) / tiles.step;

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstring>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "base/choices.h"
@@ -18,6 +21,7 @@
 #include "formats/model_file.h"
 #include "render/frame.h"
 #include "scene/repeat.h"
+#include "stereo/foveate.h"
 #include "stereo/rig.h"
 
 namespace binosplat {
@@ -100,7 +104,11 @@ struct How {
   fs::path shaders;
   int frames = 20;  // that the medians are of
   int shrink = 1;   // pictures so many times smaller
+  std::optional<stereo::Foveation> foveate;
 };
+
+// A frame of views, foveated or not.
+using Draw = std::function<render::FrameReport()>;
 
 // Each eye must have the same bits drawn with the other and alone, and must not be empty.
 void check(render::Frame& frame, const Shot& shot, const How& how) {
@@ -119,24 +127,24 @@ void check(render::Frame& frame, const Shot& shot, const How& how) {
 }
 
 // Draws until the GPU's clock, which falls while pictures are read, has risen again.
-void wake(render::Frame& frame, std::span<const shared::View> views, const How& how) {
+void wake(const Draw& draw) {
   const Clock::time_point start = Clock::now();
   std::vector<double> before, now;
   do {
     before = std::exchange(now, {});
-    for (int n = 0; n < 20; ++n) now.push_back(frame.draw(views, how.settings).total_ms);
+    for (int n = 0; n < 20; ++n) now.push_back(draw().total_ms);
   } while (before.empty() || ms_since(start) < 200 ||
            (ms_since(start) < 2000 && std::abs(quantile(now, 0.5) / quantile(before, 0.5) - 1) > 0.01));
 }
 
 // Medians of the stages and of the whole frame, with the quartiles.
-Json time(render::Frame& frame, std::span<const shared::View> views, const How& how) {
+Json time(const Draw& draw, const How& how) {
   std::map<std::string, std::vector<double>> stages;
   std::vector<std::string> names;
   render::FrameReport report;
-  if (how.frames > 1) wake(frame, views, how);
+  if (how.frames > 1) wake(draw);
   for (int n = 0; n < how.frames; ++n) {
-    report = frame.draw(views, how.settings);
+    report = draw();
     for (const gl::StageTime& stage : report.stages) {
       if (stages.find(stage.name) == stages.end()) names.push_back(stage.name);
       stages[stage.name].push_back(stage.ms);
@@ -151,6 +159,37 @@ Json time(render::Frame& frame, std::span<const shared::View> views, const How& 
   json["pair_count"] = report.pairs;
   json["tile"] = report.tile_size;
   json["gpu_mb"] = report.gpu_bytes / 1e6;
+  return json;
+}
+
+Json time(render::Frame& frame, std::span<const shared::View> views, const How& how) {
+  return time([&] { return frame.draw(views, how.settings); }, how);
+}
+
+// The pair foveated, its insets checked to be the exact pictures'.
+Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const Shot& shot, const How& how) {
+  foveated.draw(shot.eyes, *how.foveate, how.settings);
+  const std::vector<Picture> drawn = foveated.read_pictures();
+  render::FrameSettings exact = how.settings;
+  exact.th = TH_TAU;
+  exact.tolerance = 0.0f;
+  frame.draw(shot.eyes, exact);
+  const std::vector<Picture> whole = frame.read_pictures();
+  Json insets, contexts;
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    const stereo::FoveatedEye& part = foveated.parts()[eye];
+    for (std::uint32_t y = part.inset_begin.y; y < part.inset_end.y; ++y) {
+      const std::size_t at = std::size_t{y} * static_cast<std::size_t>(whole[eye].width) + part.inset_begin.x;
+      const std::size_t bytes = (part.inset_end.x - part.inset_begin.x) * sizeof(glm::vec4);
+      if (std::memcmp(&drawn[eye].colour[at], &whole[eye].colour[at], bytes) != 0)
+        fail("{}: eye {}, row {}: the inset is not the exact picture", shot.name, eye, y);
+    }
+    insets.push_back({part.window.size.x, part.window.size.y});
+    contexts.push_back({part.context.width, part.context.height});
+  }
+  Json json = time([&] { return foveated.draw(shot.eyes, *how.foveate, how.settings); }, how);
+  json["windows"] = insets;
+  json["contexts"] = contexts;
   return json;
 }
 
@@ -180,7 +219,10 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   json["gaussians"] = loaded.model.count();
   json["load_ms"] = ms_since(phase);
   phase = Clock::now();
-  render::Frame frame(*context, loaded.model, how.settings.precision);
+  const auto gpu_model = std::make_shared<render::GpuModel>(*context, loaded.model, how.settings.precision);
+  render::Frame frame(gpu_model);
+  std::optional<stereo::FoveatedFrame> foveated;
+  if (how.foveate) foveated.emplace(gpu_model);
   frame.draw(loaded.shots.front().eyes, how.settings);
   const std::vector<Picture> first = frame.read_pictures();
   json["upload_draw_read_ms"] = ms_since(phase);
@@ -202,6 +244,16 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
     fmt::print(
         "  project + order of the pair over one eye's: {:.2f}; the pair over its two mono frames: {:.2f}\n",
         row["front_pair_over_one_eye"].get<double>(), row["pair_over_both_alone"].get<double>());
+    if (foveated) {
+      row["foveated"] = time_foveated(*foveated, frame, shot, how);
+      print_row(c.name, shot.name, "foveated", row["foveated"]);
+      const double exact_ms = row["pair"]["frame"], foveated_ms = row["foveated"]["frame"];
+      fmt::print(
+          "  pair {:.3f} ms, foveated {:.3f} ms ({:.2f} times as fast; compose {:.3f}), windows {}, "
+          "contexts {}\n",
+          exact_ms, foveated_ms, exact_ms / foveated_ms, row["foveated"]["compose"].get<double>(),
+          row["foveated"]["windows"].dump(), row["foveated"]["contexts"].dump());
+    }
     json["views"].push_back(row);
   }
   fmt::print(
@@ -239,7 +291,19 @@ int main(int argc, char** argv) {
   app.add_option("--order", order, "depth or distance")->check(CLI::IsMember({"depth", "distance"}));
   app.add_option("--projection", projection, "affine or tangent")
       ->check(CLI::IsMember({"affine", "tangent"}));
+  std::vector<double> foveate;
+  app.add_option(
+         "--foveate", foveate,
+         "Time the pair foveated, too: degrees of the inset and the context's share of the pixels along "
+         "each axis, as in 20,0.4; then, if at all, the gaze, degrees to the right and up")
+      ->delimiter(',')
+      ->expected(2, 4);
+  app.add_option("--tolerance", how.settings.tolerance,
+                 "Of --th squared, for all but insets: the pair is timed by it, too");
   CLI11_PARSE(app, argc, argv);
+  if (how.settings.tolerance > 0.0f) how.settings.th = TH_SQUARED;
+  if (foveate.size() > 1) how.foveate = {.inset_degrees = foveate[0], .context_scale = foveate[1]};
+  if (foveate.size() > 3) how.foveate->gaze = {{foveate[2], foveate[3]}};
   how.settings.precision = find_choice("--precision", precision, precision_choices);
   how.settings.order = find_choice("--order", order, order_choices);
   how.settings.projection = find_choice("--projection", projection, projection_choices);

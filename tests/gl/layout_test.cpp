@@ -83,7 +83,7 @@ TEST(Layout, ViewIsWhereTheDriverPutsIt) {
                             AT(View, top),
                             AT(View, first_row),
                             AT(View, tolerance_share),
-                            AT(View, unused),
+                            AT(View, low_pass_share),
                             STRIDE(View)};
   EXPECT_EQ(driver_offsets("View"), expected);
 }

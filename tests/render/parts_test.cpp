@@ -229,6 +229,33 @@ TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
   }
 }
 
+// In the middle of a picture so many px wide, of a lens so many px long: of one small Gaussian.
+float middle_coverage(const Model& model, int width, const ViewPart& part, int projection) {
+  const Camera camera = test::front_camera(width, width, 3.0 * width);
+  const Picture drawn = draw(model, make_view(camera), with({.projection = projection}, {part}));
+  const auto middle = static_cast<std::size_t>(width / 2 * width + width / 2);
+  return 1.0f - drawn.colour[middle].a;
+}
+
+TEST(Parts, AGaussianIsAsBrightInFewerPixels) {
+  constexpr double scale = 0.004, opacity = 0.8;
+  Model model;
+  test::add(model, {0, 0, 2}, glm::vec3(scale), opacity);
+  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
+    // Odd sizes: the Gaussian lies in the middle of a pixel. Its variance, px^2, in 41 px of 101:
+    const double small = std::pow(41 * 3.0 * scale / 2, 2), share = std::pow(41.0 / 101, 2);
+    const ViewPart part{.low_pass_share = static_cast<float>(share)};
+    const double expected = opacity * (small + share * KERNEL_PX2) / (small + KERNEL_PX2);
+    EXPECT_NEAR(middle_coverage(model, 41, part, projection), expected, 1e-5) << projection;
+    // Planted: as trained, which is for 101 px.
+    EXPECT_NEAR(middle_coverage(model, 41, {}, projection), opacity, 1e-5);
+    EXPECT_GT(opacity, 1.5 * expected);
+    model.antialiased = true;  // which has all of it by itself
+    EXPECT_EQ(middle_coverage(model, 41, part, projection), middle_coverage(model, 41, {}, projection));
+    model.antialiased = false;
+  }
+}
+
 // Of each eye the whole picture in fewer pixels, and a window of it.
 std::vector<shared::View> four_views(double cant) {
   const Camera head = test::front_camera(size.x, size.y, 180);
@@ -299,6 +326,7 @@ TEST(Parts, WrongOnesAreNamed) {
   EXPECT_TRUE(test::fails_saying(said({.columns = std::vector<glm::uvec2>(10, {3, 2})}), {"3 to 2"}));
   EXPECT_TRUE(test::fails_saying(said({.hole_begin = {0, 0}, .hole_end = {8, 151}}), {"hole", "200 x 150"}));
   EXPECT_TRUE(test::fails_saying(said({.tolerance_share = -1.0f}), {"-1 of the frame's tolerance"}));
+  EXPECT_TRUE(test::fails_saying(said({.low_pass_share = 0.0f}), {"share of 0 of the low-pass"}));
   EXPECT_TRUE(test::fails_saying(said({.tolerance_share = 2.0f}, {.th = TH_SQUARED, .quality = 40}),
                                  {"a quality is found for whole pictures"}));
   EXPECT_TRUE(test::fails_saying(

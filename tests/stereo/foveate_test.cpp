@@ -127,7 +127,8 @@ double catmull_rom(double t) {
 // The largest difference of colours beyond the seam from the context, drawn by itself and brought to size.
 double around_error(const Drawn& drawn, const Model& model) {
   const stereo::FoveatedEye& part = drawn.parts[0];
-  const Picture context = test::draw(model, part.context);
+  const render::FrameSettings whole{.parts = {{.low_pass_share = part.context_part.low_pass_share}}};
+  const Picture context = test::draw(model, part.context, whole);
   const Picture& shown = drawn.pictures[0];
   double worst = 0;
   for (int y = 0; y < size.y; ++y) {

@@ -1,0 +1,133 @@
+#include "app/foveate_options.h"
+
+#include "app/command_line.h"
+#include "app/option_checks.h"
+#include "base/error.h"
+
+namespace binosplat::app {
+
+namespace {
+
+const std::vector<std::string> words = {"inset", "context", "gaze", "seam"};
+
+double number_of(std::string_view text, const std::string& word, const char* expected) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    fail("--foveate {}={}: expected {}", word, text, expected);
+  return value;
+}
+
+// A word and its numbers, of which a gaze has several.
+struct Entry {
+  std::string word;
+  std::vector<std::string> values;
+};
+
+std::vector<Entry> entries_of(const std::string& text) {
+  std::vector<Entry> entries;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) {
+    const std::size_t equals = part.find('=');
+    if (equals != std::string::npos) {
+      entries.push_back({part.substr(0, equals), {part.substr(equals + 1)}});
+    } else if (!entries.empty() && entries.back().word == "gaze") {
+      entries.back().values.push_back(part);
+    } else {
+      fail("--foveate {}: '{}' is no WORD=NUMBER, as in inset=20deg,context=0.4", text, part);
+    }
+  }
+  return entries;
+}
+
+}  // namespace
+
+stereo::Foveation parse_foveation(const std::string& text) {
+  stereo::Foveation out;
+  std::vector<std::string> seen;
+  for (const Entry& entry : entries_of(text)) {
+    if (std::ranges::find(words, entry.word) == words.end()) {
+      fail("--foveate {}: there is no {}{}; it takes {}", text, entry.word, suggestion(entry.word, words),
+           fmt::join(words, ", "));
+    }
+    if (std::ranges::find(seen, entry.word) != seen.end())
+      fail("--foveate {}: {} is given twice", text, entry.word);
+    seen.push_back(entry.word);
+    const std::string& value = entry.values[0];
+    if (entry.word == "inset") {
+      std::string_view degrees = value;
+      if (degrees.ends_with("deg")) degrees.remove_suffix(3);
+      out.inset_degrees = number_of(degrees, entry.word, "degrees, as in inset=20deg");
+    } else if (entry.word == "context") {
+      out.context_scale =
+          number_of(value, entry.word, "a share of the pixels along an axis, as in context=0.4");
+    } else if (entry.word == "seam") {
+      out.seam = number_of(value, entry.word, "a share of the inset, as in seam=0.1");
+    } else {
+      if (entry.values.size() != 2 && entry.values.size() != 4) {
+        fail(
+            "--foveate gaze={}: expected degrees to the right and up, as in gaze=10,-5, or those of the left "
+            "and then of the right eye, as in gaze=10,-5,9,-5",
+            fmt::join(entry.values, ","));
+      }
+      const auto degrees = [&](std::size_t k) {
+        return number_of(entry.values[k], "gaze", "degrees to the right and up, as in gaze=10,-5");
+      };
+      for (std::size_t k = 0; k < entry.values.size(); k += 2)
+        out.gaze.emplace_back(degrees(k), degrees(k + 1));
+    }
+  }
+  stereo::check(out, "--foveate ");
+  return out;
+}
+
+void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate) {
+  sub.add_option_function<std::string>(
+         "--foveate", [&foveate](const std::string& text) { foveate = parse_foveation(text); },
+         "Draw exactly what lies within so many degrees of where the eyes look, and\naround it a share of "
+         "the "
+         "pixels along each axis: inset=20deg,context=0.4;\ngaze=RIGHT,UP, degrees from straight ahead "
+         "(0,0), "
+         "or those of both eyes;\nseam, of the inset (0.1). --tolerance is for what lies around")
+      ->type_name("inset=DEGREES,context=SHARE,...")
+      ->group("Drawing");
+}
+
+void check_foveate(const RenderOptions& o) {
+  if (!o.foveate) return;
+  if (o.drawing.quality || !o.drawing.calibration.empty()) {
+    fail(
+        "--foveate with {}: its tolerance is one for whole pictures; give what lies around the inset a "
+        "--tolerance",
+        o.drawing.quality ? "--quality" : "--calibration");
+  }
+  if (o.drawing.reference_until)
+    fail("--foveate with --reference-until: the reference draws whole pictures: leave one of them out");
+  if (o.scene.detail)
+    fail("--foveate with --detail: levels of detail go by whole pictures; take --lod or --gpu-memory");
+  if (o.output.show >= SHOW_ALPHAS) {
+    fail("--foveate with --show {}: it tells of the lists that one picture is blended by, and these are two",
+         show_choices[o.output.show].name);
+  }
+  if (o.output.exr_depth == Depth::median)
+    fail("--foveate with --exr-depth median: between inset and context only means are mixed");
+  if (o.rig.one_picture() && o.foveate->gaze.size() > 1)
+    fail("--foveate gaze: two are for both eyes: leave --mono and --only out, or give one");
+}
+
+render::MemoryNeeds foveated_memory(std::span<const shared::View> eyes, const stereo::Foveation& foveation,
+                                    const render::FrameSettings& settings, const Model& model) {
+  const stereo::FoveatedViews drawn = stereo::foveated_views(eyes, foveation, settings);
+  render::MemoryNeeds needs = render::memory_needs(render::make_shape(drawn.views, drawn.settings, model));
+  for (const shared::View& eye : eyes) needs.frame += std::int64_t{eye.width} * eye.height * 20;
+  return needs;
+}
+
+std::string describe(const stereo::FoveatedEye& eye) {
+  const glm::uvec2 inset = eye.inset_end - eye.inset_begin;
+  return fmt::format("inset of {} x {} px from ({}, {}), drawn as {} x {}; context of {} x {} px", inset.x,
+                     inset.y, eye.inset_begin.x, eye.inset_begin.y, eye.window.size.x, eye.window.size.y,
+                     eye.context.width, eye.context.height);
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,31 @@
+#pragma once
+// `render --foveate`: sharp where an eye looks, in fewer pixels around it.
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "app/cli.h"
+#include "app/render_options.h"
+#include "render/memory.h"
+#include "stereo/foveate.h"
+
+namespace binosplat::app {
+
+void add_foveate_option(CLI::App& sub, std::optional<stereo::Foveation>& foveate);
+
+/// "inset=20deg,context=0.4,gaze=5,-3": what is not named is as stereo::Foveation has it. Throws Error,
+/// naming --foveate, for what cannot be understood and for numbers that no eye has.
+stereo::Foveation parse_foveation(const std::string& text);
+
+/// Throws Error for options that do not go with --foveate, where it is given.
+void check_foveate(const RenderOptions& options);
+
+/// What a frame of these eyes and their composed pictures take on the GPU.
+render::MemoryNeeds foveated_memory(std::span<const shared::View> eyes, const stereo::Foveation& foveation,
+                                    const render::FrameSettings& settings, const Model& model);
+
+/// What is drawn of an eye, as a line for people.
+std::string describe(const stereo::FoveatedEye& eye);
+
+}  // namespace binosplat::app
