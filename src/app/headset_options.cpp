@@ -13,7 +13,7 @@ namespace {
 // What a headset has of its own, and what only windows have.
 constexpr const char* of_windows[] = {"--size", "--layout", "--ipd", "--convergence", "--cant",
                                       "--show", "--split",  "--fov", "--output"};
-constexpr const char* of_headsets[] = {"--scale", "--frame-budget", "--no-mirror"};
+constexpr const char* of_headsets[] = {"--scale", "--frame-budget", "--no-mirror", "--foveate"};
 
 bool is_given(const CLI::App& sub, const char* name) {
   const CLI::Option* const option = sub.get_option_no_throw(name);
@@ -55,6 +55,8 @@ void check(const HeadsetOptions& o, const CLI::App& sub) {
   for (const char* name : of_windows) {
     if (is_given(sub, name)) fail("{} with --xr: leave it out, a headset decides that itself", name);
   }
+  if (o.budget_ms && is_given(sub, "--foveate"))
+    fail("--frame-budget with --foveate: a quality is one for whole pictures: choose one of them");
   if (o.budget_ms && is_given(sub, "--quality"))
     fail("--frame-budget with --quality: choose one, the budget chooses the quality");
   if (o.budget_ms && is_given(sub, "--tolerance"))

@@ -120,6 +120,8 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   sub.add_option("-o,--output", o.output.output, "A folder for pictures and paths (out/SCENE)")
       ->type_name("DIR");
   add_headset_options(sub, o.headset);
+  add_foveate_option(sub, o.foveate);
+  sub.get_option("--foveate")->group("Headset");
   sub.option_defaults()->group("Options");
   sub.get_option("--size")->description("Pixels of the window (1280x720, or more where displays are dense)");
   sub.get_option("--view")->description("The camera to start at, by name (the first)");

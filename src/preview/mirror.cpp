@@ -12,14 +12,11 @@ Mirror::Mirror(bool by_egl) {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(0);  // the headset keeps the time
   context_ = gl::Context::adopt(glfwGetProcAddress);
-  presenter_ = std::make_unique<stereo::Presenter>(*context_);
   log_info("drawing with {} (OpenGL {})", context_->renderer(), context_->version());
 }
 
 Mirror::~Mirror() {
   context_->gl().DeleteFramebuffers(1, &framebuffer_);
-  picture_.reset();
-  presenter_.reset();
   context_.reset();
   glfwDestroyWindow(window_);
 }
@@ -29,17 +26,8 @@ bool Mirror::is_open() {
   return glfwWindowShouldClose(window_) == GLFW_FALSE && glfwGetKey(window_, GLFW_KEY_ESCAPE) != GLFW_PRESS;
 }
 
-void Mirror::show(const render::Frame& frame, std::uint32_t texture, const glm::ivec2& size,
-                  const glm::vec3& background) {
+void Mirror::show(std::uint32_t texture, const glm::ivec2& size) {
   const gl::Functions& gl = context_->gl();
-  if (frame.shape().canvases.empty()) {
-    if (picture_ == nullptr || !picture_->is(GL_RGBA8, size.x, size.y)) {
-      picture_.reset();  // its memory first
-      picture_ = std::make_unique<gl::Texture>(*context_, GL_RGBA8, size.x, size.y);
-    }
-    texture = picture_->id();
-    presenter_->draw(frame, 0, LAYOUT_SEPARATE, {.texture = texture}, background);
-  }
   if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);
   gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, texture, 0);
   glm::ivec2 window;

@@ -1,12 +1,11 @@
 #pragma once
 // A window beside a headset: the context that draws, and what the left eye sees.
 
+#include <glm/glm.hpp>
 #include <memory>
 
-#include "gl/texture.h"
+#include "gl/context.h"
 #include "preview/glfw.h"
-#include "render/frame.h"
-#include "stereo/present.h"
 
 namespace binosplat::preview {
 
@@ -24,17 +23,13 @@ class Mirror {
   /// False once the window is closed, or Escape was pressed in it.
   bool is_open();
 
-  /// Shows the first view of a frame as large as the window has room for: from the lower left corner of this
-  /// texture, of so many px, where the frame went onto canvases.
-  void show(const render::Frame& frame, std::uint32_t texture, const glm::ivec2& size,
-            const glm::vec3& background);
+  /// Shows what lies in the lower left corner of a texture, so many px, as large as the window has room for.
+  void show(std::uint32_t texture, const glm::ivec2& size);
 
  private:
   Glfw glfw_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<gl::Context> context_;
-  std::unique_ptr<stereo::Presenter> presenter_;
-  std::unique_ptr<gl::Texture> picture_;
   std::uint32_t framebuffer_ = 0;  // of what is shown
 };
 

@@ -33,7 +33,7 @@ class Viewer {
         settings_(settings),
         beside_(beside),
         model_(std::move(model)),
-        frame_(context, model_, settings.frame.precision) {}
+        frame_(std::make_shared<render::GpuModel>(context, model_, settings.frame.precision)) {}
 
   /// False where the session was lost.
   bool run_session() {
@@ -45,7 +45,7 @@ class Viewer {
     Hands hands(session);
     make_projection(session);
     Walk walk(start_of(settings_, session.on_floor()));
-    frame_.start_over();
+    frame_.frame().start_over();
     last_.reset();
     try {
       while (session.poll()) {
@@ -82,7 +82,7 @@ class Viewer {
       last_.reset();
       return session.end_frame(time, nullptr);
     }
-    if (session.take_recentred()) frame_.forget();
+    if (session.take_recentred()) frame_.frame().forget();
     if (time.display - looked_ >= between_looks) {
       looked_ = time.display;
       if (projection_->outdated()) make_projection(session);
@@ -99,12 +99,9 @@ class Viewer {
     settings.quality = effort.quality;
     if (effort.quality > 0.0f) settings.th = TH_SQUARED;
     const auto start = Clock::now();
-    Projection::DrawnLeft drawn_left;
-    if (beside_.show)
-      drawn_left = [this](std::uint32_t texture, const glm::ivec2& size) {
-        beside_.show(frame_, texture, size);
-      };
-    projection_->draw(frame_, views, walk.stage(), settings, effort.scale, drawn_left);
+    const std::optional<XrPosef> gaze =
+        settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
+    projection_->draw(frame_, views, walk.stage(), settings, effort.scale, beside_.show, gaze);
     const double ms = ms_since(start);
     times_.push_back(ms);
     if (budget_) budget_->took(ms, 1e-6 * static_cast<double>(time.period));
@@ -132,12 +129,13 @@ class Viewer {
   void follow_levels() {
     if (!beside_.levels) return;
     if (!levels_.valid()) {
-      if (frame_.views().empty()) return;
-      const auto read = beside_.levels(std::span(frame_.views()).first(frame_.shape().asked));
+      const render::Frame& frame = frame_.frame();
+      if (frame.views().empty()) return;
+      const auto read = beside_.levels(std::span(frame.views()).first(frame.shape().asked));
       if (read) levels_ = std::async(std::launch::async, read);
     } else if (levels_.wait_for(milliseconds(0)) == std::future_status::ready) {
       model_ = levels_.get();
-      frame_.model()->reload();
+      frame_.frame().model()->reload();
     }
   }
 
@@ -146,7 +144,7 @@ class Viewer {
   const HeadsetSettings& settings_;
   const Beside& beside_;
   Model model_;
-  render::Frame frame_;
+  stereo::FoveatedFrame frame_;
   std::future<Model> levels_;
   std::optional<Budget> budget_;
   std::unique_ptr<Projection> projection_;  // of the session at hand

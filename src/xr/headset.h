@@ -24,9 +24,8 @@ struct HeadsetSettings {
 struct Beside {
   /// Called after each frame, and while none is wanted; false ends it all.
   std::function<bool()> step;
-  /// Shows a frame's left eye, which also lies in this texture if it went onto a canvas
-  /// (Projection::DrawnLeft). May be empty.
-  std::function<void(const render::Frame& frame, std::uint32_t texture, const glm::ivec2& size)> show;
+  /// Shows the left eye's picture. May be empty.
+  Projection::DrawnLeft show;
   /// Of a model with levels of detail: what reads the levels that these views need, in a thread of its own
   /// and one at a time; nothing where they are the last ones that were read. May be empty.
   std::function<std::function<Model()>(std::span<const shared::View> views)> levels;

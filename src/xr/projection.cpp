@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/quaternion.hpp>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -17,7 +18,7 @@ constexpr double far_metres = 1000.0;
 
 // Depths have so many times fewer pixels along each side: a runtime moves pictures by them, for which no edge
 // need be sharp, and GPUs of servers fill depths slowly (an H200 two full pictures in 1.8 ms).
-constexpr int depth_step = 4;
+constexpr int depth_step = 8;
 
 struct ColourFormat {
   std::int64_t format;
@@ -58,6 +59,35 @@ void take_hole(const XrView& wide, const XrView& inset, const glm::ivec2& size, 
   if (glm::all(glm::lessThan(begin, end))) part.hole_begin = pixels(begin), part.hole_end = pixels(end);
 }
 
+// How many times fewer pixels a degree a wide view has than its inset, squared; 1 where it has as many.
+float low_pass_share(const XrView& wide, const glm::ivec2& wide_size, const XrView& inset,
+                     const glm::ivec2& inset_size) {
+  const auto per_slope = [](const XrFovf& fov, const glm::ivec2& size) {
+    return size.x / (std::tan(fov.angleRight) - std::tan(fov.angleLeft));
+  };
+  const double share = per_slope(wide.fov, wide_size) / per_slope(inset.fov, inset_size);
+  return static_cast<float>(std::min(1.0, share * share));
+}
+
+// Where each eye looks, as stereo::Foveation has it, a little within its picture.
+std::vector<glm::dvec2> gaze_of(const XrPosef& gaze, std::span<const XrView> located) {
+  constexpr double edge = 0.05;
+  const auto rotation_of = [](const XrQuaternionf& q) { return glm::dquat(q.w, q.x, q.y, q.z); };
+  const glm::dvec3 ahead = rotation_of(gaze.orientation) * glm::dvec3(0.0, 0.0, -1.0);
+  std::vector<glm::dvec2> degrees;
+  for (const XrView& view : located) {
+    const glm::dvec3 v = glm::inverse(rotation_of(view.pose.orientation)) * ahead;
+    const XrFovf& fov = view.fov;
+    const auto within = [](double angle, double low, double high) {
+      const double slack = edge * (high - low);
+      return glm::degrees(std::clamp(angle, low + slack, high - slack));
+    };
+    degrees.emplace_back(within(std::atan2(v.x, -v.z), fov.angleLeft, fov.angleRight),
+                         within(std::atan2(v.y, -v.z), fov.angleDown, fov.angleUp));
+  }
+  return degrees;
+}
+
 }  // namespace
 
 stereo::XrEye eye_of(const XrPosef& pose, const XrFovf& fov) {
@@ -76,7 +106,7 @@ Projection::Projection(const Session& session, gl::Context& context, const Proje
   sizes_ = sizes_now();
   eyes_.resize(sizes_.size());
   make_colours();
-  if (session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) make_depths();
+  if (!foveates() && session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) make_depths();
 }
 
 std::vector<glm::ivec2> Projection::sizes_now() const {
@@ -147,16 +177,20 @@ std::vector<render::ViewPart> Projection::parts_of(std::span<const XrView> locat
   for (std::size_t k = 0; k < located.size(); ++k) {
     const std::size_t at = place_of(k, located.size());
     parts[at].columns = visible_columns(eyes_[k].visible, located[k].fov, sizes[at], TILE_SIZE_DEFAULT);
-    if (located.size() == 4 && k < 2) take_hole(located[k], located[k + 2], sizes[at], parts[at]);
+    if (located.size() == 4 && k < 2) {
+      const std::size_t inset = place_of(k + 2, located.size());
+      take_hole(located[k], located[k + 2], sizes[at], parts[at]);
+      parts[at].low_pass_share = low_pass_share(located[k], sizes[at], located[k + 2], sizes[inset]);
+    }
   }
   const auto is_whole = [](const render::ViewPart& part) { return part.is_whole(); };
   if (std::all_of(parts.begin(), parts.end(), is_whole)) parts.clear();
   return parts;
 }
 
-render::FrameReport Projection::draw(render::Frame& frame, std::span<const XrView> located,
+render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
                                      const stereo::Stage& stage, render::FrameSettings settings, double part,
-                                     const DrawnLeft& drawn_left) {
+                                     const DrawnLeft& drawn_left, const std::optional<XrPosef>& gaze) {
   const std::size_t count = eyes_.size();
   if (located.size() != count)
     throw Error(ExitCode::no_gl, fmt::format("{} located {} views of {}", session_.instance().runtime(),
@@ -171,24 +205,33 @@ render::FrameReport Projection::draw(render::Frame& frame, std::span<const XrVie
     sizes[place_of(k, count)] = glm::max(glm::ivec2(1), glm::ivec2(glm::round(part * glm::dvec2(sizes_[k]))));
   }
   const stereo::HeadViews head = stereo::views_from_xr(drawn, stage, sizes, settings_.near_plane);
-  settings.parts = parts_of(located, sizes);
-  std::vector<stereo::Target> targets(count);
-  std::vector<stereo::DepthTarget> depths(has_depths ? count : 0);
   const double near_plane = settings_.near_plane;
   const double far_plane = std::max(far_metres * stage.units_per_metre, 2.0 * near_plane);
+  std::vector<stereo::Target> targets(count);
+  std::vector<stereo::DepthTarget> depths(has_depths ? count : 0);
   for (std::size_t k = 0; k < count; ++k) {
-    targets[place_of(k, count)] = {.texture = eyes_[k].colours->acquire(), .linear = linear_};
+    const std::size_t at = place_of(k, count);
+    targets[at] = {.texture = eyes_[k].colours->acquire(), .linear = linear_};
     if (has_depths)
-      depths[place_of(k, count)] = {
-          .texture = eyes_[k].depths->acquire(), .near_plane = near_plane, .far_plane = far_plane};
+      depths[at] = {.texture = eyes_[k].depths->acquire(), .near_plane = near_plane, .far_plane = far_plane};
   }
-  // What is shown beside the headset comes from textures of what a screen takes, or from the frame.
-  stereo::Canvases canvases;
-  if (!linear_) canvases = presenter_.canvases(targets, settings_.background);
-  const render::FrameReport report = frame.draw(head.views, settings, {}, canvases.list, 2);
+  render::FrameReport report;
+  if (foveates()) {
+    stereo::Foveation foveation = *settings_.foveation;
+    if (gaze) foveation.gaze = gaze_of(*gaze, located);
+    report = frame.draw(head.views, foveation, settings);
+  } else {
+    settings.parts = parts_of(located, sizes);
+    const stereo::Canvases canvases = presenter_.canvases(targets, settings_.background);
+    report = frame.frame().draw(head.views, settings, {}, canvases.list, 2);
+  }
   for (std::size_t k = 0; k < count; ++k) {
-    if (!report.on_canvases) presenter_.draw(frame, k, LAYOUT_SEPARATE, targets[k], settings_.background);
-    if (has_depths) presenter_.draw_depth(frame, k, depths[k]);
+    if (foveates()) {
+      presenter_.draw(frame.colours(), frame.views(), k, LAYOUT_SEPARATE, targets[k], settings_.background);
+    } else if (!report.on_canvases) {
+      presenter_.draw(frame.frame(), k, LAYOUT_SEPARATE, targets[k], settings_.background);
+    }
+    if (has_depths) presenter_.draw_depth(frame.frame(), k, depths[k]);
   }
   if (drawn_left) drawn_left(targets[0].texture, sizes[0]);
   submit(located, sizes, near_plane / stage.units_per_metre, far_plane / stage.units_per_metre);

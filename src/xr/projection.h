@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "render/frame.h"
 #include "stereo/embed.h"
+#include "stereo/foveate.h"
 #include "xr/swapchain.h"
 #include "xr/visibility.h"
 
@@ -20,6 +20,8 @@ struct ProjectionSettings {
   double scale = 1.0;                // of the sizes that the runtime recommends
   double near_plane = near_default;  // world units
   glm::vec3 background{0.0f};
+  /// Of a headset with two views; one with four has insets of its own. No depths go with composed pictures.
+  std::optional<stereo::Foveation> foveation;
 };
 
 class Projection {
@@ -29,11 +31,11 @@ class Projection {
 
   /// Draws the located views, each `part` of its texture's sides, at a place of the model's world. Calls
   /// `drawn_left`, if any, while the left eye's texture may still be read: its picture lies there in the
-  /// lower left corner, so large, in display values if the frame has drawn onto canvases.
+  /// lower left corner, so large. `gaze`, where it is known, is where the foveated eyes look.
   using DrawnLeft = std::function<void(std::uint32_t texture, const glm::ivec2& size)>;
-  render::FrameReport draw(render::Frame& frame, std::span<const XrView> located, const stereo::Stage& stage,
-                           render::FrameSettings settings, double part = 1.0,
-                           const DrawnLeft& drawn_left = {});
+  render::FrameReport draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
+                           const stereo::Stage& stage, render::FrameSettings settings, double part = 1.0,
+                           const DrawnLeft& drawn_left = {}, const std::optional<XrPosef>& gaze = {});
 
   /// Whether the runtime recommends other sizes now: a new Projection would have them.
   bool outdated() const { return sizes_ != sizes_now(); }
@@ -54,6 +56,7 @@ class Projection {
     Visible visible;
   };
   std::vector<glm::ivec2> sizes_now() const;
+  bool foveates() const { return settings_.foveation && eyes_.size() == 2; }
   void submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double near_metres,
               double far_metres);
   void make_colours();

@@ -30,7 +30,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   const preview::Start start = scene.start(model, choices);
   log_info("{}: {} Gaussians", scene.name, model.count());
   xr::HeadsetSettings settings;
-  settings.projection = {o.headset.scale, choices.rig.near_plane, choices.background};
+  settings.projection = {o.headset.scale, choices.rig.near_plane, choices.background, o.foveate};
   settings.frame = choices.settings;
   settings.budget_ms = o.headset.budget_ms;
   settings.start = into_axes(start.cameras.front(), model.axes);
@@ -38,11 +38,8 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   settings.units_per_metre = choices.rig.units_per_metre;
   xr::Beside beside = {
       .step = [&] { return !mirror || mirror->is_open(); }, .show = {}, .levels = scene.levels};
-  if (mirror) {
-    beside.show = [&](const render::Frame& frame, std::uint32_t texture, const glm::ivec2& size) {
-      mirror->show(frame, texture, size, choices.background);
-    };
-  }
+  if (mirror)
+    beside.show = [&](std::uint32_t texture, const glm::ivec2& size) { mirror->show(texture, size); };
   xr::run(instance, context, std::move(model), settings, beside);
 }
 
