@@ -364,12 +364,13 @@ void write_pixels() {
 #else
 #if CANVASES
     uvec2 at = first_pixel + uvec2(0u, p) - first_drawn(view);
-    write_on_canvas(view_index, view, at, vec4(colour[p], left), frame.background.rgb);
+    write_on_canvas(view_index, canvases[view_index], view.height, at, vec4(colour[p], left), frame.background.rgb);
 #else
     colours[to] = vec4(colour[p], left);
 #endif
 #if PROJECTION == PROJECTION_TANGENT
-    z_sum[p] *= sqrt(nearness[p]);  // of distances
+    precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
+    z_sum[p] = along;
 #endif
 #if CANVASES
     if (left >= 1.0 - float(COVERAGE_FOR_DEPTH)) z_sum[p] = 0.0;

@@ -15,10 +15,9 @@ layout(binding = 2) writeonly uniform image2D image_2;
 layout(binding = 3) writeonly uniform image2D image_3;
 #endif
 
-// A blended pixel `at` of the nth view, from its top left.
-void write_on_canvas(uint nth, View view, uvec2 at, vec4 pixel, vec3 background) {
-  Canvas canvas = canvases[nth];
-  ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + view.height - 1u - at.y);
+// A blended pixel `at` of a view that is so high, from its top left, in the image of unit `nth`.
+void write_on_canvas(uint nth, Canvas canvas, uint height, uvec2 at, vec4 pixel, vec3 background) {
+  ivec2 to = ivec2(canvas.left + at.x, canvas.bottom + height - 1u - at.y);
   vec4 shown = in_image(over(pixel, background, canvas.keeps_alpha != 0u), canvas.linear != 0u, canvas.steps);
   if (nth == 0u) imageStore(image_0, to, shown);
 #if CANVASES > 1

@@ -128,7 +128,11 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
 
 render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, const Foveation& foveation,
                                         const render::FrameSettings& settings,
-                                        const render::Workings& workings) {
+                                        const render::Workings& workings,
+                                        std::span<const render::Canvas> canvases) {
+  on_canvases_ = !canvases.empty();
+  if (on_canvases_ && canvases.size() != eyes.size())
+    fail("{} canvases for {} eyes: expected one each", canvases.size(), eyes.size());
   FoveatedViews drawn = foveated_views(eyes, foveation, settings);
   render::FrameReport report = frame_.draw(drawn.views, drawn.settings, workings);
   eyes_.assign(eyes.begin(), eyes.end());
@@ -137,36 +141,20 @@ render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, cons
     eye.pixel_offset = static_cast<std::uint32_t>(pixels);
     pixels += std::int64_t{eye.width} * eye.height;
   }
-  colours_.reserve(pixels * 16);
-  z_sums_.reserve(pixels * 4);
+  report.on_canvases = on_canvases_;
+  if (!on_canvases_) {
+    colours_.reserve(pixels * 16);
+    z_sums_.reserve(pixels * 4);
+  }
+  std::vector<shared::Canvas> shown;
+  for (const render::Canvas& canvas : canvases) shown.push_back(render::on_gpu(canvas));
+  if (on_canvases_) canvases_.upload(shown);
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("compose");
-  for (std::size_t k = 0; k < eyes_.size(); ++k) {
-    const shared::View &eye = eyes_[k], &context = frame_.views()[2 * k], &window = frame_.views()[2 * k + 1];
-    const FoveatedEye& parts = drawn.eyes[k];
-    dispatcher_.start(dispatcher_.context().program("foveate.comp"),
-                      gl::Work::threads(std::uint64_t{eye.width} * eye.height, THREADS),
-                      {{"Colours", frame_.colours()},
-                       {"ZSums", frame_.buffers().z_sums},
-                       {"Composed", colours_},
-                       {"ComposedZ", z_sums_}},
-                      {{"first", eye.pixel_offset},
-                       {"width", eye.width},
-                       {"height", eye.height},
-                       {"context_first", context.pixel_offset},
-                       {"context_width", context.width},
-                       {"context_height", context.height},
-                       {"window_first", window.pixel_offset},
-                       {"window_left", window.left},
-                       {"window_top", window.top},
-                       {"window_width", window.width},
-                       {"inset_left", parts.inset_begin.x},
-                       {"inset_top", parts.inset_begin.y},
-                       {"inset_right", parts.inset_end.x},
-                       {"inset_bottom", parts.inset_end.y},
-                       {"seam", std::bit_cast<std::uint32_t>(static_cast<float>(parts.seam))}});
-  }
+  for (std::size_t k = 0; k < eyes_.size(); ++k) compose(k, drawn.eyes[k], settings.background, canvases);
   dispatcher_.wait_for_writes();
+  if (on_canvases_)
+    dispatcher_.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however they are read next
   dispatcher_.end_frame();
   for (const gl::StageTime& stage : dispatcher_.wait_and_time()) {
     report.stages.push_back(stage);
@@ -176,7 +164,45 @@ render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, cons
   return report;
 }
 
+void FoveatedFrame::compose(std::size_t k, const FoveatedEye& parts, const glm::vec3& background,
+                            std::span<const render::Canvas> canvases) {
+  const shared::View &eye = eyes_[k], &context = frame_.views()[2 * k], &window = frame_.views()[2 * k + 1];
+  gl::Context& gl = dispatcher_.context();
+  if (on_canvases_) {
+    const render::Canvas& to = canvases[k];
+    gl.gl().BindImageTexture(0, to.texture, to.level, GL_FALSE, to.layer, GL_WRITE_ONLY, to.format);
+  }
+  const std::uint64_t groups = std::uint64_t{(eye.width + 31) / 32} * ((eye.height + 7) / 8);
+  dispatcher_.start(gl.program("foveate.comp", {{"CANVASES", on_canvases_ ? "1" : "0"}}),
+                    gl::Work::of_groups(groups),
+                    {{"Colours", frame_.colours()},
+                     {"ZSums", frame_.z_sums()},
+                     {"Composed", colours_},
+                     {"ComposedZ", z_sums_},
+                     {"Canvases", canvases_}},
+                    {{"nth", static_cast<std::uint32_t>(k)},
+                     {"background_r", std::bit_cast<std::uint32_t>(background.r)},
+                     {"background_g", std::bit_cast<std::uint32_t>(background.g)},
+                     {"background_b", std::bit_cast<std::uint32_t>(background.b)},
+                     {"first", eye.pixel_offset},
+                     {"width", eye.width},
+                     {"height", eye.height},
+                     {"context_first", context.pixel_offset},
+                     {"context_width", context.width},
+                     {"context_height", context.height},
+                     {"window_first", window.pixel_offset},
+                     {"window_left", window.left},
+                     {"window_top", window.top},
+                     {"window_width", window.width},
+                     {"inset_left", parts.inset_begin.x},
+                     {"inset_top", parts.inset_begin.y},
+                     {"inset_right", parts.inset_end.x},
+                     {"inset_bottom", parts.inset_end.y},
+                     {"seam", std::bit_cast<std::uint32_t>(static_cast<float>(parts.seam))}});
+}
+
 std::vector<Picture> FoveatedFrame::read_pictures() const {
+  if (on_canvases_) fail("the pictures went onto canvases, and are whose those are");
   std::vector<Picture> pictures;
   for (const shared::View& eye : eyes_) {
     Picture& picture = pictures.emplace_back(static_cast<int>(eye.width), static_cast<int>(eye.height));

@@ -61,12 +61,15 @@ class FoveatedFrame {
       : frame_(std::move(model)),
         dispatcher_(frame_.model()->context()),
         colours_(dispatcher_.context(), "foveated pixels"),
-        z_sums_(dispatcher_.context(), "their depth") {}
+        z_sums_(dispatcher_.context(), "their depth"),
+        canvases_(dispatcher_.context(), "their canvases") {}
 
-  /// Draws all eyes in one frame and composes their pictures, which is a stage of its own, "compose". Throws
+  /// Draws all eyes in one frame and composes their pictures, which is a stage of its own, "compose". With
+  /// canvases, one an eye, the pictures are there and nowhere else, over settings.background. Throws
   /// as foveated_views() and render::Frame::draw() do.
   render::FrameReport draw(std::span<const shared::View> eyes, const Foveation& foveation,
-                           const render::FrameSettings& settings = {}, const render::Workings& workings = {});
+                           const render::FrameSettings& settings = {}, const render::Workings& workings = {},
+                           std::span<const render::Canvas> canvases = {});
 
   /// The composed pictures of the last frame, one an eye; and on the GPU, as a frame's lie: vec4 (C, T) by
   /// pixel, a view's from its pixel_offset on.
@@ -80,9 +83,13 @@ class FoveatedFrame {
   render::Frame& frame() { return frame_; }
 
  private:
+  void compose(std::size_t k, const FoveatedEye& parts, const glm::vec3& background,
+               std::span<const render::Canvas> canvases);
+
   render::Frame frame_;
   gl::Dispatcher dispatcher_;
-  gl::Buffer colours_, z_sums_;
+  gl::Buffer colours_, z_sums_, canvases_;
+  bool on_canvases_ = false;
   std::vector<shared::View> eyes_;
   std::vector<FoveatedEye> parts_;
 };

@@ -77,14 +77,9 @@ FrameBuffers::FrameBuffers(gl::Context& context)
 void FrameBuffers::upload(const FrameShape& shape) {
   parameters.upload(std::vector{parameters_of(shape)});
   views.upload(shape.views);
-  std::vector<shared::Canvas> on_gpu;
-  for (const Canvas& c : shape.canvases)
-    on_gpu.push_back({.left = static_cast<std::uint32_t>(c.x),
-                      .bottom = static_cast<std::uint32_t>(c.y),
-                      .steps = steps_of(c.format),
-                      .keeps_alpha = c.keeps_alpha,
-                      .linear = c.linear});
-  if (!on_gpu.empty()) canvases.upload(on_gpu);
+  std::vector<shared::Canvas> of_views;
+  for (const Canvas& canvas : shape.canvases) of_views.push_back(on_gpu(canvas));
+  if (!of_views.empty()) canvases.upload(of_views);
   if (shape.draws_parts()) part_rows.upload(shape.part_rows);
   if (shape.settings.transmittance != TRANSMITTANCE_DEPTH) return;
   std::vector<float> table = shape.settings.depth_table.bounds;

@@ -215,22 +215,21 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     if (has_depths)
       depths[at] = {.texture = eyes_[k].depths->acquire(), .near_plane = near_plane, .far_plane = far_plane};
   }
+  const stereo::Canvases canvases = presenter_.canvases(targets, settings_.background);
   render::FrameReport report;
   if (foveates()) {
     stereo::Foveation foveation = *settings_.foveation;
     if (gaze) foveation.gaze = gaze_of(*gaze, located);
-    report = frame.draw(head.views, foveation, settings);
+    report = frame.draw(head.views, foveation, settings, {}, canvases.list);
   } else {
     settings.parts = parts_of(located, sizes);
-    const stereo::Canvases canvases = presenter_.canvases(targets, settings_.background);
     report = frame.frame().draw(head.views, settings, {}, canvases.list, 2);
   }
+  const gl::Buffer& colours = foveates() ? frame.colours() : frame.frame().colours();
+  const std::vector<shared::View>& views = foveates() ? frame.views() : frame.frame().views();
   for (std::size_t k = 0; k < count; ++k) {
-    if (foveates()) {
-      presenter_.draw(frame.colours(), frame.views(), k, LAYOUT_SEPARATE, targets[k], settings_.background);
-    } else if (!report.on_canvases) {
-      presenter_.draw(frame.frame(), k, LAYOUT_SEPARATE, targets[k], settings_.background);
-    }
+    if (!report.on_canvases)
+      presenter_.draw(colours, views, k, LAYOUT_SEPARATE, targets[k], settings_.background);
     if (has_depths) presenter_.draw_depth(frame.frame(), k, depths[k]);
   }
   if (drawn_left) drawn_left(targets[0].texture, sizes[0]);

@@ -173,8 +173,7 @@ TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
                                      "!is_within(tile.x + 1u, span_of(row.y))");
     EXPECT_GT(around_error(draw(model, views, foveation, {.tile_size = 8}), model), 1e-2);
   }
-  const test::FaultyShaders faulty("foveate.comp", "(vec2(pixel) + 0.5) * size",
-                                   "(vec2(pixel) + 1.0) * size");
+  const test::FaultyShaders faulty("foveate.comp", "(vec2(pixel) + 0.5) *", "(vec2(pixel) + 1.0) *");
   EXPECT_GT(around_error(draw(model, views, {.gaze = {{30, 20}}}), model), 1e-2);
 }
 
@@ -202,6 +201,33 @@ TEST(Foveate, TheSeamIsSmooth) {
   const auto drawn = draw(model, eyes(rigs[0]), {.inset_degrees = 18, .context_scale = 1.0});
   const auto exact = test::draw(model, eyes(rigs[0])[0]);
   EXPECT_GE(test::psnr(drawn.pictures[0], exact), 120.0);  // of as many pixels both are the picture
+}
+
+// What is composed into the caller's textures is what is presented of composed pictures.
+TEST(Foveate, ComposesOntoCanvases) {
+  test::Caller caller;
+  const Model model = test::random_model(77, 500, 0, 0.75);
+  FoveatedFrame frame(std::make_shared<render::GpuModel>(*caller.context, model, PRECISION_FULL));
+  stereo::Presenter presenter(*caller.context);
+  const Background background = glm::vec3(0.1f, 0.2f, 0.6f);
+  const render::FrameSettings settings = {.background = *background};
+  std::array<stereo::Target, 2> targets;
+  for (stereo::Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
+  const auto written = [&](std::size_t eye) {
+    return caller.read<unsigned char>(targets[eye].texture, size.x, size.y);
+  };
+  frame.draw(eyes(rigs[0]), {.gaze = {{5, 5}}}, settings);
+  for (std::size_t eye = 0; eye < 2; ++eye)
+    presenter.draw(frame.colours(), frame.views(), eye, LAYOUT_SEPARATE, targets[eye], background);
+  const std::array presented = {written(0), written(1)};
+  for (stereo::Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
+  const stereo::Canvases canvases = presenter.canvases(targets, background);
+  EXPECT_TRUE(frame.draw(eyes(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, canvases.list).on_canvases);
+  EXPECT_EQ(written(0), presented[0]);
+  EXPECT_EQ(written(1), presented[1]);
+  EXPECT_NE(presented[0], presented[1]) << "one eye twice goes unnoticed";
+  EXPECT_THROW(frame.read_pictures(), Error);
+  EXPECT_THROW(frame.draw(eyes(rigs[0]), {}, settings, {}, std::span(canvases.list).first(1)), Error);
 }
 
 TEST(Foveate, ComposedPicturesGoIntoEveryLayout) {
