@@ -112,10 +112,11 @@ void measure(uint at, uint p, float weight) {
 // The depth at which half of the light is gone; of the splats at hand some leave less than that.
 float median_depth(uint at[AHEAD], float weights[AHEAD], float light) {
   for (uint k = 0u; k < AHEAD; ++k) {
-    light -= weights[k];
-    if (light < 1.0 - float(COVERAGE_FOR_DEPTH)) return batch_colour[at[k]].a;
+    precise float left = light - weights[k];
+    if (left < 1.0 - float(COVERAGE_FOR_DEPTH)) return batch_colour[at[k]].a;
+    light = left;
   }
-  return 0.0;
+  return batch_colour[at[AHEAD - 1u]].a;
 }
 
 // What a tile measured of a splat, to the buffer.
@@ -375,7 +376,7 @@ void write_pixels() {
 #if CANVASES
     if (left >= 1.0 - float(COVERAGE_FOR_DEPTH)) z_sum[p] = 0.0;
 #if !MEDIAN
-    z_sum[p] /= 1.0 - left;
+    else z_sum[p] /= 1.0 - left;
 #endif
 #elif MEDIAN
     precise float cover = 1.0 - left;

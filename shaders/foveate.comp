@@ -1,6 +1,6 @@
 // An eye's picture of its parts: within the inset the pixels of its window as they are, beyond the seam around it the context,
-// which has fewer pixels, and in the seam one going over into the other. One invocation a pixel; a work group shares the
-// context's pixels that its own are made of.
+// which has fewer pixels, and in the seam one going over into the other. A work group shares the context's pixels that its own
+// are made of.
 //   CANVASES    1: the picture goes into an image as it is shown, and its depths nowhere
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -9,9 +9,11 @@
 #include "canvases.glsl"
 #endif
 
-#define COLUMNS 32u
-#define ROWS 8u
-layout(local_size_x = COLUMNS, local_size_y = ROWS) in;
+// Pixels of a work group, of which each invocation has two, one half of the rows below the other.
+#define COLUMNS COMPOSE_COLUMNS
+#define ROWS COMPOSE_ROWS
+#define THREAD_ROWS 8u
+layout(local_size_x = COLUMNS, local_size_y = THREAD_ROWS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
 layout(std430, binding = 1) readonly buffer ZSums { float z_sums[]; };
@@ -27,7 +29,8 @@ uniform uint width, height;  // of the picture, px
 uniform uint context_first, context_width, context_height;
 uniform uint window_first, window_left, window_top, window_width;  // left and top in the picture
 uniform uint inset_left, inset_top, inset_right, inset_bottom;     // in the picture
-uniform uint seam;                                                 // bits of a float, px
+uniform uint seam;            // bits of a float, px
+uniform uint step_x, step_y;  // bits of floats: px of the context to one of the picture
 
 // A context has at most as many pixels as the picture; one is made of those from the one before to two after.
 #define AROUND_COLUMNS (COLUMNS + 4u)
@@ -58,56 +61,56 @@ vec4 weights_of(float t) {
 }
 
 // Where a pixel of the picture lies among the context's.
+// The same number wherever it is asked for: by it shared memory is filled and read.
 vec2 in_context(uvec2 pixel) {
-  return (vec2(pixel) + 0.5) * vec2(context_width, context_height) / vec2(width, height) - 0.5;
+  precise vec2 at = (vec2(pixel) + 0.5) * uintBitsToFloat(uvec2(step_x, step_y)) - 0.5;
+  return at;
 }
 
-// The context as it would be seen at this invocation's pixel: Catmull-Rom, within the range of the four that lie nearest, or
-// edges would have bright and dark seams and T could leave its range. `corner` is the group's first pixel.
-Pixel context_at(uvec2 pixel, uvec2 corner) {
-  ivec2 base = ivec2(floor(in_context(corner))) - 1;
-  ivec2 count = ivec2(floor(in_context(corner + uvec2(COLUMNS - 1u, ROWS - 1u)))) + 3 - base;
+// The context as it would be seen, by Catmull-Rom, and along each axis within the range of the two that lie nearest, or edges
+// would have bright and dark seams and T could leave its range. First the context's rows at the pixels' columns.
+void filter_rows(uvec2 corner, ivec2 base, ivec2 count) {
+  uvec2 self = gl_LocalInvocationID.xy;
   ivec2 most = ivec2(context_width, context_height) - 1;
-  for (uint k = gl_LocalInvocationIndex; k < uint(count.x * count.y); k += COLUMNS * ROWS) {
-    uvec2 at = uvec2(k % uint(count.x), k / uint(count.x));
-    uvec2 place = uvec2(clamp(base + ivec2(at), ivec2(0), most));
-    Pixel one = pixel_at(context_first + place.y * context_width + place.x);
-    around[at.y * AROUND_COLUMNS + at.x] = one.colour;
+  for (uint y = self.y; y < uint(count.y); y += THREAD_ROWS) {
+    for (uint x = self.x; x < uint(count.x); x += COLUMNS) {
+      uvec2 place = uvec2(clamp(base + ivec2(x, y), ivec2(0), most));
+      Pixel one = pixel_at(context_first + place.y * context_width + place.x);
+      around[y * AROUND_COLUMNS + x] = one.colour;
 #if !CANVASES
-    around_z[at.y * AROUND_COLUMNS + at.x] = one.z_sum;
+      around_z[y * AROUND_COLUMNS + x] = one.z_sum;
 #endif
+    }
   }
   barrier();
-  vec2 at = in_context(pixel);
-  vec2 cell = floor(at);
-  uvec2 from = uvec2(ivec2(cell) - 1 - base);
-  vec4 weights = weights_of(at.x - cell.x);
-  for (uint y = gl_LocalInvocationID.y; y < uint(count.y); y += ROWS) {
+  float at = in_context(corner + self).x;
+  vec4 weights = weights_of(at - floor(at));
+  for (uint y = self.y; y < uint(count.y); y += THREAD_ROWS) {
+    uint from = y * AROUND_COLUMNS + uint(int(floor(at)) - 1 - base.x), to = y * COLUMNS + self.x;
     vec4 sum = vec4(0.0);
-    for (uint k = 0u; k < 4u; ++k) sum += weights[k] * around[y * AROUND_COLUMNS + from.x + k];
-    across[y * COLUMNS + gl_LocalInvocationID.x] = sum;
+    for (uint k = 0u; k < 4u; ++k) sum += weights[k] * around[from + k];
+    across[to] = clamp(sum, min(around[from + 1u], around[from + 2u]), max(around[from + 1u], around[from + 2u]));
 #if !CANVASES
     float z = 0.0;
-    for (uint k = 0u; k < 4u; ++k) z += weights[k] * around_z[y * AROUND_COLUMNS + from.x + k];
-    across_z[y * COLUMNS + gl_LocalInvocationID.x] = z;
+    for (uint k = 0u; k < 4u; ++k) z += weights[k] * around_z[from + k];
+    across_z[to] = clamp(z, min(around_z[from + 1u], around_z[from + 2u]), max(around_z[from + 1u], around_z[from + 2u]));
 #endif
   }
   barrier();
-  weights = weights_of(at.y - cell.y);
+}
+
+// Then what a pixel in this invocation's column sees of them.
+Pixel context_at(uint pixel_y, int base_y) {
+  float at = in_context(uvec2(0u, pixel_y)).y;
+  vec4 weights = weights_of(at - floor(at));
+  uint from = uint(int(floor(at)) - 1 - base_y) * COLUMNS + gl_LocalInvocationID.x;
   Pixel sum = Pixel(vec4(0.0), 0.0);
-  for (uint k = 0u; k < 4u; ++k) {
-    uint row = (from.y + k) * COLUMNS + gl_LocalInvocationID.x;
-    sum.colour += weights[k] * across[row];
+  for (uint k = 0u; k < 4u; ++k) sum.colour += weights[k] * across[from + k * COLUMNS];
+  uint above = from + COLUMNS, below = above + COLUMNS;
+  sum.colour = clamp(sum.colour, min(across[above], across[below]), max(across[above], across[below]));
 #if !CANVASES
-    sum.z_sum += weights[k] * across_z[row];
-#endif
-  }
-  uint nearest = (from.y + 1u) * AROUND_COLUMNS + from.x + 1u, below = nearest + AROUND_COLUMNS;
-  sum.colour = clamp(sum.colour, min(min(around[nearest], around[nearest + 1u]), min(around[below], around[below + 1u])),
-                     max(max(around[nearest], around[nearest + 1u]), max(around[below], around[below + 1u])));
-#if !CANVASES
-  sum.z_sum = clamp(sum.z_sum, min(min(around_z[nearest], around_z[nearest + 1u]), min(around_z[below], around_z[below + 1u])),
-                    max(max(around_z[nearest], around_z[nearest + 1u]), max(around_z[below], around_z[below + 1u])));
+  for (uint k = 0u; k < 4u; ++k) sum.z_sum += weights[k] * across_z[from + k * COLUMNS];
+  sum.z_sum = clamp(sum.z_sum, min(across_z[above], across_z[below]), max(across_z[above], across_z[below]));
 #endif
   return sum;
 }
@@ -127,22 +130,14 @@ bool is_inset(uvec2 corner) {
   return all(greaterThanEqual(corner, uvec2(inset_left, inset_top))) && all(lessThanEqual(last, uvec2(inset_right, inset_bottom)));
 }
 
-void main() {
-  uint groups_across = (width + COLUMNS - 1u) / COLUMNS;
-  uvec2 corner = uvec2(group_index() % groups_across, group_index() / groups_across) * uvec2(COLUMNS, ROWS);
-  if (corner.y >= height) return;
-  uvec2 pixel = corner + gl_LocalInvocationID.xy;
-  bool is_there = pixel.x < width && pixel.y < height;
-  pixel = min(pixel, uvec2(width, height) - 1u);
+void draw(uvec2 pixel, bool has_context, int base_y) {
   float share = share_of_window(pixel);
   Pixel shown;
   if (share > 0.0) shown = pixel_at(window_first + (pixel.y - window_top) * window_width + pixel.x - window_left);
-  if (!is_inset(corner)) {
-    Pixel context = context_at(pixel, corner);
-    if (share < 1.0)
-      shown = share > 0.0 ? Pixel(mix(context.colour, shown.colour, share), mix(context.z_sum, shown.z_sum, share)) : context;
+  if (has_context && share < 1.0) {
+    Pixel context = context_at(pixel.y, base_y);
+    shown = share > 0.0 ? Pixel(mix(context.colour, shown.colour, share), mix(context.z_sum, shown.z_sum, share)) : context;
   }
-  if (!is_there) return;
 #if CANVASES
   vec3 background = uintBitsToFloat(uvec3(background_r, background_g, background_b));
   write_on_canvas(0u, canvases[nth], height, pixel, shown.colour, background);
@@ -150,4 +145,18 @@ void main() {
   composed[first + pixel.y * width + pixel.x] = shown.colour;
   composed_z[first + pixel.y * width + pixel.x] = shown.z_sum;
 #endif
+}
+
+void main() {
+  uint groups_across = (width + COLUMNS - 1u) / COLUMNS;
+  uvec2 corner = uvec2(group_index() % groups_across, group_index() / groups_across) * uvec2(COLUMNS, ROWS);
+  if (corner.y >= height) return;
+  ivec2 base = ivec2(floor(in_context(corner))) - 1;
+  bool has_context = !is_inset(corner);
+  if (has_context) filter_rows(corner, base, ivec2(floor(in_context(corner + uvec2(COLUMNS - 1u, ROWS - 1u)))) + 3 - base);
+  uvec2 pixel = corner + gl_LocalInvocationID.xy;
+  for (uint half_rows = 0u; half_rows < ROWS; half_rows += THREAD_ROWS) {
+    uvec2 one = pixel + uvec2(0u, half_rows);
+    if (one.x < width && one.y < height) draw(one, has_context, base.y);
+  }
 }

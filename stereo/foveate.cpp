@@ -31,6 +31,8 @@ glm::dvec2 slopes_of(const glm::dvec3& direction, int k, double half) {
   return {std::tan(std::max(middle - side, -most)), std::tan(std::min(middle + side, most))};
 }
 
+std::uint32_t bits(float number) { return std::bit_cast<std::uint32_t>(number); }
+
 struct Span {
   std::uint32_t begin = 0, end = 0;
 };
@@ -117,6 +119,8 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   if (eyes.empty() || eyes.size() > MAX_VIEWS / 2)
     fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
   if (!settings.parts.empty()) fail("foveation of views of which only parts are drawn");
+  if (settings.depth == Depth::median)
+    fail("foveation with the median depth: between inset and context only means are mixed");
   FoveatedViews out{.settings = settings};
   for (std::size_t k = 0; k < eyes.size(); ++k) {
     const FoveatedEye& eye = out.eyes.emplace_back(foveate(eyes[k], foveation, k));
@@ -130,11 +134,11 @@ render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, cons
                                         const render::FrameSettings& settings,
                                         const render::Workings& workings,
                                         std::span<const render::Canvas> canvases) {
-  on_canvases_ = !canvases.empty();
-  if (on_canvases_ && canvases.size() != eyes.size())
+  if (!canvases.empty() && canvases.size() != eyes.size())
     fail("{} canvases for {} eyes: expected one each", canvases.size(), eyes.size());
   FoveatedViews drawn = foveated_views(eyes, foveation, settings);
   render::FrameReport report = frame_.draw(drawn.views, drawn.settings, workings);
+  on_canvases_ = !canvases.empty();
   eyes_.assign(eyes.begin(), eyes.end());
   std::int64_t pixels = 0;
   for (shared::View& eye : eyes_) {
@@ -172,7 +176,8 @@ void FoveatedFrame::compose(std::size_t k, const FoveatedEye& parts, const glm::
     const render::Canvas& to = canvases[k];
     gl.gl().BindImageTexture(0, to.texture, to.level, GL_FALSE, to.layer, GL_WRITE_ONLY, to.format);
   }
-  const std::uint64_t groups = std::uint64_t{(eye.width + 31) / 32} * ((eye.height + 7) / 8);
+  const std::uint64_t groups = std::uint64_t{(eye.width + COMPOSE_COLUMNS - 1) / COMPOSE_COLUMNS} *
+                               ((eye.height + COMPOSE_ROWS - 1) / COMPOSE_ROWS);
   dispatcher_.start(gl.program("foveate.comp", {{"CANVASES", on_canvases_ ? "1" : "0"}}),
                     gl::Work::of_groups(groups),
                     {{"Colours", frame_.colours()},
@@ -181,12 +186,14 @@ void FoveatedFrame::compose(std::size_t k, const FoveatedEye& parts, const glm::
                      {"ComposedZ", z_sums_},
                      {"Canvases", canvases_}},
                     {{"nth", static_cast<std::uint32_t>(k)},
-                     {"background_r", std::bit_cast<std::uint32_t>(background.r)},
-                     {"background_g", std::bit_cast<std::uint32_t>(background.g)},
-                     {"background_b", std::bit_cast<std::uint32_t>(background.b)},
+                     {"background_r", bits(background.r)},
+                     {"background_g", bits(background.g)},
+                     {"background_b", bits(background.b)},
                      {"first", eye.pixel_offset},
                      {"width", eye.width},
                      {"height", eye.height},
+                     {"step_x", bits(static_cast<float>(context.width) / static_cast<float>(eye.width))},
+                     {"step_y", bits(static_cast<float>(context.height) / static_cast<float>(eye.height))},
                      {"context_first", context.pixel_offset},
                      {"context_width", context.width},
                      {"context_height", context.height},
@@ -198,7 +205,7 @@ void FoveatedFrame::compose(std::size_t k, const FoveatedEye& parts, const glm::
                      {"inset_top", parts.inset_begin.y},
                      {"inset_right", parts.inset_end.x},
                      {"inset_bottom", parts.inset_end.y},
-                     {"seam", std::bit_cast<std::uint32_t>(static_cast<float>(parts.seam))}});
+                     {"seam", bits(static_cast<float>(parts.seam))}});
 }
 
 std::vector<Picture> FoveatedFrame::read_pictures() const {

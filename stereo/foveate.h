@@ -50,8 +50,8 @@ struct FoveatedViews {
   render::FrameSettings settings;
 };
 
-/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have parts, and as foveate()
-/// does.
+/// Throws Error for more than MAX_VIEWS / 2 eyes, for settings that already have parts or ask for the median
+/// depth, and as foveate() does.
 FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation& foveation,
                              const render::FrameSettings& settings = {});
 
@@ -72,7 +72,7 @@ class FoveatedFrame {
                            std::span<const render::Canvas> canvases = {});
 
   /// The composed pictures of the last frame, one an eye; and on the GPU, as a frame's lie: vec4 (C, T) by
-  /// pixel, a view's from its pixel_offset on.
+  /// pixel, a view's from its pixel_offset on; unless they went onto canvases.
   std::vector<Picture> read_pictures() const;
   const gl::Buffer& colours() const { return colours_; }
   const std::vector<shared::View>& views() const { return eyes_; }

@@ -69,6 +69,9 @@
 // Pixels that a work group of `present` writes: each row of them is read as 512 bytes on end.
 #define PRESENT_COLUMNS 32u
 #define PRESENT_ROWS 8u
+// Pixels of a work group that composes foveated pictures.
+#define COMPOSE_COLUMNS 32u
+#define COMPOSE_ROWS 16u
 // Elements that one work group scans, compacts or sorts: several rounds of THREADS. A sort of few has smaller
 // blocks, or they would not fill a GPU; its programs define theirs (primitives/radix_sort.h).
 #define SCAN_BLOCK 2048

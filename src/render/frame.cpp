@@ -48,11 +48,11 @@ Frame::Frame(std::shared_ptr<GpuModel> model)
 
 FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings& settings,
                         const Workings& workings, std::span<const Canvas> canvases, int depth_rows) {
-  begin(views, settings, workings);
   const bool fit = canvases.size() == views.size() && canvases.size() <= MAX_CANVASES;
   if (!fit && !canvases.empty())
     fail("{} canvases for {} views: expected one each, at most {}", canvases.size(), views.size(),
          MAX_CANVASES);
+  begin(views, settings, workings);
   if (settings.quality > 0.0f) return draw_with_quality(views, settings, workings, canvases, depth_rows);
   if (!workings.stand_in) take_canvases(canvases, depth_rows);
   return attempt(workings);

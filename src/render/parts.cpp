@@ -17,8 +17,7 @@ void check_parts(const FrameSettings& settings, std::size_t views, bool is_scaff
       fail("a view with {} of the frame's tolerance: expected zero or more", part.tolerance_share);
     if (!(part.low_pass_share > 0.0f && part.low_pass_share <= 1.0f))
       fail("a share of {} of the low-pass: expected above zero, up to 1", part.low_pass_share);
-    if (settings.quality > 0.0f &&
-        (part.is_window() || part.tolerance_share != 1.0f || part.low_pass_share != 1.0f))
+    if (settings.quality > 0.0f && (part.is_window() || part.tolerance_share != 1.0f))
       fail("a quality is found for whole pictures of one tolerance: give a tolerance in its place");
     if (settings.between && !part.is_whole()) fail("rays between pixels: only of whole pictures");
     if (is_scaffold && part.is_window()) {

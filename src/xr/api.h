@@ -51,7 +51,6 @@ namespace binosplat::xr {
   X(AttachSessionActionSets)           \
   X(SyncActions)                       \
   X(GetActionStateBoolean)             \
-  X(GetActionStateFloat)               \
   X(GetActionStateVector2f)            \
   X(GetActionStatePose)
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace binosplat::xr {
 
@@ -18,17 +19,32 @@ constexpr double wait_most_ms = 32000.0;
 Effort Budget::effort() const { return efforts[step_]; }
 
 void Budget::took(double ms, double period_ms) {
+  // The first of an effort may have programs compiled.
+  if (std::exchange(fresh_, false)) return;
   late_ = ms > ms_ ? late_ + 1 : 0;
   early_ms_ = ms < ample * ms_ ? early_ms_ + period_ms : 0.0;
+  since_raised_ms_ += period_ms;
   if (late_ >= 2 || ms > much_too_late * ms_) {
-    // What was raised not long ago was raised too far.
-    wait_ms_ = std::min(2.0 * wait_ms_, wait_most_ms);
-    step_ = std::min(step_ + 1, least);
-    late_ = 0;
-  } else if (early_ms_ >= wait_ms_ && step_ > 0) {
-    --step_;
-    early_ms_ = 0.0;
+    if (raised_) wait_ms_ = std::min(2.0 * wait_ms_, wait_most_ms);  // it was raised too far
+    if (step_ < least) set(step_ + 1);
+    raised_ = false;
+    return;
   }
+  if (raised_ && since_raised_ms_ > wait_ms_) {  // it lasts
+    raised_ = false;
+    wait_ms_ = wait_least_ms;
+  }
+  if (early_ms_ < wait_ms_ || step_ == 0) return;
+  set(step_ - 1);
+  raised_ = true;
+  since_raised_ms_ = 0.0;
+}
+
+void Budget::set(int step) {
+  step_ = step;
+  late_ = 0;
+  early_ms_ = 0.0;
+  fresh_ = true;
 }
 
 }  // namespace binosplat::xr

@@ -20,16 +20,20 @@ class Budget {
 
   Effort effort() const;
 
-  /// What a frame of this effort took. One that is late by a third, or two in a row that are late, lessen the
-  /// effort; a second of frames that take less than three quarters of the time raise it again, and where that
-  /// was too much, it takes longer to be tried again.
+  /// What a frame of this effort took; the first of an effort does not count. One that is late by a third, or
+  /// two in a row that are late, lessen the effort; a second of frames that take less than three quarters of
+  /// the time raise it again, and after each raise that was too much it takes twice as long, up to 32 s.
   void took(double ms, double period_ms);
 
  private:
+  static constexpr double wait_least_ms = 1000.0;
+  void set(int step);
+
   double ms_;
   int step_ = 0;  // less and less effort
   int late_ = 0;  // frames in a row
-  double early_ms_ = 0.0, wait_ms_ = 1000.0;
+  bool fresh_ = true, raised_ = false;
+  double early_ms_ = 0.0, since_raised_ms_ = 0.0, wait_ms_ = wait_least_ms;
 };
 
 }  // namespace binosplat::xr

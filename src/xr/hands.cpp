@@ -9,8 +9,6 @@ namespace binosplat::xr {
 
 namespace {
 
-constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
-
 // Where a kind of controller has what the actions need, below its hand; empty: nowhere.
 struct Controller {
   const char* profile;
@@ -36,6 +34,16 @@ Hands::Hands(Session& session) : session_(session), api_(session.instance().api(
   std::strcpy(info.actionSetName, "walk");
   std::strcpy(info.localizedActionSetName, "Walk");
   check(api_.CreateActionSet(instance.handle(), &info, &set_), "xrCreateActionSet");
+  try {
+    make_actions();
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+void Hands::make_actions() {
+  const Instance& instance = session_.instance();
   pose_ = make_action("hand", "Hand", XR_ACTION_TYPE_POSE_INPUT);
   stick_ = make_action("stick", "Walk (left), turn and rise (right)", XR_ACTION_TYPE_VECTOR2F_INPUT);
   grab_ = make_action("grab", "Hold the world", XR_ACTION_TYPE_BOOLEAN_INPUT);
@@ -46,7 +54,7 @@ Hands::Hands(Session& session) : session_(session), api_(session.instance().api(
   XrSessionActionSetsAttachInfo attach{XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO};
   attach.countActionSets = 1;
   attach.actionSets = &set_;
-  check(api_.AttachSessionActionSets(session.handle(), &attach), "xrAttachSessionActionSets");
+  check(api_.AttachSessionActionSets(session_.handle(), &attach), "xrAttachSessionActionSets");
   const auto space_of = [&](XrAction action, XrPath hand) {
     XrActionSpaceCreateInfo wanted{XR_TYPE_ACTION_SPACE_CREATE_INFO};
     wanted.action = action;
@@ -60,7 +68,9 @@ Hands::Hands(Session& session) : session_(session), api_(session.instance().api(
   if (gaze_ != XR_NULL_HANDLE) gaze_space_ = space_of(gaze_, XR_NULL_PATH);
 }
 
-Hands::~Hands() {
+Hands::~Hands() { release(); }
+
+void Hands::release() {
   if (gaze_space_ != XR_NULL_HANDLE) api_.DestroySpace(gaze_space_);
   for (const XrSpace space : spaces_) {
     if (space != XR_NULL_HANDLE) api_.DestroySpace(space);

@@ -28,7 +28,9 @@ class Hands {
   std::optional<XrPosef> gaze(XrTime display);
 
  private:
+  void make_actions();
   void suggest_bindings();
+  void release();
   XrAction make_action(const char* name, const char* shown, XrActionType type);
 
   Session& session_;

@@ -2,9 +2,9 @@
 
 #include <chrono>
 #include <future>
+#include <glm/gtc/quaternion.hpp>
 #include <thread>
 
-#include "base/clock.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/statistics.h"
@@ -20,7 +20,7 @@ using std::chrono::milliseconds;
 constexpr double own_share = 0.8;         // of a frame's time: the runtime draws, too
 constexpr double eyes_above_floor = 1.6;  // m, of somebody who stands
 constexpr int sessions_most = 10;         // one after the other, where they are lost
-constexpr milliseconds between_sessions{500};
+constexpr milliseconds between_sessions{500}, wait_most{10000};
 constexpr XrDuration between_looks = 1'000'000'000;  // ns
 constexpr milliseconds between_polls{10};            // while no frames are wanted
 
@@ -37,6 +37,27 @@ class Viewer {
 
   /// False where the session was lost.
   bool run_session() {
+    try {
+      return play_session();
+    } catch (const Lost& lost) {
+      if (lost.instance)
+        throw Error(ExitCode::no_gl,
+                    fmt::format("{} has ended: start it, and then this again", instance_.runtime()));
+      return leaving_;
+    }
+  }
+
+  std::size_t frames() const { return times_.size(); }
+
+  void tell() const {
+    if (times_.empty()) return log_info("no frame was drawn");
+    log_info("{} frames were drawn, in {:.2f} ms of GPU time each (median), {:.1f} at most", times_.size(),
+             quantile(times_, 0.5), quantile(times_, 1.0));
+  }
+
+ private:
+  /// Until it is over. Throws Lost.
+  bool play_session() {
     Session session(instance_);
     const struct Ended {  // before the session
       std::unique_ptr<Projection>& projection;
@@ -44,36 +65,21 @@ class Viewer {
     } ended{projection_};
     Hands hands(session);
     make_projection(session);
-    Walk walk(start_of(settings_, session.on_floor()));
     frame_.frame().start_over();
     last_.reset();
-    try {
-      while (session.poll()) {
-        if (session.running()) draw(session, hands, walk);
-        if (!beside_.step() && !leaving_) {
-          leaving_ = true;
-          session.request_exit();
-        }
-        if (!session.running()) std::this_thread::sleep_for(between_polls);
+    while (session.poll()) {
+      if (session.running()) draw(session, hands);
+      if (!beside_.step() && !leaving_) {
+        leaving_ = true;
+        session.request_exit();
       }
-    } catch (const Lost& lost) {
-      if (lost.instance)
-        throw Error(ExitCode::no_gl,
-                    fmt::format("{} has ended: start it, and then this again", instance_.runtime()));
-      return leaving_;
+      if (!session.running()) std::this_thread::sleep_for(between_polls);
     }
     return true;
   }
 
-  void tell() const {
-    if (times_.empty()) return log_info("no frame was drawn");
-    log_info("{} frames were drawn, in {:.1f} ms each (median), {:.1f} at most", times_.size(),
-             quantile(times_, 0.5), quantile(times_, 1.0));
-  }
-
- private:
   /// A frame of the runtime's.
-  void draw(Session& session, Hands& hands, Walk& walk) {
+  void draw(Session& session, Hands& hands) {
     const FrameTime time = session.begin_frame();
     const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
     if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
@@ -82,13 +88,13 @@ class Viewer {
       last_.reset();
       return session.end_frame(time, nullptr);
     }
-    if (session.take_recentred()) frame_.frame().forget();
+    if (session.take_recentred(time.display)) frame_.frame().forget();
     if (time.display - looked_ >= between_looks) {
       looked_ = time.display;
       if (projection_->outdated()) make_projection(session);
     }
     if (session.take_masks_changed()) projection_->take_masks();
-    follow(hands, walk, views, time);
+    follow(session, hands, views, time);
     follow_levels();
     if (settings_.budget_ms && !budget_) {
       const double period_ms = 1e-6 * static_cast<double>(time.period);
@@ -97,14 +103,13 @@ class Viewer {
     const Effort effort = budget_ ? budget_->effort() : Effort{settings_.frame.quality, 1.0};
     render::FrameSettings settings = settings_.frame;
     settings.quality = effort.quality;
-    if (effort.quality > 0.0f) settings.th = TH_SQUARED;
-    const auto start = Clock::now();
+    if (budget_ && effort.quality > 0.0f) settings.th = TH_SQUARED;
     const std::optional<XrPosef> gaze =
         settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
-    projection_->draw(frame_, views, walk.stage(), settings, effort.scale, beside_.show, gaze);
-    const double ms = ms_since(start);
-    times_.push_back(ms);
-    if (budget_) budget_->took(ms, 1e-6 * static_cast<double>(time.period));
+    const render::FrameReport report =
+        projection_->draw(frame_, views, walk_->stage(), settings, effort.scale, beside_.show, gaze);
+    times_.push_back(report.total_ms);
+    if (budget_) budget_->took(report.total_ms, 1e-6 * static_cast<double>(time.period));
     session.end_frame(time, projection_->layer());
   }
 
@@ -116,12 +121,16 @@ class Viewer {
   }
 
   /// To where hands take the head.
-  void follow(Hands& hands, Walk& walk, const std::vector<XrView>& views, const FrameTime& time) {
+  void follow(const Session& session, Hands& hands, const std::vector<XrView>& views, const FrameTime& time) {
     const Deeds deeds = hands.read(time.display);
-    stereo::XrEye head = eye_of(views[0].pose);
-    head.position = 0.5 * (head.position + eye_of(views[1].pose).position);
-    if (deeds.resets) walk.reset();
-    if (last_) walk.step(head, deeds.hands, 1e-9 * static_cast<double>(time.display - *last_));
+    const stereo::XrEye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
+    stereo::XrEye head = left;  // between both eyes, which may be canted
+    head.position = 0.5 * (left.position + right.position);
+    head.orientation =
+        left.orientation + glm::sign(glm::dot(left.orientation, right.orientation)) * right.orientation;
+    if (!walk_) walk_.emplace(start_of(settings_, session.on_floor(), session.on_stage() ? &head : nullptr));
+    if (deeds.resets) walk_->reset();
+    if (last_) walk_->step(head, deeds.hands, 1e-9 * static_cast<double>(time.display - *last_));
     last_ = time.display;
   }
 
@@ -146,6 +155,7 @@ class Viewer {
   Model model_;
   stereo::FoveatedFrame frame_;
   std::future<Model> levels_;
+  std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<Budget> budget_;
   std::unique_ptr<Projection> projection_;  // of the session at hand
   std::optional<XrTime> last_;              // when the last frame was seen
@@ -156,7 +166,7 @@ class Viewer {
 
 }  // namespace
 
-stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor) {
+stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor, const stereo::XrEye* head) {
   const glm::dvec3 up = glm::normalize(settings.up);
   const Camera& start = settings.start;
   glm::dvec3 forward = start.rotation[2] - glm::dot(start.rotation[2], up) * up;
@@ -168,17 +178,32 @@ stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor) {
   stage.units_per_metre = settings.units_per_metre;
   stage.origin = start.position;
   if (on_floor) stage.origin -= eyes_above_floor * settings.units_per_metre * up;
+  if (head == nullptr) return stage;
+  const glm::dvec3 ahead = heading_of(*head);
+  const double turned = std::atan2(-ahead.x, -ahead.z);  // to the left
+  stage.axes *= glm::mat3_cast(glm::angleAxis(-turned, glm::dvec3(0.0, 1.0, 0.0)));
+  stage.origin -=
+      settings.units_per_metre * (stage.axes * glm::dvec3(head->position.x, 0.0, head->position.z));
   return stage;
 }
 
-void run(const Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
+void run(Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
          const Beside& beside) {
   Viewer viewer(instance, context, std::move(model), settings, beside);
-  for (int n = 1; !viewer.run_session(); ++n) {
-    if (n == sessions_most)
+  std::size_t drawn = 0;
+  for (int in_vain = 0; !viewer.run_session();) {
+    in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;
+    drawn = viewer.frames();
+    if (in_vain == sessions_most)
       throw Error(ExitCode::no_gl, fmt::format("{} loses every session", instance.runtime()));
     log_warning("{} lost the session: it is begun again", instance.runtime());
     std::this_thread::sleep_for(between_sessions);
+    for (auto waited = between_sessions; !instance.find_again(); waited += between_sessions) {
+      if (waited > wait_most)
+        throw Error(ExitCode::no_gl,
+                    fmt::format("{} lost the headset: connect it and switch it on", instance.runtime()));
+      std::this_thread::sleep_for(between_sessions);
+    }
   }
   viewer.tell();
 }

@@ -106,6 +106,12 @@ void Instance::find_headset() {
     throw Error(ExitCode::no_gl, fmt::format("{} shows no two eyes: it is no stereo headset", headset_));
 }
 
+bool Instance::find_again() {
+  XrSystemGetInfo wanted{XR_TYPE_SYSTEM_GET_INFO};
+  wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
+  return XR_SUCCEEDED(api_.GetSystem(instance_, &wanted, &system_));
+}
+
 std::vector<XrViewConfigurationView> Instance::views() const {
   XrViewConfigurationView empty{};
   empty.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;

@@ -33,6 +33,9 @@ class Instance {
   std::vector<XrViewConfigurationView> views() const;
   XrEnvironmentBlendMode blend_mode() const;
 
+  /// Whether the headset is there, maybe another time: the system is the one found now.
+  bool find_again();
+
   XrPath path(const std::string& text) const;
 
  private:

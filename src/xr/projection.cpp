@@ -171,12 +171,12 @@ void Projection::take_masks() {
 }
 
 // By the order in which they are drawn; none where all of every view is.
-std::vector<render::ViewPart> Projection::parts_of(std::span<const XrView> located,
+std::vector<render::ViewPart> Projection::parts_of(int tile, std::span<const XrView> located,
                                                    std::span<const glm::ivec2> sizes) const {
   std::vector<render::ViewPart> parts(located.size());
   for (std::size_t k = 0; k < located.size(); ++k) {
     const std::size_t at = place_of(k, located.size());
-    parts[at].columns = visible_columns(eyes_[k].visible, located[k].fov, sizes[at], TILE_SIZE_DEFAULT);
+    parts[at].columns = visible_columns(eyes_[k].visible, located[k].fov, sizes[at], tile);
     if (located.size() == 4 && k < 2) {
       const std::size_t inset = place_of(k + 2, located.size());
       take_hole(located[k], located[k + 2], sizes[at], parts[at]);
@@ -204,8 +204,10 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     drawn[place_of(k, count)] = eye_of(located[k].pose, located[k].fov);
     sizes[place_of(k, count)] = glm::max(glm::ivec2(1), glm::ivec2(glm::round(part * glm::dvec2(sizes_[k]))));
   }
-  const stereo::HeadViews head = stereo::views_from_xr(drawn, stage, sizes, settings_.near_plane);
-  const double near_plane = settings_.near_plane;
+  // Hands that enlarge the world do not push the near plane away.
+  const double near_plane =
+      settings_.near_plane * std::min(1.0, stage.units_per_metre / settings_.units_per_metre);
+  const stereo::HeadViews head = stereo::views_from_xr(drawn, stage, sizes, near_plane);
   const double far_plane = std::max(far_metres * stage.units_per_metre, 2.0 * near_plane);
   std::vector<stereo::Target> targets(count);
   std::vector<stereo::DepthTarget> depths(has_depths ? count : 0);
@@ -222,7 +224,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     if (gaze) foveation.gaze = gaze_of(*gaze, located);
     report = frame.draw(head.views, foveation, settings, {}, canvases.list);
   } else {
-    settings.parts = parts_of(located, sizes);
+    settings.parts = parts_of(settings.tile_size, located, sizes);
     report = frame.frame().draw(head.views, settings, {}, canvases.list, 2);
   }
   const gl::Buffer& colours = foveates() ? frame.colours() : frame.frame().colours();
@@ -232,7 +234,8 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
       presenter_.draw(colours, views, k, LAYOUT_SEPARATE, targets[k], settings_.background);
     if (has_depths) presenter_.draw_depth(frame.frame(), k, depths[k]);
   }
-  if (drawn_left) drawn_left(targets[0].texture, sizes[0]);
+  const std::size_t shown = count == 4 ? place_of(2, count) : 0;  // of four views the inset
+  if (drawn_left) drawn_left(targets[shown].texture, sizes[shown]);
   submit(located, sizes, near_plane / stage.units_per_metre, far_plane / stage.units_per_metre);
   return report;
 }

@@ -18,7 +18,8 @@ namespace binosplat::xr {
 /// How the views of a headset are drawn.
 struct ProjectionSettings {
   double scale = 1.0;                // of the sizes that the runtime recommends
-  double near_plane = near_default;  // world units
+  double near_plane = near_default;  // world units, of a world in which a metre has
+  double units_per_metre = 1.0;      // so many
   glm::vec3 background{0.0f};
   /// Of a headset with two views; one with four has insets of its own. No depths go with composed pictures.
   std::optional<stereo::Foveation> foveation;
@@ -46,9 +47,8 @@ class Projection {
   /// The frame that was drawn last, for Session::end_frame.
   const XrCompositionLayerBaseHeader* layer() const;
 
-  /// "GL_SRGB8_ALPHA8", and whether depths go with it: for people.
+  /// The sizes, "GL_SRGB8_ALPHA8", and whether depths go with it: for people.
   std::string description() const;
-  std::size_t view_count() const { return eyes_.size(); }
 
  private:
   struct Eye {
@@ -61,7 +61,7 @@ class Projection {
               double far_metres);
   void make_colours();
   void make_depths();
-  std::vector<render::ViewPart> parts_of(std::span<const XrView> located,
+  std::vector<render::ViewPart> parts_of(int tile, std::span<const XrView> located,
                                          std::span<const glm::ivec2> sizes) const;
 
   const Session& session_;

@@ -15,8 +15,6 @@ namespace {
 // Of XR_EXT_local_floor, which Debian 12's headers do not know yet.
 constexpr auto local_floor = static_cast<XrReferenceSpaceType>(1000426000);
 
-constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
-
 const char* name_of_state(XrSessionState state) {
   switch (state) {
 #define BINOSPLAT_XR_NAME(name, value) \
@@ -69,6 +67,7 @@ void Session::make_space() {
     on_floor_ = std::find(spaces.begin(), spaces.end(), type) != spaces.end();
     if (!on_floor_) continue;
     info.referenceSpaceType = type;
+    on_stage_ = type == XR_REFERENCE_SPACE_TYPE_STAGE;
     break;
   }
   check(api_.CreateReferenceSpace(session_, &info, &space_), "xrCreateReferenceSpace");
@@ -87,7 +86,7 @@ bool Session::poll() {
       case XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING:
         throw Lost{.instance = true};
       case XR_TYPE_EVENT_DATA_REFERENCE_SPACE_CHANGE_PENDING:
-        recentred_ = true;
+        changes_at_ = reinterpret_cast<const XrEventDataReferenceSpaceChangePending&>(event).changeTime;
         break;
       case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR:
         masks_changed_ = true;
@@ -129,10 +128,13 @@ void Session::begin() {
   info.primaryViewConfigurationType = instance_.view_configuration();
   check(api_.BeginSession(session_, &info), "xrBeginSession");
   running_ = true;
-  recentred_ = true;
 }
 
-bool Session::take_recentred() { return std::exchange(recentred_, false); }
+bool Session::take_recentred(XrTime display) {
+  if (!changes_at_ || display < *changes_at_) return false;
+  changes_at_.reset();
+  return true;
+}
 
 bool Session::take_masks_changed() { return std::exchange(masks_changed_, false); }
 
@@ -165,6 +167,7 @@ std::vector<XrView> Session::locate(XrTime display) {
       });
   constexpr XrViewStateFlags valid = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
   if ((state.viewStateFlags & valid) != valid) views.clear();
+  if (!views.empty() && views.size() < 2) views.clear();
   return views;
 }
 

@@ -8,6 +8,8 @@
 
 namespace binosplat::xr {
 
+constexpr XrPosef no_move = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
+
 /// What the next frame is for.
 struct FrameTime {
   XrTime display = 0;     // when it is seen
@@ -29,6 +31,8 @@ class Session {
   /// x right, y up, z backward, metres. Its origin lies on the floor, or where the head was.
   XrSpace space() const { return space_; }
   bool on_floor() const { return on_floor_; }
+  /// Whether it is that of the room, whose middle is not where a head is at first.
+  bool on_stage() const { return on_stage_; }
 
   /// Takes the events that have come, and begins and ends the session as they ask. False once it is over.
   /// Throws Lost.
@@ -37,9 +41,10 @@ class Session {
   bool running() const { return running_; }
   /// Whether hands reach the program.
   bool focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
-  /// Whether the space was moved or is another since the last call: what is seen next follows nothing.
-  bool take_recentred();
-  /// Whether the visibility masks were changed since the last call, and at first.
+  /// Whether the space was moved, or is another, between the last frame asked for and this one, which then
+  /// follows nothing.
+  bool take_recentred(XrTime display);
+  /// Whether the visibility masks were changed since the last call.
   bool take_masks_changed();
   /// The user wants to leave: the runtime ends the session in its own time.
   void request_exit();
@@ -63,7 +68,8 @@ class Session {
   XrSpace space_ = XR_NULL_HANDLE;
   XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
   XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
-  bool on_floor_ = false, running_ = false, over_ = false, recentred_ = false, masks_changed_ = true;
+  std::optional<XrTime> changes_at_;  // the space
+  bool on_floor_ = false, on_stage_ = false, running_ = false, over_ = false, masks_changed_ = false;
 };
 
 }  // namespace binosplat::xr

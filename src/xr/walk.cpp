@@ -18,15 +18,14 @@ double beyond_slack(double push) {
   return std::copysign(std::max(0.0, std::abs(push) - slack) / (1.0 - slack), push);
 }
 
-// Where the head looks, level; forwards where it looks straight up or down.
-glm::dvec3 forward_of(const stereo::XrEye& head) {
-  const glm::dvec4& q = head.orientation;
+}  // namespace
+
+glm::dvec3 heading_of(const stereo::XrEye& head) {
+  const glm::dvec4 q = glm::normalize(head.orientation);
   const glm::dvec3 ahead = glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(0.0, 0.0, -1.0);
   const glm::dvec3 level(ahead.x, 0.0, ahead.z);
   return glm::length(level) > 1e-3 ? glm::normalize(level) : glm::dvec3(0.0, 0.0, -1.0);
 }
-
-}  // namespace
 
 void Walk::turn(double radians, const glm::dvec3& about) {
   const glm::dmat3 turned = stage_.axes * glm::mat3_cast(glm::angleAxis(radians, glm::dvec3(0.0, 1.0, 0.0)));
@@ -70,7 +69,7 @@ void Walk::grab(const std::array<Hand, 2>& hands) {
 void Walk::step(const stereo::XrEye& head, const std::array<Hand, 2>& hands, double seconds) {
   grab(hands);
   last_ = hands;
-  const glm::dvec3 forward = forward_of(head), right(-forward.z, 0.0, forward.x);
+  const glm::dvec3 forward = heading_of(head), right(-forward.z, 0.0, forward.x);
   const double metres = metres_a_second * seconds;
   shift(metres * (beyond_slack(hands[0].stick.x) * right + beyond_slack(hands[0].stick.y) * forward));
   const glm::dvec2 push = hands[1].stick;

@@ -17,6 +17,9 @@ struct Hand {
   bool grabs = false;
 };
 
+/// Where a head looks, level; forwards where it looks straight up or down.
+glm::dvec3 heading_of(const stereo::XrEye& head);
+
 class Walk {
  public:
   explicit Walk(const stereo::Stage& start) : start_(start), stage_(start) {}

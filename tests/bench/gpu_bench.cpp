@@ -199,6 +199,7 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
                                   static_cast<int>(shot.eyes[eye].height));
   }
   const stereo::Canvases canvases = presenter.canvases(targets, glm::vec3(0.0f));
+  if (canvases.list.empty()) fail("this driver writes no texture of sRGB in place");
   Json json =
       time([&] { return foveated.draw(shot.eyes, *how.foveate, how.settings, {}, canvases.list); }, how);
   json["exact"] = time([&] { return frame.draw(shot.eyes, exact, {}, canvases.list); }, how);

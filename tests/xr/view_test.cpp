@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
+#include "measure/metrics.h"
 #include "support/display.h"
 #include "support/gl.h"
 #include "support/models.h"
@@ -100,6 +101,13 @@ std::string bytes_of(const Picture& picture) {
   return bytes;
 }
 
+Image image_of(const std::string& bytes) {
+  Image image(width, height, 3);
+  for (std::size_t p = 0; p < image.data.size(); ++p)
+    image.data[p] = static_cast<unsigned char>(bytes[p / 3 * 4 + p % 3]) / 255.0f;
+  return image;
+}
+
 TEST_F(XrView, ShowsWhatAFrameDrawsToTheBit) {
   const std::array<double, 4> up_fov = {-0.6, 0.5, 0.4, -0.8};
   const struct {
@@ -114,7 +122,7 @@ TEST_F(XrView, ShowsWhatAFrameDrawsToTheBit) {
        {head({0, 1.6, 0}), head({0, 1.6, 0.1}, 5)}},
       {"of two sizes, asymmetric",
        {xr_view(64, 72, up_fov, head({-0.03, 0.01, 0})), xr_view(88, 56, right_fov, head({0.03, 0.01, 0}))},
-       {head({0.2, 1.6, 0})}},
+       {head({0, 1.6, 0}), head({0.2, 1.6, 0})}},
   };
   for (const auto& test : cases) {
     stage.script = {{"frames", 2}, {"heads", test.heads}};
@@ -260,6 +268,33 @@ TEST_F(XrView, OutlivesALostSessionButNotALostRuntime) {
   EXPECT_EQ(stage.log().faults(), Strings());
 }
 
+// Nothing is left where a session is lost while it is set up.
+TEST_F(XrView, OutlivesASessionLostAtItsBeginning) {
+  for (const char* call : {"xrCreateActionSet", "xrAttachSessionActionSets", "xrCreateSwapchain"}) {
+    stage.script = {{"frames", 2}};
+    stage.add_event({{"fail", call}, {"result", "XR_ERROR_SESSION_LOST"}, {"times", 1}});
+    const Outcome outcome = view();
+    EXPECT_EQ(outcome.code, 0) << call << outcome.err;
+    EXPECT_EQ(stage.log().faults(), Strings()) << call;
+  }
+  stage.script = {{"frames", 2}};
+  stage.add_event({{"fail", "xrGetSystem"}, {"result", "XR_ERROR_INSTANCE_LOST"}});
+  const Outcome ended = view();
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("runtime ended"), std::string::npos) << ended.err;
+}
+
+TEST_F(XrView, InARoomOneBeginsWhereOneStands) {
+  stage.script = {{"frames", 1}, {"heads", {head({0.7, 1.6, -0.4}, 30)}}};
+  ASSERT_EQ(view().code, 0);
+  const XrLog log = stage.log();
+  stage.script = {{"frames", 1}, {"heads", {head({0, 1.6, 0})}}};
+  ASSERT_EQ(view().code, 0);
+  const Image there = image_of(log.colours(log.frames()[0], 0));
+  const XrLog second = stage.log();
+  EXPECT_GT(measure::psnr(there, image_of(second.colours(second.frames()[0], 0))), 40.0);
+}
+
 TEST_F(XrView, HandsWalkAndTurn) {
   stage.script = {
       {"frames", 4}, {"profile", "/interaction_profiles/oculus/touch_controller"}, {"period", 100000000}};
@@ -324,6 +359,7 @@ TEST_F(XrView, FourViewsShareOneOrder) {
     EXPECT_EQ(differ_outside, 0) << k;
   }
   EXPECT_NE(outcome.err.find("48 x 40, 48 x 40, 64 x 56, 64 x 56 px"), std::string::npos) << outcome.err;
+  EXPECT_EQ(view({"--quality", "40"}).code, 0) << "contexts and insets by one tolerance";
 }
 
 TEST_F(XrView, FoveatesWhereTheEyesLook) {
@@ -380,6 +416,7 @@ TEST_F(XrView, LeavesOutWhatNoLensShows) {
   EXPECT_EQ(seen_differ, 0);
   EXPECT_EQ(hidden_black, hidden);
   EXPECT_NE(shown, whole);
+  EXPECT_EQ(view({"--tile", "8"}).code, 0) << "masks by other tiles";
 }
 
 TEST_F(XrView, SizesAndBudget) {

@@ -4,6 +4,7 @@
 
 #include "app/command_line.h"
 #include "app/context_options.h"
+#include "base/error.h"
 #include "base/log.h"
 #include "preview/mirror.h"
 #include "scene/axes.h"
@@ -14,11 +15,24 @@ namespace binosplat::app {
 
 void view_in_headset(const RenderOptions& o, const preview::Opened& scene, preview::Choices choices) {
   // A headset that is not there is said before a model is read.
-  const xr::Instance instance;
+  const std::unique_ptr<xr::Instance> opened = [] {
+    try {
+      return std::make_unique<xr::Instance>();
+    } catch (const xr::Lost&) {
+      throw Error(ExitCode::no_gl,
+                  "the OpenXR runtime ended while it was asked: start it, and then this again");
+    }
+  }();
+  xr::Instance& instance = *opened;
   log_info("{} on {}", instance.headset(), instance.runtime());
   std::unique_ptr<preview::Mirror> mirror;
   std::unique_ptr<gl::Context> own;
+  const bool four = instance.view_configuration() != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+  if (o.foveate && four)
+    log_warning("--foveate: {} has insets of its own, and takes these", instance.headset());
   if (o.headset.mirror && has_display()) {
+    if (o.context.device >= 0 || o.context.backend != gl::Backend::automatic)
+      fail("--device and --backend with a window, which its display draws: add --no-mirror");
     mirror = std::make_unique<preview::Mirror>(instance.has(xr::egl_extension));
   } else {
     own = open_context(o.context);
@@ -30,7 +44,8 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   const preview::Start start = scene.start(model, choices);
   log_info("{}: {} Gaussians", scene.name, model.count());
   xr::HeadsetSettings settings;
-  settings.projection = {o.headset.scale, choices.rig.near_plane, choices.background, o.foveate};
+  settings.projection = {o.headset.scale, choices.rig.near_plane, choices.rig.units_per_metre,
+                         choices.background, o.foveate};
   settings.frame = choices.settings;
   settings.budget_ms = o.headset.budget_ms;
   settings.start = into_axes(start.cameras.front(), model.axes);

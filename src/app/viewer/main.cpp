@@ -22,6 +22,15 @@
 
 namespace binosplat::app {
 
+#ifndef BINOSPLAT_XR
+void view_in_headset(const RenderOptions&, const preview::Opened&, preview::Choices) {
+  throw Error(
+      ExitCode::no_gl,
+      "--xr: this binosplat was built without OpenXR's headers (on Debian libopenxr-dev): install them and "
+      "build it again, as ./demo --view does");
+}
+#endif
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -115,15 +124,6 @@ preview::Opened open(const Wanted& wanted) {
   };
   return opened;
 }
-
-#ifndef BINOSPLAT_XR
-void view_in_headset(const RenderOptions&, const preview::Opened&, const preview::Choices&) {
-  throw Error(
-      ExitCode::no_gl,
-      "--xr: this binosplat was built without OpenXR's headers (on Debian libopenxr-dev): install them and "
-      "build it again, as ./demo --view does");
-}
-#endif
 
 void view(const RenderOptions& o) {
   check_view(o);
