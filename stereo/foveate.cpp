@@ -137,75 +137,73 @@ render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, cons
   if (!canvases.empty() && canvases.size() != eyes.size())
     fail("{} canvases for {} eyes: expected one each", canvases.size(), eyes.size());
   FoveatedViews drawn = foveated_views(eyes, foveation, settings);
-  render::FrameReport report = frame_.draw(drawn.views, drawn.settings, workings);
-  on_canvases_ = !canvases.empty();
   eyes_.assign(eyes.begin(), eyes.end());
   std::int64_t pixels = 0;
   for (shared::View& eye : eyes_) {
     eye.pixel_offset = static_cast<std::uint32_t>(pixels);
     pixels += std::int64_t{eye.width} * eye.height;
   }
-  report.on_canvases = on_canvases_;
+  on_canvases_ = !canvases.empty();
   if (!on_canvases_) {
     colours_.reserve(pixels * 16);
     z_sums_.reserve(pixels * 4);
   }
-  std::vector<shared::Canvas> shown;
-  for (const render::Canvas& canvas : canvases) shown.push_back(render::on_gpu(canvas));
-  if (on_canvases_) canvases_.upload(shown);
-  dispatcher_.begin_frame();
-  dispatcher_.begin_stage("compose");
-  for (std::size_t k = 0; k < eyes_.size(); ++k) compose(k, drawn.eyes[k], settings.background, canvases);
-  dispatcher_.wait_for_writes();
-  if (on_canvases_)
-    dispatcher_.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);  // however they are read next
-  dispatcher_.end_frame();
-  for (const gl::StageTime& stage : dispatcher_.wait_and_time()) {
-    report.stages.push_back(stage);
-    report.total_ms += stage.ms;
-  }
+  std::vector<shared::Canvas> of_eyes;
+  for (const render::Canvas& canvas : canvases) of_eyes.push_back(render::on_gpu(canvas));
+  if (on_canvases_) canvases_.upload(of_eyes);
+  render::Workings with_compose = workings;
+  with_compose.then_called = "compose";
+  with_compose.then = [&](gl::Dispatcher& dispatcher) {
+    for (std::size_t k = 0; k < eyes_.size(); ++k)
+      compose(dispatcher, k, drawn.eyes[k], settings.background, canvases);
+    dispatcher.wait_for_writes();
+    // However canvases are read next.
+    if (on_canvases_) dispatcher.context().gl().MemoryBarrier(GL_ALL_BARRIER_BITS);
+  };
+  render::FrameReport report = frame_.draw(drawn.views, drawn.settings, with_compose);
+  report.on_canvases = on_canvases_;
   parts_ = std::move(drawn.eyes);
   return report;
 }
 
-void FoveatedFrame::compose(std::size_t k, const FoveatedEye& parts, const glm::vec3& background,
-                            std::span<const render::Canvas> canvases) {
+void FoveatedFrame::compose(gl::Dispatcher& dispatcher, std::size_t k, const FoveatedEye& parts,
+                            const glm::vec3& background, std::span<const render::Canvas> canvases) {
   const shared::View &eye = eyes_[k], &context = frame_.views()[2 * k], &window = frame_.views()[2 * k + 1];
-  gl::Context& gl = dispatcher_.context();
+  gl::Context& gl = dispatcher.context();
   if (on_canvases_) {
     const render::Canvas& to = canvases[k];
     gl.gl().BindImageTexture(0, to.texture, to.level, GL_FALSE, to.layer, GL_WRITE_ONLY, to.format);
   }
   const std::uint64_t groups = std::uint64_t{(eye.width + COMPOSE_COLUMNS - 1) / COMPOSE_COLUMNS} *
                                ((eye.height + COMPOSE_ROWS - 1) / COMPOSE_ROWS);
-  dispatcher_.start(gl.program("foveate.comp", {{"CANVASES", on_canvases_ ? "1" : "0"}}),
-                    gl::Work::of_groups(groups),
-                    {{"Colours", frame_.colours()},
-                     {"ZSums", frame_.z_sums()},
-                     {"Composed", colours_},
-                     {"ComposedZ", z_sums_},
-                     {"Canvases", canvases_}},
-                    {{"nth", static_cast<std::uint32_t>(k)},
-                     {"background_r", bits(background.r)},
-                     {"background_g", bits(background.g)},
-                     {"background_b", bits(background.b)},
-                     {"first", eye.pixel_offset},
-                     {"width", eye.width},
-                     {"height", eye.height},
-                     {"step_x", bits(static_cast<float>(context.width) / static_cast<float>(eye.width))},
-                     {"step_y", bits(static_cast<float>(context.height) / static_cast<float>(eye.height))},
-                     {"context_first", context.pixel_offset},
-                     {"context_width", context.width},
-                     {"context_height", context.height},
-                     {"window_first", window.pixel_offset},
-                     {"window_left", window.left},
-                     {"window_top", window.top},
-                     {"window_width", window.width},
-                     {"inset_left", parts.inset_begin.x},
-                     {"inset_top", parts.inset_begin.y},
-                     {"inset_right", parts.inset_end.x},
-                     {"inset_bottom", parts.inset_end.y},
-                     {"seam", bits(static_cast<float>(parts.seam))}});
+  dispatcher.start(gl.program("foveate.comp", {{"CANVASES", on_canvases_ ? "1" : "0"}}),
+                   gl::Work::of_groups(groups),
+                   {{"Colours", frame_.colours()},
+                    {"ZSums", frame_.z_sums()},
+                    {"Composed", colours_},
+                    {"ComposedZ", z_sums_},
+                    {"Canvases", canvases_}},
+                   {{"nth", static_cast<std::uint32_t>(k)},
+                    {"background_r", bits(background.r)},
+                    {"background_g", bits(background.g)},
+                    {"background_b", bits(background.b)},
+                    {"first", eye.pixel_offset},
+                    {"width", eye.width},
+                    {"height", eye.height},
+                    {"step_x", bits(static_cast<float>(context.width) / static_cast<float>(eye.width))},
+                    {"step_y", bits(static_cast<float>(context.height) / static_cast<float>(eye.height))},
+                    {"context_first", context.pixel_offset},
+                    {"context_width", context.width},
+                    {"context_height", context.height},
+                    {"window_first", window.pixel_offset},
+                    {"window_left", window.left},
+                    {"window_top", window.top},
+                    {"window_width", window.width},
+                    {"inset_left", parts.inset_begin.x},
+                    {"inset_top", parts.inset_begin.y},
+                    {"inset_right", parts.inset_end.x},
+                    {"inset_bottom", parts.inset_end.y},
+                    {"seam", bits(static_cast<float>(parts.seam))}});
 }
 
 std::vector<Picture> FoveatedFrame::read_pictures() const {

@@ -59,10 +59,9 @@ class FoveatedFrame {
  public:
   explicit FoveatedFrame(std::shared_ptr<render::GpuModel> model)
       : frame_(std::move(model)),
-        dispatcher_(frame_.model()->context()),
-        colours_(dispatcher_.context(), "foveated pixels"),
-        z_sums_(dispatcher_.context(), "their depth"),
-        canvases_(dispatcher_.context(), "their canvases") {}
+        colours_(frame_.model()->context(), "foveated pixels"),
+        z_sums_(frame_.model()->context(), "their depth"),
+        canvases_(frame_.model()->context(), "their canvases") {}
 
   /// Draws all eyes in one frame and composes their pictures, which is a stage of its own, "compose". With
   /// canvases, one an eye, the pictures are there and nowhere else, over settings.background. Throws
@@ -83,11 +82,10 @@ class FoveatedFrame {
   render::Frame& frame() { return frame_; }
 
  private:
-  void compose(std::size_t k, const FoveatedEye& parts, const glm::vec3& background,
-               std::span<const render::Canvas> canvases);
+  void compose(gl::Dispatcher& dispatcher, std::size_t k, const FoveatedEye& parts,
+               const glm::vec3& background, std::span<const render::Canvas> canvases);
 
   render::Frame frame_;
-  gl::Dispatcher dispatcher_;
   gl::Buffer colours_, z_sums_, canvases_;
   bool on_canvases_ = false;
   std::vector<shared::View> eyes_;

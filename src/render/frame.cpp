@@ -171,6 +171,10 @@ void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report
   });
   if (shape_.probe && pictures_stood_in_.empty())
     run(Stage::probe, [&] { probe(dispatcher_, shape_, buffers_); });
+  if (workings.then && last == Stage::probe) {
+    dispatcher_.begin_stage(workings.then_called);
+    workings.then(dispatcher_);
+  }
   dispatcher_.end_frame();
   report.submit_ms = ms_since(start);
   report.stages = dispatcher_.wait_and_time();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "gl/dispatch.h"
 #include "render/settings.h"
 #include "render/stage.h"
 #include "scene/model.h"
@@ -35,6 +36,10 @@ struct Workings {
   std::int64_t slots = 0;
   std::int64_t pairs = 0;
   std::optional<StandIn> stand_in;
+  /// Recorded after the last stage, as a stage of this name: what somebody makes of the pictures on the GPU
+  /// before anybody waits for them. Again where the frame is drawn again.
+  std::function<void(gl::Dispatcher&)> then;
+  const char* then_called = "then";
 };
 
 /// Throws Error for values that no frame has, and for what stands in for stages in a frame that goes by

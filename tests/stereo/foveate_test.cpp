@@ -21,7 +21,7 @@ namespace {
 using stereo::FoveatedFrame;
 using stereo::Foveation;
 
-constexpr glm::ivec2 size{221, 157};
+constexpr glm::ivec2 size{220, 156};
 
 std::array<shared::View, 2> eyes(const stereo::RigSettings& rig) {
   return stereo::make_rig(test::front_camera(size.x, size.y, 150), rig).views;
@@ -281,7 +281,7 @@ TEST(Foveate, WrongWordsAreNamed) {
   EXPECT_TRUE(test::fails_saying(said({.context_scale = 1.5}), {"context 1.5", "0.05 to 1"}));
   EXPECT_TRUE(test::fails_saying(said({.gaze = {{0, 95}}}), {"gaze 0,95", "80 degrees"}));
   EXPECT_TRUE(
-      test::fails_saying(said({.gaze = {{70, 0}}}), {"gaze 70,0", "outside the picture of 221 x 157"}));
+      test::fails_saying(said({.gaze = {{70, 0}}}), {"gaze 70,0", "outside the picture of 220 x 156"}));
   EXPECT_TRUE(test::fails_saying(said({.gaze = {{0, 0}, {0, 0}}}), {"2 gazes", "eye 2"}));
   EXPECT_TRUE(test::fails_saying(said({.seam = -1}), {"seam -1"}));
   EXPECT_TRUE(
