@@ -1,6 +1,6 @@
 // An eye's picture of its parts: within the inset the pixels of its window as they are, beyond the seam around it the context,
-// which has fewer pixels, and in the seam one going over into the other. A work group shares the context's pixels that its own
-// are made of.
+// which has fewer pixels, and in the seam one going over into the other. A work group shares what the context's rows are at
+// its columns.
 //   CANVASES    1: the picture goes into an image as it is shown, and its depths nowhere
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -9,7 +9,7 @@
 #include "canvases.glsl"
 #endif
 
-// Pixels of a work group, of which each invocation has two, one half of the rows below the other.
+// Pixels of a work group; an invocation has one in each THREAD_ROWS of its rows.
 #define COLUMNS COMPOSE_COLUMNS
 #define ROWS COMPOSE_ROWS
 #define THREAD_ROWS 8u
@@ -33,12 +33,9 @@ uniform uint seam;            // bits of a float, px
 uniform uint step_x, step_y;  // bits of floats: px of the context to one of the picture
 
 // A context has at most as many pixels as the picture; one is made of those from the one before to two after.
-#define AROUND_COLUMNS (COLUMNS + 4u)
 #define AROUND_ROWS (ROWS + 4u)
-shared vec4 around[AROUND_ROWS * AROUND_COLUMNS];
-shared vec4 across[AROUND_ROWS * COLUMNS];  // of a row, by the pixels' columns
+shared vec4 across[AROUND_ROWS * COLUMNS];  // of a row of the context, at the pixels' columns
 #if !CANVASES
-shared float around_z[AROUND_ROWS * AROUND_COLUMNS];
 shared float across_z[AROUND_ROWS * COLUMNS];
 #endif
 
@@ -69,31 +66,21 @@ vec2 in_context(uvec2 pixel) {
 
 // The context as it would be seen, by Catmull-Rom, and along each axis within the range of the two that lie nearest, or edges
 // would have bright and dark seams and T could leave its range. First the context's rows at the pixels' columns.
-void filter_rows(uvec2 corner, ivec2 base, ivec2 count) {
+void filter_rows(uvec2 corner, int base_y, int count) {
   uvec2 self = gl_LocalInvocationID.xy;
   ivec2 most = ivec2(context_width, context_height) - 1;
-  for (uint y = self.y; y < uint(count.y); y += THREAD_ROWS) {
-    for (uint x = self.x; x < uint(count.x); x += COLUMNS) {
-      uvec2 place = uvec2(clamp(base + ivec2(x, y), ivec2(0), most));
-      Pixel one = pixel_at(context_first + place.y * context_width + place.x);
-      around[y * AROUND_COLUMNS + x] = one.colour;
-#if !CANVASES
-      around_z[y * AROUND_COLUMNS + x] = one.z_sum;
-#endif
-    }
-  }
-  barrier();
   float at = in_context(corner + self).x;
   vec4 weights = weights_of(at - floor(at));
-  for (uint y = self.y; y < uint(count.y); y += THREAD_ROWS) {
-    uint from = y * AROUND_COLUMNS + uint(int(floor(at)) - 1 - base.x), to = y * COLUMNS + self.x;
-    vec4 sum = vec4(0.0);
-    for (uint k = 0u; k < 4u; ++k) sum += weights[k] * around[from + k];
-    across[to] = clamp(sum, min(around[from + 1u], around[from + 2u]), max(around[from + 1u], around[from + 2u]));
+  int from = int(floor(at)) - 1;
+  for (int y = int(self.y); y < count; y += int(THREAD_ROWS)) {
+    uint row = context_first + uint(clamp(base_y + y, 0, most.y)) * context_width, to = uint(y) * COLUMNS + self.x;
+    Pixel of[4];
+    for (int k = 0; k < 4; ++k) of[k] = pixel_at(row + uint(clamp(from + k, 0, most.x)));
+    vec4 sum = weights[0] * of[0].colour + weights[1] * of[1].colour + weights[2] * of[2].colour + weights[3] * of[3].colour;
+    across[to] = clamp(sum, min(of[1].colour, of[2].colour), max(of[1].colour, of[2].colour));
 #if !CANVASES
-    float z = 0.0;
-    for (uint k = 0u; k < 4u; ++k) z += weights[k] * around_z[from + k];
-    across_z[to] = clamp(z, min(around_z[from + 1u], around_z[from + 2u]), max(around_z[from + 1u], around_z[from + 2u]));
+    float z = weights[0] * of[0].z_sum + weights[1] * of[1].z_sum + weights[2] * of[2].z_sum + weights[3] * of[3].z_sum;
+    across_z[to] = clamp(z, min(of[1].z_sum, of[2].z_sum), max(of[1].z_sum, of[2].z_sum));
 #endif
   }
   barrier();
@@ -124,14 +111,20 @@ float share_of_window(uvec2 pixel) {
   return beyond >= wide ? 0.0 : 1.0 - smoothstep(0.0, wide, beyond);
 }
 
+// Whether no pixel of a group lies in the seam or within.
+bool is_beyond(uvec2 corner) {
+  vec2 wide = vec2(uintBitsToFloat(seam)), low = vec2(corner), high = low + vec2(COLUMNS, ROWS);
+  return any(lessThan(high, vec2(inset_left, inset_top) - wide)) || any(greaterThan(low, vec2(inset_right, inset_bottom) + wide));
+}
+
 // The inset is convex: where the corners of a group lie in it, all of the group does.
 bool is_inset(uvec2 corner) {
   uvec2 last = min(corner + uvec2(COLUMNS, ROWS), uvec2(width, height));
   return all(greaterThanEqual(corner, uvec2(inset_left, inset_top))) && all(lessThanEqual(last, uvec2(inset_right, inset_bottom)));
 }
 
-void draw(uvec2 pixel, bool has_context, int base_y) {
-  float share = share_of_window(pixel);
+void draw(uvec2 pixel, bool has_context, bool has_window, int base_y) {
+  float share = has_window ? share_of_window(pixel) : 0.0;
   Pixel shown;
   if (share > 0.0) shown = pixel_at(window_first + (pixel.y - window_top) * window_width + pixel.x - window_left);
   if (has_context && share < 1.0) {
@@ -151,12 +144,12 @@ void main() {
   uint groups_across = (width + COLUMNS - 1u) / COLUMNS;
   uvec2 corner = uvec2(group_index() % groups_across, group_index() / groups_across) * uvec2(COLUMNS, ROWS);
   if (corner.y >= height) return;
-  ivec2 base = ivec2(floor(in_context(corner))) - 1;
-  bool has_context = !is_inset(corner);
-  if (has_context) filter_rows(corner, base, ivec2(floor(in_context(corner + uvec2(COLUMNS - 1u, ROWS - 1u)))) + 3 - base);
+  int base_y = int(floor(in_context(corner).y)) - 1;
+  bool has_context = !is_inset(corner), has_window = !is_beyond(corner);
+  if (has_context) filter_rows(corner, base_y, int(floor(in_context(corner + uvec2(0u, ROWS - 1u)).y)) + 3 - base_y);
   uvec2 pixel = corner + gl_LocalInvocationID.xy;
-  for (uint half_rows = 0u; half_rows < ROWS; half_rows += THREAD_ROWS) {
-    uvec2 one = pixel + uvec2(0u, half_rows);
-    if (one.x < width && one.y < height) draw(one, has_context, base.y);
+  for (uint row = 0u; row < ROWS; row += THREAD_ROWS) {
+    uvec2 one = pixel + uvec2(0u, row);
+    if (one.x < width && one.y < height) draw(one, has_context, has_window, base_y);
   }
 }

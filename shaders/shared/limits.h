@@ -71,7 +71,7 @@
 #define PRESENT_ROWS 8u
 // Pixels of a work group that composes foveated pictures.
 #define COMPOSE_COLUMNS 32u
-#define COMPOSE_ROWS 16u
+#define COMPOSE_ROWS 32u
 // Elements that one work group scans, compacts or sorts: several rounds of THREADS. A sort of few has smaller
 // blocks, or they would not fill a GPU; its programs define theirs (primitives/radix_sort.h).
 #define SCAN_BLOCK 2048
