@@ -30,7 +30,8 @@
 #define ANCHOR_TILE 16
 
 #define MAX_VIEWS 8
-// Views whose pictures the blend can write into images of the caller's: drivers have 8 of these, and others use some.
+// Views whose pictures the blend can write into images of the caller's: drivers have 8 of these, and others
+// use some.
 #define MAX_CANVASES 4
 
 // Where supertiles are of several tiles, so many bits of a pair's value are its splat; above, a bit for each

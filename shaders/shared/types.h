@@ -94,7 +94,7 @@ struct Splat {
 
 // Where the blend writes a view's picture as it is shown, in the image of the view's number.
 struct Canvas {
-  uint left;         // px, its lower left corner
+  uint left;  // px, its lower left corner
   uint bottom;
   uint steps;        // that the image's colours have above 0; 0: they are floats
   uint keeps_alpha;  // 1: no background, but associated alpha

@@ -42,8 +42,8 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"python",
      {"stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base", "shared"}},
     {"app",
-     {"demo", "preview", "xr", "study", "stereo", "measure", "render", "primitives", "gl", "reference", "formats",
-      "scene", "base", "shared"}},
+     {"demo", "preview", "xr", "study", "stereo", "measure", "render", "primitives", "gl", "reference",
+      "formats", "scene", "base", "shared"}},
 };
 
 // Files of more than 400 lines, each with the reason why it is better whole.
