@@ -17,7 +17,7 @@ namespace {
 constexpr double far_metres = 1000.0;
 
 // Depths have so many times fewer pixels along each side: a runtime moves pictures by them, for which no edge
-// need be sharp, and GPUs of servers fill depths slowly (an H200 two full pictures in 1.8 ms).
+// need be sharp, and GPUs of servers fill depths slowly (an H200 two whole ones in 2.3 ms).
 constexpr int depth_step = 8;
 
 struct ColourFormat {
@@ -171,19 +171,24 @@ void Projection::take_masks() {
 }
 
 // By the order in which they are drawn; none where all of every view is.
-std::vector<render::ViewPart> Projection::parts_of(int tile, std::span<const XrView> located,
+std::vector<render::ViewPart> Projection::parts_of(const render::FrameSettings& settings,
+                                                   std::span<const XrView> located,
                                                    std::span<const glm::ivec2> sizes) const {
   std::vector<render::ViewPart> parts(located.size());
   for (std::size_t k = 0; k < located.size(); ++k) {
     const std::size_t at = place_of(k, located.size());
-    parts[at].columns = visible_columns(eyes_[k].visible, located[k].fov, sizes[at], tile);
+    parts[at].columns = visible_columns(eyes_[k].visible, located[k].fov, sizes[at], settings.tile_size);
     if (located.size() == 4 && k < 2) {
       const std::size_t inset = place_of(k + 2, located.size());
       take_hole(located[k], located[k + 2], sizes[at], parts[at]);
+      // Insets are exact; a quality is one for all.
+      if (settings.quality == 0.0f) parts[inset].tolerance_share = 0.0f;
       parts[at].low_pass_share = low_pass_share(located[k], sizes[at], located[k + 2], sizes[inset]);
     }
   }
-  const auto is_whole = [](const render::ViewPart& part) { return part.is_whole(); };
+  const auto is_whole = [](const render::ViewPart& part) {
+    return part.is_whole() && part.tolerance_share == 1.0f;
+  };
   if (std::all_of(parts.begin(), parts.end(), is_whole)) parts.clear();
   return parts;
 }
@@ -224,7 +229,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     if (gaze) foveation.gaze = gaze_of(*gaze, located);
     report = frame.draw(head.views, foveation, settings, {}, canvases.list);
   } else {
-    settings.parts = parts_of(settings.tile_size, located, sizes);
+    settings.parts = parts_of(settings, located, sizes);
     report = frame.frame().draw(head.views, settings, {}, canvases.list, 2);
   }
   const gl::Buffer& colours = foveates() ? frame.colours() : frame.frame().colours();

@@ -61,7 +61,8 @@ class Projection {
               double far_metres);
   void make_colours();
   void make_depths();
-  std::vector<render::ViewPart> parts_of(int tile, std::span<const XrView> located,
+  std::vector<render::ViewPart> parts_of(const render::FrameSettings& settings,
+                                         std::span<const XrView> located,
                                          std::span<const glm::ivec2> sizes) const;
 
   const Session& session_;

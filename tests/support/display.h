@@ -19,12 +19,15 @@ class VirtualDisplay {
     server_ = fork();
     if (server_ == 0) {
       dup2(ends[1], 3);
-      execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp", nullptr);
+      execlp("Xvfb", "Xvfb", "-displayfd", "3", "-screen", "0", "800x600x24", "-nolisten", "tcp", "-noreset",
+             nullptr);
       _exit(127);
     }
     close(ends[1]);
-    char number[16] = {};
-    if (read(ends[0], number, sizeof(number) - 1) > 0) name_ = ":" + std::to_string(std::atoi(number));
+    // To the end of the line: a server that cannot write it ends.
+    std::string number;
+    for (char c = 0; c != '\n' && read(ends[0], &c, 1) == 1;) number += c;
+    if (!number.empty()) name_ = ":" + std::to_string(std::atoi(number.c_str()));
     close(ends[0]);
   }
   ~VirtualDisplay() {
