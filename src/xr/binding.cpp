@@ -95,7 +95,7 @@ std::shared_ptr<const void> glx_binding() {
 
 std::shared_ptr<const void> binding_of_current_context(const Instance& instance) {
   check_version(instance);
-  if (const auto egl = egl_binding()) {
+  if (auto egl = egl_binding()) {
     if (!instance.has(egl_extension))
       throw Error(
           ExitCode::no_gl,
@@ -104,7 +104,7 @@ std::shared_ptr<const void> binding_of_current_context(const Instance& instance)
                       instance.runtime(), egl_extension));
     return egl;
   }
-  if (const auto glx = glx_binding()) return glx;
+  if (auto glx = glx_binding()) return glx;
   throw Error(ExitCode::no_gl, "OpenXR takes contexts of EGL and of GLX only, and none is current");
 }
 

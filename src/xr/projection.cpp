@@ -246,8 +246,8 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
 }
 
 // What was drawn, with exactly the poses and angles that it was drawn from.
-void Projection::submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes,
-                        double near_metres, double far_metres) {
+void Projection::submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double nearest,
+                        double farthest) {
   const std::size_t count = eyes_.size();
   const bool has_depths = eyes_[0].depths != nullptr;
   views_.assign(count, {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW});
@@ -264,8 +264,8 @@ void Projection::submit(std::span<const XrView> located, std::span<const glm::iv
     info.subImage = eyes_[k].depths->part(eyes_[k].depths->size());
     info.minDepth = 0.0f;
     info.maxDepth = 1.0f;
-    info.nearZ = static_cast<float>(near_metres);
-    info.farZ = static_cast<float>(far_metres);
+    info.nearZ = static_cast<float>(nearest);
+    info.farZ = static_cast<float>(farthest);
     views_[k].next = &info;
   }
   layer_.space = session_.space();

@@ -57,8 +57,9 @@ class Projection {
   };
   std::vector<glm::ivec2> sizes_now() const;
   bool foveates() const { return settings_.foveation && eyes_.size() == 2; }
-  void submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double near_metres,
-              double far_metres);
+  /// Depths go from the nearest to the farthest, m.
+  void submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double nearest,
+              double farthest);
   void make_colours();
   void make_depths();
   std::vector<render::ViewPart> parts_of(const render::FrameSettings& settings,
