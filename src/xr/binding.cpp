@@ -100,7 +100,7 @@ std::shared_ptr<const void> binding_of_current_context(const Instance& instance)
       throw Error(
           ExitCode::no_gl,
           fmt::format("{} takes no EGL contexts ({} is missing): run this where there is an X display, "
-                      "with a context of GLX",
+                      "without --no-mirror: then the window's own context of GLX draws",
                       instance.runtime(), egl_extension));
     return egl;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 
 #include "base/error.h"
@@ -26,6 +27,12 @@ constexpr std::array optional_extensions = {
     "XR_EXT_local_floor",
 };
 
+// Where the environment names a runtime, it is that one.
+std::string asked_for() {
+  const char* const named = std::getenv("XR_RUNTIME_JSON");
+  return named == nullptr ? "" : fmt::format(" by XR_RUNTIME_JSON={}", named);
+}
+
 std::set<std::string> offered_extensions() {
   std::set<std::string> names;
   XrExtensionProperties empty{};
@@ -34,7 +41,8 @@ std::set<std::string> offered_extensions() {
   const auto enumerate = loader().EnumerateInstanceExtensionProperties;
   const XrResult result = enumerate(nullptr, 0, &count, nullptr);
   if (XR_FAILED(result))
-    throw Error(ExitCode::no_gl, fmt::format("no OpenXR runtime ({}). {}", name_of(result), what_to_do));
+    throw Error(ExitCode::no_gl,
+                fmt::format("no OpenXR runtime ({}){}. {}", name_of(result), asked_for(), what_to_do));
   std::vector<XrExtensionProperties> all(count, empty);
   check(enumerate(nullptr, count, &count, all.data()), "xrEnumerateInstanceExtensionProperties");
   for (const XrExtensionProperties& extension : all) names.insert(extension.extensionName);

@@ -113,7 +113,7 @@ bool shows(const ViewPart& part, int tile, int x, int y) {
 Picture masked(Picture whole, const ViewPart& part, int tile) {
   for (int y = 0; y < whole.height; ++y) {
     for (int x = 0; x < whole.width; ++x) {
-      const auto k = static_cast<std::size_t>(y * whole.width + x);
+      const auto k = static_cast<std::size_t>(std::ptrdiff_t{y} * whole.width + x);
       if (shows(part, tile, x, y)) continue;
       whole.colour[k] = {0, 0, 0, 1};
       whole.z_sum[k] = 0;
@@ -233,7 +233,7 @@ TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
 float middle_coverage(const Model& model, int width, const ViewPart& part, int projection) {
   const Camera camera = test::front_camera(width, width, 3.0 * width);
   const Picture drawn = draw(model, make_view(camera), with({.projection = projection}, {part}));
-  const auto middle = static_cast<std::size_t>(width / 2 * width + width / 2);
+  const auto middle = static_cast<std::size_t>(std::ptrdiff_t{width} / 2 * width + width / 2);
   return 1.0f - drawn.colour[middle].a;
 }
 

@@ -41,11 +41,11 @@ TEST_F(Embed, DepthsAreAsOpenGLKeepsThem) {
       int count = 0;
       for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
-          const auto at = static_cast<std::size_t>(y * size.x + x);
+          const auto at = static_cast<std::size_t>(std::ptrdiff_t{y} * size.x + x);
           const double cover = 1.0 - picture.colour[at].a;
           const double z = cover > 0.5 ? picture.z_sum[at] / cover : 1e30;
           const int row = flipped ? y : size.y - 1 - y;
-          const double is = depths[static_cast<std::size_t>(row * size.x + x)];
+          const double is = depths[static_cast<std::size_t>(std::ptrdiff_t{row} * size.x + x)];
           count += std::abs(is - std::clamp(depth_of(z), 0.0, 1.0)) > 1e-6 ? 1 : 0;
         }
       }
@@ -136,7 +136,7 @@ TEST_F(Embed, SmallerTexturesOfDepths) {
       const glm::ivec2 few = size / step;
       const std::uint32_t texture = caller.texture(GL_DEPTH_COMPONENT32F, few.x, few.y);
       EXPECT_TRUE(draw(std::span(&targets[0], 1), texture).on_canvases);
-      std::vector<float> depths(static_cast<std::size_t>(few.x * few.y));
+      std::vector<float> depths(static_cast<std::size_t>(few.x) * static_cast<std::size_t>(few.y));
       caller.GetTextureSubImage(texture, 0, 0, 0, 0, few.x, few.y, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
                                 static_cast<GLsizei>(4 * depths.size()), depths.data());
       int differ = 0, unlike = 0;
@@ -145,7 +145,7 @@ TEST_F(Embed, SmallerTexturesOfDepths) {
           int row = (2 * (few.y - 1 - y) + 1) * step / 2;  // from the top
           if (step > 1) row -= row % 2;
           const int from = (size.y - 1 - row) * size.x + (2 * x + 1) * step / 2;
-          const float is = depths[static_cast<std::size_t>(y * few.x + x)];
+          const float is = depths[static_cast<std::size_t>(std::ptrdiff_t{y} * few.x + x)];
           differ += std::abs(is - all[static_cast<std::size_t>(from)]) > 1e-6f ? 1 : 0;
           unlike += std::abs(is - all[static_cast<std::size_t>(from == 0 ? 1 : from - 1)]) > 1e-6f ? 1 : 0;
         }

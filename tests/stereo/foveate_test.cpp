@@ -57,7 +57,7 @@ testing::AssertionResult is_sharp(const Picture& drawn, const Picture& exact, co
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
       if (degrees_off(view, gaze, x, y) > foveation.inset_degrees / 2) continue;
-      const auto k = static_cast<std::size_t>(y * size.x + x);
+      const auto k = static_cast<std::size_t>(std::ptrdiff_t{y} * size.x + x);
       ++count;
       if (std::memcmp(&drawn.colour[k], &exact.colour[k], sizeof(glm::vec4)) != 0 ||
           drawn.z_sum[k] != exact.z_sum[k])
@@ -163,7 +163,7 @@ double around_error(const Drawn& drawn, const Model& model) {
           return taken(static_cast<int>(cell.y) + j, static_cast<int>(cell.x) + i);
         });
       });
-      const auto k = static_cast<std::size_t>(y * size.x + x);
+      const auto k = static_cast<std::size_t>(std::ptrdiff_t{y} * size.x + x);
       const glm::dvec4 d = glm::abs(expected.first - glm::dvec4(shown.colour[k]));
       worst = std::max({worst, d.r, d.g, d.b, d.a, 0.1 * std::abs(expected.second - shown.z_sum[k])});
     }

@@ -1,9 +1,11 @@
 #include "app/viewer/headset.h"
 
+#include <filesystem>
 #include <optional>
 
 #include "app/command_line.h"
 #include "app/context_options.h"
+#include "app/load_scene.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "preview/mirror.h"
@@ -14,6 +16,9 @@
 namespace binosplat::app {
 
 void view_in_headset(const RenderOptions& o, const preview::Opened& scene, preview::Choices choices) {
+  std::error_code ignored;
+  if (!is_built_in(scene.name) && !std::filesystem::exists(scene.name, ignored))
+    fail("cannot read {}: there is no such file", scene.name);
   // A headset that is not there is said before a model is read.
   const std::unique_ptr<xr::Instance> opened = [] {
     try {
@@ -33,10 +38,13 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   if (o.headset.mirror && has_display()) {
     if (o.context.device >= 0 || o.context.backend != gl::Backend::automatic)
       fail("--device and --backend with a window, which its display draws: add --no-mirror");
-    mirror = std::make_unique<preview::Mirror>(instance.has(xr::egl_extension));
-  } else {
-    own = open_context(o.context);
+    try {
+      mirror = std::make_unique<preview::Mirror>(instance.has(xr::egl_extension));
+    } catch (const Error&) {
+      log_warning("no window can be opened on this display: only the headset shows the model");
+    }
   }
+  if (!mirror) own = open_context(o.context);
   gl::Context& context = mirror ? mirror->context() : *own;
   if (!o.context.shader_dir.empty()) context.set_shader_folder(o.context.shader_dir);
 
