@@ -132,8 +132,9 @@ TEST(Visible, ColumnsHoldWhatTheTrianglesHold) {
     for (unsigned column = 0; column < 20; ++column) {
       double nearest = 1e9;  // of the disk's middle, in its radii
       for (int p = 0; p < tile * tile; ++p) {
-        const double x = left + (column * tile + p % tile + 0.5) / size.x * (right - left);
-        const double y = up - (row * tile + p / tile + 0.5) / size.y * (up - down);
+        const int px = p % tile, py = p / tile;
+        const double x = left + (column * tile + px + 0.5) / size.x * (right - left);
+        const double y = up - (row * tile + py + 0.5) / size.y * (up - down);
         nearest = std::min(nearest, std::hypot(x / 0.55, (y - 0.05) / 0.45));
       }
       const bool drawn = column >= columns[row].x && column < columns[row].y;
