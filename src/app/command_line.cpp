@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <numeric>
@@ -16,6 +17,7 @@
 #include "base/error.h"
 #include "base/inputs.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 #include "base/text.h"
 #include "formats/plausible.h"
 #include "gl/program_cache.h"
@@ -112,8 +114,7 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   std::vector<std::string> commands;
   for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
   if (std::find(commands.begin(), commands.end(), words[0]) != commands.end()) return words;
-  if (words[0].find("://") != std::string::npos)
-    fail("cannot read {}: it is an address, and only files are read: download it first", words[0]);
+  if (words[0].find("://") != std::string::npos) fail_to_read(words[0], ENOENT);
   std::error_code ignored;
   if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
     fail("{}: there is no such command and no such model{}\n  see: binosplat --help", words[0],

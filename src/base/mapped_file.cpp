@@ -74,13 +74,15 @@ void end_cleanly_on_cut_files() {
   sigaction(SIGBUS, &action, nullptr);
 }
 
+void fail_to_read(const std::filesystem::path& path, int reason) {
+  const bool address = path.string().find("://") != std::string::npos;
+  fail("cannot read {}: {}", path.string(),
+       address ? "it is an address, and only files are read: download it first" : std::strerror(reason));
+}
+
 MappedFile::MappedFile(const std::filesystem::path& path) : name_(path.string()) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) {
-    const bool address = path.string().find("://") != std::string::npos;
-    fail("cannot read {}: {}", path.string(),
-         address ? "it is an address, and only files are read: download it first" : std::strerror(errno));
-  }
+  if (file < 0) fail_to_read(path, errno);
   struct stat status {};
   int reason = fstat(file, &status) == 0 ? 0 : errno;
   const bool regular = S_ISREG(status.st_mode);
@@ -95,7 +97,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) : name_(path.string())
     }
   }
   close(file);
-  if (reason != 0) fail("cannot read {}: {}", path.string(), std::strerror(reason));
+  if (reason != 0) fail_to_read(path, reason);
   if (S_ISDIR(status.st_mode)) fail("cannot read {}: it is a folder; name a file in it", path.string());
   if (!regular) fail("cannot read {}: it is a device or a pipe; name a file", path.string());
 }

@@ -13,6 +13,9 @@ namespace binosplat {
 /// nothing. For `main`: a handler is the whole process's.
 void end_cleanly_on_cut_files();
 
+/// Throws the Error of a file that is not there or not readable; `reason` is as errno has it.
+[[noreturn]] void fail_to_read(const std::filesystem::path& path, int reason);
+
 class MappedFile {
  public:
   /// Maps the whole file for reading. Throws Error if it is missing, a folder or not readable; an empty file

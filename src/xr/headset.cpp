@@ -59,16 +59,12 @@ class Viewer {
   /// Until it is over. Throws Lost.
   bool play_session() {
     Session session(instance_);
-    const struct Ended {  // before the session
-      std::unique_ptr<Projection>& projection;
-      ~Ended() { projection.reset(); }
-    } ended{projection_};
     Hands hands(session);
-    make_projection(session);
+    std::unique_ptr<Projection> projection = make_projection(session);
     frame_.frame().start_over();
     last_.reset();
     while (session.poll()) {
-      if (session.running()) draw(session, hands);
+      if (session.running()) draw(session, hands, projection);
       if (!beside_.step() && !leaving_) {
         leaving_ = true;
         session.request_exit();
@@ -79,7 +75,7 @@ class Viewer {
   }
 
   /// A frame of the runtime's.
-  void draw(Session& session, Hands& hands) {
+  void draw(Session& session, Hands& hands, std::unique_ptr<Projection>& projection) {
     const FrameTime time = session.begin_frame();
     const std::vector<XrView> views = time.is_shown ? session.locate(time.display) : std::vector<XrView>();
     if (time.is_shown && views.empty() && tracked_) log_info("the head is not tracked: nothing is shown");
@@ -91,9 +87,12 @@ class Viewer {
     if (session.take_recentred(time.display)) frame_.frame().forget();
     if (time.display - looked_ >= between_looks) {
       looked_ = time.display;
-      if (projection_->outdated()) make_projection(session);
+      if (projection->outdated()) {
+        projection.reset();  // its memory first
+        projection = make_projection(session);
+      }
     }
-    if (session.take_masks_changed()) projection_->take_masks();
+    if (session.take_masks_changed()) projection->take_masks();
     follow(session, hands, views, time);
     follow_levels();
     if (settings_.budget_ms && !budget_) {
@@ -107,17 +106,17 @@ class Viewer {
     const std::optional<XrPosef> gaze =
         settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
     const render::FrameReport report =
-        projection_->draw(frame_, views, walk_->stage(), settings, effort.scale, beside_.show, gaze);
+        projection->draw(frame_, views, walk_->stage(), settings, effort.scale, beside_.show, gaze);
     times_.push_back(report.total_ms);
     if (budget_) budget_->took(report.total_ms, 1e-6 * static_cast<double>(time.period));
-    session.end_frame(time, projection_->layer());
+    session.end_frame(time, projection->layer());
   }
 
-  void make_projection(const Session& session) {
-    projection_.reset();  // its memory first
-    projection_ = std::make_unique<Projection>(session, context_, settings_.projection);
-    projection_->take_masks();
-    log_info("{}: {}", instance_.headset(), projection_->description());
+  std::unique_ptr<Projection> make_projection(const Session& session) const {
+    auto projection = std::make_unique<Projection>(session, context_, settings_.projection);
+    projection->take_masks();
+    log_info("{}: {}", instance_.headset(), projection->description());
+    return projection;
   }
 
   /// To where hands take the head.
@@ -157,10 +156,9 @@ class Viewer {
   std::future<Model> levels_;
   std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<Budget> budget_;
-  std::unique_ptr<Projection> projection_;  // of the session at hand
-  std::optional<XrTime> last_;              // when the last frame was seen
-  XrTime looked_ = 0;                       // when it was asked which sizes the runtime recommends
-  std::vector<double> times_;               // ms
+  std::optional<XrTime> last_;  // when the last frame was seen
+  XrTime looked_ = 0;           // when it was asked which sizes the runtime recommends
+  std::vector<double> times_;   // ms
   bool tracked_ = true, leaving_ = false;
 };
 

@@ -91,9 +91,7 @@ void Instance::find_headset() {
   const XrVersion version = properties.runtimeVersion;
   runtime_ = fmt::format("{} {}.{}.{}", properties.runtimeName, XR_VERSION_MAJOR(version),
                          XR_VERSION_MINOR(version), XR_VERSION_PATCH(version));
-  XrSystemGetInfo wanted{XR_TYPE_SYSTEM_GET_INFO};
-  wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
-  const XrResult found = api_.GetSystem(instance_, &wanted, &system_);
+  const XrResult found = get_system();
   if (found == XR_ERROR_FORM_FACTOR_UNAVAILABLE || found == XR_ERROR_FORM_FACTOR_UNSUPPORTED)
     throw Error(ExitCode::no_gl,
                 fmt::format("{} has no headset ({}): connect it and switch it on", runtime_, name_of(found)));
@@ -114,11 +112,13 @@ void Instance::find_headset() {
     throw Error(ExitCode::no_gl, fmt::format("{} shows no two eyes: it is no stereo headset", headset_));
 }
 
-bool Instance::find_again() {
+XrResult Instance::get_system() {
   XrSystemGetInfo wanted{XR_TYPE_SYSTEM_GET_INFO};
   wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
-  return XR_SUCCEEDED(api_.GetSystem(instance_, &wanted, &system_));
+  return api_.GetSystem(instance_, &wanted, &system_);
 }
+
+bool Instance::find_again() { return XR_SUCCEEDED(get_system()); }
 
 std::vector<XrViewConfigurationView> Instance::views() const {
   XrViewConfigurationView empty{};

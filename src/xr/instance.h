@@ -40,6 +40,7 @@ class Instance {
 
  private:
   void find_headset();
+  XrResult get_system();
 
   XrInstance instance_ = XR_NULL_HANDLE;
   XrSystemId system_ = XR_NULL_SYSTEM_ID;

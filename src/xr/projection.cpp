@@ -105,8 +105,10 @@ Projection::Projection(const Session& session, gl::Context& context, const Proje
       layer_{XR_TYPE_COMPOSITION_LAYER_PROJECTION} {
   sizes_ = sizes_now();
   eyes_.resize(sizes_.size());
-  make_colours();
-  if (!foveates() && session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME)) make_depths();
+  const std::vector<std::int64_t> offered = swapchain_formats(session);
+  make_colours(offered);
+  if (!foveates() && session.instance().has(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME))
+    make_depths(offered);
 }
 
 std::vector<glm::ivec2> Projection::sizes_now() const {
@@ -122,8 +124,7 @@ std::vector<glm::ivec2> Projection::sizes_now() const {
   return sizes;
 }
 
-void Projection::make_colours() {
-  const std::vector<std::int64_t> offered = swapchain_formats(session_);
+void Projection::make_colours(std::span<const std::int64_t> offered) {
   const ColourFormat* found = nullptr;
   for (const ColourFormat& f : colour_formats) {
     if (found == nullptr && std::find(offered.begin(), offered.end(), f.format) != offered.end()) found = &f;
@@ -154,8 +155,7 @@ void Projection::make_colours() {
   }
 }
 
-void Projection::make_depths() {
-  const std::vector<std::int64_t> offered = swapchain_formats(session_);
+void Projection::make_depths(std::span<const std::int64_t> offered) {
   const auto format =
       std::find_first_of(depth_formats.begin(), depth_formats.end(), offered.begin(), offered.end());
   if (format == depth_formats.end()) return;

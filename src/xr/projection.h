@@ -60,8 +60,9 @@ class Projection {
   /// Depths go from the nearest to the farthest, m.
   void submit(std::span<const XrView> located, std::span<const glm::ivec2> sizes, double nearest,
               double farthest);
-  void make_colours();
-  void make_depths();
+  /// Of formats that the runtime offers.
+  void make_colours(std::span<const std::int64_t> offered);
+  void make_depths(std::span<const std::int64_t> offered);
   std::vector<render::ViewPart> parts_of(const render::FrameSettings& settings,
                                          std::span<const XrView> located,
                                          std::span<const glm::ivec2> sizes) const;

@@ -166,8 +166,7 @@ std::vector<XrView> Session::locate(XrTime display) {
         return api_.LocateViews(session_, &info, &state, room, count, all);
       });
   constexpr XrViewStateFlags valid = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
-  if ((state.viewStateFlags & valid) != valid) views.clear();
-  if (!views.empty() && views.size() < 2) views.clear();
+  if ((state.viewStateFlags & valid) != valid || views.size() < 2) views.clear();
   return views;
 }
 

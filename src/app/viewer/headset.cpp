@@ -1,5 +1,6 @@
 #include "app/viewer/headset.h"
 
+#include <cerrno>
 #include <filesystem>
 #include <optional>
 
@@ -8,6 +9,7 @@
 #include "app/load_scene.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 #include "preview/mirror.h"
 #include "scene/axes.h"
 #include "xr/binding.h"
@@ -18,7 +20,7 @@ namespace binosplat::app {
 void view_in_headset(const RenderOptions& o, const preview::Opened& scene, preview::Choices choices) {
   std::error_code ignored;
   if (!is_built_in(scene.name) && !std::filesystem::exists(scene.name, ignored))
-    fail("cannot read {}: there is no such file", scene.name);
+    fail_to_read(scene.name, ENOENT);
   // A headset that is not there is said before a model is read.
   const std::unique_ptr<xr::Instance> opened = [] {
     try {

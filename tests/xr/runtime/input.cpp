@@ -159,15 +159,21 @@ XrResult sync_actions(XrSession handle, const XrActionsSyncInfo* info) {
   return focused ? XR_SUCCESS : XR_SESSION_NOT_FOCUSED;
 }
 
+// What the states of all types but poses have.
+template <typename State>
+void tell_change(const ActionState& state, State& out) {
+  out.changedSinceLastSync = state.changed ? XR_TRUE : XR_FALSE;
+  out.lastChangeTime = state.time;
+  out.isActive = state.active ? XR_TRUE : XR_FALSE;
+}
+
 XrResult get_action_state_boolean(XrSession handle, const XrActionStateGetInfo* info,
                                   XrActionStateBoolean* out) {
   const Action& action = action_of(handle, info, XR_ACTION_TYPE_BOOLEAN_INPUT);
   checked(out, XR_TYPE_ACTION_STATE_BOOLEAN);
   const ActionState state = state_of(action, info->subactionPath);
   out->currentState = number(state.value) > 0.5 ? XR_TRUE : XR_FALSE;
-  out->changedSinceLastSync = state.changed ? XR_TRUE : XR_FALSE;
-  out->lastChangeTime = state.time;
-  out->isActive = state.active ? XR_TRUE : XR_FALSE;
+  tell_change(state, *out);
   return XR_SUCCESS;
 }
 
@@ -176,9 +182,7 @@ XrResult get_action_state_float(XrSession handle, const XrActionStateGetInfo* in
   checked(out, XR_TYPE_ACTION_STATE_FLOAT);
   const ActionState state = state_of(action, info->subactionPath);
   out->currentState = static_cast<float>(number(state.value));
-  out->changedSinceLastSync = state.changed ? XR_TRUE : XR_FALSE;
-  out->lastChangeTime = state.time;
-  out->isActive = state.active ? XR_TRUE : XR_FALSE;
+  tell_change(state, *out);
   return XR_SUCCESS;
 }
 
@@ -189,9 +193,7 @@ XrResult get_action_state_vector2f(XrSession handle, const XrActionStateGetInfo*
   const ActionState state = state_of(action, info->subactionPath);
   const auto v = vector(state.value);
   out->currentState = {static_cast<float>(v[0]), static_cast<float>(v[1])};
-  out->changedSinceLastSync = state.changed ? XR_TRUE : XR_FALSE;
-  out->lastChangeTime = state.time;
-  out->isActive = state.active ? XR_TRUE : XR_FALSE;
+  tell_change(state, *out);
   return XR_SUCCESS;
 }
 
