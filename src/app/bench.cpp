@@ -55,6 +55,9 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
       view.photo = load_view_photo(*find_view_photo(options.photos, shot.name), shot.eyes.front().camera);
   }
   const Camera& camera = shots.front().eyes.front().camera;
+  const bool foveated = std::ranges::any_of(plan.axes.settings, [](const study::BenchSettings& settings) {
+    return settings.foveation.has_value();
+  });
   constexpr int small_width = 160;
   const int width = std::min(small_width, camera.width);
   const int height = std::max(1, static_cast<int>(std::int64_t{camera.height} * width / camera.width));
@@ -62,7 +65,7 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
           model,
           std::move(views),
           make_view(resized(camera, width, height), near_plane),
-          {plan.axes.frames, plan.axes.repeats, options.ppd, peaks}};
+          {plan.axes.frames, plan.axes.repeats, options.ppd, peaks, foveated}};
 }
 
 void measure_all(const BenchOptions& options, const BenchPlan& plan, const BenchFolder& folder) {
@@ -124,8 +127,8 @@ void print(const std::vector<study::BenchPoint>& points) {
   for (std::size_t i = 0; i < front.size(); ++i) {
     const study::BenchPoint& p = points[i];
     if (p.chart() != chart)
-      fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}\n", p.chart(), "  (* on the Pareto front)",
-                 "frame ms", "PSNR dB", "SSIM", "FLIP", "pairs");
+      fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}{}\n", p.chart(), "  (* on the Pareto front)",
+                 "frame ms", "PSNR dB", "SSIM", "FLIP", "pairs", p.seen ? "   seen %" : "");
     chart = p.chart();
     const std::string setting = fmt::format("{} {}", front[i] ? "*" : " ", p.name);
     if (!p.measured()) {
@@ -135,9 +138,10 @@ void print(const std::vector<study::BenchPoint>& points) {
     const auto number = [](double value, int digits, const char* none) {
       return std::isnan(value) ? none : fmt::format("{:.{}f}", value, digits);
     };
-    fmt::print("{:<36}{:>11.3f}{:>9}{:>9}{:>9}{:>12.0f}\n", setting, p.frame_ms,
+    fmt::print("{:<36}{:>11.3f}{:>9}{:>9}{:>9}{:>12.0f}{}\n", setting, p.frame_ms,
                number(p.exact.psnr_db, 2, "equal"), number(p.exact.ssim, 4, "-"),
-               number(p.exact.flip, 4, "-"), p.pairs);
+               number(p.exact.flip, 4, "-"), p.pairs,
+               p.seen ? fmt::format("{:>9.2f}", 100.0 * p.seen->visible) : "");
     if (p.profile) print_profile(*p.profile);
   }
 }

@@ -54,7 +54,7 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
   for (const int eyes : plan.axes.eyes) {
     for (const std::string& size : plan.axes.sizes) {
       plan.cases.push_back({scene, eyes, size, plan.points.size()});
-      for (const render::FrameSettings& settings : plan.axes.settings) {
+      for (const study::BenchSettings& settings : plan.axes.settings) {
         study::BenchPoint& point = plan.points.emplace_back();
         point.scene = plan.scenes[scene].name;
         point.eyes = eyes;
@@ -70,9 +70,9 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
 /// A calibration's ways to draw, with the tolerances as they are, after the axes' own.
 void add_calibrated(const std::string& file, study::Axes& axes) {
   std::set<study::NamedSettings> known;
-  for (const render::FrameSettings& settings : axes.settings) known.insert(study::named(settings));
+  for (const study::BenchSettings& settings : axes.settings) known.insert(study::named(settings));
   for (const study::CalibrationEntry& entry : study::load_calibration(file).entries) {
-    render::FrameSettings settings;
+    study::BenchSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;
     settings.tolerance = static_cast<float>(entry.tolerance);

@@ -15,7 +15,6 @@
 #include "formats/json_file.h"
 #include "study/embedded.h"
 #include "study/fields.h"
-#include "study/settings.h"
 
 namespace binosplat::study {
 
@@ -54,12 +53,14 @@ class Block {
     return object_.contains(key) ? whole(key, object_.at(key), low, high) : otherwise;
   }
 
-  float tolerance(const json& value) const {
+  double number(const std::string& key, const json& value) const {
     const double number = value.is_number() ? value.get<double>() : -1.0;
     const bool good = number >= 0.0 && std::isfinite(static_cast<float>(number));
-    if (!good) fail("{}: 'tolerance' {}: expected a number of 0 or more", place_, value.dump());
-    return static_cast<float>(number);
+    if (!good) fail("{}: '{}' {}: expected a number of 0 or more", place_, key, value.dump());
+    return number;
   }
+
+  bool has(const std::string& key) const { return object_.contains(key); }
 
   int choice(const std::string& key, const json& value, std::span<const Choice> choices) const {
     return find_choice(place_ + ", '" + key + "'",
@@ -77,15 +78,16 @@ class Block {
 struct Key {
   const char* name;
   json otherwise;
-  std::function<void(render::FrameSettings&, const json&)> set;
+  std::function<void(BenchSettings&, const json&)> set;
 };
 
 constexpr std::size_t most_settings = 10000;  // of all blocks; nobody measures that many
 
 /// All combinations of a block's lists, appended; the last key's values follow one another.
-void add_settings(const Block& block, std::vector<render::FrameSettings>& settings) {
-  using S = render::FrameSettings;
-  const auto choice = [&block](const char* key, int S::*member, std::span<const Choice> choices) {
+void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
+  using S = BenchSettings;
+  const auto choice = [&block](const char* key, int render::FrameSettings::*member,
+                               std::span<const Choice> choices) {
     return Key{
         key, choices[static_cast<std::size_t>(S{}.*member)].name,
         [&block, key, member, choices](S& s, const json& v) { s.*member = block.choice(key, v, choices); }};
@@ -97,8 +99,19 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
       choice("precision", &S::precision, precision_choices),
       {"tile", TILE_SIZE_DEFAULT,
        [&block](S& s, const json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
-      {"tolerance", 0.0, [&block](S& s, const json& v) { s.tolerance = block.tolerance(v); }},
+      {"inset", nullptr,
+       [&block](S& s, const json& v) {
+         if (block.has("inset")) s.foveation = stereo::Foveation{.inset_degrees = block.number("inset", v)};
+       }},
+      {"context", stereo::Foveation{}.context_scale,
+       [&block](S& s, const json& v) {
+         if (s.foveation) s.foveation->context_scale = block.number("context", v);
+       }},
+      {"tolerance", 0.0,
+       [&block](S& s, const json& v) { s.tolerance = static_cast<float>(block.number("tolerance", v)); }},
   };
+  if (block.has("context") && !block.has("inset"))
+    fail("{}: 'context' has no effect without 'inset', its degrees", block.place());
   std::vector<S> all(1);
   for (const Key& key : keys) {
     const std::vector<json> values = block.values(key.name, key.otherwise);
@@ -113,7 +126,7 @@ void add_settings(const Block& block, std::vector<render::FrameSettings>& settin
   settings.insert(settings.end(), all.begin(), all.end());
 }
 
-void remove_repeated(std::vector<render::FrameSettings>& settings) {
+void remove_repeated(std::vector<BenchSettings>& settings) {
   std::set<NamedSettings> seen;
   std::erase_if(settings, [&](const auto& s) { return !seen.insert(named(s)).second; });
 }
@@ -154,7 +167,7 @@ Axes parse_axes(const std::string& name, const std::string& text) {
   for (const json& object : root["settings"]) {
     const json present = with_present_names(object);
     const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), present,
-                      {"tiles", "tile", "th", "precision", "transmittance", "tolerance"});
+                      {"tiles", "tile", "th", "precision", "transmittance", "inset", "context", "tolerance"});
     const std::size_t before = axes.settings.size();
     add_settings(block, axes.settings);
     for (std::size_t i = before; i < axes.settings.size(); ++i) check(block.place(), axes.settings[i]);
@@ -177,7 +190,7 @@ Axes load_axes(const std::string& preset_or_file) {
 
 nlohmann::ordered_json to_json(const Axes& axes) {
   std::vector<NamedSettings> settings;
-  for (const render::FrameSettings& s : axes.settings) settings.push_back(named(s));
+  for (const BenchSettings& s : axes.settings) settings.push_back(named(s));
   return object("views", axes.views, "frames", axes.frames, "repeats", axes.repeats, "eyes", axes.eyes,
                 "sizes", axes.sizes, "settings", settings);
 }

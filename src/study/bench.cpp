@@ -10,10 +10,12 @@
 #include "base/clock.h"
 #include "base/statistics.h"
 #include "measure/depth_table.h"
+#include "measure/foveated.h"
 #include "measure/metrics.h"
 #include "reference/render.h"
 #include "render/frame.h"
 #include "stereo/disagreement.h"
+#include "stereo/foveate.h"
 #include "study/settings.h"
 #include "study/times.h"
 
@@ -33,6 +35,27 @@ constexpr double warm_up_ms = 3000.0;
 
 const glm::vec3 black(0.0f);
 
+/// Draws by settings, whole pictures or foveated ones.
+class Drawer {
+ public:
+  Drawer(std::shared_ptr<render::GpuModel> model, const BenchSettings& settings)
+      : foveated_(std::move(model)), settings_(settings) {}
+
+  render::FrameReport draw(std::span<const shared::View> eyes) {
+    return settings_.foveation ? foveated_.draw(eyes, *settings_.foveation, settings_)
+                               : foveated_.frame().draw(eyes, settings_);
+  }
+  std::vector<Picture> read_pictures() {
+    return settings_.foveation ? foveated_.read_pictures() : foveated_.frame().read_pictures();
+  }
+  stereo::FoveatedFrame& foveated() { return foveated_; }
+  render::Frame& frame() { return foveated_.frame(); }
+
+ private:
+  stereo::FoveatedFrame foveated_;
+  BenchSettings settings_;
+};
+
 bool is_finite(const Picture& picture) {
   return std::all_of(picture.colour.begin(), picture.colour.end(), [](const glm::vec4& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
@@ -44,6 +67,47 @@ bool is_empty(const Picture& picture) {
                      [](const glm::vec4& v) { return v.w == 1.0f; });
 }
 
+bool same_inset(const Image& a, const Image& b, const stereo::FoveatedEye& parts) {
+  for (unsigned y = parts.inset_begin.y; y < parts.inset_end.y; ++y) {
+    for (unsigned x = parts.inset_begin.x; x < parts.inset_end.x; ++x) {
+      for (int c = 0; c < a.channels; ++c) {
+        if (a.at(int(x), int(y), c) != b.at(int(x), int(y), c)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Along the eye's axis, which meets the picture at its principal point.
+measure::Gaze gaze_of(const shared::View& eye) {
+  return {eye.lens[2], eye.lens[3], glm::degrees(2.0 * std::atan(0.5 * eye.width / eye.lens[0]))};
+}
+
+/// Of pictures of one size, one number each by pixel.
+SeenNumbers pooled(const std::vector<measure::FoveatedComparison>& found) {
+  SeenNumbers seen{.visible = 0.0};
+  const auto pictures = static_cast<double>(found.size());
+  std::map<double, RingNumbers> rings;
+  for (const measure::FoveatedComparison& picture : found) {
+    seen.visible += picture.visible / pictures;
+    for (const measure::Ring& ring : picture.rings) {
+      RingNumbers& of_all =
+          rings.try_emplace(ring.from, RingNumbers{.psnr_db = 0.0, .visible = 0.0}).first->second;
+      of_all.from_degrees = ring.from;
+      of_all.to_degrees = ring.to;
+      of_all.share += ring.share / pictures;
+      of_all.psnr_db += ring.share / pictures * std::pow(10.0, -0.1 * ring.psnr);  // squared errors, for now
+      of_all.visible += ring.share / pictures * ring.visible;
+    }
+  }
+  for (auto& [from, ring] : rings) {
+    ring.psnr_db = -10.0 * std::log10(ring.psnr_db / ring.share);
+    ring.visible /= ring.share;
+    seen.rings.push_back(ring);
+  }
+  return seen;
+}
+
 double mean_signed(const Image& a, const Image& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.data.size(); ++k) sum += double(a.data[k]) - double(b.data[k]);
@@ -51,8 +115,7 @@ double mean_signed(const Image& a, const Image& b) {
 }
 
 /// Draws until the GPU's clock has settled. Returns whether it did in time; a software renderer's always has.
-bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSettings& settings,
-             bool software) {
+bool warm_up(Drawer& drawer, const BenchView& view, bool software) {
   const auto start = Clock::now();
   int drawn = 0;
   const auto goes_on = [&] {
@@ -61,8 +124,7 @@ bool warm_up(render::Frame& frame, const BenchView& view, const render::FrameSet
   double last = 0.0;
   while (goes_on()) {
     std::vector<double> times;
-    for (; times.size() < window && goes_on(); ++drawn)
-      times.push_back(frame.draw(view.eyes, settings).total_ms);
+    for (; times.size() < window && goes_on(); ++drawn) times.push_back(drawer.draw(view.eyes).total_ms);
     const double now = quantile(times, 0.5);
     if (times.size() == window && std::abs(now - last) <= agreement * now) return true;
     last = now;
@@ -159,7 +221,7 @@ const render::DepthTable& Bench::depth_table() {
 
 // What a threshold by measurements draws has no reference; that the frame's other stages are right is seen
 // with all others.
-std::string Bench::verify(const render::FrameSettings& settings) {
+std::string Bench::verify(const BenchSettings& settings) {
   render::Frame frame(gpu_model_);
   if (settings.transmittance == TRANSMITTANCE_ONE) {
     frame.draw(std::span(&small_, 1), settings);
@@ -177,15 +239,25 @@ std::string Bench::verify(const render::FrameSettings& settings) {
                          small_.width, small_.height, db, needed);
   }
   const BenchView& view = views_.front();
-  frame.draw(view.eyes, settings);
-  const std::vector<Picture> pictures = frame.read_pictures();
+  Drawer drawer(gpu_model_, settings);
+  drawer.draw(view.eyes);
+  const std::vector<Picture> pictures = drawer.read_pictures();
   for (const Picture& picture : pictures) {
     if (!is_finite(picture)) return view.name + ": a pixel is not a finite number";
     if (is_empty(picture)) return view.name + ": the picture is empty";
   }
   if (settings.transmittance != TRANSMITTANCE_ONE) return "";
-  frame.draw(view.eyes, settings);
-  return same_bits(frame.read_pictures(), pictures) ? "" : view.name + ": two frames differ";
+  drawer.draw(view.eyes);
+  if (!same_bits(drawer.read_pictures(), pictures)) return view.name + ": two frames differ";
+  render::FrameSettings of_inset = settings;
+  of_inset.th = TH_TAU;
+  if (!settings.foveation || !is_exact(of_inset)) return "";
+  for (std::size_t eye = 0; eye < pictures.size(); ++eye) {
+    const stereo::FoveatedEye& parts = drawer.foveated().parts()[eye];
+    if (!same_inset(composite(pictures[eye], black), exact().front().eyes[eye], parts))
+      return view.name + ": the inset is not the exact picture's";
+  }
+  return "";
 }
 
 ViewNumbers Bench::compare(const BenchView& view, const Exact& exact,
@@ -213,8 +285,8 @@ ViewNumbers Bench::compare(const BenchView& view, const Exact& exact,
   return v;
 }
 
-void Bench::time(const render::FrameSettings& settings, BenchNumbers& point) {
-  render::Frame frame(gpu_model_);
+void Bench::time(const BenchSettings& settings, BenchNumbers& point) {
+  Drawer drawer(gpu_model_, settings);
   Times all;
   render::FrameReport report;
   std::vector<double> repeats;  // means over the views
@@ -224,11 +296,11 @@ void Bench::time(const render::FrameSettings& settings, BenchNumbers& point) {
   for (int repeat = 0; repeat < effort_.repeats; ++repeat) {
     double of_repeat = 0.0;
     for (const BenchView& view : views_) {
-      if (repeat == 0) settled = warm_up(frame, view, settings, gpu_model_->context().software()) && settled;
-      for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) frame.draw(view.eyes, settings);
+      if (repeat == 0) settled = warm_up(drawer, view, gpu_model_->context().software()) && settled;
+      for (int n = 0; repeat > 0 && n < render::settling_frames; ++n) drawer.draw(view.eyes);
       Run run;
       for (int n = 0; n < effort_.frames; ++n) {
-        report = frame.draw(view.eyes, settings);
+        report = drawer.draw(view.eyes);
         run.add(report);
         all.add(report);
       }
@@ -249,27 +321,36 @@ void Bench::time(const render::FrameSettings& settings, BenchNumbers& point) {
   for (const std::string& stage : all.stage_names) point.stages.push_back({stage, stages[stage]});
 }
 
-void Bench::judge(const render::FrameSettings& settings, BenchNumbers& point) {
-  render::Frame frame(gpu_model_);
+void Bench::judge(const BenchSettings& settings, BenchNumbers& point) {
+  Drawer drawer(gpu_model_, settings);
   std::vector<ViewNumbers> photographed;
+  std::vector<measure::FoveatedComparison> seen;
   FrameWork work{.precision = settings.precision};
   for (std::size_t v = 0; v < views_.size(); ++v) {
     render::FrameReport report;
-    for (int n = 0; n < render::settling_frames; ++n) report = frame.draw(views_[v].eyes, settings);
-    ViewNumbers& view = point.views.emplace_back(compare(views_[v], exact()[v], frame.read_pictures()));
+    for (int n = 0; n < render::settling_frames; ++n) report = drawer.draw(views_[v].eyes);
+    const std::vector<Picture> drawn = drawer.read_pictures();
+    ViewNumbers& view = point.views.emplace_back(compare(views_[v], exact()[v], drawn));
+    for (std::size_t eye = 0; effort_.seen && eye < drawn.size(); ++eye) {
+      seen.push_back(measure::compare_foveated(composite(drawn[eye], black), exact()[v].eyes[eye],
+                                               gaze_of(views_[v].eyes[eye])));
+    }
     view.pairs = report.pairs;
     view.visible = report.visible;
-    add_work(frame, report, views_.size(), work);
-    if (v == 0) point.picture = for_page(composite(frame.read_pictures().front(), black));
-    view.alphas = mean_of(frame.read_shown(SHOW_ALPHAS));
-    view.alphas_visible = mean_of(frame.read_shown(SHOW_VISIBLE));
+    if (v == 0) point.picture = for_page(composite(drawn.front(), black));
+    if (!settings.foveation) {  // whose pixels are of two pictures
+      add_work(drawer.frame(), report, views_.size(), work);
+      view.alphas = mean_of(drawer.frame().read_shown(SHOW_ALPHAS));
+      view.alphas_visible = mean_of(drawer.frame().read_shown(SHOW_VISIBLE));
+    }
     if (views_[v].photo) photographed.push_back(view);
   }
   point.pairs = mean_of(point.views, &ViewNumbers::pairs);
   point.visible = mean_of(point.views, &ViewNumbers::visible);
   point.alphas = mean_of(point.views, &ViewNumbers::alphas);
   point.alphas_visible = mean_of(point.views, &ViewNumbers::alphas_visible);
-  if (effort_.peaks) {
+  if (!seen.empty()) point.seen = pooled(seen);
+  if (effort_.peaks && !settings.foveation) {
     work.gaussians = static_cast<double>(model_.count());
     work.degree = model_.degree;
     work.alphas = point.alphas * work.pixels;
@@ -285,7 +366,7 @@ void Bench::judge(const render::FrameSettings& settings, BenchNumbers& point) {
   }
 }
 
-BenchNumbers Bench::measure(render::FrameSettings settings) {
+BenchNumbers Bench::measure(BenchSettings settings) {
   if (settings.transmittance == TRANSMITTANCE_DEPTH) settings.depth_table = depth_table();
   BenchNumbers point{.device = device_text(gpu_model_->context()), .problem = verify(settings)};
   if (!point.problem.empty()) return point;

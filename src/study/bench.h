@@ -11,10 +11,10 @@
 #include "gl/context.h"
 #include "measure/flip.h"
 #include "render/gpu_model.h"
-#include "render/settings.h"
 #include "scene/model.h"
 #include "shared/types.h"
 #include "study/bench_results.h"
+#include "study/settings.h"
 
 namespace binosplat::study {
 
@@ -29,7 +29,8 @@ struct BenchEffort {
   int frames = 30;                               // timed, a view and repeat
   int repeats = 3;                               // each a pass over all views; their spread is the noise
   double ppd = measure::flip_pixels_per_degree;  // for FLIP
-  std::optional<Peaks> peaks;                    // of the GPU: points get a profile
+  std::optional<Peaks> peaks;                    // of the GPU: whole pictures get a profile
+  bool seen = false;                             // what eyes see that look along their axes
 };
 
 /// The points that share a model, its views and their size. What is exact is drawn once, at first use.
@@ -42,7 +43,7 @@ class Bench {
 
   /// A point that fails verification is not timed: it has a problem instead. TRANSMITTANCE_DEPTH goes by a
   /// table of the bench's own views. Throws Error where the GPU cannot draw the views at all.
-  BenchNumbers measure(render::FrameSettings settings);
+  BenchNumbers measure(BenchSettings settings);
 
  private:
   /// A view's exact pictures by eye, over black; and what they are worth against the photo.
@@ -54,9 +55,9 @@ class Bench {
 
   const std::vector<Exact>& exact();
   const render::DepthTable& depth_table();
-  std::string verify(const render::FrameSettings& settings);
-  void time(const render::FrameSettings& settings, BenchNumbers& point);
-  void judge(const render::FrameSettings& settings, BenchNumbers& point);
+  std::string verify(const BenchSettings& settings);
+  void time(const BenchSettings& settings, BenchNumbers& point);
+  void judge(const BenchSettings& settings, BenchNumbers& point);
   ViewNumbers compare(const BenchView& view, const Exact& exact, const std::vector<Picture>& drawn) const;
 
   const Model& model_;

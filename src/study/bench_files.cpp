@@ -27,6 +27,13 @@ static void fields(const auto& io, Some<ExactNumbers> auto& e) {
      "flip", e.flip, "signed", e.signed_mean, "disagreement_db", e.disagreement_db);
 }
 
+static void fields(const auto& io, Some<RingNumbers> auto& r) {
+  io("from_degrees", r.from_degrees, "to_degrees", r.to_degrees, "share", r.share, "psnr_db", r.psnr_db,
+     "visible", r.visible);
+}
+
+static void fields(const auto& io, Some<SeenNumbers> auto& s) { io("visible", s.visible, "rings", s.rings); }
+
 static void fields(const auto& io, Some<PhotoNumbers> auto& p) {
   io("views", p.views, "psnr_db", p.psnr_db, "drop_db", p.drop_db, "ssim", p.ssim, "flip", p.flip);
 }
@@ -37,7 +44,7 @@ void numbers(const auto& io, Some<BenchNumbers> auto& n) {
   io("frame_ms", n.frame_ms, "p99_ms", n.p99_ms, "noise_ms", n.noise_ms, "settled", n.settled, "frames",
      n.frames, "gpu_bytes", n.gpu_bytes, "submit_ms", n.submit_ms, "stages_ms", n.stages, "pairs", n.pairs,
      "visible", n.visible, "alphas", n.alphas, "alphas_visible", n.alphas_visible, "profile", n.profile,
-     "exact", n.exact, "photos", n.photos, "views", n.views);
+     "exact", n.exact, "seen", n.seen, "photos", n.photos, "views", n.views);
 }
 
 void names(const auto& io, Some<BenchPoint> auto& p) {
@@ -92,10 +99,12 @@ double stage_ms(const BenchPoint& p, const char* name) {
 
 constexpr const char* csv_columns =
     "scene,eyes,size,name,settings_tiles,settings_tile,settings_precision,settings_th,"
-    "settings_transmittance,settings_tolerance,device,frame_ms,p99_ms,noise_ms,settled,submit_ms,pairs,"
+    "settings_transmittance,settings_tolerance,settings_inset,settings_context,device,frame_ms,p99_ms,noise_"
+    "ms,settled,submit_ms,pairs,"
     "visible,"
     "gpu_bytes,alphas,alphas_visible,exact_psnr_db,exact_worst_psnr_db,exact_ssim,exact_flip,exact_signed,"
-    "exact_disagreement_db,photos_psnr_db,photos_drop_db,photos_ssim,photos_flip,stages_ms_project,"
+    "exact_disagreement_db,seen_visible,photos_psnr_db,photos_drop_db,photos_ssim,photos_flip,stages_ms_"
+    "project,"
     "stages_ms_order,stages_ms_pairs,stages_ms_tile_sort,stages_ms_ranges,stages_ms_blend,problem,pareto\n";
 
 std::string csv_line(const BenchPoint& p, bool pareto) {
@@ -106,11 +115,12 @@ std::string csv_line(const BenchPoint& p, bool pareto) {
   std::string line;
   for (const Cell& cell :
        row(p.scene, p.eyes, p.size, p.name, s.tiles, s.tile, s.precision, s.th, s.transmittance, s.tolerance,
-           p.device, p.frame_ms, p.p99_ms, p.noise_ms, measured(p.settled), p.submit_ms, p.pairs, p.visible,
-           measured(p.gpu_bytes), p.alphas, p.alphas_visible, exact.psnr_db, exact.worst_psnr_db, exact.ssim,
-           exact.flip, exact.signed_mean, exact.disagreement_db, photos.psnr_db, photos.drop_db, photos.ssim,
-           photos.flip, stage_ms(p, "project"), stage_ms(p, "order"), stage_ms(p, "pairs"),
-           stage_ms(p, "tile_sort"), stage_ms(p, "ranges"), stage_ms(p, "blend"), p.problem))
+           s.inset, s.context, p.device, p.frame_ms, p.p99_ms, p.noise_ms, measured(p.settled), p.submit_ms,
+           p.pairs, p.visible, measured(p.gpu_bytes), p.alphas, p.alphas_visible, exact.psnr_db,
+           exact.worst_psnr_db, exact.ssim, exact.flip, exact.signed_mean, exact.disagreement_db,
+           p.seen.value_or(SeenNumbers{}).visible, photos.psnr_db, photos.drop_db, photos.ssim, photos.flip,
+           stage_ms(p, "project"), stage_ms(p, "order"), stage_ms(p, "pairs"), stage_ms(p, "tile_sort"),
+           stage_ms(p, "ranges"), stage_ms(p, "blend"), p.problem))
     line += csv_field(cell) + ",";
   return line + (pareto ? "true\n" : "false\n");
 }

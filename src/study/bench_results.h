@@ -47,6 +47,19 @@ struct PhotoNumbers {
   double psnr_db = NAN, drop_db = NAN, ssim = NAN, flip = NAN;
 };
 
+/// Pixels between two distances from where an eye looks.
+struct RingNumbers {
+  double from_degrees = 0, to_degrees = 0;
+  double share = 0;                     // of all pixels
+  double psnr_db = NAN, visible = NAN;  // against exact; share of them whose difference can be seen
+};
+
+/// What eyes that look along their axes see of the differences (measure/foveated.h), over all views.
+struct SeenNumbers {
+  double visible = NAN;  // share of the pixels
+  std::vector<RingNumbers> rings;
+};
+
 /// What Bench measures of a point.
 struct BenchNumbers {
   std::string device;      // empty: not measured yet
@@ -62,6 +75,7 @@ struct BenchNumbers {
   double pairs = NAN, visible = NAN, alphas = NAN, alphas_visible = NAN;  // of a view, in the mean
   std::optional<std::vector<StageFloor>> profile;
   ExactNumbers exact;
+  std::optional<SeenNumbers> seen;  // where a setting of the run is foveated
   std::optional<PhotoNumbers> photos;
   std::vector<ViewNumbers> views;
   std::optional<Image> picture;  // of the first view's first eye, for_page(); not in the JSON

@@ -208,13 +208,45 @@ TEST(Foveate, AWindowOffByAPixelAndASeamThatEatsTheInsetAreCaught) {
   }
 }
 
+// The inset before a context from which everything is left out: what is seen in the seam is the window's
+// share.
+double farthest_from_seam(const Drawn& drawn, const Picture& exact, double seam) {
+  const stereo::FoveatedEye& parts = drawn.parts[0];
+  double worst = 0.0;
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) {
+      const auto beyond = [](int at, unsigned begin, unsigned end) {
+        return std::max({int(begin) - at, at - (int(end) - 1), 0});
+      };
+      const double t = std::min(std::hypot(beyond(x, parts.inset_begin.x, parts.inset_end.x),
+                                           beyond(y, parts.inset_begin.y, parts.inset_end.y)) /
+                                    seam,
+                                1.0);
+      const auto share = static_cast<float>(1.0 - t * t * (3.0 - 2.0 * t));
+      const auto k = static_cast<std::size_t>(std::ptrdiff_t{y} * size.x + x);
+      const glm::vec4 expected = glm::mix(glm::vec4(0, 0, 0, 1), exact.colour[k], share);
+      for (int c = 0; c < 4; ++c)
+        worst = std::max(worst, std::abs(double{drawn.pictures[0].colour[k][c]} - double{expected[c]}));
+    }
+  }
+  return worst;
+}
+
 TEST(Foveate, TheSeamIsSmooth) {
-  // A ramp from what the window shows to the context: a context that is black beside an inset that is white
-  // would fall by no more than smoothstep's steepest in a pixel.
   const Model model = test::random_model(76, 3000, 0, 0.75);
-  const auto drawn = draw(model, eyes(rigs[0]), {.inset_degrees = 18, .context_scale = 1.0});
-  const auto exact = test::draw(model, eyes(rigs[0])[0]);
-  EXPECT_GE(test::psnr(drawn.pictures[0], exact), 120.0);  // of as many pixels both are the picture
+  const auto views = eyes(rigs[0]);
+  const auto exact = test::draw(model, views[0]);
+  render::FrameSettings nothing;
+  nothing.th = TH_SQUARED;
+  nothing.tolerance = 1e9f;
+  const Foveation foveation{.inset_degrees = 18, .context_scale = 1.0, .seam = 0.5};
+  const Drawn drawn = draw(model, views, foveation, nothing);
+  const double seam = drawn.parts[0].seam;
+  EXPECT_GT(seam, 20.0);
+  EXPECT_LT(farthest_from_seam(drawn, exact, seam), 1e-5);
+  EXPECT_GT(farthest_from_seam(drawn, exact, 0.9 * seam), 0.05) << "another seam goes unnoticed";
+  // And of as many pixels both are the picture.
+  EXPECT_GE(test::psnr(draw(model, views, foveation).pictures[0], exact), 120.0);
 }
 
 // What is composed into the caller's textures is what is presented of composed pictures.

@@ -24,7 +24,7 @@ TEST(Axes, AreEveryCombination) {
   EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own", "64x48"}));
   // 2 x 2 and 2 x 2 x 2; the last block's only one is in the first.
   std::vector<std::string> names;
-  for (const render::FrameSettings& s : axes.settings) names.push_back(describe(s));
+  for (const BenchSettings& s : axes.settings) names.push_back(describe(s));
   EXPECT_EQ(names, (std::vector<std::string>{"aabb, tile 8", "aabb", "ellipse, tile 8", "ellipse",
                                              "peripheral, 0.5", "peripheral, 2", "peripheral, last, 0.5",
                                              "peripheral, last, 2", "squared, 0.5", "squared, 2",
@@ -52,6 +52,20 @@ TEST(Axes, HalfPrecisionIsOneAndNotExact) {
             R"({"tiles":"ellipse","tile":16,"th":"tau","precision":"half"})");
 }
 
+TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
+  const Axes axes = parse_axes("a", R"({"settings": [{}, {"inset": 20, "context": [0.25, 0.5]},
+    {"inset": [10, 30], "th": "squared", "tolerance": 0.3}]})");
+  std::vector<std::string> names;
+  for (const BenchSettings& s : axes.settings) names.push_back(describe(s));
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       "ellipse", "ellipse, inset 20, context 0.25", "ellipse, inset 20, context 0.5",
+                       "squared, inset 10, context 0.4, 0.3", "squared, inset 30, context 0.4, 0.3"}));
+  EXPECT_TRUE(is_exact(axes.settings[0]));
+  EXPECT_FALSE(is_exact(axes.settings[1]));
+  EXPECT_EQ(to_json(axes.settings[1]).dump(),
+            R"({"tiles":"ellipse","tile":16,"th":"tau","inset":20.0,"context":0.25})");
+}
+
 TEST(Axes, OnesThatAreLeftOut) {
   const Axes axes = parse_axes("a", R"({"settings": [{}]})");
   EXPECT_EQ(axes.settings.size(), 1);
@@ -61,7 +75,7 @@ TEST(Axes, OnesThatAreLeftOut) {
 }
 
 TEST(Axes, PresetsAreWellFormed) {
-  EXPECT_EQ(axes_presets(), (std::vector<std::string>{"headset", "paper", "quick"}));
+  EXPECT_EQ(axes_presets(), (std::vector<std::string>{"foveate", "headset", "paper", "quick"}));
   for (const std::string& name : axes_presets()) EXPECT_GT(load_axes(name).settings.size(), 5) << name;
   EXPECT_EQ(load_axes("headset").eyes, std::vector{2});
 }
@@ -93,6 +107,10 @@ TEST(Axes, ErrorsNameThePlace) {
       {R"({"settings": [{"th": "squared", "tolerance": -1}]})",
        "'tolerance' -1: expected a number of 0 or more"},
       {R"({"settings": [{"th": "squared", "tolerance": 1e99}]})", "'tolerance' 1e+99: expected"},
+      {R"({"settings": [{"context": 0.5}]})", "'context' has no effect without 'inset'"},
+      {R"({"settings": [{"inset": "wide"}]})", "'inset' \"wide\": expected a number"},
+      {R"({"settings": [{"inset": 0}]})", "inset 0: expected 1 to 120 degrees"},
+      {R"({"settings": [{"inset": 20, "context": 2}]})", "context 2: expected 0.05 to 1"},
       {R"({"settings": [{}], "frames": 0})", "'frames' 0: expected a whole number from 1"},
       {R"({"settings": [{}], "frames": 1.5})", "'frames' 1.5: expected a whole number"},
       {R"({"settings": [{}], "eyes": 3})", "'eyes' 3: expected a whole number from 1 to 2"},

@@ -127,6 +127,25 @@ TEST(BenchResults, ComparisonsGoByNoise) {
   EXPECT_EQ(lines[3], "3 of 4 points in both runs changed beyond noise; 1 are new, 1 are gone");
 }
 
+TEST(BenchResults, PageSaysWhatIsSeen) {
+  BenchResults made = results();
+  EXPECT_EQ(bench_page(made).sections[1].title.find("what is seen"), std::string::npos);
+  made.points[0].seen = {0.0, {{0, 5, 0.25, INFINITY, 0.0}, {5, 10, 0.75, INFINITY, 0.0}}};
+  made.points[1].seen = {0.009, {{0, 5, 0.25, 50.0, 0.0}, {5, 10, 0.75, 40.0, 0.012}}};
+  made.points[2].seen = {0.5, {{0, 5, 0.25, 30.0, 0.5}, {5, 10, 0.75, 20.0, 0.5}}};
+  made.points[3].seen = {0.02, {{0, 5, 0.25, 30.0, 0.5}, {5, 10, 0.75, 20.0, 0.5}}};
+  const Section section = bench_page(made).sections[1];
+  EXPECT_EQ(section.title, "fox, one eye, size own: what is seen");
+  EXPECT_NE(section.sentence.find("at most 1 % of the pixels is “squared, 0.1”: 4 ms"), std::string::npos)
+      << section.sentence;
+  ASSERT_TRUE(section.table);
+  EXPECT_EQ(section.table->columns.back(), "dB at 5 to 10°");
+  ASSERT_EQ(section.table->rows.size(), 4u);
+  // Read back, too.
+  const nlohmann::ordered_json json = made.points;
+  EXPECT_EQ(nlohmann::ordered_json(json.get<std::vector<BenchPoint>>()).dump(), json.dump());
+}
+
 TEST(BenchResults, PageSaysWhatItShows) {
   const Page page = bench_page(results());
   EXPECT_NE(page.sentence.find(

@@ -27,13 +27,13 @@ struct BenchPoint : testing::Test {
   Camera head = test::front_camera(64, 48, 64.0);
   shared::View small = make_view(resized(head, 32, 24));
 
-  Bench bench(gl::Context& context, int eyes) const {
+  Bench bench(gl::Context& context, int eyes, bool seen = false) const {
     BenchView view{"front", {make_view(head)}, {}};
     if (eyes == 2) {
       const auto rig = stereo::make_rig(head, {});
       view.eyes = {rig.views[0], rig.views[1]};
     }
-    return {context, model, {view}, small, {2, 2}};
+    return {context, model, {view}, small, {.frames = 2, .repeats = 2, .seen = seen}};
   }
 };
 
@@ -55,6 +55,44 @@ TEST_F(BenchPoint, ExactIsEqualAndAToleranceIsNot) {
     EXPECT_GT(point.exact.flip, 0.0);
     EXPECT_LT(point.pairs, exact.pairs);
   }
+}
+
+TEST_F(BenchPoint, FoveatedIsExactWhereOneLooks) {
+  Bench both = bench(test::gl_context(), 2, true);
+  BenchSettings foveated;
+  foveated.foveation = stereo::Foveation{.inset_degrees = 20.0, .context_scale = 0.3};
+  const BenchNumbers point = both.measure(foveated), exact = both.measure({});
+  ASSERT_EQ(point.problem, "");
+  EXPECT_EQ(point.stages.back().name, "compose");
+  ASSERT_TRUE(point.seen && exact.seen);
+  EXPECT_EQ(exact.seen->visible, 0.0);
+  EXPECT_GT(point.seen->visible, 0.0);
+  EXPECT_LT(point.exact.psnr_db, 60.0);
+  ASSERT_GE(point.seen->rings.size(), 3u);
+  EXPECT_TRUE(std::isinf(point.seen->rings[0].psnr_db)) << "the inset reaches 10 degrees";
+  EXPECT_TRUE(std::isinf(point.seen->rings[1].psnr_db));
+  EXPECT_LT(point.seen->rings[2].psnr_db, 60.0);
+  double share = 0.0;
+  for (const RingNumbers& ring : point.seen->rings) share += ring.share;
+  EXPECT_NEAR(share, 1.0, 1e-9);
+  EXPECT_FALSE(bench(test::gl_context(), 2).measure({}).seen);
+}
+
+TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
+  const test::TempFolder folder;
+  std::filesystem::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/shaders", folder.path(),
+                        std::filesystem::copy_options::recursive);
+  std::string compose = test::read_text(folder / "foveate.comp");
+  const std::string right = "if (beyond == 0.0) return 1.0;";
+  ASSERT_NE(compose.find(right), std::string::npos);
+  compose.replace(compose.find(right), right.size(), "if (beyond == 0.0) return 0.9;");
+  test::write_text(folder / "foveate.comp", compose);
+  const auto faulty = gl::Context::open();
+  faulty->set_shader_folder(folder.path());
+  BenchSettings foveated;
+  foveated.foveation = stereo::Foveation{.inset_degrees = 20.0};
+  EXPECT_NE(bench(*faulty, 1).measure(foveated).problem.find("the inset is not the exact picture's"),
+            std::string::npos);
 }
 
 // The built-in shaders with a fault in them: what is drawn is not what the reference draws, and no time is
