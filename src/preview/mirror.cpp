@@ -8,6 +8,7 @@ namespace binosplat::preview {
 
 Mirror::Mirror(bool by_egl) {
   if (by_egl) glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+  glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_TRUE);  // for pictures whose numbers mean light
   window_ = open_window(glm::ivec2(960, 960), false);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(0);  // the headset keeps the time
@@ -21,15 +22,17 @@ Mirror::~Mirror() {
   glfwDestroyWindow(window_);
 }
 
-bool Mirror::is_open() {
+bool Mirror::step() {
+  if (drawn_) glfwSwapBuffers(window_);
+  drawn_ = false;
   glfwPollEvents();
   return glfwWindowShouldClose(window_) == GLFW_FALSE && glfwGetKey(window_, GLFW_KEY_ESCAPE) != GLFW_PRESS;
 }
 
-void Mirror::show(std::uint32_t texture, const glm::ivec2& size) {
+void Mirror::show(const stereo::Target& picture, const glm::ivec2& size) {
   const gl::Functions& gl = context_->gl();
   if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);
-  gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, texture, 0);
+  gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, picture.texture, 0);
   glm::ivec2 window;
   glfwGetFramebufferSize(window_, &window.x, &window.y);
   const double scale = std::min(double(window.x) / size.x, double(window.y) / size.y);
@@ -37,10 +40,12 @@ void Mirror::show(std::uint32_t texture, const glm::ivec2& size) {
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   gl.ClearColor(0.0f, 0.0f, 0.0f, 1.0f);
   gl.Clear(GL_COLOR_BUFFER_BIT);
+  if (picture.linear) gl.Enable(GL_FRAMEBUFFER_SRGB);
   gl.BlitNamedFramebuffer(framebuffer_, 0, 0, 0, size.x, size.y, corner.x, corner.y, corner.x + shown.x,
                           corner.y + shown.y, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+  gl.Disable(GL_FRAMEBUFFER_SRGB);
   gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, 0, 0);  // it is the runtime's
-  glfwSwapBuffers(window_);
+  drawn_ = true;
 }
 
 }  // namespace binosplat::preview

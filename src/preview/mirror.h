@@ -6,6 +6,7 @@
 
 #include "gl/context.h"
 #include "preview/glfw.h"
+#include "stereo/present.h"
 
 namespace binosplat::preview {
 
@@ -20,17 +21,19 @@ class Mirror {
 
   gl::Context& context() { return *context_; }
 
-  /// False once the window is closed, or Escape was pressed in it.
-  bool is_open();
+  /// Takes what lies in the lower left corner of a texture, so many px, as large as the window has room for.
+  void show(const stereo::Target& picture, const glm::ivec2& size);
 
-  /// Shows what lies in the lower left corner of a texture, so many px, as large as the window has room for.
-  void show(std::uint32_t texture, const glm::ivec2& size);
+  /// Brings it onto the screen, and takes the window's events: false once it is closed, or Escape was pressed
+  /// in it.
+  bool step();
 
  private:
   Glfw glfw_;
   GLFWwindow* window_ = nullptr;
   std::unique_ptr<gl::Context> context_;
   std::uint32_t framebuffer_ = 0;  // of what is shown
+  bool drawn_ = false;             // and not on the screen yet
 };
 
 }  // namespace binosplat::preview

@@ -29,9 +29,16 @@ double moved(const shared::View& a, const shared::View& b) {
   return glm::length(eye_a - eye_b);
 }
 
+bool of_same_pixels(const ViewPart& a, const ViewPart& b) {
+  return a.corner == b.corner && a.size == b.size && a.columns == b.columns && a.hole_begin == b.hole_begin &&
+         a.hole_end == b.hole_end;
+}
+
 }  // namespace
 
 bool continues(const FrameShape& before, const FrameShape& now, double median_depth, double share) {
+  // Where nothing was drawn, nothing was measured.
+  if (!std::ranges::equal(before.settings.parts, now.settings.parts, of_same_pixels)) return false;
   if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
   for (std::size_t v = 0; v < now.asked; ++v) {
     const shared::View& a = before.views[v];

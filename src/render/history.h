@@ -7,9 +7,9 @@
 
 namespace binosplat::render {
 
-/// True if the views are the same ones a moment later: as many, of the same pictures and lenses, each turned
-/// by less than 15 degrees and moved by less than a tenth of `median_depth` (of the Gaussians drawn before,
-/// world units). Anything else is a cut.
+/// True if the views are the same ones a moment later: as many, of the same pictures and lenses, the same
+/// parts of them drawn, each turned by less than 15 degrees and moved by less than a tenth of `median_depth`
+/// (of the Gaussians drawn before, world units). Anything else is a cut.
 /// `share` of these limits, for a closer look.
 bool continues(const FrameShape& before, const FrameShape& now, double median_depth, double share = 1.0);
 

@@ -240,7 +240,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     if (has_depths) presenter_.draw_depth(frame.frame(), k, depths[k]);
   }
   const std::size_t shown = count == 4 ? place_of(2, count) : 0;  // of four views the inset
-  if (drawn_left) drawn_left(targets[shown].texture, sizes[shown]);
+  if (drawn_left) drawn_left(targets[shown], sizes[shown]);
   submit(located, sizes, near_plane / stage.units_per_metre, far_plane / stage.units_per_metre);
   return report;
 }

@@ -33,7 +33,7 @@ class Projection {
   /// Draws the located views, each `part` of its texture's sides, at a place of the model's world. Calls
   /// `drawn_left`, if any, while the left eye's texture may still be read: its picture lies there in the
   /// lower left corner, so large. `gaze`, where it is known, is where the foveated eyes look.
-  using DrawnLeft = std::function<void(std::uint32_t texture, const glm::ivec2& size)>;
+  using DrawnLeft = std::function<void(const stereo::Target& left, const glm::ivec2& size)>;
   render::FrameReport draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
                            const stereo::Stage& stage, render::FrameSettings settings, double part = 1.0,
                            const DrawnLeft& drawn_left = {}, const std::optional<XrPosef>& gaze = {});

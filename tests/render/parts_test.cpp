@@ -212,6 +212,21 @@ TEST(Parts, AHoleIsPairedOnlyByWhatReachesOverIt) {
   EXPECT_GT(left, 0.4);
 }
 
+// What lay in it was not measured.
+TEST(Parts, AHoleThatMovesIsACut) {
+  const Model model = test::random_model(48, 3000, 0, 0.75);
+  const FrameSettings last{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.3f};
+  const FrameSettings before = with(last, {{.hole_begin = {32, 32}, .hole_end = {96, 96}}});
+  const FrameSettings now = with(last, {{.hole_begin = {64, 32}, .hole_end = {128, 96}}});
+  const std::vector views = {view_of(100)};
+  render::Frame frame(test::gl_context(), model);
+  for (int n = 0; n < 3; ++n) frame.draw(views, before);
+  EXPECT_TRUE(frame.draw(views, before).remembered);
+  EXPECT_FALSE(frame.draw(views, now).remembered);
+  EXPECT_TRUE(same_bits(frame.read_pictures().front(), draw(model, views[0], now)));
+  EXPECT_FALSE(frame.draw(views, last).remembered) << "nor where there is none";
+}
+
 TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
   const Model model = test::random_model(45, 4000, 1, 0.75);
   const std::vector views = {view_of(100), view_of(100), view_of(100)};

@@ -61,10 +61,9 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   settings.start = into_axes(start.cameras.front(), model.axes);
   settings.up = glm::transpose(world_from_axes(model.axes)) * start.up;
   settings.units_per_metre = choices.rig.units_per_metre;
-  xr::Beside beside = {
-      .step = [&] { return !mirror || mirror->is_open(); }, .show = {}, .levels = scene.levels};
+  xr::Beside beside = {.step = [&] { return !mirror || mirror->step(); }, .show = {}, .levels = scene.levels};
   if (mirror)
-    beside.show = [&](std::uint32_t texture, const glm::ivec2& size) { mirror->show(texture, size); };
+    beside.show = [&](const stereo::Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   xr::run(instance, context, std::move(model), settings, beside);
 }
 
