@@ -33,9 +33,9 @@ struct Swapchain {
   XrSwapchain handle = XR_NULL_HANDLE;
   glm::ivec2 size{0};
   std::vector<XrSwapchainImageOpenGLKHR> images;
+  bool in_place = true;
 };
 constexpr XrViewConfigurationType stereo_views = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-
 void make_instance() {
   const char* const extensions[] = {"XR_MNDX_egl_enable", "XR_KHR_opengl_enable"};
   XrInstanceCreateInfo info = {XR_TYPE_INSTANCE_CREATE_INFO};
@@ -60,7 +60,6 @@ XrSession make_session(XrSystemId system) {
      reinterpret_cast<PFN_xrVoidFunction*>(&get_requirements));
   XrGraphicsRequirementsOpenGLKHR requirements = {XR_TYPE_GRAPHICS_REQUIREMENTS_OPENGL_KHR};
   XR(get_requirements, instance, system, &requirements);
-
   const XrGraphicsBindingEGLMNDX binding = {
       XR_TYPE_GRAPHICS_BINDING_EGL_MNDX, nullptr, eglGetProcAddress, display, EGL_NO_CONFIG_KHR, context};
   const XrSessionCreateInfo info = {XR_TYPE_SESSION_CREATE_INFO, &binding, 0, system};
@@ -71,7 +70,7 @@ XrSession make_session(XrSystemId system) {
 
 Swapchain make_swapchain(XrSession session, const XrViewConfigurationView& view) {
   XrSwapchainCreateInfo info = {XR_TYPE_SWAPCHAIN_CREATE_INFO};
-  // binosplat writes into the texture itself, by a view of another format, where the runtime lets it.
+  // binosplat writes into the texture itself, by a view of another format, if the runtime lets it.
   info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT |
                     XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
   info.format = GL_SRGB8_ALPHA8;  // what models' colours are; a runtime without it says so
@@ -79,7 +78,11 @@ Swapchain make_swapchain(XrSession session, const XrViewConfigurationView& view)
   info.height = view.recommendedImageRectHeight;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   Swapchain swapchain = {.size = {info.width, info.height}};
-  XR(xrCreateSwapchain, session, &info, &swapchain.handle);
+  if (xrCreateSwapchain(session, &info, &swapchain.handle) < 0) {  // as Monado: then through a copy
+    swapchain.in_place = false;
+    info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+    XR(xrCreateSwapchain, session, &info, &swapchain.handle);
+  }
   std::uint32_t count = 0;
   XR(xrEnumerateSwapchainImages, swapchain.handle, 0, &count, nullptr);
   swapchain.images.resize(count, {XR_TYPE_SWAPCHAIN_IMAGE_OPENGL_KHR});
@@ -124,7 +127,6 @@ bool draw(XrSession session, XrSpace space, XrTime time, stereo::EmbeddedRendere
   XR(xrLocateViews, session, &info, &state, 2, &count, views.data());
   constexpr XrViewStateFlags valid = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
   if ((state.viewStateFlags & valid) != valid) return false;
-
   std::array<stereo::XrEye, 2> eyes;
   std::array<stereo::Target, 2> targets;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -133,12 +135,12 @@ bool draw(XrSession session, XrSpace space, XrTime time, stereo::EmbeddedRendere
     const XrFovf& fov = views[k].fov;
     eyes[k] = {
         {p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown}};
-    const auto& [swapchain, size, images] = swapchains[k];
+    const auto& [swapchain, size, images, in_place] = swapchains[k];
     std::uint32_t image = 0;
     XR(xrAcquireSwapchainImage, swapchain, nullptr, &image);
     const XrSwapchainImageWaitInfo wait = {XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
     XR(xrWaitSwapchainImage, swapchain, &wait);
-    targets[k].texture = images[image].image;
+    targets[k] = {.texture = images[image].image, .in_place = in_place};
     const XrSwapchainSubImage whole = {swapchain, {{0, 0}, {size.x, size.y}}, 0};
     submitted[k] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, views[k].pose, fov, whole};
   }
@@ -184,10 +186,8 @@ int main(int argc, char** argv) try {
     const XrCompositionLayerProjection layer = {
         XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, views.data()};
     const auto* layers = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);
-    XrFrameEndInfo end = {XR_TYPE_FRAME_END_INFO, nullptr, frame.predictedDisplayTime};
-    end.environmentBlendMode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
-    end.layerCount = drawn ? 1 : 0;
-    end.layers = &layers;
+    const XrFrameEndInfo end = {XR_TYPE_FRAME_END_INFO,           nullptr,         frame.predictedDisplayTime,
+                                XR_ENVIRONMENT_BLEND_MODE_OPAQUE, drawn ? 1u : 0u, &layers};
     XR(xrEndFrame, session, &end);
   }
   XR(xrDestroySpace, space);

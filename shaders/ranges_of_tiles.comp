@@ -10,6 +10,7 @@
 #include "shared/limits.h"
 #include "shared/types.h"
 #include "shared/grid.glsl"
+#include "shared/arguments.glsl"
 #include "supertiles.glsl"
 
 #define ROWS 8
@@ -29,7 +30,6 @@ uniform uint capacity;
 #else
 layout(std430, binding = 2) writeonly buffer TileCounts { uint tile_counts[]; };
 #endif
-uniform uint blocks;
 
 shared uint row_counts[ROWS][SUPERTILE_TILES];
 #if !WITH_SUBGROUPS
@@ -39,11 +39,11 @@ shared uint touching[ROWS][EACH][SUPERTILE_TILES];
 bool touches(uint value, uint nth) { return (value >> SUPERTILE_SPLAT_BITS >> nth & 1u) != 0u; }
 
 void main() {
-  uint block = group_index();
+  uint count = arguments[0].count;
+  uint block = group_index(), blocks = blocks_of(count, TILE_BLOCK);
   if (block >= blocks) return;
   uint lane = gl_LocalInvocationID.x, row = gl_LocalInvocationID.y;
   uint begin = block * TILE_BLOCK + row * 32u * EACH + lane;
-  uint count = arguments[0].count;
   uint value[EACH];
   for (uint k = 0u; k < EACH; ++k) value[k] = begin + 32u * k < count ? values[begin + 32u * k] : 0u;
   // Of each 32 values and tile, a bit for each that touches it.

@@ -41,11 +41,12 @@ Target texture_behind(const gl::Functions& gl, const Target& target) {
           .level = attached(first, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LEVEL),
           .layer = attached(first, GL_FRAMEBUFFER_ATTACHMENT_TEXTURE_LAYER),
           .x = target.x,
-          .y = target.y};
+          .y = target.y,
+          .in_place = target.in_place};
 }
 
 InPlace in_place(const gl::Functions& gl, const Target& target) {
-  if (target.texture == 0) return {};
+  if (target.texture == 0 || !target.in_place) return {};
   GLint kind = 0, format = 0, immutable = 0;
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_TARGET, &kind);
   gl.GetTextureParameteriv(target.texture, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);

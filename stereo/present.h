@@ -32,8 +32,11 @@ struct Target {
   int x = 0;                      // px, lower left corner of the picture in it, as glViewport counts
   int y = 0;
   /// Its numbers mean light, not what a screen takes, as OpenXR's runtimes have it of every format but
-  /// sRGB's: colours are converted. Of a format that is written without a copy.
+  /// sRGB's: colours are converted.
   bool linear = false;
+  /// Shaders may write into it. False, as for a swapchain that OpenXR's runtime makes without unordered
+  /// access: it is rendered into, through a copy.
+  bool in_place = true;
 };
 
 /// Where a view's depths go: a 2D texture, or a layer of an array, of a depth format without stencil. What

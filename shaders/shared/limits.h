@@ -39,6 +39,7 @@
 #define SUPERTILE_SPLAT_BITS 28
 // Sorted pairs that a work group splits among their tiles.
 #define TILE_BLOCK 1024
+#define SUPERTILE_TILES_MOST 4u
 
 // What a frame remembers of a Gaussian (docs/method.md 5): never less than the floor, or a hidden one would
 // divide by zero; times the ageing a measuring, up to 1, while Th leaves it out, so that it comes to be
@@ -84,6 +85,9 @@
 #endif
 // Bits of a radix sort's digit: at most so many, where that saves a pass over 8 (primitives/radix_sort.h).
 #define SORT_BITS_MAX 9
+#define SORT_PASSES_MAX 4u
+// Groups that count the digits of all passes: what an H200 has in work. More would add more counts to the sums than they save.
+#define SORT_DIGITS_GROUPS 528u
 // Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
 // of lanes together), so a tile's list may have 8 times as many entries before it is cut; and then it is
 // reported.

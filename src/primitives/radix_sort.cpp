@@ -25,6 +25,8 @@ void RadixSort::reserve(const PairBuffers& pairs, std::uint32_t bits) {
   const std::int64_t counters = counters_of(pairs.capacity(), bits);
   histogram_.reserve(counters * 4);
   scan_.reserve(counters);
+  if (digits_.bytes() == 0)
+    digits_.upload(std::vector<std::uint32_t>(SORT_PASSES_MAX + (2 * SORT_PASSES_MAX << SORT_BITS_MAX)));
 }
 
 std::uint32_t RadixSort::block(std::int64_t capacity) {
@@ -42,13 +44,11 @@ std::uint32_t RadixSort::passes(std::uint32_t bits) { return (bits + SORT_BITS_M
 void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, PairBuffers& pairs,
                     std::uint32_t bits) {
   gl::Context& context = dispatcher.context();
+  if (context.limits().subgroups_of_32) return run_looking_back(dispatcher, arguments, pairs, bits);
   gl::Defines defines = pairs.block_define();
   defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
   const gl::Program& count = context.program("primitives/sort_count.comp", defines);
-  const gl::Program& scatter =
-      context.program(context.limits().subgroups_of_32 ? "primitives/sort_scatter_subgroups.comp"
-                                                       : "primitives/sort_scatter.comp",
-                      defines);
+  const gl::Program& scatter = context.program("primitives/sort_scatter.comp", defines);
   const auto blocks = gl::Work::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
   for (std::uint32_t shift = 0; shift < bits; shift += digit_bits(bits)) {
     dispatcher.run(count, blocks,
@@ -65,6 +65,34 @@ void RadixSort::run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, Pai
                    {{"shift", shift}});
     pairs.flip();
   }
+}
+
+void RadixSort::run_looking_back(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, PairBuffers& pairs,
+                                 std::uint32_t bits) {
+  if (bits == 0) return;
+  gl::Context& context = dispatcher.context();
+  gl::Defines defines = pairs.block_define();
+  defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
+  const gl::Program& scatter = context.program("primitives/sort_scatter_subgroups.comp", defines);
+  defines.emplace_back("PASSES", std::to_string((bits + digit_bits(bits) - 1) / digit_bits(bits)));
+  const auto blocks = gl::Work::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
+  dispatcher.run(
+      context.program("primitives/sort_digits.comp", defines), gl::Work::of_groups(SORT_DIGITS_GROUPS),
+      {{"Arguments", arguments}, {"Keys", pairs.keys()}, {"SortDigits", digits_}, {"Reached", histogram_}},
+      {{"half_now", half_now_}});
+  for (std::uint32_t pass = 0; pass * digit_bits(bits) < bits; ++pass) {
+    dispatcher.run(scatter, blocks,
+                   {{"Arguments", arguments},
+                    {"Keys", pairs.keys()},
+                    {"Values", pairs.values()},
+                    {"Reached", histogram_},
+                    {"SortDigits", digits_},
+                    {"KeysOut", pairs.keys_out()},
+                    {"ValuesOut", pairs.values_out()}},
+                   {{"pass", pass}, {"half_now", half_now_}});
+    pairs.flip();
+  }
+  half_now_ = 1 - half_now_;
 }
 
 }  // namespace binosplat::primitives

@@ -36,7 +36,9 @@ class PairBuffers {
 class RadixSort {
  public:
   explicit RadixSort(gl::Context& context)
-      : histogram_(context, "counters of the radix sort"), scan_(context) {}
+      : histogram_(context, "counters of the radix sort"),
+        digits_(context, "digits of the radix sort"),
+        scan_(context) {}
 
   /// Room to sort as many pairs as they have room for by so many bits.
   void reserve(const PairBuffers& pairs, std::uint32_t bits);
@@ -59,7 +61,12 @@ class RadixSort {
   void run(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, PairBuffers& pairs, std::uint32_t bits);
 
  private:
+  void run_looking_back(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, PairBuffers& pairs,
+                        std::uint32_t bits);
+
   gl::Buffer histogram_;
+  gl::Buffer digits_;           // where blocks look back
+  std::uint32_t half_now_ = 0;  // of its counts, the ones that are 0
   Scan scan_;
 };
 

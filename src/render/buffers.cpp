@@ -60,7 +60,6 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       pair_arguments(context, "arguments of pairs"),
       pairs(context, "Gaussian-tile pairs"),
       ranges(context, "ranges of supertiles"),
-      tile_arguments(context, "arguments of the tiles' counts"),
       tile_counts(context, "tiles' counts"),
       tile_ranges(context, "ranges of tiles"),
       tile_values(context, "lists of tiles"),
@@ -72,6 +71,7 @@ FrameBuffers::FrameBuffers(gl::Context& context)
       shown_light(context, "transmittance to show"),
       scan(context),
       sort(context),
+      look_back(context),
       context_(context) {}
 
 void FrameBuffers::upload(const FrameShape& shape) {
@@ -117,7 +117,7 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   splats.reserve(slots * shape.view_count() * splat_bytes(shape.settings.precision));
   coverages.reserve(slots * shape.view_count() * 4);
   tall.reserve(slots * shape.view_count() * 4);
-  pair_arguments.reserve(sizeof(primitives::SortArguments));
+  pair_arguments.reserve(4 * sizeof(shared::DispatchArguments));
   pairs.reserve(pair_capacity);
   ranges.reserve(std::max<std::int64_t>(shape.supertile_count, shape.view_count()) * 8);
   if (shape.supertile_side > 1) {
@@ -131,6 +131,7 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   if (shape.canvases.empty()) colours.reserve(shape.pixel_count * 16);
   z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));
+  look_back.reserve(std::max(blocks, slots / SCAN_BLOCK) + 1);
   for (const OrderGroup& group : shape.groups) sort.reserve(order, group.key_bits);
   sort.reserve(pairs, shape.supertile_bits());
 }

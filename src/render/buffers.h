@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gl/buffer.h"
+#include "primitives/look_back.h"
 #include "primitives/radix_sort.h"
 #include "render/gpu_model.h"
 #include "render/shape.h"
@@ -88,15 +89,14 @@ struct FrameBuffers {
   gl::Buffer tall;       // splats over many rows of tiles
   // In their place, once their tiles are counted: uint (rank, view of the group), supertiles.glsl.
   gl::Buffer& coverage_in_order = tall;
-  gl::Buffer pair_arguments;      // SortArguments of the pairs at hand
+  gl::Buffer pair_arguments;      // of the pairs at hand: arguments.comp
   primitives::PairBuffers pairs;  // supertile (view with --tiles all), splat (supertiles.glsl)
   gl::Buffer ranges;              // begin, end by supertile
   // Where supertiles are of several tiles, in place of `ranges`.
-  gl::Buffer tile_arguments;  // DispatchArguments of the counts below
-  gl::Buffer tile_counts;     // uint, pairs by tile of a supertile, then by block of TILE_BLOCK, scanned
-  gl::Buffer tile_ranges;     // begin, end by tile
-  gl::Buffer tile_values;     // splats by these
-  gl::Buffer long_lists;      // tiles with more than LONG_LIST pairs
+  gl::Buffer tile_counts;  // uint, pairs by tile of a supertile, then by block of TILE_BLOCK, scanned
+  gl::Buffer tile_ranges;  // begin, end by tile
+  gl::Buffer tile_values;  // splats by these
+  gl::Buffer long_lists;   // tiles with more than LONG_LIST pairs
 
   gl::Buffer canvases;  // Canvas by view, where pictures go into images; then nothing goes into
   gl::Buffer colours;   // vec4 by pixel: C, T
@@ -108,6 +108,7 @@ struct FrameBuffers {
 
   primitives::Scan scan;
   primitives::RadixSort sort;
+  primitives::LookBack look_back;
 
  private:
   gl::Context& context_;

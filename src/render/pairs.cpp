@@ -5,6 +5,43 @@
 
 namespace binosplat::render {
 
+namespace {
+
+// Of the order group's Gaussians, and the arguments of the pairs.
+void count(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t group, FrameBuffers& buffers) {
+  gl::Context& context = dispatcher.context();
+  const OrderGroup views = shape.groups[group];
+  const gl::Buffer& drawn = buffers.drawn[group]->arguments;
+  const bool both_eyes = shape.view_count() == 2 && shape.groups.size() == 1;
+  const bool looks_back = context.limits().subgroups_of_32;
+  gl::Defines defines = {{"BOTH_EYES", both_eyes ? "1" : "0"}, {"LOOKS_BACK", looks_back ? "1" : "0"}};
+  if (looks_back) defines.push_back(buffers.pairs.block_define().front());
+  dispatcher.run(context.program("pairs_count.comp", defines),
+                 gl::Work::indirect(drawn, looks_back ? offsetof(shared::DispatchArguments, scan_x)
+                                                      : offsetof(shared::DispatchArguments, threads_x)),
+                 {{"Frame", buffers.parameters},
+                  {"OrderArguments", drawn},
+                  {"Order", buffers.order.values()},
+                  {"Coverages", buffers.coverages},
+                  {"PairOffsets", buffers.pair_offsets},
+                  {"CoverageInOrder", buffers.coverage_in_order},
+                  {"Arguments", buffers.pair_arguments},
+                  {"FrameCounters", buffers.counters},
+                  {"LookBack", buffers.look_back.words()}},
+                 {{"view_begin", views.begin},
+                  {"view_end", views.end},
+                  {"look_back_half", looks_back ? buffers.look_back.next_half() : 0},
+                  {"kind", ARGUMENTS_PAIRS},
+                  {"capacity", static_cast<std::uint32_t>(buffers.pairs.capacity())},
+                  {"groups_max", context.limits().groups},
+                  {"digit_bits", primitives::RadixSort::digit_bits(shape.supertile_bits())}});
+  if (looks_back) return;
+  buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
+  count_pairs(dispatcher, shape, ARGUMENTS_PAIRS, buffers);
+}
+
+}  // namespace
+
 void count_pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t kind,
                  FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
@@ -22,20 +59,7 @@ void pairs(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
   gl::Context& context = dispatcher.context();
   const OrderGroup views = shape.groups[group];
   const gl::Buffer& drawn = buffers.drawn[group]->arguments;
-  const auto each = [](const gl::Buffer& arguments) {
-    return gl::Work::indirect(arguments, offsetof(shared::DispatchArguments, threads_x));
-  };
-  const bool both_eyes = shape.view_count() == 2 && shape.groups.size() == 1;
-  dispatcher.run(context.program("pairs_count.comp", {{"BOTH_EYES", both_eyes ? "1" : "0"}}), each(drawn),
-                 {{"Frame", buffers.parameters},
-                  {"Arguments", drawn},
-                  {"Order", buffers.order.values()},
-                  {"Coverages", buffers.coverages},
-                  {"PairOffsets", buffers.pair_offsets},
-                  {"CoverageInOrder", buffers.coverage_in_order}},
-                 {{"view_begin", views.begin}, {"view_end", views.end}});
-  buffers.scan.run(dispatcher, drawn, 0, buffers.pair_offsets);
-  count_pairs(dispatcher, shape, ARGUMENTS_PAIRS, buffers);
+  count(dispatcher, shape, group, buffers);
   gl::Defines defines = pair_defines(shape);
   defines.push_back(subgroups_define(context));
   dispatcher.run(context.program("pairs.comp", defines),

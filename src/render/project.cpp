@@ -55,7 +55,27 @@ void cull(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup views,
 void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup group, const DrawnBuffers& drawn,
              FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
-  const auto blocks = gl::Work::threads(shape.gaussian_count, COMPACT_BLOCK);
+  const auto blocks = gl::Work::threads(std::max(1u, shape.gaussian_count), COMPACT_BLOCK);
+  const std::uint32_t digit_bits = primitives::RadixSort::digit_bits(group.key_bits);
+  if (context.limits().subgroups_of_32) {
+    gl::Defines defines = buffers.order.block_define();
+    defines.emplace_back("LOOKS_BACK", "1");
+    return dispatcher.run(context.program("project_compact.comp", defines), blocks,
+                          {{"Frame", buffers.parameters},
+                           {"Arguments", drawn.arguments},
+                           {"DepthKeys", buffers.depth_keys},
+                           {"LookBack", buffers.look_back.words()},
+                           {"Keys", buffers.order.keys()},
+                           {"Values", buffers.order.values()},
+                           {"Indices", drawn.indices},
+                           {"FrameCounters", buffers.counters}},
+                          {{"nearest_key", group.nearest_key},
+                           {"look_back_half", buffers.look_back.next_half()},
+                           {"kind", ARGUMENTS_ORDER},
+                           {"capacity", shape.slots},
+                           {"groups_max", context.limits().groups},
+                           {"digit_bits", digit_bits}});
+  }
   dispatcher.run(context.program("project_compact_count.comp"), blocks,
                  {{"Frame", buffers.parameters},
                   {"DepthKeys", buffers.depth_keys},
@@ -67,8 +87,8 @@ void compact(gl::Dispatcher& dispatcher, const FrameShape& shape, OrderGroup gro
       {{"kind", ARGUMENTS_ORDER},
        {"capacity", shape.slots},
        {"groups_max", context.limits().groups},
-       {"digit_bits", primitives::RadixSort::digit_bits(group.key_bits)}});
-  dispatcher.run(context.program("project_compact.comp"), blocks,
+       {"digit_bits", digit_bits}});
+  dispatcher.run(context.program("project_compact.comp", {{"LOOKS_BACK", "0"}}), blocks,
                  {{"Frame", buffers.parameters},
                   {"Arguments", drawn.arguments},
                   {"DepthKeys", buffers.depth_keys},

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "primitives/arguments.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -18,31 +17,31 @@ void start_clear(gl::Dispatcher& dispatcher, const gl::Buffer& ranges, std::uint
 void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   start_clear(dispatcher, buffers.tile_ranges, shape.tile_count());
-  const std::uint32_t blocks = tile_blocks(buffers.pairs.capacity());
+  const auto arguments_at = [](std::size_t nth, std::size_t member) {
+    return static_cast<std::int64_t>(nth * sizeof(shared::DispatchArguments) + member);
+  };
+  const gl::Work blocks = gl::Work::indirect(buffers.pair_arguments,
+                                             arguments_at(2, offsetof(shared::DispatchArguments, threads_x)));
   const auto program = [&](const char* writes) -> const gl::Program& {
     return context.program("ranges_of_tiles.comp", {{"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
                                                     subgroups_define(context),
                                                     {"WRITES", writes}});
   };
-  buffers.tile_arguments.upload(
-      std::vector{primitives::make_arguments(shape.tiles_a_supertile() * blocks, context.limits().groups)});
-  dispatcher.run(program("0"), gl::Work::of_groups(blocks),
+  dispatcher.run(program("0"), blocks,
                  {{"Arguments", buffers.pair_arguments},
                   {"Values", buffers.pairs.values()},
-                  {"TileCounts", buffers.tile_counts}},
-                 {{"blocks", blocks}});
-  buffers.scan.run(dispatcher, buffers.tile_arguments, 0, buffers.tile_counts);
-  dispatcher.run(
-      program("1"), gl::Work::of_groups(blocks),
-      {{"Arguments", buffers.pair_arguments},
-       {"Values", buffers.pairs.values()},
-       {"TileCounts", buffers.tile_counts},
-       {"Total", buffers.scan.total()},
-       {"Keys", buffers.pairs.keys()},
-       {"TileRanges", buffers.tile_ranges},
-       {"TileValues", buffers.tile_values},
-       {"FrameCounters", buffers.counters}},
-      {{"blocks", blocks}, {"capacity", static_cast<std::uint32_t>(buffers.tile_values.bytes() / 4)}});
+                  {"TileCounts", buffers.tile_counts}});
+  buffers.scan.run(dispatcher, buffers.pair_arguments, 3, buffers.tile_counts);
+  dispatcher.run(program("1"), blocks,
+                 {{"Arguments", buffers.pair_arguments},
+                  {"Values", buffers.pairs.values()},
+                  {"TileCounts", buffers.tile_counts},
+                  {"Total", buffers.scan.total()},
+                  {"Keys", buffers.pairs.keys()},
+                  {"TileRanges", buffers.tile_ranges},
+                  {"TileValues", buffers.tile_values},
+                  {"FrameCounters", buffers.counters}},
+                 {{"capacity", static_cast<std::uint32_t>(buffers.tile_values.bytes() / 4)}});
 }
 
 }  // namespace

@@ -142,15 +142,16 @@ void Projection::make_colours(std::span<const std::int64_t> offered) {
   // copy.
   constexpr XrSwapchainUsageFlags drawn =
       XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
-  constexpr XrSwapchainUsageFlags in_place =
+  constexpr XrSwapchainUsageFlags written =
       drawn | XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT | XR_SWAPCHAIN_USAGE_MUTABLE_FORMAT_BIT;
   const auto make = [&](XrSwapchainUsageFlags usage) {
     for (std::size_t k = 0; k < eyes_.size(); ++k)
       eyes_[k].colours = std::make_unique<Swapchain>(session_, format_, sizes_[k], usage);
   };
   try {
-    make(in_place);
+    make(written);
   } catch (const Error&) {
+    in_place_ = false;
     make(drawn);
   }
 }
@@ -218,7 +219,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
   std::vector<stereo::DepthTarget> depths(has_depths ? count : 0);
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t at = place_of(k, count);
-    targets[at] = {.texture = eyes_[k].colours->acquire(), .linear = linear_};
+    targets[at] = {.texture = eyes_[k].colours->acquire(), .linear = linear_, .in_place = in_place_};
     if (has_depths)
       depths[at] = {.texture = eyes_[k].depths->acquire(), .near_plane = near_plane, .far_plane = far_plane};
   }

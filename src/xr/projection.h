@@ -71,7 +71,8 @@ class Projection {
   ProjectionSettings settings_;
   stereo::Presenter presenter_;
   std::int64_t format_ = 0;
-  bool linear_ = false;  // numbers of the format mean light
+  bool linear_ = false;   // numbers of the format mean light
+  bool in_place_ = true;  // shaders may write into the textures
   std::vector<glm::ivec2> sizes_;
   std::vector<Eye> eyes_;
   std::vector<XrCompositionLayerDepthInfoKHR> depth_infos_;

@@ -128,6 +128,19 @@ TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
   }
 }
 
+TEST_F(Present, WhatShadersMayNotWriteTakesACopy) {
+  const std::array targets = {
+      Target{.texture = caller.texture(GL_SRGB8_ALPHA8, width, height)},
+      Target{.texture = caller.texture(GL_SRGB8_ALPHA8, width, height), .in_place = false}};
+  std::vector<std::vector<unsigned char>> shown;
+  for (const Target& target : targets) {
+    EXPECT_EQ(presenter.canvases(std::span(&target, 1), std::nullopt).list.empty(), !target.in_place);
+    presenter.draw(frame, 0, LAYOUT_SEPARATE, target, glm::vec3(0.2f));
+    shown.push_back(caller.read<unsigned char>(target.texture, width, height));
+  }
+  EXPECT_EQ(shown[0], shown[1]);
+}
+
 TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
   const std::uint32_t array = caller.texture(GL_RGBA32F, width, height, 2);
   for (int eye = 0; eye < 2; ++eye) {

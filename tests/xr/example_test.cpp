@@ -106,6 +106,18 @@ TEST(XrExample, SubmitsToTheBitWhatOthersDraw) {
   }
 }
 
+TEST(XrExample, TakesTexturesThatOnlyRenderingGoesInto) {
+  XrStage stage;
+  stage.script = moving_script();
+  ASSERT_EQ(run_example(stage).code, 0);
+  const std::string written = stage.log().colours(stage.log().frames().at(0), 0);
+  stage.script["unordered_srgb"] = false;
+  const Outcome outcome = run_example(stage);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(stage.log().faults(), Strings());
+  EXPECT_TRUE(stage.log().colours(stage.log().frames().at(0), 0) == written);
+}
+
 TEST(XrExample, FollowsTheSession) {
   XrStage stage;
   stage.script = moving_script();

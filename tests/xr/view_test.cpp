@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
 
 #include "base/error.h"
 #include "formats/model_file.h"
@@ -49,9 +51,10 @@ struct XrView : testing::Test {
     stage.script = {{"frames", 2}};
   }
 
-  Outcome view(Strings more = {}, const std::map<std::string, std::string>& variables = {}) {
-    Strings words = {"view",   file,   "--xr",  "--no-mirror", "--eye",
-                     "0,0,-1", "--at", "0,0,1", "--up",        "0,-1,0"};
+  Strings words = {"view", file, "--xr", "--no-mirror", "--eye", "0,0,-1", "--at", "0,0,1", "--up", "0,-1,0"};
+
+  Outcome view(const Strings& more = {}, const std::map<std::string, std::string>& variables = {}) {
+    Strings words = this->words;
     words.insert(words.end(), more.begin(), more.end());
     std::map<std::string, std::string> all = stage.variables();
     for (const auto& [name, value] : variables) all[name] = value;
@@ -179,12 +182,34 @@ TEST_F(XrView, DepthIsTheMedian) {
 }
 
 // The same pictures by every way into a texture.
+// The runtime's session is ended in order, and what was drawn is told.
+TEST_F(XrView, ASignalLeavesTheSession) {
+  stage.script = {{"frames", 1000000}, {"sleep", true}, {"pixels", Json::array()}};
+  Program program(words, {.variables = stage.variables()});
+  const auto start = std::chrono::steady_clock::now();
+  while (program.said().find("FOCUSED") == std::string::npos) {
+    ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::minutes(1)) << program.said();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  program.send(SIGINT);
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("frames were drawn"), std::string::npos) << outcome.err;
+  EXPECT_EQ(stage.log().faults(), Strings());
+  EXPECT_EQ(stage.log().states().back(), "EXITING");
+}
+
 TEST_F(XrView, WritesEveryFormat) {
   ASSERT_EQ(view().code, 0);
   const std::string srgb = stage.log().colours(stage.log().frames().at(0), 0);
   stage.script["immutable"] = false;
   ASSERT_EQ(view().code, 0);
   EXPECT_TRUE(stage.log().colours(stage.log().frames().at(0), 0) == srgb) << "through a copy";
+  stage.script["immutable"] = true;
+  stage.script["unordered_srgb"] = false;
+  ASSERT_EQ(view().code, 0);
+  EXPECT_TRUE(stage.log().colours(stage.log().frames().at(0), 0) == srgb);
+  EXPECT_EQ(stage.log().faults(), Strings());
   for (const char* format : {"GL_RGBA16F", "GL_RGBA8"}) {
     stage.script = {{"frames", 1}, {"formats", {format}}};
     const Outcome outcome = view();

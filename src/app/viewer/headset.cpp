@@ -1,6 +1,7 @@
 #include "app/viewer/headset.h"
 
 #include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <optional>
 
@@ -16,6 +17,25 @@
 #include "xr/headset.h"
 
 namespace binosplat::app {
+
+namespace {
+
+volatile std::sig_atomic_t signalled = 0;
+
+// The first signal is told, so that the runtime's session can be ended in order; the next one ends the
+// program.
+void tell_first_signal() {
+  struct sigaction once = {};
+  once.sa_handler = [](int) { signalled = 1; };
+  once.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
+    struct sigaction before = {};
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      sigaction(signal, &once, nullptr);
+  }
+}
+
+}  // namespace
 
 void view_in_headset(const RenderOptions& o, const preview::Opened& scene, preview::Choices choices) {
   std::error_code ignored;
@@ -61,7 +81,10 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   settings.start = into_axes(start.cameras.front(), model.axes);
   settings.up = glm::transpose(world_from_axes(model.axes)) * start.up;
   settings.units_per_metre = choices.rig.units_per_metre;
-  xr::Beside beside = {.step = [&] { return !mirror || mirror->step(); }, .show = {}, .levels = scene.levels};
+  tell_first_signal();
+  xr::Beside beside = {.step = [&] { return (!mirror || mirror->step()) && signalled == 0; },
+                       .show = {},
+                       .levels = scene.levels};
   if (mirror)
     beside.show = [&](const stereo::Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   xr::run(instance, context, std::move(model), settings, beside);

@@ -140,6 +140,7 @@ const std::map<std::string, Setter>& setters() {
       {"not_rendered", plain(&Script::not_rendered)},
       {"sleep", plain(&Script::sleep)},
       {"immutable", plain(&Script::immutable)},
+      {"unordered_srgb", plain(&Script::unordered_srgb)},
       {"colour_images", plain(&Script::colour_images)},
       {"depth_images", plain(&Script::depth_images)},
       {"pixels", [](Script& s, const Json& j) { s.pixels = j.get<std::set<int>>(); }},

@@ -66,6 +66,7 @@ struct Script {
   std::set<int> not_rendered;      // frames whose shouldRender is false
   bool sleep = false;              // for a period in each xrWaitFrame
   bool immutable = true;           // textures made by glTextureStorage*
+  bool unordered_srgb = true;      // unordered access to sRGB
   std::uint32_t colour_images = 3, depth_images = 2;
   std::optional<std::set<int>> pixels;  // frames whose pixels are kept; none: all
   XrViewStateFlags flags = 15;

@@ -30,6 +30,10 @@ XrResult create_swapchain(XrSession handle, const XrSwapchainCreateInfo* info, X
   const XrSwapchainUsageFlags wrong =
       depth ? XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
   require((info->usageFlags & wrong) == 0, XR_ERROR_VALIDATION_FAILURE, "a usage that is not the format's");
+  // No fault of the client's: it may ask.
+  if (info->format == GL_SRGB8_ALPHA8 && !r.script.unordered_srgb &&
+      (info->usageFlags & XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT) != 0)
+    return XR_ERROR_FEATURE_UNSUPPORTED;
   auto& swapchain = r.add<Swapchain>(session.id);
   swapchain.info = *info;
   swapchain.info.next = nullptr;
