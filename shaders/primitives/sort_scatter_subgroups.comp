@@ -41,7 +41,7 @@ uniform uint half_now;  // of the counts
 #define REACHED_OWN 3u
 #define REACHED_BITS 30
 // Blocks that are looked at together.
-#define AHEAD 8u
+#define AHEAD 2u
 
 #define DIGITS_EACH (DIGITS > THREADS ? DIGITS / THREADS : 1u)  // of those that have some
 #define SUBGROUPS (THREADS / 32)
