@@ -6,14 +6,12 @@
 // are those of blend.comp.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
-#define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
-#define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
-#define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)
 #define ROUND (COLUMN == 1 ? 128 : 64)  // splats at a time: with more in shared memory there is room for fewer groups
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // and one that leaves no mark
 #define ANY(condition) subgroupAny(condition)
 #include "blending.glsl"
+#include "blocks.glsl"
 
 layout(local_size_x = 32, local_size_y = BLOCKS) in;
 
@@ -23,35 +21,6 @@ shared uint blocks_done;
 OF_TILE vec2 corner;                           // the tile's first pixel
 
 uint value_at(uint at) { return at < end ? values[at] : 0u; }
-
-// The blocks where alpha comes to ALPHA_MIN in a pixel: maybe some more, for rounding, none less. `mean` is seen from the
-// tile's first pixel.
-uint blocks_reached(Splat splat, vec2 mean) {
-  if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
-  float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;
-#if PROJECTION == PROJECTION_TANGENT
-  rho *= farthest;
-#endif
-  float root_det = abs(splat.conic.w);
-  float tallest = root_det * sqrt(rho * splat.conic.x);            // half the ellipse's height,
-  float widest = sqrt(rho / splat.conic.x);                        // half its widest row,
-  float lean = -splat.conic.y / splat.conic.x;                     // of the line through its rows' middles,
-  float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // where it is furthest to the right
-  uint bits = 0u;
-  for (uint row = 0u; row < BLOCKS_DOWN; ++row) {
-    float low = float(row * BLOCK_HEIGHT) - mean.y;
-    float high = low + float(BLOCK_HEIGHT - 1);
-    if (low > tallest || high < -tallest) continue;
-    vec2 y = clamp(vec2(-apex, apex), low, high);  // of its furthest to the left and to the right in this row
-    vec2 reach = widest * sqrt(max(vec2(0.0), 1.0 - y * y / (tallest * tallest)));
-    vec2 x = lean * y + vec2(-reach.x, reach.y);
-    float slack = 0.01 + 1e-5 * (abs(x.x) + abs(x.y));
-    float first = max(0.0, ceil((mean.x + x.x - slack - float(BLOCK_WIDTH - 1)) / float(BLOCK_WIDTH)));
-    float last = min(float(BLOCKS_ACROSS - 1), floor((mean.x + x.y + slack) / float(BLOCK_WIDTH)));
-    if (first <= last) bits |= ((2u << uint(last)) - (1u << uint(first))) << (row * BLOCKS_ACROSS);
-  }
-  return bits;
-}
 
 // The batch's splats that reach this subgroup's block, in order, and AHEAD that leave no mark: how many.
 uint list_own() {

@@ -196,7 +196,7 @@ void blend(uint at[AHEAD]) {
 #if MEDIAN
     const float half_light = 1.0 - float(COVERAGE_FOR_DEPTH);
     bool is_half = transmittance[p] >= half_light && left[p] < half_light;
-    if ((MEDIAN == 1 || p == 0u) && ANY(is_half)) {  // seldom
+    if ((MEDIAN == 1 || p % 2u == 0u) && ANY(is_half)) {  // seldom
       float depth = median_depth(at, weights[p], transmittance[p]);
       if (is_half) z_sum[p] = depth;
     }
@@ -384,7 +384,7 @@ void write_pixels() {
     z_sum[p] = z;
 #endif
 #if MEDIAN == 2
-    if (p > 0u) continue;
+    if (p % 2u != 0u) continue;
 #endif
     z_sums[to] = z_sum[p];
 #endif

@@ -89,7 +89,7 @@
 // Groups that count the digits of all passes: what an H200 has in work. More would add more counts to the sums than they save.
 #define SORT_DIGITS_GROUPS 528u
 // Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
-// of lanes together), so a tile's list may have 8 times as many entries before it is cut; and then it is
+// of lanes together), so a tile's list may have some 200,000 entries before it is cut; and then it is
 // reported.
 #define BLEND_UNROLL 8
 // Side in px of the cells that the blend counts a pixel's place in: that of the largest tiles.

@@ -22,11 +22,14 @@ struct Variant {
 enum class Lists { of_short, of_long };
 
 // Who measures or sums up has the tile's splats before all its pixels; what tests nothing shows what tests
-// lose; and other sizes of tiles are for comparing.
-bool by_subgroups(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
+// lose; and other sizes of tiles are for comparing. A software renderer draws some invocations by one of its
+// own, and its loads take the time.
+std::string name_of_program(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
   const bool plain = !variant.records && variant.sums == SUMS_NONE && variant.show == SHOW_PICTURE;
   const bool usual = shape.settings.tiles != TILES_ALL && shape.settings.tile_size == TILE_SIZE_DEFAULT;
-  return context.limits().subgroups_of_32 && plain && usual;
+  if (!plain || !usual) return "blend.comp";
+  if (context.limits().subgroups_of_32) return "blend_subgroups.comp";
+  return context.software() ? "blend_blocks.comp" : "blend.comp";
 }
 
 // The tile test is no part of these programs: with every test the same lists give the same bits. Nor does a
@@ -34,11 +37,12 @@ bool by_subgroups(const gl::Context& context, const FrameShape& shape, const Var
 const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
                            Lists lists) {
   const bool is_long = lists == Lists::of_long;
-  const bool subgroups = by_subgroups(context, shape, variant);
-  const char* name = subgroups ? "blend_subgroups.comp" : "blend.comp";
+  const std::string name = name_of_program(context, shape, variant);
+  const bool software = context.software();
+  const char* column = software ? "8" : is_long ? "1" : "2";
   // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
   const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
-  const int ahead = is_long ? 8 : is_tangent && subgroups ? 3 : 4;
+  const int ahead = software ? 2 : is_long ? 8 : is_tangent && name == "blend_subgroups.comp" ? 3 : 4;
   const bool draws = variant.draws();
   const bool on_canvases = draws && !shape.canvases.empty();
   const int median = on_canvases && shape.depth_rows == 2 ? 2 : 1;
@@ -48,7 +52,7 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
       {"PROBED", shape.probe ? "1" : "0"},
       {"PARTS", shape.draws_parts() ? "1" : "0"},
       {"LISTS", std::to_string(static_cast<int>(lists))},
-      {"COLUMN", is_long ? "1" : "2"},
+      {"COLUMN", column},
       {"AHEAD", std::to_string(ahead)},
       {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
       {"RECORDS", variant.records ? "1" : "0"},

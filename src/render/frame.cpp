@@ -14,14 +14,13 @@ namespace {
 
 constexpr int drawings_max = 8;
 
-// Tiles along a side of a supertile, where that is left to the frame: 2 where subgroups blend, and where a
-// pair's value has room for the tiles.
-int chosen_supertile_side(const FrameSettings& settings, const Workings& workings, std::uint64_t splats,
-                          bool has_subgroups) {
+// Tiles along a side of a supertile, where that is left to the frame: 2 where a pair's value has room for the
+// tiles.
+int chosen_supertile_side(const FrameSettings& settings, const Workings& workings, std::uint64_t splats) {
   if (workings.supertile_side != 0) return workings.supertile_side;
   const bool has_room = splats <= std::uint64_t{1} << SUPERTILE_SPLAT_BITS;
   const bool usual = settings.tile_size == TILE_SIZE_DEFAULT && settings.tiles != TILES_ALL;
-  return has_subgroups && has_room && usual && !workings.stand_in ? 2 : 1;
+  return has_room && usual && !workings.stand_in ? 2 : 1;
 }
 
 // Another attempt at a frame: the last one is the frame, all took their time.
@@ -77,9 +76,7 @@ void Frame::begin(std::span<const shared::View> views, const FrameSettings& sett
       std::max({static_cast<std::int64_t>(model.count()), capacity_.slots, workings.slots});
   const std::uint64_t splats =
       static_cast<std::uint64_t>(slots) * (views.size() + 1);  // a probe is a view, too
-  const bool has_subgroups = dispatcher_.context().limits().subgroups_of_32;
-  shape_ = make_shape(views, settings, model,
-                      chosen_supertile_side(settings, workings, splats, has_subgroups), probe);
+  shape_ = make_shape(views, settings, model, chosen_supertile_side(settings, workings, splats), probe);
   if (model_buffers_ && model_buffers_->precision != settings.precision) {
     model_buffers_.reset();  // first, since both together may not fit
     history_.forget_measured();

@@ -85,7 +85,15 @@ TEST_F(SubgroupShaders, Compile) {
       EXPECT_EQ(said_of("primitives/sort_scatter_subgroups.comp",
                         {{"SORT_BLOCK", block}, {"DIGIT_BITS", bits}}, {}),
                 "");
+      EXPECT_EQ(said_of("primitives/sort_digits.comp",
+                        {{"SORT_BLOCK", block}, {"DIGIT_BITS", bits}, {"PASSES", "3"}}, {}),
+                "");
     }
+    EXPECT_EQ(said_of("project_compact.comp", {{"SORT_BLOCK", block}, {"LOOKS_BACK", "1"}}, {}), "");
+    for (const char* both_eyes : {"0", "1"})
+      EXPECT_EQ(said_of("pairs_count.comp",
+                        {{"SORT_BLOCK", block}, {"LOOKS_BACK", "1"}, {"BOTH_EYES", both_eyes}}, {}),
+                "");
   }
 }
 

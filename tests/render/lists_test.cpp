@@ -138,6 +138,22 @@ TEST(Lists, FaultsInWhatIsLeftForPairsAreNoticed) {
   EXPECT_TRUE(fails("pairs_count.comp", "count_of(both.x) + count_of(both.y)", "count_of(both.x)"));
 }
 
+// Of the program that draws here, the blocks' lists: with subgroups or without.
+TEST(Lists, ABlockThatMissesASplatIsNoticed) {
+  const Model model = test::random_model(52, 4000, 1);
+  const Drawn own = draw_frames(model, {}, 1, 1);
+  const auto misses = [&](const char* shader, const char* sought, const char* fault) {
+    const test::FaultyShaders faulty(shader, sought, fault);
+    return !same_pictures(own, draw_frames(model, {}, 1, 1));
+  };
+  if (test::gl_context().limits().subgroups_of_32)
+    EXPECT_TRUE(misses("blend_subgroups.comp", ">> gl_SubgroupID & 1u) != 0u",
+                       ">> gl_SubgroupID & 1u) != 0u && word != 1u"));
+  else if (test::gl_context().software())
+    EXPECT_TRUE(misses("blend_blocks.comp", "(reached[i + k] >> block & 1u) == 0u", "k == 3u"));
+  EXPECT_TRUE(misses("blocks.glsl", "bits |= ((2u << uint(last))", "bits = ((2u << uint(last))"));
+}
+
 TEST(Lists, ATileThatTakesWhatItDoesNotTouchIsNoticed) {
   const test::FaultyShaders faulty("ranges_of_tiles.comp",
                                    "(value >> SUPERTILE_SPLAT_BITS >> nth & 1u) != 0u", "value != 0u");

@@ -1,0 +1,75 @@
+// Stage 6 where there are no subgroups, as on llvmpipe, which draws eight invocations by one of its own: one work group a tile, a
+// row of invocations a block of it. Together they take the list's next splats to shared memory and ask which blocks each reaches;
+// an invocation a block lists them; then each row blends those that reach its own. The bits are those of blend.comp.
+#define BLOCK_WIDTH 8
+#define BLOCK_HEIGHT COLUMN
+#define ROUND 128  // splats at a time
+#define BATCH (ROUND + 1)  // and one that leaves no mark
+#include "blending.glsl"
+#include "blocks.glsl"
+
+layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCKS) in;
+#define INVOCATIONS (BLOCK_WIDTH * BLOCKS)
+
+shared uint reached[ROUND];                    // of the batch: a bit a block
+shared uint own_lists[BLOCKS][ROUND + BLEND_UNROLL];  // by block: those of the batch that reach it, and some that leave no mark
+shared uint own_counts[BLOCKS];
+shared uint alive;  // 1 while a pixel still takes light
+
+void list_own(uint block) {
+  uint count = 0u, i = 0u;
+  for (; i < ROUND; i += BLEND_UNROLL) {
+    for (uint k = 0u; k < BLEND_UNROLL; ++k) {
+      if ((reached[i + k] >> block & 1u) == 0u) continue;
+      own_lists[block][count] = i + k;
+      ++count;
+    }
+  }
+  if (i < ROUND) atomicAdd(counters.loop_cut, 1u);
+  for (uint k = 0u; k < BLEND_UNROLL; ++k) own_lists[block][count + k] = ROUND;
+  own_counts[block] = count;
+}
+
+void main() {
+  if (!find_tile()) return;
+  uint self = gl_LocalInvocationIndex, own_block = gl_LocalInvocationID.y;
+  uvec2 in_tile = uvec2(own_block % BLOCKS_ACROSS, own_block / BLOCKS_ACROSS) * uvec2(BLOCK_WIDTH, BLOCK_HEIGHT) +
+                  uvec2(gl_LocalInvocationID.x, 0u);
+  begin_pixels(in_tile);
+  vec2 corner = vec2(first_pixel - in_tile);
+  if (self == 0u) stage_nothing(ROUND);
+  uint batch = begin;
+  bool cut = false;
+  for (; batch < end; batch += ROUND) {
+    if (batch != begin) {
+      if (self == 0u) alive = 0u;
+      barrier();
+      if (!are_done()) alive = 1u;
+      barrier();
+      if (alive == 0u) break;
+    }
+    for (uint i = self; i < ROUND; i += INVOCATIONS) {
+      uint bits = 0u;
+      if (batch + i < end) {
+        Splat splat = SPLAT(values[batch + i]);
+        bits = blocks_reached(splat, splat.mean - corner);
+        stage(i, splat);
+      }
+      reached[i] = bits;
+    }
+    barrier();
+    if (self < BLOCKS) list_own(self);
+    barrier();
+    uint count = own_counts[own_block], next = 0u;
+    for (; next < count && !are_done(); next += BLEND_UNROLL) {
+      for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) {
+        uint at[AHEAD];
+        for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[own_block][next + i + k];
+        blend(at);
+      }
+    }
+    cut = cut || (!are_done() && next < count);
+  }
+  if (cut || (!are_done() && batch < end)) atomicAdd(counters.loop_cut, 1u);
+  write_pixels();
+}

@@ -1,0 +1,33 @@
+// The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px that a tile is drawn by, row by row. After blending.glsl.
+#define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
+#define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
+#define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)
+
+// The blocks where alpha comes to ALPHA_MIN in a pixel: maybe some more, for rounding, none less. `mean` is seen from the
+// tile's first pixel.
+uint blocks_reached(Splat splat, vec2 mean) {
+  if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
+  float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;
+#if PROJECTION == PROJECTION_TANGENT
+  rho *= farthest;
+#endif
+  float root_det = abs(splat.conic.w);
+  float tallest = root_det * sqrt(rho * splat.conic.x);            // half the ellipse's height,
+  float widest = sqrt(rho / splat.conic.x);                        // half its widest row,
+  float lean = -splat.conic.y / splat.conic.x;                     // of the line through its rows' middles,
+  float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // where it is furthest to the right
+  uint bits = 0u;
+  for (uint row = 0u; row < BLOCKS_DOWN; ++row) {
+    float low = float(row * BLOCK_HEIGHT) - mean.y;
+    float high = low + float(BLOCK_HEIGHT - 1);
+    if (low > tallest || high < -tallest) continue;
+    vec2 y = clamp(vec2(-apex, apex), low, high);  // of its furthest to the left and to the right in this row
+    vec2 reach = widest * sqrt(max(vec2(0.0), 1.0 - y * y / (tallest * tallest)));
+    vec2 x = lean * y + vec2(-reach.x, reach.y);
+    float slack = 0.01 + 1e-5 * (abs(x.x) + abs(x.y));
+    float first = max(0.0, ceil((mean.x + x.x - slack - float(BLOCK_WIDTH - 1)) / float(BLOCK_WIDTH)));
+    float last = min(float(BLOCKS_ACROSS - 1), floor((mean.x + x.y + slack) / float(BLOCK_WIDTH)));
+    if (first <= last) bits |= ((2u << uint(last)) - (1u << uint(first))) << (row * BLOCKS_ACROSS);
+  }
+  return bits;
+}
