@@ -12,12 +12,6 @@
 #include "shared/grid.glsl"
 #include "shared/arguments.glsl"
 #include "shared/saturate.glsl"
-// Twice as many invocations hold half as many pairs each, which leaves room for more of them; but counters of 9 bits would take
-// up the shared memory.
-#if DIGIT_BITS == 8
-#undef THREADS
-#define THREADS 512
-#endif
 #define WITH_SUBGROUPS 1
 #define SCAN_RESULT_ONLY
 #include "primitives/scan_block.glsl"

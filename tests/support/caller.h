@@ -37,6 +37,32 @@ namespace binosplat::test {
   X(TextureStorage3D, TEXTURESTORAGE3D)     \
   X(ViewportIndexedf, VIEWPORTINDEXEDF)
 
+/// Makes EGL's context that is current when this is made, if any, current again when this ends: what other
+/// tests of the program share.
+class CurrentAgain {
+ public:
+  CurrentAgain() {
+    if (library_ == nullptr) return;
+    display_ = call<void*()>("eglGetCurrentDisplay")();
+    context_ = call<void*()>("eglGetCurrentContext")();
+  }
+  ~CurrentAgain() {
+    using MakeCurrent = unsigned(void*, void*, void*, void*);
+    if (context_ != nullptr) call<MakeCurrent>("eglMakeCurrent")(display_, nullptr, nullptr, context_);
+  }
+  CurrentAgain(const CurrentAgain&) = delete;
+  CurrentAgain& operator=(const CurrentAgain&) = delete;
+
+ private:
+  template <typename F>
+  F* call(const char* name) const {
+    return reinterpret_cast<F*>(dlsym(library_, name));
+  }
+
+  void* library_ = dlopen("libEGL.so.1", RTLD_NOW);
+  void *display_ = nullptr, *context_ = nullptr;
+};
+
 /// The caller's context, current from its making on, and its functions.
 struct Caller {
   Caller() : context(gl::Context::open()), gl(context->gl()) {
@@ -78,6 +104,7 @@ struct Caller {
     return pixels;
   }
 
+  CurrentAgain before;
   std::unique_ptr<gl::Context> context;
   const gl::Functions& gl;
 #define BINOSPLAT_CALLER_MEMBER(name, upper) PFNGL##upper##PROC name = nullptr;
