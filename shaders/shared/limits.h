@@ -86,7 +86,8 @@
 // Bits of a radix sort's digit: at most so many, where that saves a pass over 8 (primitives/radix_sort.h).
 #define SORT_BITS_MAX 9
 #define SORT_PASSES_MAX 4u
-// Groups that count the digits of all passes: what an H200 has in work. More would add more counts to the sums than they save.
+// Groups that count the digits of all passes: what an H200 has in work. More would add more counts to the
+// sums than they save.
 #define SORT_DIGITS_GROUPS 528u
 // Statements that the blend unrolls: llvmpipe ends a loop silently after 65,535 rounds (all loops of a group
 // of lanes together), so a tile's list may have some 200,000 entries before it is cut; and then it is

@@ -12,7 +12,7 @@ Mirror::Mirror(bool by_egl) {
   window_ = open_window(glm::ivec2(960, 960), false);
   glfwMakeContextCurrent(window_);
   glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);  // frames are long beside a tap
-  glfwSwapInterval(0);  // the headset keeps the time
+  glfwSwapInterval(0);                                     // the headset keeps the time
   context_ = gl::Context::adopt(glfwGetProcAddress);
   log_info("drawing with {} (OpenGL {})", context_->renderer(), context_->version());
 }
