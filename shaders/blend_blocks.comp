@@ -46,7 +46,10 @@ void main() {
       barrier();
       if (!are_done()) alive = 1u;
       barrier();
-      if (alive == 0u) break;
+      if (alive == 0u) {
+        batch = end;
+        break;
+      }
     }
     for (uint i = self; i < ROUND; i += INVOCATIONS) {
       uint bits = 0u;
@@ -70,6 +73,6 @@ void main() {
     }
     cut = cut || (!are_done() && next < count);
   }
-  if (cut || (!are_done() && batch < end)) atomicAdd(counters.loop_cut, 1u);
+  if (cut || batch < end) atomicAdd(counters.loop_cut, 1u);
   write_pixels();
 }

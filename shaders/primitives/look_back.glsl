@@ -26,7 +26,7 @@ uint looked_up(uint value) {
   return value;
 }
 
-// The group's number; every invocation must call it, once, and no group that does not.
+// The group's number; every invocation must call it, once. A group that has one must call sum_before().
 uint take_number() { return looked_up(gl_LocalInvocationIndex == 0u ? atomicAdd(LOOK_BACK_BEGUN(look_back_half), 1u) : 0u); }
 
 // The sum of the counts of all groups with lower numbers; every invocation must call it with its group's count.

@@ -37,7 +37,7 @@ uniform uint half_now;  // of the counts
 // Blocks that are looked at together.
 #define AHEAD 2u
 
-#define DIGITS_EACH (DIGITS > THREADS ? DIGITS / THREADS : 1u)  // of those that have some
+#define DIGITS_EACH (DIGITS / THREADS)
 #define SUBGROUPS (THREADS / 32)
 #define ROUNDS (SORT_BLOCK / THREADS)
 // At first a counter of each subgroup and digit, those of two subgroups in a word: how many keys so far, then where they begin in
@@ -73,6 +73,7 @@ void main() {
   uint self = gl_LocalInvocationIndex;
   if (group_index() >= blocks_of(count, SORT_BLOCK)) return;
   if (self == 0u) ticket = atomicAdd(digits[pass], 1u);
+  memoryBarrierShared();
   barrier();
   uint block = ticket;
   uint mine = gl_SubgroupID / 2u * DIGITS;
@@ -101,10 +102,9 @@ void main() {
     place[i] = before + subgroupShuffle(seen, uint(findLSB(equal)) % 32u);
   }
   barrier();
-  uint mine_count = self * DIGITS_EACH < DIGITS ? DIGITS_EACH : 0u;
   uint of_mine = 0u, of_all = 0u;
   uint own[DIGITS_EACH], everywhere[DIGITS_EACH];
-  for (uint k = 0u; k < mine_count; ++k) {
+  for (uint k = 0u; k < DIGITS_EACH; ++k) {
     uint digit = self * DIGITS_EACH + k;
     own[k] = 0u;
     for (uint s = 0u; s < SUBGROUPS / 2; ++s) {
@@ -118,7 +118,7 @@ void main() {
   }
   uint start = scan_group(of_mine);
   uint begin = scan_group(of_all);
-  for (uint k = 0u; k < mine_count; ++k) {
+  for (uint k = 0u; k < DIGITS_EACH; ++k) {
     uint digit = self * DIGITS_EACH + k;
     uint before = sum_before(block, digit);
     if (block != 0u) reached[block * DIGITS + digit] = REACHED_SUM << REACHED_BITS | before + own[k];

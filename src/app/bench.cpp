@@ -123,12 +123,14 @@ void print_profile(const std::vector<study::StageFloor>& stages) {
 
 void print(const std::vector<study::BenchPoint>& points) {
   const std::vector<bool> front = study::pareto_front(points);
+  const bool is_seen =
+      std::ranges::any_of(points, [](const study::BenchPoint& p) { return p.seen.has_value(); });
   std::string chart;
   for (std::size_t i = 0; i < front.size(); ++i) {
     const study::BenchPoint& p = points[i];
     if (p.chart() != chart)
       fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}{}\n", p.chart(), "  (* on the Pareto front)",
-                 "frame ms", "PSNR dB", "SSIM", "FLIP", "pairs", p.seen ? "   seen %" : "");
+                 "frame ms", "PSNR dB", "SSIM", "FLIP", "pairs", is_seen ? "   seen %" : "");
     chart = p.chart();
     const std::string setting = fmt::format("{} {}", front[i] ? "*" : " ", p.name);
     if (!p.measured()) {

@@ -64,7 +64,7 @@ class RadixSort {
   void run_looking_back(gl::Dispatcher& dispatcher, const gl::Buffer& arguments, PairBuffers& pairs,
                         std::uint32_t bits);
 
-  gl::Buffer histogram_;
+  gl::Buffer histogram_;        // by digit and block; where blocks look back, by block and digit
   gl::Buffer digits_;           // where blocks look back
   std::uint32_t half_now_ = 0;  // of its counts, the ones that are 0
   Scan scan_;

@@ -29,21 +29,23 @@ double moved(const shared::View& a, const shared::View& b) {
   return glm::length(eye_a - eye_b);
 }
 
-bool of_same_pixels(const ViewPart& a, const ViewPart& b) {
-  return a.corner == b.corner && a.size == b.size && a.columns == b.columns && a.hole_begin == b.hole_begin &&
-         a.hole_end == b.hole_end;
+// The rows of tiles of the views that were asked for: where nothing was drawn, nothing was measured.
+std::span<const glm::uvec2> rows_asked(const FrameShape& shape) {
+  const bool has_probe = shape.draws_parts() && shape.view_count() > shape.asked;
+  return std::span(shape.part_rows)
+      .first(has_probe ? shape.views[shape.asked].first_row : shape.part_rows.size());
 }
 
 }  // namespace
 
 bool continues(const FrameShape& before, const FrameShape& now, double median_depth, double share) {
-  // Where nothing was drawn, nothing was measured.
-  if (!std::ranges::equal(before.settings.parts, now.settings.parts, of_same_pixels)) return false;
+  if (!std::ranges::equal(rows_asked(before), rows_asked(now))) return false;
   if (before.asked != now.asked || before.gaussian_count != now.gaussian_count) return false;
   for (std::size_t v = 0; v < now.asked; ++v) {
     const shared::View& a = before.views[v];
     const shared::View& b = now.views[v];
-    if (a.width != b.width || a.height != b.height || a.lens != b.lens) return false;
+    if (a.width != b.width || a.height != b.height || a.lens != b.lens || a.left != b.left || a.top != b.top)
+      return false;
     if (turned_degrees(a, b) > share * turn_max_degrees ||
         moved(a, b) > share * move_max_of_depth * median_depth)
       return false;

@@ -53,7 +53,7 @@ void Capacity::grow(const FrameShape& shape, const shared::Counters& counters) {
   const auto larger = [](std::uint32_t wanted) { return std::int64_t{wanted} + wanted / 8; };
   if (counters.pairs == COUNT_MAX) {
     throw Error(ExitCode::out_of_memory,
-                "more than 2^32 Gaussian-tile pairs in one frame: use a smaller picture");
+                "more than a billion Gaussian-tile pairs in one frame: use a smaller picture");
   }
   if ((counters.overflow & OVERFLOW_ORDER) != 0) {
     log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, slots);

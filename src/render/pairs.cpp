@@ -13,7 +13,9 @@ void count(gl::Dispatcher& dispatcher, const FrameShape& shape, std::uint32_t gr
   const OrderGroup views = shape.groups[group];
   const gl::Buffer& drawn = buffers.drawn[group]->arguments;
   const bool both_eyes = shape.view_count() == 2 && shape.groups.size() == 1;
-  const bool looks_back = context.limits().subgroups_of_32;
+  // What a group counts by subgroups must not wrap; the scan's sums stop.
+  const bool looks_back =
+      context.limits().subgroups_of_32 && std::uint64_t{SCAN_BLOCK} * shape.supertile_count < COUNT_MAX;
   gl::Defines defines = {{"BOTH_EYES", both_eyes ? "1" : "0"}, {"LOOKS_BACK", looks_back ? "1" : "0"}};
   if (looks_back) defines.push_back(buffers.pairs.block_define().front());
   dispatcher.run(context.program("pairs_count.comp", defines),

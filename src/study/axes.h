@@ -30,7 +30,7 @@ struct Axes {
   std::vector<BenchSettings> settings;  // without repetition, in the file's order
 };
 
-/// The preset of this name (quick, paper, headset), else the file. Throws Error naming the file, the block
+/// The preset of this name (src/study/presets), else the file. Throws Error naming the file, the block
 /// and the key for anything that is not as above.
 Axes load_axes(const std::string& preset_or_file);
 

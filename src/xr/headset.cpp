@@ -196,7 +196,9 @@ void run(Instance& instance, gl::Context& context, Model model, const HeadsetSet
       throw Error(ExitCode::no_gl, fmt::format("{} loses every session", instance.runtime()));
     log_warning("{} lost the session: it is begun again", instance.runtime());
     std::this_thread::sleep_for(between_sessions);
+    if (!beside.step()) break;
     for (auto waited = between_sessions; !instance.find_again(); waited += between_sessions) {
+      if (!beside.step()) return viewer.tell();
       if (waited > wait_most)
         throw Error(ExitCode::no_gl,
                     fmt::format("{} lost the headset: connect it and switch it on", instance.runtime()));

@@ -120,6 +120,34 @@ TEST(RadixSort, IsTheSameWithoutSubgroups) {
   }
 }
 
+// What one sort leaves behind is ready for the next, of other digits and as many blocks, more or none.
+TEST(RadixSort, SortsAgainAndAgain) {
+  gl::Context& context = test::gl_context();
+  RadixSort sort(context);
+  gl::Dispatcher dispatcher(context);
+  PairBuffers pairs(context, "pairs");
+  gl::Buffer arguments(context, "arguments");
+  for (const auto& [count, bits] : std::vector<std::pair<std::uint32_t, std::uint32_t>>{
+           {90000, 27}, {300, 15}, {0, 27}, {70000, 16}, {0, 8}, {250000, 32}, {250000, 9}, {1500, 27}}) {
+    const Keys keys = random_keys(count, ~0u);
+    Keys values(count);
+    std::iota(values.begin(), values.end(), 0u);
+    pairs.reserve(count);
+    sort.reserve(pairs, bits);
+    arguments.upload(std::vector{
+        make_sort_arguments(count, RadixSort::digit_bits(bits), context.limits().groups, pairs.block())});
+    if (count > 0) {
+      pairs.keys().upload_part(std::span<const std::uint32_t>(keys), 0);
+      pairs.values().upload_part(std::span<const std::uint32_t>(values), 0);
+    }
+    sort.run(dispatcher, arguments, pairs, bits);
+    const std::uint32_t digit = RadixSort::digit_bits(bits);
+    const auto expected = sort_on_cpu(keys, std::min(32u, (bits + digit - 1) / digit * digit));
+    EXPECT_EQ(pairs.keys().read<std::uint32_t>(count), expected.first) << count << " by " << bits;
+    EXPECT_EQ(pairs.values().read<std::uint32_t>(count), expected.second) << count << " by " << bits;
+  }
+}
+
 TEST(RadixSort, WorksWhenADriverAllowsFewGroups) {
   gl::Context& context = test::gl_context();
   const std::uint32_t before = context.limits().groups;

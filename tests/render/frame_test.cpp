@@ -223,6 +223,26 @@ TEST(Frame, APageInPiecesGivesTheSamePicture) {
   }
 }
 
+// Many groups that look back at one another, frame after frame. Where there are no subgroups, which llvmpipe
+// lacks, this says nothing new.
+TEST(Frame, IsTheSameWithoutSubgroups) {
+  gl::Context& context = test::gl_context();
+  const Model model = test::random_model(49, 90000, 0);
+  const auto rig = stereo::make_rig(test::front_camera(96, 64, 96), {.ipd = 0.1, .cant_degrees = 4.0});
+  const std::vector<shared::View> both(rig.views.begin(), rig.views.end());
+  render::Frame with(context, model);
+  for (int n = 0; n < 3; ++n) with.draw(both);
+  const std::vector<Picture> drawn = with.read_pictures();
+  with.draw(std::span(both).first(1));  // of another shape
+  with.draw(both);
+  EXPECT_TRUE(test::same_bits(with.read_pictures()[1], drawn[1]));
+  context.use_subgroups(false);
+  const std::vector<Picture> without = draw(model, both);
+  context.use_subgroups(true);
+  for (std::size_t eye = 0; eye < 2; ++eye) EXPECT_TRUE(same_bits(drawn[eye], without[eye]));
+  EXPECT_FALSE(same_bits(drawn[0], without[1])) << "the other eye's goes unnoticed";
+}
+
 TEST(Frame, WorksWhenADriverAllowsFewGroups) {
   const Model model = test::random_model(72, 3000, 0);
   const shared::View view = make_view(test::front_camera(150, 90, 140));

@@ -146,10 +146,12 @@ TEST(Lists, ABlockThatMissesASplatIsNoticed) {
     const test::FaultyShaders faulty(shader, sought, fault);
     return !same_pictures(own, draw_frames(model, {}, 1, 1));
   };
+  if (!test::gl_context().limits().subgroups_of_32 && !test::gl_context().software())
+    GTEST_SKIP() << "blend.comp has no blocks";
   if (test::gl_context().limits().subgroups_of_32)
     EXPECT_TRUE(misses("blend_subgroups.comp", ">> gl_SubgroupID & 1u) != 0u",
                        ">> gl_SubgroupID & 1u) != 0u && word != 1u"));
-  else if (test::gl_context().software())
+  else
     EXPECT_TRUE(misses("blend_blocks.comp", "(reached[i + k] >> block & 1u) == 0u", "k == 3u"));
   EXPECT_TRUE(misses("blocks.glsl", "bits |= ((2u << uint(last))", "bits = ((2u << uint(last))"));
 }

@@ -222,6 +222,8 @@ TEST(Parts, AHoleThatMovesIsACut) {
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) frame.draw(views, before);
   EXPECT_TRUE(frame.draw(views, before).remembered);
+  const FrameSettings same_tiles = with(last, {{.hole_begin = {30, 31}, .hole_end = {97, 98}}});
+  EXPECT_TRUE(frame.draw(views, same_tiles).remembered) << "of which only whole tiles count";
   EXPECT_FALSE(frame.draw(views, now).remembered);
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), draw(model, views[0], now)));
   EXPECT_FALSE(frame.draw(views, last).remembered) << "nor where there is none";

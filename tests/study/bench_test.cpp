@@ -91,8 +91,13 @@ TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
   faulty->set_shader_folder(folder.path());
   BenchSettings foveated;
   foveated.foveation = stereo::Foveation{.inset_degrees = 20.0};
-  EXPECT_NE(bench(*faulty, 1).measure(foveated).problem.find("the inset is not the exact picture's"),
-            std::string::npos);
+  for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
+    foveated.th = TH_SQUARED;
+    foveated.tolerance = 0.3f;
+    foveated.transmittance = transmittance;
+    EXPECT_NE(bench(*faulty, 1).measure(foveated).problem.find("the inset is not the exact picture's"),
+              std::string::npos);
+  }
 }
 
 // The built-in shaders with a fault in them: what is drawn is not what the reference draws, and no time is

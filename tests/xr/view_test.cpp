@@ -181,7 +181,6 @@ TEST_F(XrView, DepthIsTheMedian) {
   }
 }
 
-// The same pictures by every way into a texture.
 // The runtime's session is ended in order, and what was drawn is told.
 TEST_F(XrView, ASignalLeavesTheSession) {
   stage.script = {{"frames", 1000000}, {"sleep", true}, {"pixels", Json::array()}};
@@ -199,6 +198,7 @@ TEST_F(XrView, ASignalLeavesTheSession) {
   EXPECT_EQ(stage.log().states().back(), "EXITING");
 }
 
+// The same pictures by every way into a texture.
 TEST_F(XrView, WritesEveryFormat) {
   ASSERT_EQ(view().code, 0);
   const std::string srgb = stage.log().colours(stage.log().frames().at(0), 0);

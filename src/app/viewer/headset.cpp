@@ -26,7 +26,10 @@ volatile std::sig_atomic_t signalled = 0;
 // program.
 void tell_first_signal() {
   struct sigaction once = {};
-  once.sa_handler = [](int) { signalled = 1; };
+  once.sa_handler = [](int) {
+    signalled = 1;
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  };
   once.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
     struct sigaction before = {};
