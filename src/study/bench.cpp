@@ -250,7 +250,8 @@ std::string Bench::verify(const BenchSettings& settings) {
     if (!is_finite(picture)) return view.name + ": a pixel is not a finite number";
     if (is_empty(picture)) return view.name + ": the picture is empty";
   }
-  render::FrameSettings of_inset = settings;
+  BenchSettings of_inset = settings;
+  of_inset.foveation.reset();
   of_inset.th = TH_TAU;
   for (std::size_t eye = 0; settings.foveation && is_exact(of_inset) && eye < pictures.size(); ++eye) {
     const stereo::FoveatedEye& parts = drawer.foveated().parts()[eye];

@@ -51,10 +51,11 @@ struct XrView : testing::Test {
     stage.script = {{"frames", 2}};
   }
 
-  Strings words = {"view", file, "--xr", "--no-mirror", "--eye", "0,0,-1", "--at", "0,0,1", "--up", "0,-1,0"};
+  Strings plain_words = {"view",   file,   "--xr",  "--no-mirror", "--eye",
+                         "0,0,-1", "--at", "0,0,1", "--up",        "0,-1,0"};
 
   Outcome view(const Strings& more = {}, const std::map<std::string, std::string>& variables = {}) {
-    Strings words = this->words;
+    Strings words = plain_words;
     words.insert(words.end(), more.begin(), more.end());
     std::map<std::string, std::string> all = stage.variables();
     for (const auto& [name, value] : variables) all[name] = value;
@@ -184,7 +185,7 @@ TEST_F(XrView, DepthIsTheMedian) {
 // The runtime's session is ended in order, and what was drawn is told.
 TEST_F(XrView, ASignalLeavesTheSession) {
   stage.script = {{"frames", 1000000}, {"sleep", true}, {"pixels", Json::array()}};
-  Program program(words, {.variables = stage.variables()});
+  Program program(plain_words, {.variables = stage.variables()});
   const auto start = std::chrono::steady_clock::now();
   while (program.said().find("FOCUSED") == std::string::npos) {
     ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::minutes(1)) << program.said();
