@@ -1,9 +1,10 @@
 #include "study/axes.h"
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <set>
 
@@ -185,6 +186,9 @@ std::vector<std::string> axes_presets() {
 Axes load_axes(const std::string& preset_or_file) {
   const auto preset = preset_files().find(preset_or_file + ".json");
   if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
+  std::error_code ignored;
+  if (!std::filesystem::exists(preset_or_file, ignored))
+    fail("--axes {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(axes_presets(), ", "));
   return parse_axes(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
 }
 
