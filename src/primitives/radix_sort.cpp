@@ -74,13 +74,13 @@ void RadixSort::run_looking_back(gl::Dispatcher& dispatcher, const gl::Buffer& a
   gl::Defines defines = pairs.block_define();
   defines.emplace_back("DIGIT_BITS", std::to_string(digit_bits(bits)));
   const gl::Program& scatter = context.program("primitives/sort_scatter_subgroups.comp", defines);
-  defines.emplace_back("PASSES", std::to_string((bits + digit_bits(bits) - 1) / digit_bits(bits)));
+  defines.emplace_back("PASSES", std::to_string(passes(bits)));
   const auto blocks = gl::Work::indirect(arguments, offsetof(shared::DispatchArguments, sort_x));
   dispatcher.run(
       context.program("primitives/sort_digits.comp", defines), gl::Work::of_groups(SORT_DIGITS_GROUPS),
       {{"Arguments", arguments}, {"Keys", pairs.keys()}, {"SortDigits", digits_}, {"Reached", histogram_}},
       {{"half_now", half_now_}});
-  for (std::uint32_t pass = 0; pass * digit_bits(bits) < bits; ++pass) {
+  for (std::uint32_t pass = 0; pass < passes(bits); ++pass) {
     dispatcher.run(scatter, blocks,
                    {{"Arguments", arguments},
                     {"Keys", pairs.keys()},

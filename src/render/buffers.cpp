@@ -11,10 +11,6 @@
 
 namespace binosplat::render {
 
-std::uint32_t tile_blocks(std::int64_t pairs) {
-  return static_cast<std::uint32_t>((pairs + TILE_BLOCK - 1) / TILE_BLOCK);
-}
-
 namespace {
 
 shared::FrameParameters parameters_of(const FrameShape& shape) {
@@ -121,7 +117,8 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   pairs.reserve(pair_capacity);
   ranges.reserve(std::max<std::int64_t>(shape.supertile_count, shape.view_count()) * 8);
   if (shape.supertile_side > 1) {
-    const std::int64_t counts = std::int64_t{tile_blocks(pairs.capacity())} * shape.tiles_a_supertile();
+    const std::int64_t blocks_of_pairs = (pairs.capacity() + TILE_BLOCK - 1) / TILE_BLOCK;
+    const std::int64_t counts = blocks_of_pairs * shape.tiles_a_supertile();
     tile_counts.reserve(counts * 4);
     scan.reserve(counts);
     tile_ranges.reserve(shape.tile_count() * 8LL);

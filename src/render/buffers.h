@@ -14,9 +14,6 @@
 
 namespace binosplat::render {
 
-/// Blocks that so many sorted pairs are split among their tiles in.
-std::uint32_t tile_blocks(std::int64_t pairs);
-
 /// The Gaussians that an order group draws.
 struct DrawnBuffers {
   explicit DrawnBuffers(gl::Context& context)

@@ -17,11 +17,10 @@ void start_clear(gl::Dispatcher& dispatcher, const gl::Buffer& ranges, std::uint
 void split_lists(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers) {
   gl::Context& context = dispatcher.context();
   start_clear(dispatcher, buffers.tile_ranges, shape.tile_count());
-  const auto arguments_at = [](std::size_t nth, std::size_t member) {
-    return static_cast<std::int64_t>(nth * sizeof(shared::DispatchArguments) + member);
-  };
-  const gl::Work blocks = gl::Work::indirect(buffers.pair_arguments,
-                                             arguments_at(2, offsetof(shared::DispatchArguments, threads_x)));
+  // The third of the arguments, and below the fourth: arguments.comp.
+  constexpr std::size_t third = 2 * sizeof(shared::DispatchArguments);
+  const gl::Work blocks =
+      gl::Work::indirect(buffers.pair_arguments, third + offsetof(shared::DispatchArguments, threads_x));
   const auto program = [&](const char* writes) -> const gl::Program& {
     return context.program("ranges_of_tiles.comp", {{"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
                                                     subgroups_define(context),

@@ -13,21 +13,13 @@ namespace binosplat::study {
 
 using nlohmann::ordered_json;
 
-namespace {
-
-NamedSettings named_whole(const render::FrameSettings& s) {
+NamedSettings named(const BenchSettings& s) {
   NamedSettings names{.tiles = tiles_choices[s.tiles].name, .tile = s.tile_size, .th = th_choices[s.th].name};
   if (s.precision != PRECISION_FULL) names.precision = precision_choices[s.precision].name;
-  if (render::is_exact(s.th)) return names;
-  names.transmittance = transmittance_choices[s.transmittance].name;
-  names.tolerance = std::stod(fmt::format("{}", s.tolerance));
-  return names;
-}
-
-}  // namespace
-
-NamedSettings named(const BenchSettings& s) {
-  NamedSettings names = named_whole(s);
+  if (!render::is_exact(s.th)) {
+    names.transmittance = transmittance_choices[s.transmittance].name;
+    names.tolerance = std::stod(fmt::format("{}", s.tolerance));
+  }
   if (s.foveation) {
     names.inset = s.foveation->inset_degrees;
     names.context = s.foveation->context_scale;

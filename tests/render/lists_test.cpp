@@ -125,12 +125,18 @@ TEST(Lists, OfSplatsOverThousandsOfThemAreWhole) {
   }
 }
 
+// Whether a fault in a shader changes what a model looks like, drawn by supertiles of so many tiles.
+bool is_noticed(const Model& model, const Drawn& own, int supertile_side, const char* shader,
+                const char* sought, const char* fault) {
+  const test::FaultyShaders faulty(shader, sought, fault);
+  return !same_pictures(own, draw_frames(model, {}, supertile_side, 1));
+}
+
 TEST(Lists, FaultsInWhatIsLeftForPairsAreNoticed) {
   const Model model = test::random_model(52, 4000, 1);
   const Drawn own = draw_frames(model, {}, 1, 1);
   const auto fails = [&](const char* shader, const char* sought, const char* fault) {
-    const test::FaultyShaders faulty(shader, sought, fault);
-    return !same_pictures(own, draw_frames(model, {}, 2, 1));
+    return is_noticed(model, own, 2, shader, sought, fault);
   };
   EXPECT_TRUE(fails("pairs.comp", "nth / 2u * across", "nth / 2u"));  // of few lists,
   EXPECT_TRUE(fails("pairs.comp", "to = start_at[place] + in_splat", "to = start_at[place]"));  // of many
@@ -143,8 +149,7 @@ TEST(Lists, ABlockThatMissesASplatIsNoticed) {
   const Model model = test::random_model(52, 4000, 1);
   const Drawn own = draw_frames(model, {}, 1, 1);
   const auto misses = [&](const char* shader, const char* sought, const char* fault) {
-    const test::FaultyShaders faulty(shader, sought, fault);
-    return !same_pictures(own, draw_frames(model, {}, 1, 1));
+    return is_noticed(model, own, 1, shader, sought, fault);
   };
   if (!test::gl_context().limits().subgroups_of_32 && !test::gl_context().software())
     GTEST_SKIP() << "blend.comp has no blocks";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "render/faulty_shaders.h"
 #include "render/frame.h"
 #include "scene/camera.h"
 #include "stereo/rig.h"
@@ -79,24 +80,17 @@ TEST_F(BenchPoint, FoveatedIsExactWhereOneLooks) {
 }
 
 TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
-  const test::TempFolder folder;
-  std::filesystem::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/shaders", folder.path(),
-                        std::filesystem::copy_options::recursive);
-  std::string compose = test::read_text(folder / "foveate.comp");
-  const std::string right = "if (beyond == 0.0) return 1.0;";
-  ASSERT_NE(compose.find(right), std::string::npos);
-  compose.replace(compose.find(right), right.size(), "if (beyond == 0.0) return 0.9;");
-  test::write_text(folder / "foveate.comp", compose);
-  const auto faulty = gl::Context::open();
-  faulty->set_shader_folder(folder.path());
+  const test::FaultyShaders faulty("foveate.comp", "if (beyond == 0.0) return 1.0;",
+                                   "if (beyond == 0.0) return 0.9;");
   BenchSettings foveated;
   foveated.foveation = stereo::Foveation{.inset_degrees = 20.0};
   for (const int transmittance : {TRANSMITTANCE_ONE, TRANSMITTANCE_LAST}) {
     foveated.th = TH_SQUARED;
     foveated.tolerance = 0.3f;
     foveated.transmittance = transmittance;
-    EXPECT_NE(bench(*faulty, 1).measure(foveated).problem.find("the inset is not the exact picture's"),
-              std::string::npos);
+    EXPECT_NE(
+        bench(test::gl_context(), 1).measure(foveated).problem.find("the inset is not the exact picture's"),
+        std::string::npos);
   }
 }
 

@@ -30,7 +30,7 @@ void tell_first_signal() {
     signalled = 1;
     for (const int signal : {SIGHUP, SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
   };
-  once.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  once.sa_flags = SA_RESTART;
   for (const int signal : {SIGHUP, SIGINT, SIGTERM}) {
     struct sigaction before = {};
     if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
