@@ -2,20 +2,42 @@
 // are drawn by a launch of their own, which starts first and has more invocations (blend_long_lists.comp).
 //
 // With SHOW, one of SHOW_ALPHAS to SHOW_LIGHT, it leaves the pictures as they are and tells what it comes by instead.
+#include "lists.glsl"
 #define INVOCATIONS (TILE_SIZE * TILE_SIZE / COLUMN)
 // Splats in shared memory at a time, 9 KiB at most: with more an H200 holds fewer groups, with less the longest lists take
 // longer (src/render/README.md).
-#if RECORDS || SUMS != SUMS_NONE
+#if LOSSY
+#define BATCH_MAX LOSSY_STEP
+#elif RECORDS || SUMS != SUMS_NONE
 #define BATCH_MAX 176
 #else
 #define BATCH_MAX 192
 #endif
 #define BATCH (INVOCATIONS < BATCH_MAX ? INVOCATIONS : BATCH_MAX)
+#if LOSSY
+#define REACHES(at) ((reached[at] >> own_bit & 1u) != 0u)
+shared uint reached[BATCH];  // the blocks of each of the batch
+uint own_bit, dark_bit;
+#define BLOCK_WIDTH LOSSY_BLOCK
+#define BLOCK_HEIGHT LOSSY_BLOCK
+#endif
 #include "blending.glsl"
+#if LOSSY
+#include "blocks.glsl"
+vec2 corner;  // the tile's first pixel
+#endif
+
+#if LOSSY
+#define ALIVE atomicOr(alive, dark_bit)
+#define MAY_END (RECORDS == 0)  // what measures asks about more than light
+#else
+#define ALIVE alive = 1u
+#define MAY_END true
+#endif
 
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE / COLUMN) in;
 
-shared uint alive;  // 1 while a pixel still takes light
+shared uint alive;  // while a pixel still takes light, with a loss a bit a block
 
 void load(uint at) {
   uint self = gl_LocalInvocationIndex;
@@ -35,6 +57,9 @@ void load(uint at) {
     if (facing > 0.0 == splat.conic.w < 0.0) splat.opacity = 0.0;
   }
 #endif
+#if LOSSY
+  reached[self] = blocks_reached(splat, splat.mean - corner);
+#endif
   stage(self, splat);
 #if SHOW == SHOW_LIGHT
   batch_light[self] = uintBitsToFloat(measured[values[at]]);
@@ -43,32 +68,45 @@ void load(uint at) {
 
 void main() {
   if (!find_tile()) return;
-  begin_pixels(gl_LocalInvocationID.xy * uvec2(1u, COLUMN));
+  uvec2 in_tile = gl_LocalInvocationID.xy * uvec2(1u, COLUMN);
+  begin_pixels(in_tile);
+#if LOSSY
+  uvec2 block = in_tile / LOSSY_BLOCK;
+  own_bit = block.y * BLOCKS_ACROSS + block.x;
+  dark_bit = 1u << in_tile.y / LOSSY_ROWS * BLOCKS_ACROSS + block.x;
+  corner = vec2(first_pixel - in_tile);
+#endif
   uint batch = begin;
   bool cut = false;
   for (; batch < end; batch += BATCH) {
     if (batch != begin) {
       if (gl_LocalInvocationIndex == 0u) alive = 0u;
       barrier();
-      if (!are_done()) alive = 1u;
+      if (!are_dark()) ALIVE;
       barrier();
-      if (alive == 0u) break;
+#if LOSSY
+      bool is_asked = (batch - begin) % LOSSY_STEP == 0u;
+      if (!is_cut && last_light > 0.0 && is_asked && (alive & dark_bit) == 0u) end_dark();
+#else
+      const bool is_asked = true;
+#endif
+      if (alive == 0u && is_asked && MAY_END) break;
     }
     load(batch + gl_LocalInvocationIndex);
     barrier();
     size = min(end - batch, uint(BATCH));
     uint next = 0u;
-    for (; next < size && !are_done(); next += BLEND_UNROLL) {
+    for (; next < size && !are_done() && !IS_CUT; next += BLEND_UNROLL) {
       for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) blend_from(next + i);
     }
-    cut = cut || (!are_done() && next < size);
+    cut = cut || (!are_done() && !IS_CUT && next < size);
 #if RECORDS || SUMS != SUMS_NONE
     barrier();
     uint self = gl_LocalInvocationIndex;
     if (self < size) pass_on(values[batch + self], batch_measured[self]);
 #endif
   }
-  if (cut || (!are_done() && batch < end)) atomicAdd(counters.loop_cut, 1u);
+  if (cut || (!are_done() && !IS_CUT && batch < end)) atomicAdd(counters.loop_cut, 1u);
 #if SUMS == SUMS_NONE  // the picture stays
   write_pixels();
 #endif

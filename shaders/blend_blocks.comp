@@ -3,7 +3,7 @@
 // an invocation a block lists them; then each row blends those that reach its own. The bits are those of blend.comp.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT COLUMN
-#define ROUND 128  // splats at a time
+#define ROUND (LOSSY == 1 ? LOSSY_STEP : 128)  // splats at a time
 #define BATCH (ROUND + 1)  // and one that leaves no mark
 #include "blending.glsl"
 #include "blocks.glsl"
@@ -11,16 +11,16 @@
 layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCKS) in;
 #define INVOCATIONS (BLOCK_WIDTH * BLOCKS)
 
-shared uint reached[ROUND];                    // of the batch: a bit a block
+shared uint reached[ROUND];                    // of the batch: the blocks of each
 shared uint own_lists[BLOCKS][ROUND + BLEND_UNROLL];  // by block: those of the batch that reach it, and some that leave no mark
 shared uint own_counts[BLOCKS];
-shared uint alive;  // 1 while a pixel still takes light
+shared uint alive;  // a bit a block: whether a pixel of it still takes light
 
 void list_own(uint block) {
-  uint count = 0u, i = 0u;
+  uint bit = bit_of(block), count = 0u, i = 0u;
   for (; i < ROUND; i += BLEND_UNROLL) {
     for (uint k = 0u; k < BLEND_UNROLL; ++k) {
-      if ((reached[i + k] >> block & 1u) == 0u) continue;
+      if ((reached[i + k] >> bit & 1u) == 0u) continue;
       own_lists[block][count] = i + k;
       ++count;
     }
@@ -44,8 +44,11 @@ void main() {
     if (batch != begin) {
       if (self == 0u) alive = 0u;
       barrier();
-      if (!are_done()) alive = 1u;
+      if (!are_dark()) atomicOr(alive, 1u << own_block);
       barrier();
+#if LOSSY
+      if (!is_cut && last_light > 0.0 && (alive >> own_block & 1u) == 0u) end_dark();
+#endif
       if (alive == 0u) {
         batch = end;
         break;
@@ -63,7 +66,7 @@ void main() {
     barrier();
     if (self < BLOCKS) list_own(self);
     barrier();
-    uint count = own_counts[own_block], next = 0u;
+    uint count = IS_CUT ? 0u : own_counts[own_block], next = 0u;
     for (; next < count && !are_done(); next += BLEND_UNROLL) {
       for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) {
         uint at[AHEAD];

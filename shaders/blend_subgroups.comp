@@ -6,7 +6,7 @@
 // are those of blend.comp.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
-#define ROUND (COLUMN == 1 ? 128 : 64)  // splats at a time: with more in shared memory there is room for fewer groups
+#define ROUND (LISTS == LISTS_LONG ? 128 : 64)  // splats at a time: with more in shared memory there is room for fewer groups
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // and one that leaves no mark
 #define ANY(condition) subgroupAny(condition)
@@ -15,7 +15,7 @@
 
 layout(local_size_x = 32, local_size_y = BLOCKS) in;
 
-shared uint reached[ROUND];                    // of the batch: a bit a block
+shared uint reached[ROUND];                    // of the batch: the blocks of each
 shared uint own_lists[BLOCKS][ROUND + AHEAD];  // by block: those of the batch that reach it
 shared uint blocks_done;
 OF_TILE vec2 corner;                           // the tile's first pixel
@@ -24,12 +24,12 @@ uint value_at(uint at) { return at < end ? values[at] : 0u; }
 
 // The batch's splats that reach this subgroup's block, in order, and AHEAD that leave no mark: how many.
 uint list_own() {
-  uint lane = gl_SubgroupInvocationID;
+  uint lane = gl_SubgroupInvocationID, bit = bit_of(gl_SubgroupID);
   uint count = 0u;
   uint mine[WORDS];  // all are read before the first is waited for
   for (uint word = 0u; word < WORDS; ++word) mine[word] = reached[word * 32u + lane];
   for (uint word = 0u; word < WORDS; ++word) {
-    bool reaches = (mine[word] >> gl_SubgroupID & 1u) != 0u;
+    bool reaches = (mine[word] >> bit & 1u) != 0u;
     uint all = subgroupBallot(reaches).x;
     if (reaches) own_lists[gl_SubgroupID][count + bitCount(all & gl_SubgroupLtMask.x)] = word * 32u + lane;
     count += bitCount(all);
@@ -78,7 +78,10 @@ void main() {
         for (uint k = 0u; k < AHEAD; ++k) at[k] = own_lists[gl_SubgroupID][i + k];
         blend(at);
       }
-      ended = subgroupAll(are_done());
+      ended = subgroupAll(are_dark());
+#if LOSSY
+      if (ended && last_light > 0.0 && batch + ROUND < end) end_dark();
+#endif
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);
     }
     if (batch + ROUND >= end) break;

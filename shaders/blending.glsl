@@ -3,9 +3,13 @@
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
 //   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
-//   MEDIAN      1: a pixel's depth is the median of what is seen in it, else the mean; 2: at least of every second row
+//   DEPTH       what z_sums tell, DEPTH_ below
+//   LOSSY       1: th squared with the lists of ellipses, by which a splat is blended in the blocks where its alpha reaches Th,
+//               and a block ends once it is dark (docs/method.md 5.2)
 //   CANVASES    above 0: the pictures of so many views go into images, and z_sums are depths, 0 where there is none
 //   ANY         whether something holds in an invocation that goes with this one
+//   REACHES     whether a splat of the batch is blended in this invocation's block, if others are in the batch, too
+#include "lists.glsl"
 #include "shared/axes.h"
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -15,11 +19,17 @@
 #include "tiles/places.glsl"
 #include "splats.glsl"  // binding 12
 
-#define LISTS_SHORT 0
-#define LISTS_LONG 1
+#define DEPTH_NONE 0
+#define DEPTH_MEAN 1
+#define DEPTH_MEDIAN 2
+#define DEPTH_MEDIAN_OF_TWO_ROWS 3  // at least of every second row
 
 #ifndef ANY
 #define ANY(condition) (condition)
+#endif
+
+#ifndef REACHES
+#define REACHES(at) true
 #endif
 
 #ifndef SHOW
@@ -34,7 +44,9 @@ layout(std430, binding = 2) readonly buffer Values { uint values[]; };
 #else
 layout(std430, binding = 4) buffer Colours { vec4 colours[]; };  // C, and T left
 #endif
+#if DEPTH != DEPTH_NONE
 layout(std430, binding = 5) writeonly buffer ZSums { float z_sums[]; };
+#endif
 layout(std430, binding = 6) buffer FrameCounters { Counters counters; };
 #if LISTS == LISTS_LONG
 layout(std430, binding = 9) readonly buffer LongLists { uint long_lists[]; };  // tiles
@@ -144,9 +156,48 @@ bool are_done() {
   return all;
 }
 
+#if LOSSY
+float last_light;     // T at most of the pixels of a dark block
+bool is_cut = false;  // whether this block had light left for more splats, which what was seen has taken
+#if RECORDS
+vec4 cut_colour[COLUMN];  // with Z; what measures goes on
+#endif
+
+bool are_dark() {
+  bool all = true;
+  for (uint p = 0u; p < COLUMN; ++p) all = all && transmittance[p] <= last_light;
+  return all;
+}
+
+float light_left(uint p) { return is_done(p) ? -least[p] : transmittance[p]; }
+
+// What is behind is taken to look as what was seen.
+void end_dark() {
+  is_cut = true;
+  for (uint p = 0u; p < COLUMN; ++p) {
+    precise float scale = 1.0 / (1.0 - light_left(p));
+    colour[p] *= scale;
+    z_sum[p] *= DEPTH == DEPTH_MEAN ? scale : 1.0;
+#if RECORDS
+    cut_colour[p] = vec4(colour[p], z_sum[p]);
+#endif
+  }
+}
+#define IS_CUT (is_cut && RECORDS == 0)
+#else
+#define are_dark are_done
+#define IS_CUT false
+#endif
+
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.
 void blend(uint at[AHEAD]) {
   float weights[COLUMN][AHEAD];  // alphas at first
+#if RECORDS && LOSSY
+  bool is_met[COLUMN][AHEAD];  // in a pixel, if not in its block
+#define IS_MET(p, k) is_met[p][k]
+#else
+#define IS_MET(p, k) (weights[p][k] > 0.0)
+#endif
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 across = batch_across[at[k]];
     vec4 down = batch_down[at[k]];
@@ -159,7 +210,10 @@ void blend(uint at[AHEAD]) {
       exponent = fma(nearness[p], exponent, down.z);
 #endif
       precise float a = exp2(-exponent);
-      weights[p][k] = a >= float(ALPHA_MIN) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
+      weights[p][k] = a >= float(ALPHA_MIN) && REACHES(at[k]) ? min(float(ALPHA_MAX), a) : 0.0;  // not a number: 0
+#if RECORDS && LOSSY
+      is_met[p][k] = a >= float(ALPHA_MIN);
+#endif
     }
   }
   float left[COLUMN];
@@ -193,10 +247,10 @@ void blend(uint at[AHEAD]) {
       least[p] = -last;
       left[p] = 0.0;
     }
-#if MEDIAN
+#if DEPTH >= DEPTH_MEDIAN
     const float half_light = 1.0 - float(COVERAGE_FOR_DEPTH);
     bool is_half = transmittance[p] >= half_light && left[p] < half_light;
-    if ((MEDIAN == 1 || p % 2u == 0u) && ANY(is_half)) {  // seldom
+    if ((DEPTH == DEPTH_MEDIAN || p % 2u == 0u) && ANY(is_half)) {  // seldom
       float depth = median_depth(at, weights[p], transmittance[p]);
       if (is_half) z_sum[p] = depth;
     }
@@ -207,7 +261,7 @@ void blend(uint at[AHEAD]) {
     for (uint p = 0u; p < COLUMN; ++p) {
       float weight = weights[p][k];
 #if RECORDS || SUMS != SUMS_NONE
-      if (weight > 0.0) measure(at[k], p, weight);
+      if (IS_MET(p, k)) measure(at[k], p, weight);
       transmittance[p] -= weight;
 #elif SHOW == SHOW_MEDIAN_DEPTH
       transmittance[p] -= weight;
@@ -216,7 +270,7 @@ void blend(uint at[AHEAD]) {
       precise float r = fma(weight, c.r, colour[p].r);
       precise float g = fma(weight, c.g, colour[p].g);
       precise float b = fma(weight, c.b, colour[p].b);
-#if !MEDIAN
+#if DEPTH == DEPTH_MEAN
       precise float z = fma(weight, c.a, z_sum[p]);
       z_sum[p] = z;
 #endif
@@ -271,122 +325,4 @@ void stage_nothing(uint at) {
   batch_colour[at] = vec4(0.0);
 }
 
-// What the work group draws.
-uint tile = 0u;
-uint view_index = 0u;
-uint begin = 0u, end = 0u;  // its list
-
-// Whether there is anything for this work group to draw; else it must end.
-bool find_tile() {
-  // It is to be drawn again.
-  if (counters.overflow != 0u) return false;
-#if LISTS == LISTS_LONG
-  if (group_index() >= counters.long_lists) return false;
-  tile = long_lists[group_index()];
-#else
-  tile = group_index();
-  if (tile >= frame.tile_count) return false;
-#endif
-  while (view_index + 1u < frame.view_count && tile >= views[view_index + 1u].supertile_offset * SUPERTILE_TILES) ++view_index;
-  uint list = frame.list_per_view != 0u ? view_index : tile;
-  begin = ranges[2u * list];
-  end = ranges[2u * list + 1u];
-  bool is_own = LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;
-#if PARTS
-  if (!is_drawn(tile_of(tile, views[view_index]), views[view_index])) end = begin;
-#endif
-  return is_own;
-}
-
-// Where pixel p of this invocation is kept. A probe's tiles are kept side by side.
-uint place_of(View view, uint p) {
-  uvec2 at = first_pixel - first_drawn(view);
-  uint across = view.width;
-  if (is_probe(view)) {
-    uvec2 in_grid = tile_of(tile, view);
-    at += in_grid * uint(TILE_SIZE) - tile_corner(in_grid, view);
-    across = view.tiles_x * uint(TILE_SIZE);
-  }
-  return view.pixel_offset + (at.y + p) * across + at.x;
-}
-
-// The pixels of this invocation, of which the first lies `in_tile`.
-void begin_pixels(uvec2 in_tile) {
-  View view = views[view_index];
-  uvec2 corner = tile_corner(tile_of(tile, view), view);
-  middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
-  first_pixel = corner + in_tile;
-  column = float(first_pixel.x) - middle.x;
-#if PROJECTION == PROJECTION_TANGENT
-  precise vec2 step = 1.0 / view.lens.xy;
-  vec2 first = (vec2(corner) + 0.5 - view.lens.zw) * step;
-  vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
-  farthest = 1.0 + dot(most, most);
-#endif
-  for (uint p = 0u; p < COLUMN; ++p) {
-    bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
-    row[p] = float(first_pixel.y + p) - middle.y;
-    colour[p] = vec3(0.0);
-    z_sum[p] = 0.0;
-    transmittance[p] = inside ? 1.0 : 0.0;
-#if PROJECTION == PROJECTION_TANGENT
-    precise vec2 ray = (vec2(first_pixel + uvec2(0u, p)) + 0.5 - view.lens.zw) * step;
-    precise float inverse = 1.0 / fma(ray.y, ray.y, fma(ray.x, ray.x, 1.0));
-    nearness[p] = inverse;
-#endif
-    least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
-#if SUMS != SUMS_NONE
-    picture[p] = inside ? colours[place_of(view, p)] : vec4(0.0);
-#endif
-#if SUMS == SUMS_TRANSPOSED
-    picture[p] *= uintBitsToFloat(scale);
-#endif
-#if SHOW != SHOW_PICTURE
-    told[p] = SHOW == SHOW_MEDIAN_DEPTH ? -1.0 : 0.0;
-#endif
-  }
-}
-
-void write_pixels() {
-  View view = views[view_index];
-  for (uint p = 0u; p < COLUMN; ++p) {
-    if (first_pixel.x > last_drawn(view).x || first_pixel.y + p > last_drawn(view).y) continue;
-    uint to = place_of(view, p);
-    float left = is_done(p) ? -least[p] : transmittance[p];
-#if SHOW == SHOW_PAIRS
-    told[p] = float(end - begin);
-#elif SHOW == SHOW_LIGHT
-    told[p] = left < 1.0 ? told[p] / (1.0 - left) : -1.0;
-#elif SHOW == SHOW_MEDIAN_DEPTH && PROJECTION == PROJECTION_TANGENT
-    told[p] *= sqrt(nearness[p]);  // of a distance
-#endif
-#if SHOW != SHOW_PICTURE
-    shown[to] = told[p];
-#else
-#if CANVASES
-    uvec2 at = first_pixel + uvec2(0u, p) - first_drawn(view);
-    write_on_canvas(view_index, canvases[view_index], view.height, at, vec4(colour[p], left), frame.background.rgb);
-#else
-    colours[to] = vec4(colour[p], left);
-#endif
-#if PROJECTION == PROJECTION_TANGENT
-    precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
-    z_sum[p] = along;
-#endif
-#if CANVASES
-    if (left >= 1.0 - float(COVERAGE_FOR_DEPTH)) z_sum[p] = 0.0;
-#if !MEDIAN
-    else z_sum[p] /= 1.0 - left;
-#endif
-#elif MEDIAN
-    precise float cover = 1.0 - left;
-    precise float z = z_sum[p] * cover;
-    z_sum[p] = z;
-#endif
-#if MEDIAN == 2
-    if (p % 2u != 0u) continue;
-#endif
-    z_sums[to] = z_sum[p];
-#endif
-  }
-}
+#include "pixels.glsl"

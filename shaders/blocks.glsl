@@ -1,13 +1,28 @@
-// The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px that a tile is drawn by, row by row. After blending.glsl.
+// The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px that a tile is drawn by, row by row, and those that splats are told to reach:
+// the same, or with a loss those of docs/method.md 5, which do not depend on how a tile is drawn. After blending.glsl.
 #define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
 #define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
 #define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)
+#if LOSSY
+#define REACH_HEIGHT LOSSY_BLOCK
+#else
+#define REACH_HEIGHT BLOCK_HEIGHT
+#endif
 
-// The blocks where alpha comes to ALPHA_MIN in a pixel: maybe some more, for rounding, none less. `mean` is seen from the
-// tile's first pixel.
+// The bit of what reaches a block, of blocks_reached().
+uint bit_of(uint block) {
+  return block / BLOCKS_ACROSS * BLOCK_HEIGHT / REACH_HEIGHT * BLOCKS_ACROSS + block % BLOCKS_ACROSS;
+}
+
+// The blocks where alpha comes to ALPHA_MIN in a pixel, with a loss to Th: maybe some more, for rounding, none less. `mean` is
+// seen from the tile's first pixel.
 uint blocks_reached(Splat splat, vec2 mean) {
   if (!(splat.opacity >= float(ALPHA_MIN))) return 0u;
+#if LOSSY
+  float rho = 1.001 * max(0.0, splat.colour.w) + 1e-3;
+#else
   float rho = 2.002 * log(splat.opacity / float(ALPHA_MIN)) + 1e-3;
+#endif
 #if PROJECTION == PROJECTION_TANGENT
   rho *= farthest;
 #endif
@@ -17,9 +32,9 @@ uint blocks_reached(Splat splat, vec2 mean) {
   float lean = -splat.conic.y / splat.conic.x;                     // of the line through its rows' middles,
   float apex = -splat.conic.y * root_det * sqrt(rho / splat.conic.z);  // where it is furthest to the right
   uint bits = 0u;
-  for (uint row = 0u; row < BLOCKS_DOWN; ++row) {
-    float low = float(row * BLOCK_HEIGHT) - mean.y;
-    float high = low + float(BLOCK_HEIGHT - 1);
+  for (uint row = 0u; row < TILE_SIZE / REACH_HEIGHT; ++row) {
+    float low = float(row * REACH_HEIGHT) - mean.y;
+    float high = low + float(REACH_HEIGHT - 1);
     if (low > tallest || high < -tallest) continue;
     vec2 y = clamp(vec2(-apex, apex), low, high);  // of its furthest to the left and to the right in this row
     vec2 reach = widest * sqrt(max(vec2(0.0), 1.0 - y * y / (tallest * tallest)));

@@ -16,11 +16,11 @@
 layout(local_size_x = COLUMNS, local_size_y = THREAD_ROWS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left
-layout(std430, binding = 1) readonly buffer ZSums { float z_sums[]; };
 #if CANVASES
 uniform uint nth;                                          // of the canvases
 uniform uint background_r, background_g, background_b;     // bits of floats
 #else
+layout(std430, binding = 1) readonly buffer ZSums { float z_sums[]; };
 layout(std430, binding = 2) writeonly buffer Composed { vec4 composed[]; };
 layout(std430, binding = 3) writeonly buffer ComposedZ { float composed_z[]; };
 uniform uint first;  // of the picture in its buffer

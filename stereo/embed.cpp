@@ -95,6 +95,7 @@ EmbeddedReport EmbeddedRenderer::draw(std::span<const shared::View> views, std::
   if (layout == LAYOUT_SEPARATE) canvases = presenter_->canvases(targets, background);
   render::FrameSettings over = settings;
   if (background) over.background = *background;
+  if (depths.empty()) over.depth = Depth::none;
   static_cast<render::FrameReport&>(report) =
       frame_->draw(views, over, {}, canvases.list, depth_rows(*context_, views, depths));
   for (std::size_t k = 0; k < targets.size() && !report.on_canvases; ++k)

@@ -144,6 +144,7 @@ render::FrameReport FoveatedFrame::draw(std::span<const shared::View> eyes, cons
     pixels += std::int64_t{eye.width} * eye.height;
   }
   on_canvases_ = !canvases.empty();
+  drawn.settings.depth = on_canvases_ ? Depth::none : Depth::mean;
   if (!on_canvases_) {
     colours_.reserve(pixels * 16);
     z_sums_.reserve(pixels * 4);

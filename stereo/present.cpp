@@ -240,6 +240,7 @@ int depth_rows(const gl::Context& context, std::span<const shared::View> views,
 
 void Presenter::draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target) {
   if (v >= frame.shape().asked) fail("view {} of a frame of {} views", v, frame.shape().asked);
+  if (!frame.shape().keeps_depth()) fail("the depth of a frame drawn without");
   const double near = target.near_plane, far = target.far_plane;
   if (!(near > 0.0 && far > 0.0 && near != far))
     fail("depths from {} to {}: expected two distances above zero, one of which may be infinite", near, far);

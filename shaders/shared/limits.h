@@ -8,6 +8,13 @@
 #define ALPHA_MAX 0.99
 // The blend stops before a Gaussian that would leave a transmittance of less than this behind it (3D-GS).
 #define TRANSMITTANCE_MIN 1e-4
+// With a loss splats are blended by blocks of so many px, and a block ends where no pixel's transmittance is
+// above this times the root of the tolerance, asked each so many pairs of a list, and of a long one
+// (docs/method.md 5.2).
+#define LOSSY_BLOCK 8
+#define LAST_LIGHT 0.12
+#define LOSSY_STEP_SHORT 64
+#define LOSSY_STEP_LONG 128
 // A pixel has a depth where more than this much of it is covered.
 #define COVERAGE_FOR_DEPTH 0.5
 // Variance in px^2 added to both axes of every projected Gaussian, a low-pass for splats thinner than a pixel

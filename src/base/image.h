@@ -42,8 +42,8 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// Of a pixel: of all that is seen in it, or where half of the light is gone.
-enum class Depth { mean, median };
+/// Of a pixel: not asked for, of all that is seen in it, or where half of the light is gone.
+enum class Depth { none, mean, median };
 
 /// Whether pictures are the same in number, size and every bit.
 bool same_bits(std::span<const Picture> a, std::span<const Picture> b);

@@ -164,7 +164,7 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
   settings.background = {background[0], background[1], background[2]};
   check(settings, given, renderer.model().scaffold != nullptr);
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
-  settings.depth = static_cast<Depth>(find_choice("depth", depth, depths));
+  settings.depth = find_choice("depth", depth, depths) == 0 ? Depth::mean : Depth::median;
   const auto views = views_of(view, renderer.model().axes, near_plane);
   Drawn drawn;
   {

@@ -9,6 +9,58 @@ namespace binosplat::reference {
 
 namespace {
 
+void put(const PixelSum& sum, int x, int y, Picture& picture) {
+  const std::size_t pixel = static_cast<std::size_t>(y) * picture.width + x;
+  picture.colour[pixel] = glm::vec4(glm::dvec4(sum.colour, sum.transmittance));
+  picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
+}
+
+/// Blends a block of a tile, `left` and `top` up to but not including `right` and `bottom`, with a loss: once
+/// it is dark, what is behind is taken to look as what was seen.
+void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, const Loss& loss,
+                 const glm::ivec2& first, const glm::ivec2& end, Picture& picture) {
+  const std::size_t step = list.size() > LONG_LIST ? LOSSY_STEP_LONG : LOSSY_STEP_SHORT;
+  struct Pixel {
+    glm::ivec2 at;
+    PixelSum sum;
+    bool ended = false;
+  };
+  std::vector<Pixel> pixels;
+  for (int y = first.y; y < end.y; ++y) {
+    for (int x = first.x; x < end.x; ++x) pixels.push_back({{x, y}, {}, false});
+  }
+  for (std::size_t from = 0; from < list.size(); from += step) {
+    const auto some = list.subspan(from, std::min(step, list.size() - from));
+    bool is_dark = true;
+    for (Pixel& p : pixels) {
+      const auto ignore = [](auto&&...) {};
+      p.ended = p.ended || blend_on(p.sum, splats, some, p.at.x, p.at.y, loss, {}, ignore);
+      is_dark = is_dark && (p.ended || p.sum.transmittance <= loss.last_light);
+    }
+    if (!is_dark || !(loss.last_light > 0.0) || from + step >= list.size()) continue;
+    for (Pixel& p : pixels) {
+      const double cover = 1.0 - p.sum.transmittance;
+      p.sum = {p.sum.colour / cover, p.sum.z_sum / cover, 0.0};
+    }
+    break;
+  }
+  for (const Pixel& p : pixels) put(p.sum, p.at.x, p.at.y, picture);
+}
+
+void blend_tile_with_loss(const std::vector<Splat>& splats, const TileLists& lists, std::uint32_t tx,
+                          std::uint32_t ty, Picture& picture) {
+  const std::span<const std::uint32_t> list = lists.tile(tx, ty);
+  const int rows = list.size() > LONG_LIST ? LOSSY_BLOCK / 2 : LOSSY_BLOCK;
+  const int size = static_cast<int>(lists.tile_size);
+  const glm::ivec2 tile = glm::ivec2(tx, ty) * size;
+  const glm::ivec2 tile_end = glm::min(tile + size, glm::ivec2(picture.width, picture.height));
+  for (int y = tile.y; y < tile_end.y; y += rows) {
+    for (int x = tile.x; x < tile_end.x; x += LOSSY_BLOCK)
+      blend_block(splats, list, lists.loss, {x, y}, glm::min(glm::ivec2(x + LOSSY_BLOCK, y + rows), tile_end),
+                  picture);
+  }
+}
+
 /// Blends all pixels of a tile into the picture.
 BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists, std::uint32_t tx,
                        std::uint32_t ty, Faults faults, Picture& picture) {
@@ -25,10 +77,7 @@ BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists,
         ++walked;
         if (verdict == Verdict::blended) ++counts.visible;
       };
-      const PixelSum sum = blend_pixel(splats, list, x, y, faults, count);
-      const std::size_t pixel = static_cast<std::size_t>(y) * picture.width + x;
-      picture.colour[pixel] = glm::vec4(glm::dvec4(sum.colour, sum.transmittance));
-      picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
+      put(blend_pixel(splats, list, x, y, faults, count), x, y, picture);
       walked_by_tile = std::max(walked_by_tile, walked);
     }
   }
@@ -46,7 +95,10 @@ Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const sh
   parallel_for(of_tiles.size(), [&](std::size_t t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
-    of_tiles[t] = blend_tile(splats, lists, tx, ty, faults, picture);
+    if (lists.loss.tile_size > 0)
+      blend_tile_with_loss(splats, lists, tx, ty, picture);
+    else
+      of_tiles[t] = blend_tile(splats, lists, tx, ty, faults, picture);
   });
   if (counts != nullptr) {
     *counts = {};

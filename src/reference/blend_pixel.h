@@ -44,25 +44,33 @@ inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
   sum.transmittance *= 1 - alpha;
 }
 
-/// Blends the list at pixel (x, y). For each Gaussian, before it is added,
-/// visit(index, alpha, sum so far, verdict) is called.
+/// Blends the list at pixel (x, y) behind what there is; whether the pixel ended. For each Gaussian, before
+/// it is added, visit(index, alpha, sum so far, verdict) is called.
 template <typename Visit>
-PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y,
-                     Faults faults, const Visit& visit) {
-  PixelSum sum;
+bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x,
+              int y, const Loss& loss, Faults faults, const Visit& visit) {
   for (const std::uint32_t i : list) {
     const Splat& splat = splats[i];
     const double alpha = alpha_at(splat, x, y);
-    if (alpha < ALPHA_MIN) {
+    if (alpha < ALPHA_MIN || (loss.tile_size > 0 && !reaches_block(splat, x, y, loss))) {
       visit(i, alpha, sum, Verdict::skipped);
       continue;
     }
     const bool stop = sum.transmittance * (1 - alpha) < TRANSMITTANCE_MIN;
     visit(i, alpha, sum, stop ? Verdict::stopped : Verdict::blended);
-    if (stop && !faults.stop_late) break;
+    if (stop && !faults.stop_late) return true;
     add(sum, splat, depth_at(splat, x, y), alpha);
-    if (stop) break;
+    if (stop) return true;
   }
+  return false;
+}
+
+/// The whole of it, without a loss.
+template <typename Visit>
+PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y,
+                     Faults faults, const Visit& visit) {
+  PixelSum sum;
+  blend_on(sum, splats, list, x, y, {}, faults, visit);
   return sum;
 }
 

@@ -7,7 +7,8 @@ Picture render(const Model& model, const shared::View& view, const Settings& set
       project_all(model, view, settings.decoding, settings.perspective.value_or(model.perspective));
   set_thresholds(splats, settings.th, settings.tolerance, settings.bounds);
   const std::vector<std::uint32_t> order = depth_order(splats);
-  const TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);
+  TileLists lists = make_lists(splats, order, view, settings.tiles, settings.tile_size);
+  lists.loss = loss_of(settings.tiles, settings.th, settings.tolerance, settings.tile_size);
   return blend(splats, lists, view);
 }
 

@@ -32,6 +32,13 @@ std::string name_of_program(const gl::Context& context, const FrameShape& shape,
   return context.software() ? "blend_blocks.comp" : "blend.comp";
 }
 
+// DEPTH_ of blending.glsl.
+int depth_of(const FrameShape& shape) {
+  if (!shape.keeps_depth()) return 0;
+  if (shape.settings.depth == Depth::mean) return 1;
+  return !shape.canvases.empty() && shape.depth_rows == 2 ? 3 : 2;
+}
+
 // The tile test is no part of these programs: with every test the same lists give the same bits. Nor does a
 // pixel's colour depend on how many of them an invocation draws, or on the tiles' size.
 const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
@@ -39,27 +46,26 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
   const bool is_long = lists == Lists::of_long;
   const std::string name = name_of_program(context, shape, variant);
   const bool software = context.software();
-  const char* column = software ? "8" : is_long ? "1" : "2";
+  const char* column = software ? (is_long && shape.is_lossy() ? "4" : "8") : is_long ? "1" : "2";
   // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
   const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
   const int ahead = software ? 2 : is_long ? 8 : is_tangent && name == "blend_subgroups.comp" ? 3 : 4;
   const bool draws = variant.draws();
   const bool on_canvases = draws && !shape.canvases.empty();
-  const int median = on_canvases && shape.depth_rows == 2 ? 2 : 1;
-  gl::Defines defines = {
-      {"TILE_SIZE", std::to_string(shape.settings.tile_size)},
-      {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
-      {"PROBED", shape.probe ? "1" : "0"},
-      {"PARTS", shape.draws_parts() ? "1" : "0"},
-      {"LISTS", std::to_string(static_cast<int>(lists))},
-      {"COLUMN", column},
-      {"AHEAD", std::to_string(ahead)},
-      {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
-      {"RECORDS", variant.records ? "1" : "0"},
-      {"SUMS", std::to_string(variant.sums)},
-      {"SHOW", std::to_string(variant.show)},
-      {"MEDIAN", draws && shape.settings.depth == Depth::median ? std::to_string(median) : "0"},
-      {"CANVASES", std::to_string(on_canvases ? shape.canvases.size() : 0)}};
+  gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
+                         {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
+                         {"PROBED", shape.probe ? "1" : "0"},
+                         {"PARTS", shape.draws_parts() ? "1" : "0"},
+                         {"LISTS", std::to_string(static_cast<int>(lists))},
+                         {"COLUMN", column},
+                         {"AHEAD", std::to_string(ahead)},
+                         {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
+                         {"RECORDS", variant.records ? "1" : "0"},
+                         {"SUMS", std::to_string(variant.sums)},
+                         {"SHOW", std::to_string(variant.show)},
+                         {"DEPTH", std::to_string(draws ? depth_of(shape) : 0)},
+                         {"LOSSY", shape.is_lossy() ? "1" : "0"},
+                         {"CANVASES", std::to_string(on_canvases ? shape.canvases.size() : 0)}};
   add_projection(defines, shape.perspective.projection);
   return context.program(name, defines);
 }

@@ -126,7 +126,7 @@ void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, s
   }
   long_lists.reserve(shape.tile_count() * 4LL);
   if (shape.canvases.empty()) colours.reserve(shape.pixel_count * 16);
-  z_sums.reserve(shape.pixel_count * 4);
+  if (shape.keeps_depth()) z_sums.reserve(shape.pixel_count * 4);
   scan.reserve(std::max(blocks, slots));
   look_back.reserve(std::max(blocks, slots / SCAN_BLOCK) + 1);
   for (const OrderGroup& group : shape.groups) sort.reserve(order, group.key_bits);

@@ -14,12 +14,14 @@ std::vector<Picture> Frame::read_pictures() const {
   if (!shape_.canvases.empty()) fail("the pictures went onto canvases, and are whose those are");
   const auto pixels = static_cast<std::size_t>(shape_.pixel_count);
   const auto colours = buffers_.colours.read<glm::vec4>(pixels);
-  const auto z_sums = buffers_.z_sums.read<float>(pixels);
+  std::vector<float> z_sums;
+  if (shape_.keeps_depth()) z_sums = buffers_.z_sums.read<float>(pixels);
   std::vector<Picture> pictures;
   for (const shared::View& view : std::span(shape_.views).first(shape_.asked)) {
     Picture& picture = pictures.emplace_back(static_cast<int>(view.width), static_cast<int>(view.height));
     std::copy_n(colours.begin() + view.pixel_offset, picture.colour.size(), picture.colour.begin());
-    std::copy_n(z_sums.begin() + view.pixel_offset, picture.z_sum.size(), picture.z_sum.begin());
+    if (shape_.keeps_depth())
+      std::copy_n(z_sums.begin() + view.pixel_offset, picture.z_sum.size(), picture.z_sum.begin());
   }
   return pictures;
 }

@@ -63,7 +63,8 @@ struct FrameSettings {
   int precision = PRECISION_FULL;  // PRECISION_: of the model, the splats and all that is made of them
   /// With the lists of TILES_ELLIPSE: what is seen between the centres of pixels only, too (ray_blend.h).
   bool between = false;
-  /// The median is the depth at which T falls below a half: z_sum is then (1 - T) times that.
+  /// The median is the depth at which T falls below a half: z_sum is then (1 - T) times that. With none z_sum
+  /// is 0, and a frame takes some 3 % less time.
   Depth depth = Depth::mean;
   std::vector<ViewPart> parts;  // what is drawn of each view; empty: all of every view
   glm::vec3 background{0.0f};   // behind the scene, for the probe only: the pictures are without

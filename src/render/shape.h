@@ -65,6 +65,9 @@ struct FrameShape {
   std::int64_t anchor_bytes = 0;
 
   bool draws_parts() const { return !part_rows.empty(); }
+  bool keeps_depth() const { return settings.depth != Depth::none; }
+  /// Whether splats are blended by blocks, which end once they are dark (docs/method.md 5.2).
+  bool is_lossy() const { return settings.th == TH_SQUARED && settings.tiles == TILES_ELLIPSE; }
   std::uint32_t view_count() const { return static_cast<std::uint32_t>(views.size()); }
   /// Tiles of all supertiles: a few more than the pictures have where supertiles are of several.
   std::uint32_t tile_count() const { return supertile_count * tiles_a_supertile(); }

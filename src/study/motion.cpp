@@ -56,6 +56,7 @@ class Drive {
   render::FrameSettings settings_of(const Variant& variant, float request) const {
     render::FrameSettings settings = variant.settings();
     settings.depth_table = table_;
+    settings.depth = Depth::none;
     if (!render::is_exact(variant.th)) settings.quality = request;
     return settings;
   }

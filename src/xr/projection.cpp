@@ -202,7 +202,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
     throw Error(ExitCode::no_gl, fmt::format("{} located {} views of {}", session_.instance().runtime(),
                                              located.size(), count));
   const bool has_depths = eyes_[0].depths != nullptr;
-  settings.depth = has_depths ? Depth::median : Depth::mean;
+  settings.depth = has_depths ? Depth::median : Depth::none;
   settings.background = settings_.background;
   std::vector<stereo::XrEye> drawn(count);
   std::vector<glm::ivec2> sizes(count);

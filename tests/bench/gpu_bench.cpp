@@ -294,6 +294,7 @@ int main(int argc, char** argv) {
   std::string json;
   std::string precision = "full", order = "depth", projection = "affine";
   How how;
+  how.settings.depth = Depth::none;
   bool list = false;
   app.add_flag("--list", list, "Print the names of the cases and end");
   app.add_option("case", name, "A name from --list");

@@ -47,15 +47,20 @@ TEST_F(SubgroupShaders, Compile) {
   for (const char* half : {"0", "1"}) {
     for (const char* supertile_side : {"1", "2"}) {
       const Defines tiles = {{"TILE_SIZE", "16"}, {"SUPERTILE_SIDE", supertile_side}, {"HALF", half}};
-      for (const auto& [lists, median, canvases] :
-           {std::array{"0", "0", "0"}, {"1", "0", "0"}, {"0", "1", "0"}, {"1", "2", "2"}, {"0", "2", "4"}}) {
+      for (const auto& [lists, depth, lossy, canvases] : {std::array{"0", "1", "0", "0"},
+                                                          {"1", "1", "1", "0"},
+                                                          {"0", "2", "1", "0"},
+                                                          {"1", "3", "0", "2"},
+                                                          {"0", "3", "0", "4"},
+                                                          {"0", "0", "0", "4"}}) {
         Defines defines = {{"COLUMN", *lists == '1' ? "1" : "2"},
                            {"AHEAD", *lists == '1' ? "8" : "4"},
                            {"LISTS", lists},
                            {"RECORDS", "0"},
                            {"SUMS", "0"},
                            {"SHOW", "0"},
-                           {"MEDIAN", median},
+                           {"DEPTH", depth},
+                           {"LOSSY", lossy},
                            {"CANVASES", canvases}};
         defines.insert(defines.end(), tiles.begin(), tiles.end());
         expect_compiles("blend_subgroups.comp", defines, std::string(lists) + supertile_side + half);

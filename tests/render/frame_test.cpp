@@ -130,6 +130,58 @@ TEST(Frame, ReferenceUntilAnyStageGivesTheSamePicture) {
   }
 }
 
+// Fog, red at first and blue behind: light is left for long.
+Model fog(int count) {
+  Model model;
+  test::Uniform uniform(105);
+  for (int i = 0; i < count; ++i) {
+    const double z = uniform(1.0, 3.0);
+    test::add(model, glm::vec3(uniform(-0.6, 0.6) * z, uniform(-0.5, 0.5) * z, z),
+              glm::vec3(uniform(0.02, 0.2)), 0.1f,
+              glm::vec3(uniform(0.8, 1.0) * (3.0 - z) / 2.0, uniform(0, 0.3), (z - 1.0) / 2.0));
+  }
+  return model;
+}
+
+// docs/method.md 5.2. What draws plain frames and what measures besides are two programs; long lists are
+// asked more seldom, in smaller blocks.
+TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
+  for (const auto& [width, height, count] : {std::array{90, 70, 3000}, {33, 27, 50000}}) {
+    const Model model = fog(count);
+    const shared::View view = make_view(test::front_camera(width, height, width));
+    constexpr double tolerance = 0.3;
+    auto splats = reference::project_all(model, view);
+    reference::set_thresholds(splats, TH_SQUARED, tolerance);
+    reference::TileLists lists =
+        reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
+    const auto expected = [&](const reference::Loss& loss) {
+      lists.loss = loss;
+      return reference::blend(splats, lists, view);
+    };
+    FrameSettings settings = {.th = TH_SQUARED, .tolerance = static_cast<float>(tolerance)};
+    const Picture drawn = draw(model, view, settings);
+    const reference::Loss loss = reference::loss_of(TILES_ELLIPSE, TH_SQUARED, tolerance);
+    EXPECT_EQ(lists.at_pixel(20, 20).size() > LONG_LIST, width < 40) << lists.at_pixel(20, 20).size();
+    EXPECT_GE(test::psnr(drawn, expected(loss)), 90.0) << width;
+    EXPECT_LT(test::psnr(drawn, expected({.tile_size = loss.tile_size})), 80.0) << width;
+    EXPECT_LT(test::psnr(drawn, expected({.last_light = loss.last_light})), 80.0) << width;
+    EXPECT_LT(test::psnr(drawn, expected({loss.tile_size, 3.0 * loss.last_light})), 80.0) << width;
+    settings.transmittance = TRANSMITTANCE_LAST;  // of which nothing is known yet
+    EXPECT_TRUE(same_bits(std::vector{draw(model, view, settings)}, std::vector{drawn}));
+    EXPECT_TRUE(
+        same_bits(std::vector{draw(model, view, {.th = TH_SQUARED})}, std::vector{draw(model, view)}));
+  }
+}
+
+TEST(Frame, WithoutDepthHasTheSameColours) {
+  const Model model = test::random_model(54, 2000, 1);
+  const shared::View view = make_view(test::front_camera(90, 70, 80));
+  const Picture with = draw(model, view), without = draw(model, view, {.depth = Depth::none});
+  EXPECT_EQ(without.colour, with.colour);
+  EXPECT_NE(without.z_sum, with.z_sum);
+  EXPECT_EQ(without.z_sum, std::vector<float>(with.z_sum.size()));
+}
+
 class Eyes : public testing::TestWithParam<double> {};  // cant, degrees
 
 TEST_P(Eyes, EachEqualsItselfAloneBitForBit) {

@@ -152,7 +152,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
   }
   for (const auto& [shader, sought, fault] :
        {std::tuple{"recolour.comp", "colours[slot].rgb", "max(colours[slot].rgb, 0.0)"},
-        std::tuple{"blending.glsl", "colours[place_of(view, p)] : vec4",
+        std::tuple{"pixels.glsl", "colours[place_of(view, p)] : vec4",
                    "colours[place_of(view, 0u)] : vec4"}}) {
     const test::FaultyShaders faulty(shader, sought, fault);
     const Found found = find({});

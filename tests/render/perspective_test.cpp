@@ -294,7 +294,7 @@ TEST(Perspectives, FaultsAreNoticed) {
         Fault{"projection/tangent.glsl", "if (v.z < 0.0) splat.conic.w = -splat.conic.w;", ""},
         Fault{"projection/tangent.glsl", "conic.xyz + more * circle", "conic.xyz"},
         Fault{"projection.glsl", "d - view.centre.xyz", "d - 1.5 * view.anchor.xyz + vec3(0.3, 0.0, 0.0)"},
-        Fault{"blending.glsl", "fma(ray.x, ray.x, 1.0)", "0.99 * fma(ray.x, ray.x, 1.0)"},
+        Fault{"pixels.glsl", "fma(ray.x, ray.x, 1.0)", "0.99 * fma(ray.x, ray.x, 1.0)"},
         Fault{"tiles/outline_tangent.glsl", "splat.mean + middle;", "splat.mean - middle;"},
         Fault{"tiles/outline_tangent.glsl", "middle + reach));", "middle + 0.5 * reach));"}}) {
     const test::FaultyShaders faulty(shader, sought, fault);

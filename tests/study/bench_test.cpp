@@ -108,11 +108,11 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   for (const auto& settings : {render::FrameSettings{}, lossy})
     EXPECT_EQ(bench(*context, 1).measure(settings).problem, "") << "without a fault it is timed";
 
-  std::string blend = test::read_text(folder / "blending.glsl");
+  std::string blend = test::read_text(folder / "pixels.glsl");
   const std::string right = "inside ? float(TRANSMITTANCE_MIN)";
   ASSERT_NE(blend.find(right), std::string::npos);
   blend.replace(blend.find(right), right.size(), "inside ? 0.05");
-  test::write_text(folder / "blending.glsl", blend);
+  test::write_text(folder / "pixels.glsl", blend);
   const auto faulty = gl::Context::open();
   faulty->set_shader_folder(folder.path());
   const BenchNumbers point = bench(*faulty, 1).measure({});

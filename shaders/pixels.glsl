@@ -1,0 +1,136 @@
+// The tile of a work group and the pixels of its invocations: where they begin, and where they go at last. The end of blending.glsl.
+
+// What the work group draws.
+uint tile = 0u;
+uint view_index = 0u;
+uint begin = 0u, end = 0u;  // its list
+
+// Whether there is anything for this work group to draw; else it must end.
+bool find_tile() {
+  // It is to be drawn again.
+  if (counters.overflow != 0u) return false;
+#if LISTS == LISTS_LONG
+  if (group_index() >= counters.long_lists) return false;
+  tile = long_lists[group_index()];
+#else
+  tile = group_index();
+  if (tile >= frame.tile_count) return false;
+#endif
+  while (view_index + 1u < frame.view_count && tile >= views[view_index + 1u].supertile_offset * SUPERTILE_TILES) ++view_index;
+  uint list = frame.list_per_view != 0u ? view_index : tile;
+  begin = ranges[2u * list];
+  end = ranges[2u * list + 1u];
+  bool is_own = LISTS != LISTS_SHORT || end - begin <= LONG_LIST || frame.list_per_view != 0u;
+#if PARTS
+  if (!is_drawn(tile_of(tile, views[view_index]), views[view_index])) end = begin;
+#endif
+  return is_own;
+}
+
+// Where pixel p of this invocation is kept. A probe's tiles are kept side by side.
+uint place_of(View view, uint p) {
+  uvec2 at = first_pixel - first_drawn(view);
+  uint across = view.width;
+  if (is_probe(view)) {
+    uvec2 in_grid = tile_of(tile, view);
+    at += in_grid * uint(TILE_SIZE) - tile_corner(in_grid, view);
+    across = view.tiles_x * uint(TILE_SIZE);
+  }
+  return view.pixel_offset + (at.y + p) * across + at.x;
+}
+
+// The pixels of this invocation, of which the first lies `in_tile`.
+void begin_pixels(uvec2 in_tile) {
+  View view = views[view_index];
+  uvec2 corner = tile_corner(tile_of(tile, view), view);
+  middle = vec2(corner / BLEND_CELL * BLEND_CELL) + 0.5 * float(BLEND_CELL - 1u);
+  first_pixel = corner + in_tile;
+  column = float(first_pixel.x) - middle.x;
+#if PROJECTION == PROJECTION_TANGENT
+  precise vec2 step = 1.0 / view.lens.xy;
+  vec2 first = (vec2(corner) + 0.5 - view.lens.zw) * step;
+  vec2 most = max(abs(first), abs(first + float(TILE_SIZE - 1) * step));
+  farthest = 1.0 + dot(most, most);
+#endif
+#if LOSSY
+  precise float tolerance = frame.tolerance * view.tolerance_share;
+  last_light = view_index < frame.asked ? float(LAST_LIGHT) * sqrt(tolerance) : 0.0;
+#endif
+  for (uint p = 0u; p < COLUMN; ++p) {
+    bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
+    row[p] = float(first_pixel.y + p) - middle.y;
+    colour[p] = vec3(0.0);
+    z_sum[p] = 0.0;
+    transmittance[p] = inside ? 1.0 : 0.0;
+#if PROJECTION == PROJECTION_TANGENT
+    precise vec2 ray = (vec2(first_pixel + uvec2(0u, p)) + 0.5 - view.lens.zw) * step;
+    precise float inverse = 1.0 / fma(ray.y, ray.y, fma(ray.x, ray.x, 1.0));
+    nearness[p] = inverse;
+#endif
+    least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
+#if SUMS != SUMS_NONE
+    picture[p] = inside ? colours[place_of(view, p)] : vec4(0.0);
+#endif
+#if SUMS == SUMS_TRANSPOSED
+    picture[p] *= uintBitsToFloat(scale);
+#endif
+#if SHOW != SHOW_PICTURE
+    told[p] = SHOW == SHOW_MEDIAN_DEPTH ? -1.0 : 0.0;
+#endif
+  }
+}
+
+void write_pixels() {
+  View view = views[view_index];
+  for (uint p = 0u; p < COLUMN; ++p) {
+    if (first_pixel.x > last_drawn(view).x || first_pixel.y + p > last_drawn(view).y) continue;
+    uint to = place_of(view, p);
+    float left = is_done(p) ? -least[p] : transmittance[p];
+#if LOSSY
+    if (is_cut) {
+      left = 0.0;
+#if RECORDS
+      colour[p] = cut_colour[p].rgb;
+      z_sum[p] = cut_colour[p].a;
+#endif
+    }
+#endif
+#if SHOW == SHOW_PAIRS
+    told[p] = float(end - begin);
+#elif SHOW == SHOW_LIGHT
+    told[p] = left < 1.0 ? told[p] / (1.0 - left) : -1.0;
+#elif SHOW == SHOW_MEDIAN_DEPTH && PROJECTION == PROJECTION_TANGENT
+    told[p] *= sqrt(nearness[p]);  // of a distance
+#endif
+#if SHOW != SHOW_PICTURE
+    shown[to] = told[p];
+#else
+#if CANVASES
+    uvec2 at = first_pixel + uvec2(0u, p) - first_drawn(view);
+    write_on_canvas(view_index, canvases[view_index], view.height, at, vec4(colour[p], left), frame.background.rgb);
+#else
+    colours[to] = vec4(colour[p], left);
+#endif
+#if DEPTH != DEPTH_NONE
+#if PROJECTION == PROJECTION_TANGENT
+    precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
+    z_sum[p] = along;
+#endif
+#if CANVASES
+    if (left >= 1.0 - float(COVERAGE_FOR_DEPTH)) z_sum[p] = 0.0;
+#if DEPTH == DEPTH_MEAN
+    else z_sum[p] /= 1.0 - left;
+#endif
+#elif DEPTH == DEPTH_MEDIAN
+    precise float cover = 1.0 - left;
+    precise float z = z_sum[p] * cover;
+    z_sum[p] = z;
+#endif
+#if DEPTH == DEPTH_MEDIAN_OF_TWO_ROWS
+    if (p % 2u != 0u) continue;
+#endif
+    z_sums[to] = z_sum[p];
+#endif
+#endif
+  }
+}

@@ -1,0 +1,55 @@
+#include "reference/loss.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace binosplat::reference {
+
+namespace {
+
+/// The largest |d|^2 of the rays of the tile that holds pixel (x, y).
+double farthest_in_tile(const Cone& cone, int x, int y, int tile_size) {
+  const int left = x / tile_size * tile_size, top = y / tile_size * tile_size;
+  double farthest = 0.0;
+  for (const int px : {left, left + tile_size - 1}) {
+    for (const int py : {top, top + tile_size - 1}) {
+      const glm::dvec3 p(px, py, 1);
+      farthest = std::max(farthest, glm::dot(p, cone.ray * p));
+    }
+  }
+  return farthest;
+}
+
+}  // namespace
+
+Loss loss_of(int tiles, int th, double tolerance, int tile_size) {
+  if (th != TH_SQUARED || tiles != TILES_ELLIPSE) return {};
+  return {tile_size, LAST_LIGHT * std::sqrt(tolerance)};
+}
+
+bool reaches_block(const Splat& splat, int x, int y, const Loss& loss) {
+  double rho = 1.001 * std::max(0.0, 2.0 * std::log(splat.opacity / splat.threshold)) + 1e-3;
+  glm::dvec3 conic = splat.conic;
+  if (splat.cone) {
+    const glm::dmat3& form = splat.cone->form;
+    conic = {form[0][0], form[0][1], form[1][1]};
+    rho *= farthest_in_tile(*splat.cone, x, y, loss.tile_size);
+  }
+  const glm::dvec2 first = glm::ivec2(x, y) / LOSSY_BLOCK * LOSSY_BLOCK;  // of the block's pixels
+  const double det = conic.x * conic.z - conic.y * conic.y;
+  const double tallest = std::sqrt(rho * conic.x / det);
+  const double low = first.y - splat.mean.y, high = low + LOSSY_BLOCK - 1;
+  if (low > tallest || high < -tallest) return false;
+  const double apex =
+      -conic.y * std::sqrt(rho / (conic.z * det));  // where the ellipse is furthest to the right
+  const auto edge = [&](double side) {  // of the ellipse in the block's rows, to the left or right
+    const double at = std::clamp(side * apex, low, high);
+    const double width = std::sqrt(rho / conic.x * std::max(0.0, 1.0 - at * at / (tallest * tallest)));
+    return -conic.y / conic.x * at + side * width;
+  };
+  const double left = edge(-1.0), right = edge(1.0);
+  const double slack = 0.01 + 1e-5 * (std::abs(left) + std::abs(right));
+  return splat.mean.x + right + slack >= first.x && splat.mean.x + left - slack <= first.x + LOSSY_BLOCK - 1;
+}
+
+}  // namespace binosplat::reference
