@@ -9,6 +9,7 @@
 #include "render/frame.h"
 #include "scene/camera.h"
 #include "stereo/rig.h"
+#include "support/caller.h"
 #include "support/gl.h"
 #include "support/models.h"
 #include "support/program.h"
@@ -100,6 +101,7 @@ TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
   const test::TempFolder folder;
   std::filesystem::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/shaders", folder.path(),
                         std::filesystem::copy_options::recursive);
+  const test::CurrentAgain others;
   const auto context = gl::Context::open();
   context->set_shader_folder(folder.path());
   render::FrameSettings lossy;
