@@ -27,17 +27,12 @@ uint own_bit, dark_bit;
 vec2 corner;  // the tile's first pixel
 #endif
 
-#if LOSSY
-#define ALIVE atomicOr(alive, dark_bit)
-#define MAY_END (RECORDS == 0)  // what measures asks about more than light
-#else
-#define ALIVE alive = 1u
-#define MAY_END true
-#endif
-
 layout(local_size_x = TILE_SIZE, local_size_y = TILE_SIZE / COLUMN) in;
 
-shared uint alive;  // while a pixel still takes light, with a loss a bit a block
+shared uint lit;  // 1 while a pixel still takes light
+#if LOSSY
+shared uint bright;  // a bit a block that is not dark
+#endif
 
 void load(uint at) {
   uint self = gl_LocalInvocationIndex;
@@ -72,7 +67,7 @@ void main() {
   begin_pixels(in_tile);
 #if LOSSY
   uvec2 block = in_tile / LOSSY_BLOCK;
-  own_bit = block.y * BLOCKS_ACROSS + block.x;
+  own_bit = bit_of(block.y * BLOCKS_ACROSS + block.x);
   dark_bit = 1u << in_tile.y / LOSSY_ROWS * BLOCKS_ACROSS + block.x;
   corner = vec2(first_pixel - in_tile);
 #endif
@@ -80,33 +75,40 @@ void main() {
   bool cut = false;
   for (; batch < end; batch += BATCH) {
     if (batch != begin) {
-      if (gl_LocalInvocationIndex == 0u) alive = 0u;
+      if (gl_LocalInvocationIndex == 0u) {
+        lit = 0u;
+#if LOSSY
+        bright = 0u;
+#endif
+      }
       barrier();
-      if (!are_dark()) ALIVE;
+      if (!are_done()) lit = 1u;
+#if LOSSY
+      if (!are_dark()) atomicOr(bright, dark_bit);
+#endif
       barrier();
+      if (lit == 0u) break;
 #if LOSSY
       bool is_asked = (batch - begin) % LOSSY_STEP == 0u;
-      if (!is_cut && last_light > 0.0 && is_asked && (alive & dark_bit) == 0u) end_dark();
-#else
-      const bool is_asked = true;
+      if (!ended_dark && last_light > 0.0 && is_asked && (bright & dark_bit) == 0u) end_dark();
+      if (RECORDS == 0 && is_asked && bright == 0u) break;  // what measures asks what is behind, too
 #endif
-      if (alive == 0u && is_asked && MAY_END) break;
     }
     load(batch + gl_LocalInvocationIndex);
     barrier();
     size = min(end - batch, uint(BATCH));
     uint next = 0u;
-    for (; next < size && !are_done() && !IS_CUT; next += BLEND_UNROLL) {
+    for (; next < size && !are_done() && !TAKES_NO_MORE; next += BLEND_UNROLL) {
       for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) blend_from(next + i);
     }
-    cut = cut || (!are_done() && !IS_CUT && next < size);
+    cut = cut || (!are_done() && !TAKES_NO_MORE && next < size);
 #if RECORDS || SUMS != SUMS_NONE
     barrier();
     uint self = gl_LocalInvocationIndex;
     if (self < size) pass_on(values[batch + self], batch_measured[self]);
 #endif
   }
-  if (cut || (!are_done() && !IS_CUT && batch < end)) atomicAdd(counters.loop_cut, 1u);
+  if (cut || (!are_done() && !TAKES_NO_MORE && batch < end)) atomicAdd(counters.loop_cut, 1u);
 #if SUMS == SUMS_NONE  // the picture stays
   write_pixels();
 #endif

@@ -47,7 +47,7 @@ void main() {
       if (!are_dark()) atomicOr(alive, 1u << own_block);
       barrier();
 #if LOSSY
-      if (!is_cut && last_light > 0.0 && (alive >> own_block & 1u) == 0u) end_dark();
+      if (!ended_dark && last_light > 0.0 && (alive >> own_block & 1u) == 0u) end_dark();
 #endif
       if (alive == 0u) {
         batch = end;
@@ -66,7 +66,7 @@ void main() {
     barrier();
     if (self < BLOCKS) list_own(self);
     barrier();
-    uint count = IS_CUT ? 0u : own_counts[own_block], next = 0u;
+    uint count = TAKES_NO_MORE ? 0u : own_counts[own_block], next = 0u;
     for (; next < count && !are_done(); next += BLEND_UNROLL) {
       for (uint i = 0u; i < BLEND_UNROLL; i += AHEAD) {
         uint at[AHEAD];

@@ -6,7 +6,11 @@
 // are those of blend.comp.
 #define BLOCK_WIDTH 8
 #define BLOCK_HEIGHT (4 * COLUMN)
+#if LOSSY  // whose blocks are those of docs/method.md 5.2
+#define ROUND LOSSY_STEP
+#else
 #define ROUND (LISTS == LISTS_LONG ? 128 : 64)  // splats at a time: with more in shared memory there is room for fewer groups
+#endif
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // and one that leaves no mark
 #define ANY(condition) subgroupAny(condition)

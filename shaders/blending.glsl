@@ -156,11 +156,14 @@ bool are_done() {
   return all;
 }
 
+float light_left(uint p) { return is_done(p) ? -least[p] : transmittance[p]; }
+
 #if LOSSY
-float last_light;     // T at most of the pixels of a dark block
-bool is_cut = false;  // whether this block had light left for more splats, which what was seen has taken
+float last_light;         // T at most of the pixels of a dark block
+bool ended_dark = false;  // this block, before its list did
 #if RECORDS
-vec4 cut_colour[COLUMN];  // with Z; what measures goes on
+vec4 dark_colour[COLUMN];  // with Z; what measures goes on behind
+float dark_left[COLUMN];
 #endif
 
 bool are_dark() {
@@ -169,24 +172,26 @@ bool are_dark() {
   return all;
 }
 
-float light_left(uint p) { return is_done(p) ? -least[p] : transmittance[p]; }
-
-// What is behind is taken to look as what was seen.
+// What is behind is taken to look as what was seen, but in pixels that have ended by themselves.
 void end_dark() {
-  is_cut = true;
+  ended_dark = true;
   for (uint p = 0u; p < COLUMN; ++p) {
-    precise float scale = 1.0 / (1.0 - light_left(p));
+    precise float scale = is_done(p) ? 1.0 : 1.0 / (1.0 - transmittance[p]);
     colour[p] *= scale;
     z_sum[p] *= DEPTH == DEPTH_MEAN ? scale : 1.0;
+#if SHOW == SHOW_LIGHT
+    told[p] *= scale;
+#endif
 #if RECORDS
-    cut_colour[p] = vec4(colour[p], z_sum[p]);
+    dark_colour[p] = vec4(colour[p], z_sum[p]);
+    dark_left[p] = is_done(p) ? light_left(p) : 0.0;
 #endif
   }
 }
-#define IS_CUT (is_cut && RECORDS == 0)
+#define TAKES_NO_MORE (ended_dark && RECORDS == 0)
 #else
 #define are_dark are_done
-#define IS_CUT false
+#define TAKES_NO_MORE false
 #endif
 
 // AHEAD splats of the batch at once: their alphas do not wait for one another, only what they leave of T does.

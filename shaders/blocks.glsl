@@ -1,5 +1,5 @@
 // The blocks of BLOCK_WIDTH x BLOCK_HEIGHT px that a tile is drawn by, row by row, and those that splats are told to reach:
-// the same, or with a loss those of docs/method.md 5, which do not depend on how a tile is drawn. After blending.glsl.
+// the same, or with a loss those of docs/method.md 5.2, which do not depend on how a tile is drawn. After blending.glsl.
 #define BLOCKS_ACROSS (TILE_SIZE / BLOCK_WIDTH)
 #define BLOCKS_DOWN (TILE_SIZE / BLOCK_HEIGHT)
 #define BLOCKS (BLOCKS_ACROSS * BLOCKS_DOWN)

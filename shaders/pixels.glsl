@@ -54,7 +54,7 @@ void begin_pixels(uvec2 in_tile) {
 #endif
 #if LOSSY
   precise float tolerance = frame.tolerance * view.tolerance_share;
-  last_light = view_index < frame.asked ? float(LAST_LIGHT) * sqrt(tolerance) : 0.0;
+  last_light = view_index < frame.asked ? min(float(LAST_LIGHT_MOST), float(LAST_LIGHT) * sqrt(tolerance)) : 0.0;
 #endif
   for (uint p = 0u; p < COLUMN; ++p) {
     bool inside = first_pixel.x <= last_drawn(view).x && first_pixel.y + p <= last_drawn(view).y;
@@ -85,13 +85,15 @@ void write_pixels() {
   for (uint p = 0u; p < COLUMN; ++p) {
     if (first_pixel.x > last_drawn(view).x || first_pixel.y + p > last_drawn(view).y) continue;
     uint to = place_of(view, p);
-    float left = is_done(p) ? -least[p] : transmittance[p];
+    float left = light_left(p);
 #if LOSSY
-    if (is_cut) {
-      left = 0.0;
+    if (ended_dark) {
 #if RECORDS
-      colour[p] = cut_colour[p].rgb;
-      z_sum[p] = cut_colour[p].a;
+      colour[p] = dark_colour[p].rgb;
+      z_sum[p] = dark_colour[p].a;
+      left = dark_left[p];
+#else
+      left = is_done(p) ? left : 0.0;
 #endif
     }
 #endif

@@ -68,10 +68,10 @@ class EmbeddedRenderer {
 
   /// Draws all views in one frame and each into its target (LAYOUT_SEPARATE), or two views into one target in
   /// another layout (stereo/present.h), and their depths (settings.depth says which) into as many depth
-  /// targets, if any. Waits until the frame is done, not for the targets. An error that
-  /// OpenGL recorded before is the caller's: it is logged, reported, and does not stop the frame. Throws
-  /// Error as render::Frame and Presenter do, and std::runtime_error for an OpenGL error of binosplat's own;
-  /// the state is restored then, too.
+  /// targets, if any; without any no depth is drawn. Waits until the frame is done, not for the targets. An
+  /// error that OpenGL recorded before is the caller's: it is logged, reported, and does not stop the frame.
+  /// Throws Error as render::Frame and Presenter do, and std::runtime_error for an OpenGL error of
+  /// binosplat's own; the state is restored then, too.
   EmbeddedReport draw(std::span<const shared::View> views, std::span<const Target> targets,
                       int layout = LAYOUT_SEPARATE, const Background& background = std::nullopt,
                       const render::FrameSettings& settings = {}, std::span<const DepthTarget> depths = {});

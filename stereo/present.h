@@ -95,8 +95,8 @@ class Presenter {
   Canvases canvases(std::span<const Target> targets, const Background& background);
 
   /// Fills all of a target with the depths of view `v` of the last frame. State as for draw(). Throws
-  /// Error(bad_input) for a view that is not there, a target that is no such texture, and planes that bound
-  /// nothing.
+  /// Error(bad_input) for a view that is not there, a frame drawn without depth, a target that is no such
+  /// texture, and planes that bound nothing.
   void draw_depth(const render::Frame& frame, std::size_t v, const DepthTarget& target);
 
  private:

@@ -9,10 +9,11 @@
 // The blend stops before a Gaussian that would leave a transmittance of less than this behind it (3D-GS).
 #define TRANSMITTANCE_MIN 1e-4
 // With a loss splats are blended by blocks of so many px, and a block ends where no pixel's transmittance is
-// above this times the root of the tolerance, asked each so many pairs of a list, and of a long one
-// (docs/method.md 5.2).
+// above this times the root of the tolerance, or the most, asked each so many pairs of a list, and of a long
+// one (docs/method.md 5.2).
 #define LOSSY_BLOCK 8
 #define LAST_LIGHT 0.12
+#define LAST_LIGHT_MOST 0.4
 #define LOSSY_STEP_SHORT 64
 #define LOSSY_STEP_LONG 128
 // A pixel has a depth where more than this much of it is covered.

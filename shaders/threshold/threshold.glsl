@@ -1,4 +1,4 @@
-// Th: the alpha below which a Gaussian makes no pair with a tile; the blend keeps tau and the true alpha (docs/method.md 5). A
+// Th: the alpha below which a Gaussian makes no pair with a tile, or with a block (5.2); the blend keeps tau and the true alpha (docs/method.md 5). A
 // rule is a file beside this one with one function:
 //   float threshold(float size, float bound, float tolerance)   at least tau
 // size: sqrt(det C2), px^2; bound: T_upper, above 0; tolerance: K or kappa.

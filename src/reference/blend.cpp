@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "reference/blend_pixel.h"
 
@@ -15,10 +16,11 @@ void put(const PixelSum& sum, int x, int y, Picture& picture) {
   picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
 }
 
-/// Blends a block of a tile, `left` and `top` up to but not including `right` and `bottom`, with a loss: once
-/// it is dark, what is behind is taken to look as what was seen.
-void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, const Loss& loss,
-                 const glm::ivec2& first, const glm::ivec2& end, Picture& picture) {
+/// Blends a block of a tile, pixels `first` up to but not including `end`, with a loss: once it is dark, what
+/// is behind is taken to look as what was seen.
+void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
+                 const TileLists& lists, const glm::ivec2& first, const glm::ivec2& end, Picture& picture) {
+  const Loss& loss = lists.loss;
   const std::size_t step = list.size() > LONG_LIST ? LOSSY_STEP_LONG : LOSSY_STEP_SHORT;
   struct Pixel {
     glm::ivec2 at;
@@ -30,15 +32,20 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
     for (int x = first.x; x < end.x; ++x) pixels.push_back({{x, y}, {}, false});
   }
   for (std::size_t from = 0; from < list.size(); from += step) {
-    const auto some = list.subspan(from, std::min(step, list.size() - from));
+    std::vector<std::uint32_t> some;
+    for (const std::uint32_t i : list.subspan(from, std::min(step, list.size() - from))) {
+      if (!loss.by_blocks || reaches_block(splats[i], first.x, first.y, static_cast<int>(lists.tile_size)))
+        some.push_back(i);
+    }
     bool is_dark = true;
     for (Pixel& p : pixels) {
       const auto ignore = [](auto&&...) {};
-      p.ended = p.ended || blend_on(p.sum, splats, some, p.at.x, p.at.y, loss, {}, ignore);
+      p.ended = p.ended || blend_on(p.sum, splats, some, p.at.x, p.at.y, {}, ignore);
       is_dark = is_dark && (p.ended || p.sum.transmittance <= loss.last_light);
     }
     if (!is_dark || !(loss.last_light > 0.0) || from + step >= list.size()) continue;
     for (Pixel& p : pixels) {
+      if (p.ended) continue;
       const double cover = 1.0 - p.sum.transmittance;
       p.sum = {p.sum.colour / cover, p.sum.z_sum / cover, 0.0};
     }
@@ -56,7 +63,7 @@ void blend_tile_with_loss(const std::vector<Splat>& splats, const TileLists& lis
   const glm::ivec2 tile_end = glm::min(tile + size, glm::ivec2(picture.width, picture.height));
   for (int y = tile.y; y < tile_end.y; y += rows) {
     for (int x = tile.x; x < tile_end.x; x += LOSSY_BLOCK)
-      blend_block(splats, list, lists.loss, {x, y}, glm::min(glm::ivec2(x + LOSSY_BLOCK, y + rows), tile_end),
+      blend_block(splats, list, lists, {x, y}, glm::min(glm::ivec2(x + LOSSY_BLOCK, y + rows), tile_end),
                   picture);
   }
 }
@@ -90,12 +97,14 @@ BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists,
 
 Picture blend(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
               Faults faults, BlendCounts* counts) {
+  if (lists.loss.any() && (faults.stop_late || counts != nullptr))
+    fail("faults and counts are of blends without a loss");
   Picture picture(static_cast<int>(view.width), static_cast<int>(view.height));
   std::vector<BlendCounts> of_tiles(lists.begin.size() - 1);
   parallel_for(of_tiles.size(), [&](std::size_t t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
-    if (lists.loss.tile_size > 0)
+    if (lists.loss.any())
       blend_tile_with_loss(splats, lists, tx, ty, picture);
     else
       of_tiles[t] = blend_tile(splats, lists, tx, ty, faults, picture);

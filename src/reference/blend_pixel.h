@@ -48,11 +48,11 @@ inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
 /// it is added, visit(index, alpha, sum so far, verdict) is called.
 template <typename Visit>
 bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x,
-              int y, const Loss& loss, Faults faults, const Visit& visit) {
+              int y, Faults faults, const Visit& visit) {
   for (const std::uint32_t i : list) {
     const Splat& splat = splats[i];
     const double alpha = alpha_at(splat, x, y);
-    if (alpha < ALPHA_MIN || (loss.tile_size > 0 && !reaches_block(splat, x, y, loss))) {
+    if (alpha < ALPHA_MIN) {
       visit(i, alpha, sum, Verdict::skipped);
       continue;
     }
@@ -65,12 +65,12 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
   return false;
 }
 
-/// The whole of it, without a loss.
+/// The whole of it.
 template <typename Visit>
 PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y,
                      Faults faults, const Visit& visit) {
   PixelSum sum;
-  blend_on(sum, splats, list, x, y, {}, faults, visit);
+  blend_on(sum, splats, list, x, y, faults, visit);
   return sum;
 }
 

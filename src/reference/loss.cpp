@@ -22,18 +22,18 @@ double farthest_in_tile(const Cone& cone, int x, int y, int tile_size) {
 
 }  // namespace
 
-Loss loss_of(int tiles, int th, double tolerance, int tile_size) {
+Loss loss_of(int tiles, int th, double tolerance) {
   if (th != TH_SQUARED || tiles != TILES_ELLIPSE) return {};
-  return {tile_size, LAST_LIGHT * std::sqrt(tolerance)};
+  return {true, std::min(LAST_LIGHT_MOST, LAST_LIGHT * std::sqrt(tolerance))};
 }
 
-bool reaches_block(const Splat& splat, int x, int y, const Loss& loss) {
+bool reaches_block(const Splat& splat, int x, int y, int tile_size) {
   double rho = 1.001 * std::max(0.0, 2.0 * std::log(splat.opacity / splat.threshold)) + 1e-3;
   glm::dvec3 conic = splat.conic;
   if (splat.cone) {
     const glm::dmat3& form = splat.cone->form;
     conic = {form[0][0], form[0][1], form[1][1]};
-    rho *= farthest_in_tile(*splat.cone, x, y, loss.tile_size);
+    rho *= farthest_in_tile(*splat.cone, x, y, tile_size);
   }
   const glm::dvec2 first = glm::ivec2(x, y) / LOSSY_BLOCK * LOSSY_BLOCK;  // of the block's pixels
   const double det = conic.x * conic.z - conic.y * conic.y;

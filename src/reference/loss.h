@@ -10,14 +10,16 @@ namespace binosplat::reference {
 
 /// How a tile's list is blended.
 struct Loss {
-  int tile_size = 0;        // px; 0: without a loss
-  double last_light = 0.0;  // T at most of all pixels of a block that ends
+  bool by_blocks = false;   // a block only with what reaches it at Th
+  double last_light = 0.0;  // T at most of all pixels of a block that ends before its list; 0: none does
+
+  bool any() const { return by_blocks || last_light > 0.0; }
 };
 
 /// By a tile test and a rule of shared/axes.h; `tolerance` as of threshold().
-Loss loss_of(int tiles, int th, double tolerance, int tile_size = TILE_SIZE_DEFAULT);
+Loss loss_of(int tiles, int th, double tolerance);
 
-/// Whether a splat is blended in the block that holds pixel (x, y).
-bool reaches_block(const Splat& splat, int x, int y, const Loss& loss);
+/// Whether a splat is blended in the block that holds pixel (x, y), of tiles of so many px.
+bool reaches_block(const Splat& splat, int x, int y, int tile_size);
 
 }  // namespace binosplat::reference

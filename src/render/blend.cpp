@@ -39,13 +39,14 @@ int depth_of(const FrameShape& shape) {
   return !shape.canvases.empty() && shape.depth_rows == 2 ? 3 : 2;
 }
 
-// The tile test is no part of these programs: with every test the same lists give the same bits. Nor does a
-// pixel's colour depend on how many of them an invocation draws, or on the tiles' size.
+// Without a loss the tile test is no part of these programs: the same lists give the same bits; nor does a
+// pixel's colour depend on the tiles' size. With or without, it does not on how many an invocation draws.
 const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
                            Lists lists) {
   const bool is_long = lists == Lists::of_long;
   const std::string name = name_of_program(context, shape, variant);
   const bool software = context.software();
+  // With a loss blocks of long lists have four rows, those of others eight (shaders/lists.glsl).
   const char* column = software ? (is_long && shape.is_lossy() ? "4" : "8") : is_long ? "1" : "2";
   // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
   const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
