@@ -89,7 +89,8 @@ struct Splat {
   float depth;    // view z, world units
   float opacity;  // sigma
   vec4 conic;     // Q.xx, Q.xy, Q.yy in px^-2; w: sqrt(det C2) in px^2
-  vec4 colour;    // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by (with a loss blocks, too)
+  vec4 colour;    // rgb, display-referred; w: rho = 2 ln(sigma / Th), the level that tile tests go by (with a
+                  // loss blocks, too)
 };
 
 // Where the blend writes a view's picture as it is shown, in the image of the view's number.

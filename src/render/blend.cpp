@@ -45,12 +45,13 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
                            Lists lists) {
   const bool is_long = lists == Lists::of_long;
   const std::string name = name_of_program(context, shape, variant);
-  const bool software = context.software();
+  // Longer columns anywhere else would cost llvmpipe more of the 65,535 rounds that it grants all loops.
+  const bool blocks = name == "blend_blocks.comp";
   // With a loss blocks of long lists have four rows, those of others eight (shaders/lists.glsl).
-  const char* column = software ? (is_long && shape.is_lossy() ? "4" : "8") : is_long ? "1" : "2";
+  const char* column = blocks ? (is_long && shape.is_lossy() ? "4" : "8") : is_long ? "1" : "2";
   // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
   const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
-  const int ahead = software ? 2 : is_long ? 8 : is_tangent && name == "blend_subgroups.comp" ? 3 : 4;
+  const int ahead = blocks ? 2 : is_long ? 8 : is_tangent && name == "blend_subgroups.comp" ? 3 : 4;
   const bool draws = variant.draws();
   const bool on_canvases = draws && !shape.canvases.empty();
   gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
