@@ -90,7 +90,7 @@ void main() {
       if (lit == 0u) break;
 #if LOSSY
       bool is_asked = (batch - begin) % LOSSY_STEP == 0u;
-      if (!ended_dark && last_light > 0.0 && is_asked && (bright & dark_bit) == 0u) end_dark();
+      if (is_asked && (bright & dark_bit) == 0u) end_dark();
       if (RECORDS == 0 && is_asked && bright == 0u) break;  // what measures asks what is behind, too
 #endif
     }

@@ -14,7 +14,7 @@ layout(local_size_x = BLOCK_WIDTH, local_size_y = BLOCKS) in;
 shared uint reached[ROUND];                    // of the batch: the blocks of each
 shared uint own_lists[BLOCKS][ROUND + BLEND_UNROLL];  // by block: those of the batch that reach it, and some that leave no mark
 shared uint own_counts[BLOCKS];
-shared uint alive;  // a bit a block: whether a pixel of it still takes light
+shared uint bright;  // a bit a block: whether a pixel of it still takes light
 
 void list_own(uint block) {
   uint bit = bit_of(block), count = 0u, i = 0u;
@@ -42,14 +42,14 @@ void main() {
   bool cut = false;
   for (; batch < end; batch += ROUND) {
     if (batch != begin) {
-      if (self == 0u) alive = 0u;
+      if (self == 0u) bright = 0u;
       barrier();
-      if (!are_dark()) atomicOr(alive, 1u << own_block);
+      if (!are_dark()) atomicOr(bright, 1u << own_block);
       barrier();
 #if LOSSY
-      if (!ended_dark && last_light > 0.0 && (alive >> own_block & 1u) == 0u) end_dark();
+      if ((bright >> own_block & 1u) == 0u) end_dark();
 #endif
-      if (alive == 0u) {
+      if (bright == 0u) {
         batch = end;
         break;
       }

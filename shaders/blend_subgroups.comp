@@ -84,7 +84,7 @@ void main() {
       }
       ended = subgroupAll(are_dark());
 #if LOSSY
-      if (ended && last_light > 0.0 && batch + ROUND < end) end_dark();
+      if (ended && batch + ROUND < end) end_dark();
 #endif
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);
     }

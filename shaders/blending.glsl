@@ -3,7 +3,7 @@
 //   AHEAD       splats whose alphas are found at once
 //   BATCH       splats that the work group has in shared memory; the includer fills them by stage()
 //   LISTS       LISTS_LONG: only tiles of more than LONG_LIST pairs; LISTS_SHORT: only the others
-//   DEPTH       what z_sums tell, DEPTH_ below
+//   DEPTH       what z_sums tell, DEPTH_ of shared/limits.h
 //   LOSSY       1: th squared with the lists of ellipses, by which a splat is blended in the blocks where its alpha reaches Th,
 //               and a block ends once it is dark (docs/method.md 5.2)
 //   CANVASES    above 0: the pictures of so many views go into images, and z_sums are depths, 0 where there is none
@@ -18,11 +18,6 @@
 #include "supertiles.glsl"
 #include "tiles/places.glsl"
 #include "splats.glsl"  // binding 12
-
-#define DEPTH_NONE 0
-#define DEPTH_MEAN 1
-#define DEPTH_MEDIAN 2
-#define DEPTH_MEDIAN_OF_TWO_ROWS 3  // at least of every second row
 
 #ifndef ANY
 #define ANY(condition) (condition)
@@ -174,6 +169,7 @@ bool are_dark() {
 
 // What is behind is taken to look as what was seen, but in pixels that have ended by themselves.
 void end_dark() {
+  if (ended_dark || last_light <= 0.0) return;
   ended_dark = true;
   for (uint p = 0u; p < COLUMN; ++p) {
     precise float scale = is_done(p) ? 1.0 : 1.0 / (1.0 - transmittance[p]);

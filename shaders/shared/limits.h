@@ -65,6 +65,11 @@
 #define SUMS_NONE 0
 #define SUMS_TRANSPOSED 1
 #define SUMS_CHANGES 2
+// What a blend tells of a pixel's depth; the last at least in every second row.
+#define DEPTH_NONE 0
+#define DEPTH_MEAN 1
+#define DEPTH_MEDIAN 2
+#define DEPTH_MEDIAN_OF_TWO_ROWS 3
 
 // A splat that reaches over more rows of tiles than this has its tiles counted by many invocations together;
 // so many splats a work group, and so many groups along x.

@@ -32,11 +32,10 @@ std::string name_of_program(const gl::Context& context, const FrameShape& shape,
   return context.software() ? "blend_blocks.comp" : "blend.comp";
 }
 
-// DEPTH_ of blending.glsl.
 int depth_of(const FrameShape& shape) {
-  if (!shape.keeps_depth()) return 0;
-  if (shape.settings.depth == Depth::mean) return 1;
-  return !shape.canvases.empty() && shape.depth_rows == 2 ? 3 : 2;
+  if (!shape.keeps_depth()) return DEPTH_NONE;
+  if (shape.settings.depth == Depth::mean) return DEPTH_MEAN;
+  return !shape.canvases.empty() && shape.depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
 // Without a loss the tile test is no part of these programs: the same lists give the same bits; nor does a

@@ -3,16 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "render/faulty_shaders.h"
 #include "render/frame.h"
 #include "scene/camera.h"
 #include "stereo/rig.h"
-#include "support/caller.h"
 #include "support/gl.h"
 #include "support/models.h"
-#include "support/program.h"
 
 namespace binosplat::study {
 namespace {
@@ -98,32 +95,20 @@ TEST_F(BenchPoint, AWrongInsetIsNotTimed) {
 // The built-in shaders with a fault in them: what is drawn is not what the reference draws, and no time is
 // given.
 TEST_F(BenchPoint, WrongPicturesAreNotTimed) {
-  const test::TempFolder folder;
-  std::filesystem::copy(std::string(BINOSPLAT_SOURCE_DIR) + "/shaders", folder.path(),
-                        std::filesystem::copy_options::recursive);
-  const test::CurrentAgain others;
-  const auto context = gl::Context::open();
-  context->set_shader_folder(folder.path());
   render::FrameSettings lossy;
   lossy.th = TH_SQUARED;
   lossy.tolerance = 0.05f;
   for (const auto& settings : {render::FrameSettings{}, lossy})
-    EXPECT_EQ(bench(*context, 1).measure(settings).problem, "") << "without a fault it is timed";
+    EXPECT_EQ(bench(test::gl_context(), 1).measure(settings).problem, "") << "without a fault it is timed";
 
-  std::string blend = test::read_text(folder / "pixels.glsl");
-  const std::string right = "inside ? float(TRANSMITTANCE_MIN)";
-  ASSERT_NE(blend.find(right), std::string::npos);
-  blend.replace(blend.find(right), right.size(), "inside ? 0.05");
-  test::write_text(folder / "pixels.glsl", blend);
-  const auto faulty = gl::Context::open();
-  faulty->set_shader_folder(folder.path());
-  const BenchNumbers point = bench(*faulty, 1).measure({});
+  const test::FaultyShaders faulty("pixels.glsl", "inside ? float(TRANSMITTANCE_MIN)", "inside ? 0.05");
+  const BenchNumbers point = bench(test::gl_context(), 1).measure({});
   EXPECT_FALSE(point.measured());
   EXPECT_NE(point.problem.find("differ from the float64 reference"), std::string::npos) << point.problem;
-  EXPECT_FALSE(bench(*faulty, 1).measure(lossy).measured()) << "a tolerance is no excuse";
+  EXPECT_FALSE(bench(test::gl_context(), 1).measure(lossy).measured()) << "a tolerance is no excuse";
   // Nothing in view.
   model.opacity.assign(model.count(), 0.0f);
-  EXPECT_NE(bench(*faulty, 1).measure({}).problem.find("is empty"), std::string::npos);
+  EXPECT_NE(bench(test::gl_context(), 1).measure({}).problem.find("is empty"), std::string::npos);
 }
 
 }  // namespace
