@@ -21,6 +21,10 @@ struct Variant {
 // LISTS of blending.glsl.
 enum class Lists { of_short, of_long };
 
+// Of most splats, for short lists.
+enum class Size { small, large };
+constexpr double large_tiles = 8.0;  // that a splat touches
+
 // Who measures or sums up has the tile's splats before all its pixels; what tests nothing shows what tests
 // lose; and other sizes of tiles are for comparing. A software renderer draws some invocations by one of its
 // own, and its loads take the time.
@@ -38,33 +42,43 @@ int depth_of(const FrameShape& shape) {
   return !shape.canvases.empty() && shape.depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
+// Pixels that an invocation draws, one below the other, and splats whose alphas it finds at once.
+struct Columns {
+  int height, ahead;
+};
+
+// Found by trying (README.md). With a loss blend_blocks.comp has blocks of so many rows (docs/method.md 5.2);
+// without, longer columns anywhere else would cost llvmpipe more of the 65,535 rounds that it grants all
+// loops. What blend.comp has at once divides BLEND_UNROLL.
+Columns columns_of(const std::string& program, const FrameShape& shape, int depth, bool is_long, Size size) {
+  if (program == "blend_blocks.comp") return {is_long && shape.is_lossy() ? 4 : 8, 2};
+  if (is_long) return {1, 8};
+  if (program != "blend_subgroups.comp") return {2, 4};
+  if (shape.perspective.projection == PROJECTION_TANGENT) return {2, 3};
+  return {size == Size::large && depth == DEPTH_NONE && !shape.is_lossy() ? 4 : 2, 4};
+}
+
 // Without a loss the tile test is no part of these programs: the same lists give the same bits; nor does a
 // pixel's colour depend on the tiles' size. With or without, it does not on how many an invocation draws.
-const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant,
-                           Lists lists) {
+const gl::Program& program(gl::Context& context, const FrameShape& shape, const Variant& variant, Lists lists,
+                           Size size) {
   const bool is_long = lists == Lists::of_long;
   const std::string name = name_of_program(context, shape, variant);
-  // Longer columns anywhere else would cost llvmpipe more of the 65,535 rounds that it grants all loops.
-  const bool blocks = name == "blend_blocks.comp";
-  // With a loss blocks of long lists have four rows, those of others eight (shaders/lists.glsl).
-  const char* column = blocks ? (is_long && shape.is_lossy() ? "4" : "8") : is_long ? "1" : "2";
-  // Found by trying (README.md). What blend.comp has at once divides BLEND_UNROLL.
-  const bool is_tangent = shape.perspective.projection == PROJECTION_TANGENT;
-  const int ahead = blocks ? 2 : is_long ? 8 : is_tangent && name == "blend_subgroups.comp" ? 3 : 4;
-  const bool draws = variant.draws();
-  const bool on_canvases = draws && !shape.canvases.empty();
+  const int depth = variant.draws() ? depth_of(shape) : DEPTH_NONE;
+  const Columns columns = columns_of(name, shape, depth, is_long, size);
+  const bool on_canvases = variant.draws() && !shape.canvases.empty();
   gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
                          {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},
                          {"PROBED", shape.probe ? "1" : "0"},
                          {"PARTS", shape.draws_parts() ? "1" : "0"},
                          {"LISTS", std::to_string(static_cast<int>(lists))},
-                         {"COLUMN", column},
-                         {"AHEAD", std::to_string(ahead)},
+                         {"COLUMN", std::to_string(columns.height)},
+                         {"AHEAD", std::to_string(columns.ahead)},
                          {"HALF", shape.settings.precision == PRECISION_HALF ? "1" : "0"},
                          {"RECORDS", variant.records ? "1" : "0"},
                          {"SUMS", std::to_string(variant.sums)},
                          {"SHOW", std::to_string(variant.show)},
-                         {"DEPTH", std::to_string(draws ? depth_of(shape) : 0)},
+                         {"DEPTH", std::to_string(depth)},
                          {"LOSSY", shape.is_lossy() ? "1" : "0"},
                          {"CANVASES", std::to_string(on_canvases ? shape.canvases.size() : 0)}};
   add_projection(defines, shape.perspective.projection);
@@ -81,8 +95,11 @@ void run(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buff
                                     GL_WRITE_ONLY, to.format);
     }
   }
+  const Size size = shape.tiles_a_splat > large_tiles ? Size::large : Size::small;
+  if (shape.tiles_a_splat == 0.0)
+    program(context, shape, variant, Lists::of_short, Size::large);  // soon, maybe
   const auto draw = [&](Lists lists, const gl::Work& work) {
-    dispatcher.start(program(context, shape, variant, lists), work,
+    dispatcher.start(program(context, shape, variant, lists, size), work,
                      {{"Frame", buffers.parameters},
                       {"Views", buffers.views},
                       {"PartRows", buffers.part_rows},

@@ -111,6 +111,7 @@ FrameReport Frame::draw_with_quality(std::span<const shared::View> views, const 
 
 FrameReport Frame::attempt(const Workings& workings, Stage last) {
   history_.decide(shape_);
+  shape_.tiles_a_splat = tiles_a_splat_;
   if (model_buffers_->box) limit_keys(shape_, *model_buffers_->box);
   capacity_.start(shape_, workings);
   const std::uint32_t blocks = (shape_.gaussian_count + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
@@ -178,7 +179,7 @@ void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report
   counters_ = buffers_.counters.read<shared::Counters>(1).front();
 }
 
-void Frame::fill(FrameReport& report) const {
+void Frame::fill(FrameReport& report) {
   report.attempts = 1;
   report.visible = counters_.visible;
   report.pairs = shape_.supertile_side == 1 ? counters_.pairs : counters_.tile_pairs;
@@ -194,6 +195,8 @@ void Frame::fill(FrameReport& report) const {
   report.remembered = shape_.remembers;
   report.recorded = shape_.records;
   report.on_canvases = !shape_.canvases.empty();
+  const double splats = static_cast<double>(report.visible) * shape_.view_count();
+  tiles_a_splat_ = static_cast<double>(report.pairs) / std::max(1.0, splats);
 }
 
 }  // namespace binosplat::render

@@ -122,7 +122,7 @@ class Frame {
                                 const Workings& workings, std::span<const Canvas> canvases, int depth_rows);
   FrameReport attempt(const Workings& workings, Stage last = Stage::probe);
   void run_stages(const Workings& workings, Stage last, FrameReport& report);
-  void fill(FrameReport& report) const;
+  void fill(FrameReport& report);
 
   std::shared_ptr<GpuModel> model_;
   int uploads_ = 0;  // of the model, as far as was seen
@@ -131,6 +131,7 @@ class Frame {
   FrameBuffers buffers_;
   FrameShape shape_;
   shared::Counters counters_{};  // of the last drawing
+  double tiles_a_splat_ = 0.0;   // likewise
   Capacity capacity_;
   FrameHistory history_;
   ToleranceControl tolerance_control_;

@@ -41,6 +41,7 @@ struct Probed {
 struct FrameShape {
   FrameSettings settings;
   int supertile_side = 1;          // tiles along a side of what pairs are sorted by
+  double tiles_a_splat = 0.0;      // in the last frame, as far as is known; the same picture either way
   int degree = 0;                  // of the model's SH
   double kernel_px2 = KERNEL_PX2;  // of the model
   bool antialiased = false;

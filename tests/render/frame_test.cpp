@@ -243,6 +243,28 @@ TEST(Frame, WithoutDepthHasTheSameColours) {
   EXPECT_EQ(without.z_sum, std::vector<float>(with.z_sum.size()));
 }
 
+// Once a frame knows that its splats are large it may draw them by longer columns.
+TEST(Frame, OfLargeSplatsIsWhatTheFirstOneIs) {
+  Model model = test::random_model(56, 800, 1);
+  for (glm::vec3& scale : model.scale) scale *= 3.0f;
+  const shared::View view = make_view(test::front_camera(150, 110, 140));
+  const auto drawn_twice = [&] {
+    render::Frame frame(test::gl_context(), model);
+    std::vector<Picture> drawn;
+    for (int n = 0; n < 2; ++n) {
+      const render::FrameReport report = frame.draw({{view}}, {.depth = Depth::none});
+      EXPECT_GT(report.pairs, 12 * report.visible);
+      drawn.push_back(frame.read_pictures()[0]);
+    }
+    return same_bits(drawn[0], drawn[1]);
+  };
+  EXPECT_TRUE(drawn_twice());
+  if (!test::gl_context().limits().subgroups_of_32) GTEST_SKIP() << "columns are as long";
+  const test::FaultyShaders faulty("blend_subgroups.comp", "lane / BLOCK_WIDTH * COLUMN",
+                                   "lane / BLOCK_WIDTH * (COLUMN == 4 ? 3u : COLUMN)");
+  EXPECT_FALSE(drawn_twice());
+}
+
 class Eyes : public testing::TestWithParam<double> {};  // cant, degrees
 
 TEST_P(Eyes, EachEqualsItselfAloneBitForBit) {
