@@ -260,8 +260,8 @@ TEST(Frame, OfLargeSplatsIsWhatTheFirstOneIs) {
   };
   EXPECT_TRUE(drawn_twice());
   if (!test::gl_context().limits().subgroups_of_32) GTEST_SKIP() << "columns are as long";
-  const test::FaultyShaders faulty("blend_subgroups.comp", "lane / BLOCK_WIDTH * COLUMN",
-                                   "lane / BLOCK_WIDTH * (COLUMN == 4 ? 3u : COLUMN)");
+  const test::FaultyShaders faulty("blend_subgroups.comp", "bit = bit_of(gl_SubgroupID)",
+                                   "bit = bit_of(COLUMN == 4 ? 0u : gl_SubgroupID)");
   EXPECT_FALSE(drawn_twice());
 }
 

@@ -154,7 +154,8 @@ TEST(Lists, ABlockThatMissesASplatIsNoticed) {
   if (!test::gl_context().limits().subgroups_of_32 && !test::gl_context().software())
     GTEST_SKIP() << "blend.comp has no blocks";
   if (test::gl_context().limits().subgroups_of_32)
-    EXPECT_TRUE(misses("blend_subgroups.comp", ">> bit & 1u) != 0u", ">> bit & 1u) != 0u && word != 1u"));
+    EXPECT_TRUE(misses("blend_subgroups.comp", "(mine[word] >> bit & 1u) != 0u",
+                       "(mine[word] >> bit & 1u) != 0u && word != 1u"));
   else
     EXPECT_TRUE(misses("blend_blocks.comp", "(reached[i + k] >> bit & 1u) == 0u", "k == 3u"));
   EXPECT_TRUE(misses("blocks.glsl", "bits |= ((2u << uint(last))", "bits = ((2u << uint(last))"));
