@@ -52,13 +52,14 @@ std::vector<MovedFrame> frames_of(const MotionPath& path, const MovedFrames& fra
 MotionSummary summary_of(std::span<const MovedFrame> frames) {
   MotionSummary summary{.frames = frames.size()};
   if (frames.empty()) return summary;
-  std::vector<double> db, beyond, pairs, exact_pairs, drawn, ms;
+  std::vector<double> db, beyond, pairs, exact_pairs, drawn, ms, once;
   for (const MovedFrame& frame : frames) {
     db.push_back(frame.true_db());
     beyond.push_back(frame.told() - frame.true_db());
     pairs.push_back(frame.pairs);
     exact_pairs.push_back(frame.exact_pairs);
     ms.push_back(frame.ms);
+    if (frame.drawn == 1) once.push_back(frame.ms);
     summary.equal +=
         std::all_of(frame.view_db.begin(), frame.view_db.end(), [](double d) { return std::isinf(d); });
     drawn.push_back(frame.drawn);
@@ -73,6 +74,8 @@ MotionSummary summary_of(std::span<const MovedFrame> frames) {
   summary.removed = 1.0 - mean(pairs) / mean(exact_pairs);
   summary.drawn = mean(drawn);
   summary.ms = mean(ms);
+  if (!once.empty()) summary.once_ms = mean(once);
+  summary.most_ms = *std::max_element(ms.begin(), ms.end());
   return summary;
 }
 
@@ -80,7 +83,7 @@ ordered_json to_json(const MotionSummary& s) {
   return object("frames", s.frames, "true_db", s.true_db, "tenth_percentile_db", s.tenth_db, "worst_db",
                 s.worst_db, "told_minus_true_db", s.told_beyond, "told_minus_true_farthest_db", s.told_worst,
                 "pairs", s.pairs, "pairs_removed", s.removed, "drawn", s.drawn, "frame_ms", s.ms,
-                "equal_frames", s.equal);
+                "drawn_once_ms", s.once_ms, "most_ms", s.most_ms, "equal_frames", s.equal);
 }
 
 ordered_json to_json(const MovedFrames& frames) {

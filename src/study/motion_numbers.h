@@ -40,6 +40,8 @@ struct MotionSummary {
   double removed = 0.0;  // share of the exact frames' pairs, all frames together
   double drawn = 0.0;    // times
   double ms = 0.0;
+  double once_ms = 0.0;   // of the frames that were drawn once; 0 for none
+  double most_ms = 0.0;   // the frame that took longest
   std::size_t equal = 0;  // frames whose pictures are equal
 };
 

@@ -190,22 +190,23 @@ Section times(const MotionStudy& study, const MotionResult& path) {
 }  // namespace
 
 Table asked_table(const MotionResult& path) {
-  Table table{
-      {"rule", "true dB", "tenth dB", "worst dB", "told minus true dB", "farthest dB", "lead, worst dB",
-       "stop dB", "stop, worst dB", "pairs, M", "removed %", "drawn", "frame ms", "of exact", "of `one`"},
-      {}};
+  Table table{{"rule", "true dB", "tenth dB", "worst dB", "told minus true dB", "farthest dB",
+               "lead, worst dB", "stop dB", "stop, worst dB", "pairs, M", "removed %", "drawn", "frame ms",
+               "of exact", "of `one`", "drawn once, ms", "most ms"},
+              {}};
   const Cell none;
   const MotionSummary& exact = path.exact.moving;
   table.rows.push_back(row("exact", none, none, none, none, none, none, none, none, 1e-6 * exact.pairs, 0.0,
-                           1.0, exact.ms, 1.0, none));
+                           1.0, exact.ms, 1.0, none, exact.once_ms, exact.most_ms));
   for (const MovedRule& rule : path.rules) {
     const MotionSummary &moving = rule.asked.moving, &stop = rule.asked.stop;
     const MovedShares part = shares(path, rule, false);
-    table.rows.push_back(row(
-        rule.variant.name(), moving.true_db, moving.tenth_db, moving.worst_db, moving.told_beyond,
-        moving.told_worst, of_part(rule.asked.lead, &MotionSummary::worst_db),
-        of_part(stop, &MotionSummary::true_db), of_part(stop, &MotionSummary::worst_db), 1e-6 * moving.pairs,
-        100.0 * moving.removed, moving.drawn, moving.ms, part.ms_of_exact, part.ms_of_one));
+    table.rows.push_back(row(rule.variant.name(), moving.true_db, moving.tenth_db, moving.worst_db,
+                             moving.told_beyond, moving.told_worst,
+                             of_part(rule.asked.lead, &MotionSummary::worst_db),
+                             of_part(stop, &MotionSummary::true_db), of_part(stop, &MotionSummary::worst_db),
+                             1e-6 * moving.pairs, 100.0 * moving.removed, moving.drawn, moving.ms,
+                             part.ms_of_exact, part.ms_of_one, moving.once_ms, moving.most_ms));
   }
   return table;
 }

@@ -46,6 +46,8 @@ TEST(MotionNumbers, SayWhatSeriesComeTo) {
   EXPECT_EQ(s.pairs, 50.0);
   EXPECT_DOUBLE_EQ(s.removed, 0.5);
   EXPECT_EQ(s.ms, 3.0);
+  EXPECT_EQ(s.once_ms, 2.0) << "without the one that was drawn twice";
+  EXPECT_EQ(s.most_ms, 12.0);
   EXPECT_EQ(s.equal, 1u);
   EXPECT_EQ(s.drawn, 1.1);
   // Nothing that is not finite gets out.
