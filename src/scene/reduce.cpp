@@ -18,6 +18,37 @@ Model with_gaussians(const Model& model, const std::vector<std::uint8_t>& kept) 
   return fewer;
 }
 
+Model without_gaussians(const Model& model) {
+  Model none;
+  none.name = model.name;
+  none.format = model.format;
+  none.degree = model.degree;
+  none.kernel_px2 = model.kernel_px2;
+  none.antialiased = model.antialiased;
+  none.perspective = model.perspective;
+  none.axes = model.axes;
+  return none;
+}
+
+void append(Model& model, const Model& from, std::size_t first, std::size_t count) {
+  const auto add = [&](auto& to, const auto& values, std::size_t each) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first * each);
+    to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count * each));
+  };
+  add(model.position, from.position, 1);
+  add(model.scale, from.scale, 1);
+  add(model.rotation, from.rotation, 1);
+  add(model.opacity, from.opacity, 1);
+  add(model.sh, from.sh, static_cast<std::size_t>(values_of(from.degree)));
+}
+
+Model with_order(const Model& model, std::span<const std::uint32_t> indices) {
+  Model ordered = without_gaussians(model);
+  ordered.reserve(indices.size());
+  for (const std::uint32_t i : indices) append(ordered, model, i, 1);
+  return ordered;
+}
+
 Model with_degree(const Model& model, int degree) {
   Model lower = model;
   lower.degree = degree;

@@ -1,7 +1,9 @@
 #pragma once
-// Less of a model.
+// Less of a model, and parts put together.
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene/model.h"
@@ -10,6 +12,15 @@ namespace binosplat {
 
 /// The Gaussians with a `kept` other than 0, in their order. Those that go were good ones: `left_out` stays.
 Model with_gaussians(const Model& model, const std::vector<std::uint8_t>& kept);
+
+/// A model without Gaussians that is the same in all else.
+Model without_gaussians(const Model& model);
+
+/// Appends Gaussians `first` to `first + count` - 1 of a model of the same degree.
+void append(Model& model, const Model& from, std::size_t first, std::size_t count);
+
+/// The Gaussians at these indices, in this order.
+Model with_order(const Model& model, std::span<const std::uint32_t> indices);
 
 /// Harmonics up to `degree` only, at most the model's.
 Model with_degree(const Model& model, int degree);

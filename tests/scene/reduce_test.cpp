@@ -25,6 +25,20 @@ TEST(Reduce, KeepsGaussiansInOrder) {
   EXPECT_EQ(fewer.sh[12], model.sh[3 * 12]);
 }
 
+TEST(Reduce, PutsGaussiansInAnotherOrder) {
+  Model model = numbered(1, 4);
+  model.antialiased = true;
+  const std::vector<std::uint32_t> order = {3, 0, 3};
+  const Model ordered = with_order(model, order);
+  ASSERT_EQ(ordered.count(), 3u);
+  EXPECT_TRUE(ordered.antialiased);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(ordered.position[k], model.position[order[k]]);
+    for (std::size_t v = 0; v < 12; ++v) EXPECT_EQ(ordered.sh[12 * k + v], model.sh[12 * order[k] + v]);
+  }
+  ASSERT_EQ(ordered.sh.size(), 3u * 12);
+}
+
 TEST(Reduce, EndsHarmonicsWithADegree) {
   const Model model = numbered(3, 2), lower = with_degree(model, 1);
   EXPECT_EQ(lower.degree, 1);

@@ -1,0 +1,296 @@
+#include "scene/merge.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <nanoflann.hpp>
+#include <numbers>
+#include <numeric>
+#include <queue>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "scene/reduce.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::size_t neighbours = 8;
+// What a nat of shape is worth beside a squared difference of colours of 1.
+constexpr double shape_weight = 0.02;
+// Deviations count for no less than this share of the merged one's: from afar nobody sees less.
+constexpr double thinnest = 0.5;
+constexpr double opaque_most = 0.999;
+// Of a square that is filled evenly, its area over the integral of the Gaussian with its moments.
+constexpr double even_share = 6.0 / std::numbers::pi;
+
+/// What takes part in merging.
+struct Part {
+  glm::dvec3 mean{0.0};
+  glm::dmat3 covariance{0.0};
+  double weight = 0.0;     // opacity times area
+  glm::dvec3 colour{0.0};  // harmonics of degree 0
+};
+
+double shadow(const glm::dvec3& deviations) {
+  constexpr double p = 1.6075;
+  const glm::dvec3 d = glm::max(deviations, 1e-12);
+  const double sum = std::pow(d.x * d.y, p) + std::pow(d.x * d.z, p) + std::pow(d.y * d.z, p);
+  return std::numbers::pi * std::pow(sum / 3.0, 1.0 / p);
+}
+
+double opacity_of(const Model& model, std::uint32_t i) {
+  return std::clamp<double>(model.opacity[i], 1e-6, opaque_most);
+}
+
+/// Axes in columns and the standard deviations along them.
+struct Axes {
+  glm::dmat3 turn{1.0};
+  glm::dvec3 deviations{0.0};
+};
+
+Axes axes_of(const glm::dmat3& covariance) {
+  Eigen::Matrix3d m;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) m(r, c) = covariance[c][r];
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m);
+  Axes axes;
+  for (int k = 0; k < 3; ++k) {
+    axes.deviations[k] = std::sqrt(std::max(0.0, solver.eigenvalues()[k]));
+    for (int r = 0; r < 3; ++r) axes.turn[k][r] = solver.eigenvectors()(r, k);
+  }
+  if (glm::determinant(axes.turn) < 0.0) axes.turn[2] = -axes.turn[2];
+  return axes;
+}
+
+/// `area` is that of its shadow.
+Part part_of(const Model& model, std::uint32_t i, double area) {
+  const glm::vec4& q = model.rotation[i];
+  const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
+  const glm::dvec3 s(model.scale[i]);
+  const glm::dmat3 scaled(turn[0] * s.x, turn[1] * s.y, turn[2] * s.z);
+  Part part{.mean = model.position[i], .covariance = scaled * glm::transpose(scaled)};
+  part.weight = opacity_of(model, i) * area;
+  const std::size_t first = std::size_t{i} * 3 * static_cast<std::size_t>(sh_count(model.degree));
+  for (int c = 0; c < 3; ++c) part.colour[c] = sh_c0 * model.sh[first + static_cast<std::size_t>(c)];
+  return part;
+}
+
+Part sum_of(const Part& a, const Part& b) {
+  Part sum{.weight = a.weight + b.weight};
+  const double share = b.weight / sum.weight;
+  const glm::dvec3 apart = b.mean - a.mean;
+  sum.mean = a.mean + share * apart;
+  sum.covariance = (1.0 - share) * a.covariance + share * b.covariance +
+                   share * (1.0 - share) * glm::outerProduct(apart, apart);
+  sum.colour = glm::mix(a.colour, b.colour, share);
+  return sum;
+}
+
+double log_det(glm::dmat3 covariance, double least) {
+  for (int k = 0; k < 3; ++k) covariance[k][k] += least;
+  return std::log(glm::determinant(covariance));
+}
+
+/// What it costs to merge two.
+double cost_of(const Part& a, const Part& b) {
+  const Part sum = sum_of(a, b);
+  const double trace = sum.covariance[0][0] + sum.covariance[1][1] + sum.covariance[2][2];
+  const double least = std::max(thinnest * thinnest * trace, 1e-40);
+  const double shape =
+      0.5 * (sum.weight * log_det(sum.covariance, least) - a.weight * log_det(a.covariance, least) -
+             b.weight * log_det(b.covariance, least));
+  const glm::dvec3 difference = a.colour - b.colour;
+  return shape_weight * shape + a.weight * b.weight / sum.weight * glm::dot(difference, difference);
+}
+
+struct Means {
+  const std::vector<Part>& parts;
+  const std::vector<std::uint32_t>& chosen;
+
+  std::size_t kdtree_get_point_count() const { return chosen.size(); }
+  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+    return parts[chosen[i]].mean[static_cast<glm::length_t>(axis)];
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using Tree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Means>, Means, 3, std::uint32_t>;
+
+}  // namespace
+
+/// Each is named by its first member.
+class Merger::Clusters {
+ public:
+  explicit Clusters(const Model& model)
+      : model_(model), next_(model.count()), ages_(model.count()), near_(model.count()) {
+    std::iota(next_.begin(), next_.end(), 0u);
+    last_ = into_ = next_;
+    for (const std::uint32_t i : next_) parts_.push_back(part_of(model, i, shadow(model.scale[i])));
+    left_ = model.count();
+  }
+
+  void bring_to(std::size_t target) {
+    while (left_ > std::max<std::size_t>(target, 1)) {
+      if (cheapest_.empty()) find_neighbours();
+      const Offer offer = cheapest_.top();
+      cheapest_.pop();
+      if (into_[offer.a] != offer.a || ages_[offer.a] != offer.age_a) continue;
+      if (into_[offer.b] != offer.b || ages_[offer.b] != offer.age_b) {
+        make_offer(offer.a);
+      } else {
+        merge(std::min(offer.a, offer.b), std::max(offer.a, offer.b));
+      }
+    }
+  }
+
+  Model result(double pixel) const {
+    Model merged = without_gaussians(model_);
+    merged.reserve(left_);
+    std::vector<std::uint32_t> members;
+    for (const std::uint32_t i : living()) {
+      members.assign(1, i);
+      while (members.back() != last_[i]) members.push_back(next_[members.back()]);
+      append_merged(merged, model_, members, pixel);
+    }
+    return merged;
+  }
+
+ private:
+  /// The best of those that `a` may be merged with.
+  struct Offer {
+    double cost;
+    std::uint32_t a, b;
+    std::uint32_t age_a, age_b;                 // when it was made
+    bool operator<(const Offer& other) const {  // the cheapest on top
+      return std::tie(other.cost, other.a, other.b) < std::tie(cost, a, b);
+    }
+  };
+
+  std::vector<std::uint32_t> living() const {
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < into_.size(); ++i) {
+      if (into_[i] == i) all.push_back(i);
+    }
+    return all;
+  }
+
+  /// Of all that are left: at first, and where islands have become one each.
+  void find_neighbours() {
+    const std::vector<std::uint32_t> all = living();
+    const Means means{parts_, all};
+    const Tree tree(3, means, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+    std::array<std::uint32_t, neighbours + 1> found{};
+    std::array<double, neighbours + 1> distances{};
+    for (const std::uint32_t i : all) {
+      const std::size_t count =
+          tree.knnSearch(&parts_[i].mean[0], found.size(), found.data(), distances.data());
+      for (std::size_t k = 0; k < count; ++k) {
+        if (all[found[k]] != i) near_[i].push_back(all[found[k]]);
+      }
+    }
+    for (const std::uint32_t i : all) {
+      for (std::size_t k = 0; k < std::min(near_[i].size(), neighbours); ++k) {
+        std::vector<std::uint32_t>& others = near_[near_[i][k]];
+        if (std::find(others.begin(), others.end(), i) == others.end()) others.push_back(i);
+      }
+    }
+    for (const std::uint32_t i : all) make_offer(i);
+  }
+
+  void make_offer(std::uint32_t a) {
+    Offer best{INFINITY, a, a, ages_[a], 0};
+    for (std::uint32_t& k : near_[a]) {
+      k = cluster_of(k);
+      if (k == a) continue;
+      const double cost = cost_of(parts_[std::min(a, k)], parts_[std::max(a, k)]);
+      if (std::tie(cost, k) < std::tie(best.cost, best.b)) best = {cost, a, k, ages_[a], ages_[k]};
+    }
+    if (best.b != a) cheapest_.push(best);
+  }
+
+  void merge(std::uint32_t a, std::uint32_t b) {
+    parts_[a] = sum_of(parts_[a], parts_[b]);
+    ++ages_[a];
+    into_[b] = a;
+    next_[last_[a]] = b;
+    last_[a] = last_[b];
+    --left_;
+    // Its neighbours are those of both that are nearest now.
+    std::vector<std::pair<double, std::uint32_t>> all;
+    for (const std::uint32_t of : {a, b}) {
+      for (const std::uint32_t k : near_[of]) {
+        const std::uint32_t now = cluster_of(k);
+        const glm::dvec3 apart = parts_[now].mean - parts_[a].mean;
+        if (now != a) all.emplace_back(glm::dot(apart, apart), now);
+      }
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    all.resize(std::min(all.size(), neighbours));
+    near_[a].clear();
+    for (const auto& [distance, k] : all) near_[a].push_back(k);
+    near_[b] = {};
+    make_offer(a);
+  }
+
+  std::uint32_t cluster_of(std::uint32_t k) {
+    while (into_[k] != k) k = into_[k] = into_[into_[k]];
+    return k;
+  }
+
+  const Model& model_;
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> next_, last_;  // members of a cluster, from its first
+  std::vector<std::uint32_t> into_;         // itself, or what it was merged into
+  std::vector<std::uint32_t> ages_;         // merges so far
+  std::vector<std::vector<std::uint32_t>> near_;
+  std::priority_queue<Offer> cheapest_;
+  std::size_t left_ = 0;
+};
+
+void append_merged(Model& merged, const Model& model, std::span<const std::uint32_t> members, double pixel) {
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  if (members.size() == 1) {
+    append(merged, model, members.front(), 1);
+    return;
+  }
+  const double low_pass = model.antialiased ? 0.0 : model.kernel_px2 * pixel * pixel;
+  const auto area_of = [&](const glm::dvec3& deviations) {
+    return shadow(glm::sqrt(deviations * deviations + low_pass));
+  };
+  Part sum;
+  double depth = 0.0;  // optical, times area
+  std::vector<double> sh(values);
+  for (const std::uint32_t i : members) {
+    const double area = area_of(model.scale[i]);
+    const Part part = part_of(model, i, area);
+    sum = i == members.front() ? part : sum_of(sum, part);
+    depth -= std::log(1.0 - opacity_of(model, i)) * area;
+    for (std::size_t k = 0; k < values; ++k) sh[k] += part.weight * model.sh[i * values + k];
+  }
+  const Axes axes = axes_of(sum.covariance);
+  const double area = area_of(axes.deviations), square = even_share * area;
+  const double opacity = std::min(sum.weight, square * (1.0 - std::exp(-depth / square))) / area;
+  const glm::dquat turn = glm::normalize(glm::quat_cast(axes.turn));
+  merged.position.emplace_back(sum.mean);
+  merged.scale.emplace_back(axes.deviations * std::sqrt(std::max(1.0, opacity / opaque_most)));
+  merged.rotation.emplace_back(turn.w, turn.x, turn.y, turn.z);
+  merged.opacity.push_back(static_cast<float>(std::min(opacity, opaque_most)));
+  for (const double value : sh) merged.sh.push_back(static_cast<float>(value / sum.weight));
+}
+
+Merger::Merger(const Model& model) : clusters_(std::make_unique<Clusters>(model)) {}
+Merger::~Merger() = default;
+void Merger::bring_to(std::size_t target) { clusters_->bring_to(target); }
+Model Merger::result(double pixel) const { return clusters_->result(pixel); }
+
+}  // namespace binosplat

@@ -1,0 +1,47 @@
+#pragma once
+// Fewer Gaussians that look alike from afar: near neighbours become one, pair by pair, where that changes
+// least.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// Appends to `merged`, which has the model's degree, one Gaussian in place of `members` of a model, to be
+/// seen where a pixel covers `pixel` world units. With A the mean area of an ellipsoid's shadow (Cauchy's
+/// quarter of the surface; Thomsen's formula), the low-pass of such a pixel included, and w = opacity A:
+/// - mean and covariance are those of the members' mixture, each with its w (moment matching);
+/// - harmonics are their means by w;
+/// - what it covers is sum(w), as if nothing overlapped, or, if that is less, what members at random places
+///   cover of an even square with the mixture's moments: S (1 - exp(-sum(tau A) / S)), tau = -ln(1 -
+///   opacity), S = 6 / pi A (Beer and Lambert);
+/// - opacity is that over A; beyond 0.999 it is the area that grows.
+/// A single member is appended as it is.
+void append_merged(Model& merged, const Model& model, std::span<const std::uint32_t> members, double pixel);
+
+/// Merges a model step by step. Of all pairs of near neighbours the one is merged that changes least, again
+/// and again: its Runnalls' bound of what the mixture's shape loses (Runnalls 2007, equation 16), and the
+/// squared difference of the pair's colours, times the area that shows it.
+class Merger {
+ public:
+  /// The model, which outlives this, has one Gaussian at least.
+  explicit Merger(const Model& model);
+  ~Merger();
+
+  /// Merges until no more than `target` are left, or one.
+  void bring_to(std::size_t target);
+
+  /// What is left, each merged at once from all of its members (append_merged), in the order of their first
+  /// ones.
+  Model result(double pixel) const;
+
+ private:
+  class Clusters;
+  std::unique_ptr<Clusters> clusters_;
+};
+
+}  // namespace binosplat

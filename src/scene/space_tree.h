@@ -1,0 +1,27 @@
+#pragma once
+// A model cut in halves again and again, so that neighbours in space are neighbours in memory.
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+namespace binosplat {
+
+/// Positions `first` to `first + count` - 1 of an order.
+struct SpaceNode {
+  std::size_t first = 0, count = 0;
+  std::vector<SpaceNode> children;  // two, or none of a leaf
+};
+
+struct SpaceTree {
+  std::vector<std::uint32_t> order;  // indices
+  SpaceNode root;
+};
+
+/// Cuts at the median along the longest side of the box around the positions, those at one place by their
+/// indices, until no part has more than `most`.
+SpaceTree make_space_tree(std::span<const glm::vec3> positions, std::size_t most);
+
+}  // namespace binosplat
