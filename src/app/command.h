@@ -25,6 +25,7 @@ void add_bench(CLI::App& program, Command& command);
 void add_calibrate(CLI::App& program, Command& command);
 void add_view(CLI::App& program, Command& command);
 void add_convert(CLI::App& program, Command& command);
+void add_levels(CLI::App& program, Command& command);
 void add_trim(CLI::App& program, Command& command);
 void add_refit(CLI::App& program, Command& command);
 void add_info(CLI::App& program, Command& command);

@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   binosplat::app::add_compare(program, command);
   binosplat::app::add_info(program, command);
   binosplat::app::add_convert(program, command);
+  binosplat::app::add_levels(program, command);
   binosplat::app::add_trim(program, command);
   binosplat::app::add_refit(program, command);
   binosplat::app::add_devices(program, command);

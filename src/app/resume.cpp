@@ -8,6 +8,7 @@
 
 #include "app/command.h"
 #include "app/content_key.h"
+#include "app/run_file.h"
 #include "base/log.h"
 #include "study/fields.h"
 
@@ -33,19 +34,6 @@ std::string views_key(const std::vector<Shot>& shots) {
     }
   }
   return content_key(cameras);
-}
-
-void check_same(const fs::path& file, const ordered_json& saved, const ordered_json& run) {
-  std::vector<std::string> others;
-  for (const auto& [name, value] : run.items()) {
-    if (!saved.is_object() || !saved.contains(name) || saved[name] != value) others.push_back(name);
-  }
-  if (others.empty() && saved.size() == run.size()) return;
-  fail(
-      "{} holds pictures of another run: {} says other {}. Name another folder with -o, or remove the "
-      "pictures "
-      "and that file",
-      file.parent_path().string(), file.string(), fmt::join(others, ", "));
 }
 
 }  // namespace
@@ -76,7 +64,7 @@ ordered_json identity_of(const RenderOptions& o, const CameraList& list, double 
 void leave_out_drawn(const OutputPlan& plan, const ordered_json& run, std::vector<Shot>& shots) {
   const fs::path file = plan.folder / run_name;
   if (fs::exists(file)) {
-    check_same(file, load_json(file), run);
+    check_same_run(file, run, "pictures");
   } else {
     for (const Shot& shot : shots) {
       for (const std::string& picture : files_of(plan, shot)) {

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "formats/model_output.h"
 #include "formats/ply_layout.h"
+#include "formats/zip_file.h"
 
 namespace binosplat {
 
@@ -19,6 +20,11 @@ Losses write_compressed_ply(OutputFile& file, const Model& model);
 Losses write_splat(OutputFile& file, const Model& model);
 Losses write_sog(OutputFile& file, const Model& model);
 Losses write_spz(OutputFile& file, const Model& model, int harmonic_bits);
+
+/// The files of a SOG in a folder, meta.json first; Gaussians stay in their order.
+ZipEntries sog_files(const Model& model);
+/// What none of its files can keep.
+Losses sog_losses(const Model& model);
 
 /// The nearest whole number from 0 to `most`.
 inline std::uint32_t nearest_step(double v, std::uint32_t most) {

@@ -1,12 +1,14 @@
-// PlayCanvas' SOG, version 2, as an archive.
+// PlayCanvas' SOG, version 2.
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <limits>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "base/progress.h"
@@ -52,10 +54,8 @@ double log_position(float p) { return std::copysign(std::log1p(std::abs(static_c
 
 class SogWriter {
  public:
-  explicit SogWriter(const Model& model)
-      : model_(model),
-        order_(morton_order(model.position)),
-        values_(3 * static_cast<std::size_t>(sh_count(model.degree))) {
+  SogWriter(const Model& model, std::span<const std::uint32_t> order)
+      : model_(model), order_(order), values_(3 * static_cast<std::size_t>(sh_count(model.degree))) {
     const auto n = static_cast<double>(model.count());
     width_ = 4 * static_cast<std::size_t>(std::ceil(std::sqrt(n) / 4.0));
     height_ = (model.count() + 4 * width_ - 1) / (4 * width_) * 4;
@@ -67,7 +67,10 @@ class SogWriter {
     write_perspective(model.perspective, meta_);
   }
 
-  std::vector<std::byte> archive() {
+  using Tell = std::function<void(std::size_t done, std::size_t all)>;
+
+  /// Tells of each picture, one at a time.
+  ZipEntries files(const Tell& tell) {
     add_positions();
     add_scales();
     add_rotations();
@@ -77,14 +80,15 @@ class SogWriter {
     const std::string meta = meta_.dump();
     const auto text = std::as_bytes(std::span(meta));
     entries[0] = {"meta.json", {text.begin(), text.end()}};
-    Progress progress("writing", textures_.size());
-    std::atomic<std::size_t> done = 0;
+    std::mutex counting;
+    std::size_t done = 0;
     parallel_for(textures_.size(), [&](std::size_t k) {
       const Texture& t = textures_[k];
       entries[k + 1] = {t.name, webp_file(t.texels, t.width, t.height)};
-      progress.update(++done);
+      const std::lock_guard lock(counting);
+      tell(++done, textures_.size());
     });
-    return zip_of(entries);
+    return entries;
   }
 
  private:
@@ -187,7 +191,7 @@ class SogWriter {
   }
 
   const Model& model_;
-  std::vector<std::uint32_t> order_;
+  std::span<const std::uint32_t> order_;
   std::size_t values_;  // coefficients of a Gaussian, degree 0 included
   std::size_t width_ = 0, height_ = 0;
   nlohmann::ordered_json meta_;
@@ -196,8 +200,13 @@ class SogWriter {
 
 }  // namespace
 
-Losses write_sog(OutputFile& file, const Model& model) {
-  file.write(SogWriter(model).archive());
+ZipEntries sog_files(const Model& model) {
+  std::vector<std::uint32_t> order(model.count());
+  std::iota(order.begin(), order.end(), 0u);
+  return SogWriter(model, order).files([](std::size_t, std::size_t) {});
+}
+
+Losses sog_losses(const Model& model) {
   Losses losses;
   const double thin = std::exp(-log_scale_most), thick = std::exp(log_scale_most);
   count_lost(losses, model, "scales beyond e^-20 to e^20, which a SOG cuts", [&](std::size_t i) {
@@ -205,6 +214,16 @@ Losses write_sog(OutputFile& file, const Model& model) {
     return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;
   });
   return losses;
+}
+
+Losses write_sog(OutputFile& file, const Model& model) {
+  const std::vector<std::uint32_t> order = morton_order(model.position);
+  std::optional<Progress> progress;
+  file.write(zip_of(SogWriter(model, order).files([&](std::size_t done, std::size_t all) {
+    if (!progress) progress.emplace("writing", all);
+    progress->update(done);
+  })));
+  return sog_losses(model);
 }
 
 }  // namespace binosplat

@@ -1,0 +1,112 @@
+// binosplat levels: a model at several levels of detail, in files that are read by themselves.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/command.h"
+#include "app/content_key.h"
+#include "app/load_scene.h"
+#include "app/model_files.h"
+#include "app/option_checks.h"
+#include "app/run_file.h"
+#include "base/log.h"
+#include "base/output_file.h"
+#include "formats/model_output.h"
+#include "formats/streamed_sog_writer.h"
+#include "scene/axes.h"
+#include "study/fields.h"
+
+namespace binosplat::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LevelsOptions {
+  SceneOptions scene;
+  std::string output;
+  LevelSettings settings;
+};
+
+LevelFolder folder_at(const fs::path& folder) {
+  return {[folder](const std::string& name) { return fs::exists(folder / name); },
+          [folder](const std::string& name, std::span<const std::byte> bytes) {
+            const Uninterrupted hold;
+            OutputFile file(folder / name);
+            file.write(bytes);
+            file.commit();
+          }};
+}
+
+/// What tells a run from others.
+nlohmann::ordered_json identity_of(const LevelsOptions& o) {
+  nlohmann::ordered_json run =
+      study::object("format", "binosplat levels", "program", BINOSPLAT_VERSION, "leaf", o.settings.leaf,
+                    "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
+  run["model"] = is_built_in(o.scene.name) ? o.scene.name : content_key(fs::path(o.scene.name));
+  return run;
+}
+
+/// That the folder is empty, or of such a run.
+bool check_folder(const LevelsOptions& o, const nlohmann::ordered_json& run) {
+  const fs::path folder = o.output, file = folder / "levels-run.json";
+  check_output(file);
+  check_output(folder / "lod-meta.json");
+  if (fs::exists(file)) {
+    check_same_run(file, run, "levels");
+    return true;
+  }
+  if (fs::exists(folder) && !fs::is_empty(folder))
+    fail("-o {}: the folder has other files; name another, or an empty one", o.output);
+  return false;
+}
+
+ExitCode levels(const LevelsOptions& o) {
+  const nlohmann::ordered_json run = identity_of(o);
+  const bool again = check_folder(o, run);
+  Model model = load_scene(o.scene);
+  refuse_scaffold(model, o.scene.name);
+  bring_into_axes(model, axes_of(ModelFormat::sog));
+  if (!again) save_json(fs::path(o.output) / "levels-run.json", run);
+  const LevelsWritten written = write_streamed_sog(model, o.settings, folder_at(o.output));
+  for (const std::string& loss : written.losses) log_warning("{}", loss);
+  if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
+  fmt::print("level   Gaussians\n");
+  for (std::size_t level = 0; level < written.gaussians.size(); ++level)
+    fmt::print("{:>5}{:>12}\n", level, written.gaussians[level]);
+  fmt::print("\n{}\n", (fs::path(o.output) / "lod-meta.json").string());
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_levels(CLI::App& program, Command& command) {
+  CLI::App* sub =
+      program.add_subcommand("levels", "Write a model at several levels of detail (streamed SOG)");
+  const auto o = std::make_shared<LevelsOptions>();
+  sub->add_option("MODEL", o->scene.name, "A model file or folder, demo:room or demo:city")->required();
+  sub->add_option("-o,--output", o->output, "The folder to write lod-meta.json and its SOGs to")
+      ->type_name("FOLDER")
+      ->required();
+  sub->add_option("--levels", o->settings.levels,
+                  "Levels; each has half of the Gaussians of the one before (7)")
+      ->type_name("N")
+      ->check(range(1, 16));
+  sub->add_option(
+         "--leaf", o->settings.leaf,
+         "Gaussians of the finest level, at most, that get a level of their own\nas one looks (16384)")
+      ->type_name("N")
+      ->check(range(64, 131072));
+  add_lod_option(*sub, o->scene);
+  add_axes_option(*sub, o->scene);
+  sub->footer(
+      "A run that was interrupted goes on where it ended when it is started again.\n"
+      "Examples:\n"
+      "  binosplat levels garden.ply -o garden\n"
+      "  binosplat render garden --detail 2\n");
+  sub->callback([o, &command] { command = [o] { return levels(*o); }; });
+}
+
+}  // namespace binosplat::app

@@ -1,0 +1,237 @@
+#include "formats/streamed_sog_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <utility>
+
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "formats/model_writers.h"
+#include "formats/morton.h"
+#include "scene/merge.h"
+#include "scene/reduce.h"
+#include "scene/space_tree.h"
+
+namespace binosplat {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+// A pixel's share of the distance between Gaussians, by which levels are chosen, where a level is seen. They
+// lie denser than on a disc as wide as the box.
+constexpr double pixel_share = 0.2;
+
+constexpr const char* meta_name = "/meta.json";
+constexpr Bounds nowhere{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
+
+/// A leaf of the tree.
+struct Leaf {
+  std::span<const std::uint32_t> indices;
+  Bounds bounds = nowhere;  // around ellipsoids of one standard deviation
+  ordered_json lods;        // where its levels lie
+
+  std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
+  double pixel(int level) const {
+    const double diagonal = glm::distance(glm::dvec3(bounds.low), glm::dvec3(bounds.high));
+    return pixel_share * diagonal / std::sqrt(static_cast<double>(count(level)));
+  }
+};
+
+/// A SOG: one level of leaves that follow one another.
+struct File {
+  std::string folder;
+  int level = 0;
+  std::size_t first_leaf = 0, leaves = 0;
+  std::size_t count = 0;
+};
+
+/// Leaves that are worked on together, and the files in which all their levels lie.
+struct Piece {
+  std::size_t first_leaf = 0, leaves = 0;
+  std::vector<File> files;
+};
+
+using Levels = std::vector<Model>;  // of a leaf, from the finest
+
+void measure(const Model& model, Leaf& leaf) {
+  for (const std::uint32_t i : leaf.indices) {
+    const glm::vec4& q = model.rotation[i];
+    const glm::mat3 turn = glm::mat3_cast(glm::quat(q.x, q.y, q.z, q.w));
+    glm::vec3 reach(0.0f);
+    for (int k = 0; k < 3; ++k) reach += glm::abs(turn[k]) * model.scale[i][k];
+    leaf.bounds.low = glm::min(leaf.bounds.low, model.position[i] - reach);
+    leaf.bounds.high = glm::max(leaf.bounds.high, model.position[i] + reach);
+  }
+}
+
+/// In Morton order, whose pictures pack best.
+Model finest(const Model& model, const Leaf& leaf) {
+  const Model as_it_lies = with_order(model, leaf.indices);
+  return with_order(as_it_lies, morton_order(as_it_lies.position));
+}
+
+Levels levels_of(const Model& model, const Leaf& leaf, int coarsest) {
+  Levels levels{finest(model, leaf)};
+  Merger merger(levels[0]);
+  std::vector<Model> merged;
+  for (int level = 1; level <= coarsest; ++level) {
+    merger.bring_to(leaf.count(level));
+    merged.push_back(merger.result(leaf.pixel(level)));
+  }
+  std::move(merged.begin(), merged.end(), std::back_inserter(levels));
+  return levels;
+}
+
+ordered_json json_of(const Bounds& b) {
+  return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
+}
+
+class Writer {
+ public:
+  Writer(const Model& model, const LevelSettings& settings, const LevelFolder& folder)
+      : model_(model),
+        settings_(settings),
+        folder_(folder),
+        tree_(make_space_tree(model.position, settings.leaf)),
+        gaussians_(static_cast<std::size_t>(settings.levels)) {
+    plan(tree_.root);
+    parallel_for(leaves_.size(), [&](std::size_t i) { measure(model_, leaves_[i]); });
+  }
+
+  LevelsWritten write() {
+    LevelsWritten written{gaussians_, filenames_.size(), 0, sog_losses(model_)};
+    std::size_t work = 0;
+    for (Piece& piece : pieces_) {
+      written.kept +=
+          std::erase_if(piece.files, [&](const File& file) { return folder_.has(file.folder + meta_name); });
+      for (const File& file : piece.files) work += file.count;
+      for (std::size_t i = 0; i < piece.leaves && !piece.files.empty(); ++i)
+        work += leaves_[piece.first_leaf + i].count(0);
+    }
+    Progress progress("writing levels of detail", work);
+    for (const Piece& piece : pieces_) {
+      if (!piece.files.empty()) write(piece, progress);
+    }
+    std::size_t leaf = 0;
+    const ordered_json meta = {
+        {"version", 1},
+        {"asset", {{"generator", "binosplat"}}},
+        {"count", std::accumulate(gaussians_.begin(), gaussians_.end(), std::size_t{0})},
+        {"counts", gaussians_},
+        {"lodLevels", settings_.levels},
+        {"environment", nullptr},
+        {"filenames", filenames_},
+        {"tree", node_json(tree_.root, leaf).first}};
+    const std::string text = meta.dump() + "\n";
+    folder_.write("lod-meta.json", std::as_bytes(std::span(text)));
+    return written;
+  }
+
+ private:
+  /// Which leaves are a piece, and what of them goes where.
+  void plan(const SpaceNode& node) {
+    if (node.count > settings_.piece && !node.children.empty()) {
+      for (const SpaceNode& child : node.children) plan(child);
+      return;
+    }
+    Piece piece{leaves_.size(), 0, {}};
+    add_leaves(node);
+    piece.leaves = leaves_.size() - piece.first_leaf;
+    for (int level = 0; level < settings_.levels; ++level) add_files(piece, level);
+    pieces_.push_back(std::move(piece));
+  }
+
+  void add_leaves(const SpaceNode& node) {
+    for (const SpaceNode& child : node.children) add_leaves(child);
+    if (node.children.empty())
+      leaves_.push_back({std::span(tree_.order).subspan(node.first, node.count), nowhere, {}});
+  }
+
+  void add_files(Piece& piece, int level) {
+    for (std::size_t i = piece.first_leaf; i < leaves_.size(); ++i) {
+      Leaf& leaf = leaves_[i];
+      const std::size_t count = leaf.count(level);
+      if (i == piece.first_leaf || piece.files.back().count + count > settings_.file) {
+        piece.files.push_back({fmt::format("{}_{}", level, files_of_level_[level]++), level, i, 0, 0});
+        filenames_.push_back(piece.files.back().folder + meta_name);
+      }
+      File& file = piece.files.back();
+      leaf.lods[std::to_string(level)] = {
+          {"file", filenames_.size() - 1}, {"offset", file.count}, {"count", count}};
+      ++file.leaves;
+      file.count += count;
+      gaussians_[static_cast<std::size_t>(level)] += count;
+    }
+  }
+
+  void write(const Piece& piece, Progress& progress) {
+    const std::vector<File>& files = piece.files;
+    const int coarsest = files.back().level;
+    std::mutex counting;
+    const auto count = [&](std::size_t gaussians) {
+      const std::lock_guard lock(counting);
+      progress.update(done_ += gaussians);
+    };
+    std::vector<Levels> levels(piece.leaves);
+    parallel_for(levels.size(), [&](std::size_t i) {
+      const Leaf& leaf = leaves_[piece.first_leaf + i];
+      levels[i] = levels_of(model_, leaf, coarsest);
+      count(leaf.count(0));
+    });
+    parallel_for(files.size(), [&](std::size_t i) {
+      const File& file = files[i];
+      Model all = without_gaussians(model_);
+      for (std::size_t k = 0; k < file.leaves; ++k) {
+        const Levels& of_leaf = levels[file.first_leaf - piece.first_leaf + k];
+        const Model& level = of_leaf[static_cast<std::size_t>(file.level)];
+        append(all, level, 0, level.count());
+      }
+      const ZipEntries entries = sog_files(all);
+      for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry)  // meta.json last
+        folder_.write(file.folder + "/" + entry->first, entry->second);
+      count(file.count);
+    });
+  }
+
+  /// The node and the box around it, from the next leaf on.
+  std::pair<ordered_json, Bounds> node_json(const SpaceNode& node, std::size_t& next_leaf) const {
+    if (node.children.empty()) {
+      const Leaf& leaf = leaves_[next_leaf++];
+      return {{{"bound", json_of(leaf.bounds)}, {"lods", leaf.lods}}, leaf.bounds};
+    }
+    Bounds around = nowhere;
+    ordered_json children;
+    for (const SpaceNode& child : node.children) {
+      auto [json, bounds] = node_json(child, next_leaf);
+      children.push_back(std::move(json));
+      around = {glm::min(around.low, bounds.low), glm::max(around.high, bounds.high)};
+    }
+    return {{{"bound", json_of(around)}, {"children", std::move(children)}}, around};
+  }
+
+  const Model& model_;
+  const LevelSettings& settings_;
+  const LevelFolder& folder_;
+  SpaceTree tree_;
+  std::vector<Leaf> leaves_;
+  std::vector<Piece> pieces_;
+  std::vector<std::string> filenames_;
+  std::map<int, int> files_of_level_;
+  std::vector<std::size_t> gaussians_;  // by level
+  std::size_t done_ = 0;
+};
+
+}  // namespace
+
+LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings,
+                                 const LevelFolder& folder) {
+  return Writer(model, settings, folder).write();
+}
+
+}  // namespace binosplat

@@ -1,0 +1,43 @@
+#pragma once
+// A model as a streamed SOG (formats/streamed_sog.h): a tree of its parts, each at several levels of detail.
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/model.h"
+
+namespace binosplat {
+
+struct LevelSettings {
+  std::size_t leaf = 16384;     // Gaussians of the finest level in a leaf of the tree, at most
+  int levels = 7;               // each with half of the Gaussians of the one before in each leaf, rounded up
+  std::size_t file = 131072;    // Gaussians of a SOG, at most, or one leaf: readers decode whole files
+  std::size_t piece = 1048576;  // of the finest level, at most, in memory at a time; no SOG has leaves of two
+};
+
+/// The folder that a streamed SOG is written to; names are relative to it. Files may be written by several
+/// threads at a time.
+struct LevelFolder {
+  std::function<bool(const std::string& name)> has;
+  std::function<void(const std::string& name, std::span<const std::byte> bytes)> write;
+};
+
+struct LevelsWritten {
+  std::vector<std::size_t> gaussians;  // by level
+  std::size_t files = 0, kept = 0;     // SOGs, and those of them that were there
+  std::vector<std::string> losses;     // what SOGs could not keep, a line each
+};
+
+/// Writes a model in the frame of SOG. Level 0 is the model itself, the others are merged from it
+/// (scene/merge.h), for pixels as far apart as a leaf's Gaussians are by the measure that levels are chosen
+/// by (formats/detail.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
+/// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
+/// with the same model and settings that was interrupted, are left as they are, and the result has the same
+/// bytes. Progress is shown.
+LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings,
+                                 const LevelFolder& folder);
+
+}  // namespace binosplat

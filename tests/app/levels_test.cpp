@@ -1,0 +1,137 @@
+// binosplat levels, from the command line.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "app/scene.h"
+#include "formats/image_file.h"
+#include "formats/model_file.h"
+#include "measure/metrics.h"
+#include "support/models.h"
+#include "support/scaffold_files.h"
+
+namespace binosplat {
+namespace {
+
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::run_program;
+namespace fs = std::filesystem;
+
+using Files = std::map<std::string, std::string>;
+
+/// Names of files, and the lengths and hashes of what is in them.
+Files contents(const fs::path& folder) {
+  Files files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string text = test::read_text(entry.path());
+    files[entry.path().lexically_relative(folder).string()] =
+        fmt::format("{} {:x}", text.size(), std::hash<std::string>()(text));
+  }
+  return files;
+}
+
+struct LevelsTest : test::SceneTest {
+  using Arguments = std::vector<std::string>;
+
+  Arguments line(const std::string& to, const Arguments& more = {}) const {
+    Arguments all = {"levels", model, "-o", to, "--leaf", "64", "--levels", "3"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  Outcome levels(const std::string& to, const Arguments& more = {}) const {
+    return run_program(line(to, more));
+  }
+};
+
+TEST_F(LevelsTest, AreReadAndDrawn) {
+  test::save_ply(model, test::floor_model());
+  const Outcome outcome = levels(out);
+  ASSERT_TRUE(good(outcome));
+  EXPECT_NE(outcome.out.find("    0        2000\n    1        1008\n    2         512\n"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(load_model(out).count(), 2000u);
+  const Outcome info = run_program({"info", out, "--lod", "1"});
+  ASSERT_TRUE(good(info));
+  EXPECT_NE(info.out.find("1008"), std::string::npos) << info.out;
+
+  const auto picture = [&](const std::string& scene, const Arguments& more) {
+    Arguments all = {"render", scene,    "--eye", "0,-12,8", "--at", "0,0,0",         "--up",
+                     "0,0,1",  "--size", "64x48", "--mono",  "-o",   folder / "p.png"};
+    all.insert(all.end(), more.begin(), more.end());
+    EXPECT_TRUE(good(run_program(all)));
+    return load_image(folder / "p.png");
+  };
+  const Image exact = picture(model, {});
+  const auto psnr = [&](const Arguments& more) { return measure::psnr(exact, picture(out, more)); };
+  const double finest = psnr({"--lod", "0"}), second = psnr({"--lod", "1"}), third = psnr({"--lod", "2"});
+  EXPECT_GT(finest, 35.0) << "but for the format's rounding";
+  EXPECT_GT(finest, second);
+  EXPECT_GT(second, third);
+  EXPECT_GT(third, 20.0);
+}
+
+TEST_F(LevelsTest, GoOnAfterAnInterruption) {
+  test::save_ply(model, test::random_model(4, 20000, 2));
+  const std::string whole = folder / "whole";
+  ASSERT_TRUE(good(levels(whole)));
+  test::Program run(line(out));
+  while (!fs::exists(out + "/levels-run.json")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  run.send(SIGINT);
+  run.wait();
+  // However far it came: one SOG is complete, and one is not.
+  for (const char* file : {"0_0", "1_0"}) {
+    fs::create_directories(out + "/" + file);
+    fs::copy(whole + "/" + file, out + "/" + file,
+             fs::copy_options::overwrite_existing | fs::copy_options::recursive);
+  }
+  fs::remove(out + "/1_0/meta.json");
+  fs::remove(out + "/lod-meta.json");
+  for (const std::string& of : {whole, out}) test::write_text(of + "/0_0/means_l.webp", "as it was");
+  const Outcome outcome = levels(out);
+  ASSERT_TRUE(good(outcome));
+  EXPECT_NE(outcome.err.find("of 3 SOGs were in"), std::string::npos) << outcome.err;
+  EXPECT_EQ(contents(out), contents(whole));
+  const Outcome again = levels(out);
+  ASSERT_TRUE(good(again));
+  EXPECT_NE(again.err.find("3 of 3 SOGs were in"), std::string::npos) << again.err;
+}
+
+TEST_F(LevelsTest, TakeNoFolderOfOthers) {
+  ASSERT_TRUE(good(levels(out)));
+  const Files before = contents(out);
+  const auto refused = [&](const Arguments& more, const std::string& said) {
+    EXPECT_TRUE(ended(levels(out, more), 2, said));
+    EXPECT_EQ(contents(out), before);
+  };
+  refused({"--axes", "rub"}, "says other axes");
+  EXPECT_TRUE(ended(run_program({"levels", model, "-o", out}), 2, "says other leaf, levels"));
+  std::string other = test::read_text(model);
+  ++other[other.size() - 100];
+  test::write_text(model, other);
+  refused({}, "says other model");
+
+  test::write_text(folder / "mine/notes.txt", "");
+  EXPECT_TRUE(ended(levels(folder.path()), 2, "has other files"));
+  EXPECT_TRUE(ended(levels(model), 2, "is a file where a folder is needed"));
+  EXPECT_TRUE(ended(run_program({"levels", out, "-o", out}), 2, ""));
+  EXPECT_EQ(contents(out), before);
+}
+
+TEST_F(LevelsTest, SayWhatTheyCannotTake) {
+  EXPECT_TRUE(ended(levels(out, {"--levels", "0"}), 2, "--levels"));
+  EXPECT_TRUE(ended(run_program({"levels", model, "-o", out, "--leaf", "1"}), 2, "--leaf"));
+  EXPECT_TRUE(ended(levels(out, {"--lod", "1"}), 2, "--lod"));
+  EXPECT_TRUE(ended(run_program({"levels", folder / "none.ply", "-o", out}), 2, "none.ply"));
+  test::write_text(model, test::to_bytes(test::inria_file(0, 0)));
+  EXPECT_TRUE(ended(levels(out), 2, "holds no Gaussians"));
+  EXPECT_FALSE(fs::exists(out));
+}
+
+}  // namespace
+}  // namespace binosplat

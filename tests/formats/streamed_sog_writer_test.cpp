@@ -1,0 +1,222 @@
+#include "formats/streamed_sog_writer.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "formats/content.h"
+#include "formats/streamed_sog.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::json;
+using Files = std::map<std::string, std::string>;
+
+struct StreamedSogWriter : testing::Test {
+  StreamedSogWriter() { model.name = "model"; }
+
+  /// Files go to `files`; after `most` of them nothing more can be written.
+  LevelsWritten write(Files& files, std::size_t most = SIZE_MAX) const {
+    std::mutex one_at_a_time;
+    return write_streamed_sog(model, settings,
+                              {[&](const std::string& name) { return files.contains(name); },
+                               [&](const std::string& name, std::span<const std::byte> bytes) {
+                                 const std::lock_guard lock(one_at_a_time);
+                                 if (files.size() == most) throw std::runtime_error("interrupted");
+                                 EXPECT_FALSE(files.contains(name)) << name << " is written twice";
+                                 files[name] = as_text(bytes);
+                               }});
+  }
+
+  Model read(const Files& files, int lod) const {
+    const test::TempFolder folder;
+    for (const auto& [name, bytes] : files) {
+      std::filesystem::create_directories((folder / name).parent_path());
+      test::write_text(folder / name, bytes);
+    }
+    return load_streamed_sog(folder / "lod-meta.json", json::parse(files.at("lod-meta.json")), lod);
+  }
+
+  Model model = test::random_model(1, 3000, 1);
+  LevelSettings settings{.leaf = 200, .levels = 4};
+};
+
+/// Calls see(leaf) for each.
+void for_leaves(const json& node, const std::function<void(const json&)>& see) {
+  if (node.contains("lods")) see(node);
+  for (const json& child : node.value("children", json::array())) for_leaves(child, see);
+}
+
+bool within(const json& bound, const glm::vec3& p, double slack) {
+  for (int c = 0; c < 3; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    if (p[c] < bound["min"][k].get<double>() - slack || p[c] > bound["max"][k].get<double>() + slack)
+      return false;
+  }
+  return true;
+}
+
+/// How many Gaussians of a level that was read lie beyond the bounds of their leaf, where the offsets say
+/// that it is theirs. All of a level are in one file.
+int outside(const json& meta, const Model& level, int lod) {
+  int count = 0;
+  for_leaves(meta["tree"], [&](const json& leaf) {
+    const json& part = leaf["lods"][std::to_string(lod)];
+    const std::size_t first = part["offset"];
+    for (std::size_t i = first; i < first + part["count"].get<std::size_t>(); ++i)
+      count += i < level.count() && within(leaf["bound"], level.position[i], 1e-3) ? 0 : 1;
+  });
+  return count;
+}
+
+TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
+  Files files;
+  const LevelsWritten written = write(files);
+  json meta = json::parse(files.at("lod-meta.json"));
+  EXPECT_EQ(meta["version"], 1);
+  EXPECT_EQ(meta["lodLevels"], 4);
+  EXPECT_EQ(meta["counts"], json(written.gaussians));
+  EXPECT_EQ(meta["filenames"], json({"0_0/meta.json", "1_0/meta.json", "2_0/meta.json", "3_0/meta.json"}));
+  EXPECT_EQ(written.files, 4u);
+  EXPECT_EQ(written.kept, 0u);
+  std::size_t total = 0;
+  for (int lod = 0; lod < 4; ++lod) {
+    const Model level = read(files, lod);
+    EXPECT_EQ(level.count(), written.gaussians[static_cast<std::size_t>(lod)]);
+    total += level.count();
+    EXPECT_EQ(outside(meta, level, lod), 0);
+  }
+  EXPECT_EQ(meta["count"], total);
+  int leaves = 0;
+  for_leaves(meta["tree"], [&](const json& leaf) {
+    ++leaves;
+    const std::size_t finest = leaf["lods"]["0"]["count"];
+    EXPECT_LE(finest, 200u);
+    EXPECT_GE(finest, 100u);
+    for (std::size_t lod = 1; lod < 4; ++lod)
+      EXPECT_EQ(leaf["lods"][std::to_string(lod)]["count"], (finest + (1u << lod) - 1) >> lod);
+  });
+  EXPECT_EQ(leaves, 16);
+  EXPECT_EQ(written.gaussians[0], model.count());
+  EXPECT_THROW(read(files, 4), Error);
+
+  // Planted: the offsets of two leaves are exchanged.
+  std::vector<json*> parts;
+  const std::function<void(json&)> walk = [&](json& node) {
+    if (node.contains("lods")) parts.push_back(&node["lods"]["0"]);
+    for (json& child : node["children"]) walk(child);
+  };
+  walk(meta["tree"]);
+  std::swap((*parts.front())["offset"], (*parts.back())["offset"]);
+  EXPECT_GT(outside(meta, read(files, 0), 0), 100);
+}
+
+/// Gaussians by their places, which rounding hardly moves.
+std::vector<std::size_t> by_x(const Model& model) {
+  std::vector<std::size_t> order(model.count());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return model.position[a].x < model.position[b].x; });
+  return order;
+}
+
+TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
+  for (std::size_t i = 0; i < model.count(); ++i)  // farther apart than a step
+    model.position[i].x = static_cast<float>((i * 977) % model.count()) / 300.0f;
+  Files files;
+  write(files);
+  const Model level = read(files, 0);
+  ASSERT_EQ(level.count(), model.count());
+  EXPECT_EQ(level.degree, model.degree);
+  const auto a = by_x(model), b = by_x(level);
+  double opacity = 0.0, colour = 0.0, scale = 0.0, place = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const std::size_t i = a[k], j = b[k];
+    place = std::max<double>(place, glm::distance(model.position[i], level.position[j]));
+    opacity = std::max<double>(opacity, std::abs(model.opacity[i] - level.opacity[j]));
+    scale = std::max<double>(scale, glm::distance(glm::log(model.scale[i]), glm::log(level.scale[j])));
+    for (std::size_t c = 0; c < 3; ++c)
+      colour = std::max<double>(colour, std::abs(model.sh[12 * i + c] - level.sh[12 * j + c]));
+  }
+  EXPECT_LT(place, 1e-3);
+  EXPECT_LE(opacity, 0.5 / 255.0 + 1e-6);
+  EXPECT_LT(scale, 0.1);
+  EXPECT_LT(colour, 0.05);
+}
+
+TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
+  Files whole;
+  write(whole);
+  ASSERT_EQ(whole.size(), 4u * 8 + 1);  // seven pictures and meta.json each
+  for (const std::size_t most : {0, 1, 8, 9, 20, 32}) {
+    Files files;
+    EXPECT_THROW(write(files, most), std::runtime_error);
+    ASSERT_EQ(files.size(), most);
+    EXPECT_FALSE(files.contains("lod-meta.json"));
+    std::size_t complete = 0;
+    for (int lod = 0; lod < 4; ++lod) {
+      const std::string folder = std::to_string(lod) + "_0/";
+      complete += files.contains(folder + "meta.json") ? 1 : 0;
+      // Pictures without meta.json are written again.
+      if (!files.contains(folder + "meta.json"))
+        std::erase_if(files, [&](const auto& file) { return file.first.starts_with(folder); });
+    }
+    EXPECT_EQ(files.size(), 8 * complete) << "meta.json is written last";
+    EXPECT_EQ(write(files).kept, complete);
+    EXPECT_EQ(files, whole) << most;
+  }
+  Files again = whole;
+  again.erase("lod-meta.json");
+  EXPECT_EQ(write(again).kept, 4u);
+  EXPECT_EQ(again, whole);
+}
+
+TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
+  settings.file = 1000;   // five leaves of 188 of the finest level
+  settings.piece = 1500;  // eight leaves
+  Files files;
+  EXPECT_EQ(write(files).files, 10u);
+  const json meta = json::parse(files.at("lod-meta.json"));
+  std::map<std::string, std::size_t> ends;
+  for_leaves(meta["tree"], [&](const json& leaf) {
+    for (const auto& [lod, part] : leaf["lods"].items()) {
+      const std::string file = meta["filenames"][part["file"].get<std::size_t>()];
+      EXPECT_EQ(file[0], lod[0]);
+      EXPECT_EQ(part["offset"], ends[file]);
+      ends[file] += part["count"].get<std::size_t>();
+    }
+  });
+  EXPECT_EQ(ends.size(), 10u);
+  for (const auto& [file, end] : ends) {
+    EXPECT_LE(end, 1000u) << file;
+    EXPECT_EQ(json::parse(files.at(file))["count"], end) << file;
+  }
+  for (int lod = 0; lod < 4; ++lod)
+    EXPECT_EQ(read(files, lod).count(), meta["counts"][static_cast<std::size_t>(lod)]);
+  // The second half goes on by itself.
+  Files half = files;
+  half.erase("lod-meta.json");
+  std::erase_if(half, [](const auto& file) { return file.first.starts_with("1_1/"); });
+  EXPECT_EQ(write(half).kept, 9u);
+  EXPECT_EQ(half, files);
+}
+
+TEST_F(StreamedSogWriter, WritesTheSameByOneThread) {
+  settings.file = 1000;
+  Files many, one;
+  write(many);
+  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  write(one);
+  EXPECT_EQ(one, many);
+}
+
+}  // namespace
+}  // namespace binosplat
