@@ -96,7 +96,7 @@ void add_levels(CLI::App& program, Command& command) {
       ->check(range(1, 16));
   sub->add_option(
          "--leaf", o->settings.leaf,
-         "Gaussians of the finest level, at most, that get a level of their own\nas one looks (16384)")
+         "Gaussians of the finest level, at most, in a part that is seen at a\nlevel of its own (16384)")
       ->type_name("N")
       ->check(range(64, 131072));
   add_lod_option(*sub, o->scene);
@@ -105,7 +105,7 @@ void add_levels(CLI::App& program, Command& command) {
       "A run that was interrupted goes on where it ended when it is started again.\n"
       "Examples:\n"
       "  binosplat levels garden.ply -o garden\n"
-      "  binosplat render garden --detail 2\n");
+      "  binosplat render garden --detail 5");
   sub->callback([o, &command] { command = [o] { return levels(*o); }; });
 }
 

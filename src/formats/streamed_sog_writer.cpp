@@ -26,6 +26,8 @@ using nlohmann::ordered_json;
 // A pixel's share of the distance between Gaussians, by which levels are chosen, where a level is seen. They
 // lie denser than on a disc as wide as the box.
 constexpr double pixel_share = 0.2;
+// Which pairs are merged is judged once for all levels, as this one sees them.
+constexpr int judged_level = 3;
 
 constexpr const char* meta_name = "/meta.json";
 constexpr Bounds nowhere{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
@@ -78,7 +80,7 @@ Model finest(const Model& model, const Leaf& leaf) {
 
 Levels levels_of(const Model& model, const Leaf& leaf, int coarsest) {
   Levels levels{finest(model, leaf)};
-  Merger merger(levels[0]);
+  Merger merger(levels[0], leaf.pixel(judged_level));
   std::vector<Model> merged;
   for (int level = 1; level <= coarsest; ++level) {
     merger.bring_to(leaf.count(level));

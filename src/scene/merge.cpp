@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t neighbours = 8;
 // What a nat of shape is worth beside a squared difference of colours of 1.
-constexpr double shape_weight = 0.02;
+constexpr double shape_weight = 0.3;
 // Deviations count for no less than this share of the merged one's: from afar nobody sees less.
 constexpr double thinnest = 0.5;
 constexpr double opaque_most = 0.999;
@@ -41,6 +41,12 @@ double shadow(const glm::dvec3& deviations) {
   const glm::dvec3 d = glm::max(deviations, 1e-12);
   const double sum = std::pow(d.x * d.y, p) + std::pow(d.x * d.z, p) + std::pow(d.y * d.z, p);
   return std::numbers::pi * std::pow(sum / 3.0, 1.0 / p);
+}
+
+/// Where a pixel covers `pixel` world units.
+double seen_area(const Model& model, const glm::dvec3& deviations, double pixel) {
+  const double low_pass = model.antialiased ? 0.0 : model.kernel_px2 * pixel * pixel;
+  return shadow(glm::sqrt(deviations * deviations + low_pass));
 }
 
 double opacity_of(const Model& model, std::uint32_t i) {
@@ -130,11 +136,12 @@ using Tree =
 /// Each is named by its first member.
 class Merger::Clusters {
  public:
-  explicit Clusters(const Model& model)
+  Clusters(const Model& model, double pixel)
       : model_(model), next_(model.count()), ages_(model.count()), near_(model.count()) {
     std::iota(next_.begin(), next_.end(), 0u);
     last_ = into_ = next_;
-    for (const std::uint32_t i : next_) parts_.push_back(part_of(model, i, shadow(model.scale[i])));
+    for (const std::uint32_t i : next_)
+      parts_.push_back(part_of(model, i, seen_area(model, model.scale[i], pixel)));
     left_ = model.count();
   }
 
@@ -263,22 +270,18 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
     append(merged, model, members.front(), 1);
     return;
   }
-  const double low_pass = model.antialiased ? 0.0 : model.kernel_px2 * pixel * pixel;
-  const auto area_of = [&](const glm::dvec3& deviations) {
-    return shadow(glm::sqrt(deviations * deviations + low_pass));
-  };
   Part sum;
   double depth = 0.0;  // optical, times area
   std::vector<double> sh(values);
   for (const std::uint32_t i : members) {
-    const double area = area_of(model.scale[i]);
+    const double area = seen_area(model, model.scale[i], pixel);
     const Part part = part_of(model, i, area);
     sum = i == members.front() ? part : sum_of(sum, part);
     depth -= std::log(1.0 - opacity_of(model, i)) * area;
     for (std::size_t k = 0; k < values; ++k) sh[k] += part.weight * model.sh[i * values + k];
   }
   const Axes axes = axes_of(sum.covariance);
-  const double area = area_of(axes.deviations), square = even_share * area;
+  const double area = seen_area(model, axes.deviations, pixel), square = even_share * area;
   const double opacity = std::min(sum.weight, square * (1.0 - std::exp(-depth / square))) / area;
   const glm::dquat turn = glm::normalize(glm::quat_cast(axes.turn));
   merged.position.emplace_back(sum.mean);
@@ -288,7 +291,7 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
   for (const double value : sh) merged.sh.push_back(static_cast<float>(value / sum.weight));
 }
 
-Merger::Merger(const Model& model) : clusters_(std::make_unique<Clusters>(model)) {}
+Merger::Merger(const Model& model, double pixel) : clusters_(std::make_unique<Clusters>(model, pixel)) {}
 Merger::~Merger() = default;
 void Merger::bring_to(std::size_t target) { clusters_->bring_to(target); }
 Model Merger::result(double pixel) const { return clusters_->result(pixel); }

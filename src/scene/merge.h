@@ -28,8 +28,9 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
 /// squared difference of the pair's colours, times the area that shows it.
 class Merger {
  public:
-  /// The model, which outlives this, has one Gaussian at least.
-  explicit Merger(const Model& model);
+  /// The model, which outlives this, has one Gaussian at least. Areas are seen where a pixel covers `pixel`
+  /// world units.
+  Merger(const Model& model, double pixel);
   ~Merger();
 
   /// Merges until no more than `target` are left, or one.

@@ -33,7 +33,7 @@ Model merged(const Model& model, double pixel = 0.0) {
 }
 
 Model reduced(const Model& model, std::size_t target, double pixel = 0.0) {
-  Merger merger(model);
+  Merger merger(model, pixel);
   merger.bring_to(target);
   return merger.result(pixel);
 }
@@ -172,7 +172,7 @@ TEST(Merge, LeavesOneAsItIs) {
 
 TEST(Merger, ComesToTheCountThatIsAsked) {
   const Model model = test::random_model(5, 300, 1);
-  Merger merger(model);
+  Merger merger(model, 0.01);
   for (const std::size_t target : {500, 300, 299, 150, 149, 38, 2, 1, 0}) {
     merger.bring_to(target);
     const Model fewer = merger.result(0.01);
