@@ -23,25 +23,32 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// A pixel's share of the distance between Gaussians, by which levels are chosen, where a level is seen. They
-// lie denser than on a disc as wide as the box.
+// A pixel as a level is seen, of the distance between Gaussians by which levels are chosen
+// (formats/detail.h): that is as if they lay on a square as wide as the box's diagonal, and they lie denser.
 constexpr double pixel_share = 0.2;
 // Which pairs are merged is judged once for all levels, as this one sees them.
 constexpr int judged_level = 3;
 
 constexpr const char* meta_name = "/meta.json";
-constexpr Bounds nowhere{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
+
+struct Box {
+  glm::dvec3 low{INFINITY}, high{-INFINITY};
+
+  void include(const glm::dvec3& lowest, const glm::dvec3& highest) {
+    low = glm::min(low, lowest);
+    high = glm::max(high, highest);
+  }
+};
 
 /// A leaf of the tree.
 struct Leaf {
   std::span<const std::uint32_t> indices;
-  Bounds bounds = nowhere;  // around ellipsoids of one standard deviation
-  ordered_json lods;        // where its levels lie
+  Box box;            // around ellipsoids of one standard deviation
+  ordered_json lods;  // where its levels lie
 
   std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
   double pixel(int level) const {
-    const double diagonal = glm::distance(glm::dvec3(bounds.low), glm::dvec3(bounds.high));
-    return pixel_share * diagonal / std::sqrt(static_cast<double>(count(level)));
+    return pixel_share * glm::distance(box.low, box.high) / std::sqrt(static_cast<double>(count(level)));
   }
 };
 
@@ -64,11 +71,10 @@ using Levels = std::vector<Model>;  // of a leaf, from the finest
 void measure(const Model& model, Leaf& leaf) {
   for (const std::uint32_t i : leaf.indices) {
     const glm::vec4& q = model.rotation[i];
-    const glm::mat3 turn = glm::mat3_cast(glm::quat(q.x, q.y, q.z, q.w));
-    glm::vec3 reach(0.0f);
-    for (int k = 0; k < 3; ++k) reach += glm::abs(turn[k]) * model.scale[i][k];
-    leaf.bounds.low = glm::min(leaf.bounds.low, model.position[i] - reach);
-    leaf.bounds.high = glm::max(leaf.bounds.high, model.position[i] + reach);
+    const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
+    glm::dvec3 reach(0.0);
+    for (int k = 0; k < 3; ++k) reach += glm::abs(turn[k]) * static_cast<double>(model.scale[i][k]);
+    leaf.box.include(glm::dvec3(model.position[i]) - reach, glm::dvec3(model.position[i]) + reach);
   }
 }
 
@@ -90,7 +96,7 @@ Levels levels_of(const Model& model, const Leaf& leaf, int coarsest) {
   return levels;
 }
 
-ordered_json json_of(const Bounds& b) {
+ordered_json json_of(const Box& b) {
   return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
 }
 
@@ -152,7 +158,7 @@ class Writer {
   void add_leaves(const SpaceNode& node) {
     for (const SpaceNode& child : node.children) add_leaves(child);
     if (node.children.empty())
-      leaves_.push_back({std::span(tree_.order).subspan(node.first, node.count), nowhere, {}});
+      leaves_.push_back({std::span(tree_.order).subspan(node.first, node.count), {}, {}});
   }
 
   void add_files(Piece& piece, int level) {
@@ -195,24 +201,24 @@ class Writer {
         append(all, level, 0, level.count());
       }
       const ZipEntries entries = sog_files(all);
-      for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry)  // meta.json last
-        folder_.write(file.folder + "/" + entry->first, entry->second);
+      for (std::size_t k = entries.size(); k-- > 0;)  // meta.json last
+        folder_.write(file.folder + "/" + entries[k].first, entries[k].second);
       count(file.count);
     });
   }
 
   /// The node and the box around it, from the next leaf on.
-  std::pair<ordered_json, Bounds> node_json(const SpaceNode& node, std::size_t& next_leaf) const {
+  std::pair<ordered_json, Box> node_json(const SpaceNode& node, std::size_t& next_leaf) const {
     if (node.children.empty()) {
       const Leaf& leaf = leaves_[next_leaf++];
-      return {{{"bound", json_of(leaf.bounds)}, {"lods", leaf.lods}}, leaf.bounds};
+      return {{{"bound", json_of(leaf.box)}, {"lods", leaf.lods}}, leaf.box};
     }
-    Bounds around = nowhere;
+    Box around;
     ordered_json children;
     for (const SpaceNode& child : node.children) {
-      auto [json, bounds] = node_json(child, next_leaf);
+      auto [json, box] = node_json(child, next_leaf);
       children.push_back(std::move(json));
-      around = {glm::min(around.low, bounds.low), glm::max(around.high, bounds.high)};
+      around.include(box.low, box.high);
     }
     return {{{"bound", json_of(around)}, {"children", std::move(children)}}, around};
   }

@@ -100,7 +100,8 @@ Part sum_of(const Part& a, const Part& b) {
 
 double log_det(glm::dmat3 covariance, double least) {
   for (int k = 0; k < 3; ++k) covariance[k][k] += least;
-  return std::log(glm::determinant(covariance));
+  return std::log(
+      std::max(glm::determinant(covariance), least * least * least));  // as it is but for rounding
 }
 
 /// What it costs to merge two.

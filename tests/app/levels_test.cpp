@@ -123,6 +123,14 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   EXPECT_EQ(contents(out), before);
 }
 
+TEST(LevelsScaffold, AreRefused) {
+  const test::TempFolder folder;
+  fs::create_directories(folder / "model");
+  test::write_scaffold(folder / "model", test::random_scaffold(1, {.anchors = 10}));
+  EXPECT_TRUE(ended(run_program({"levels", folder / "model", "-o", folder / "out"}), 2,
+                    "is a Scaffold-GS model, which makes its Gaussians anew for each eye"));
+}
+
 TEST_F(LevelsTest, SayWhatTheyCannotTake) {
   EXPECT_TRUE(ended(levels(out, {"--levels", "0"}), 2, "--levels"));
   EXPECT_TRUE(ended(run_program({"levels", model, "-o", out, "--leaf", "1"}), 2, "--leaf"));
@@ -130,6 +138,10 @@ TEST_F(LevelsTest, SayWhatTheyCannotTake) {
   EXPECT_TRUE(ended(run_program({"levels", folder / "none.ply", "-o", out}), 2, "none.ply"));
   test::write_text(model, test::to_bytes(test::inria_file(0, 0)));
   EXPECT_TRUE(ended(levels(out), 2, "holds no Gaussians"));
+  test::PlyFile none = test::small_model();
+  for (std::size_t i = 0; i < none.rows.size(); ++i) none.at(i, "x") = NAN;
+  test::write_text(model, test::to_bytes(none));
+  EXPECT_TRUE(ended(levels(out), 2, "all of its 300 Gaussians have values that are not finite"));
   EXPECT_FALSE(fs::exists(out));
 }
 

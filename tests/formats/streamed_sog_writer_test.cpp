@@ -209,6 +209,28 @@ TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
   EXPECT_EQ(half, files);
 }
 
+TEST_F(StreamedSogWriter, TakesOneGaussian) {
+  model = test::random_model(1, 1, 0);
+  Files files;
+  EXPECT_EQ(write(files).gaussians, std::vector<std::size_t>(4, 1));
+  for (int lod = 0; lod < 4; ++lod) EXPECT_EQ(read(files, lod).count(), 1u);
+}
+
+// Farther apart than fp32 can tell, and larger.
+TEST_F(StreamedSogWriter, TakesWhatIsFarAway) {
+  for (std::size_t i = 0; i < model.count(); i += 100) {
+    model.position[i] *= 3e37f;
+    model.scale[i] = glm::vec3(3e38f);
+  }
+  Files files;
+  const LevelsWritten written = write(files);
+  ASSERT_EQ(written.losses.size(), 1u);
+  EXPECT_NE(written.losses[0].find("30 of 3000 Gaussians have scales beyond e^-20 to e^20"),
+            std::string::npos);
+  for (int lod = 0; lod < 4; ++lod)
+    EXPECT_EQ(read(files, lod).count(), written.gaussians[static_cast<std::size_t>(lod)]);
+}
+
 TEST_F(StreamedSogWriter, WritesTheSameByOneThread) {
   settings.file = 1000;
   Files many, one;
