@@ -32,8 +32,8 @@ struct LevelsWritten {
 };
 
 /// Writes a model in the frame of SOG. Level 0 is the model itself, the others are merged from it
-/// (scene/merge.h), for pixels as far apart as a leaf's Gaussians are by the measure that levels are chosen
-/// by (formats/detail.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
+/// (scene/merge.h), for pixels of a fifth of the distance between a leaf's Gaussians by which levels are
+/// chosen (formats/detail.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
 /// bytes. Progress is shown.

@@ -11,6 +11,7 @@
 #include "measure/metrics.h"
 #include "support/models.h"
 #include "support/scaffold_files.h"
+#include "support/scenes.h"
 
 namespace binosplat {
 namespace {
@@ -69,10 +70,10 @@ TEST_F(LevelsTest, AreReadAndDrawn) {
   const Image exact = picture(model, {});
   const auto psnr = [&](const Arguments& more) { return measure::psnr(exact, picture(out, more)); };
   const double finest = psnr({"--lod", "0"}), second = psnr({"--lod", "1"}), third = psnr({"--lod", "2"});
-  EXPECT_GT(finest, 35.0) << "but for the format's rounding";
+  EXPECT_GT(finest, 50.0) << "but for the format's rounding";
   EXPECT_GT(finest, second);
   EXPECT_GT(second, third);
-  EXPECT_GT(third, 20.0);
+  EXPECT_GT(third, 34.0);
 }
 
 TEST_F(LevelsTest, GoOnAfterAnInterruption) {
@@ -121,6 +122,24 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   EXPECT_TRUE(ended(levels(model), 2, "is a file where a folder is needed"));
   EXPECT_TRUE(ended(run_program({"levels", out, "-o", out}), 2, ""));
   EXPECT_EQ(contents(out), before);
+}
+
+// 38.1 and 33.1 dB; where areas leave the low-pass out 31.0 and 28.5.
+TEST(LevelsScenes, LookLikeFox) {
+  REQUIRE_SCENE("fox", scene);
+  const test::TempFolder folder;
+  ASSERT_TRUE(good(run_program({"levels", scene / "fox.ply", "-o", folder / "fox", "--levels", "3"})));
+  const auto picture = [&](const std::string& model, const char* lod) {
+    std::vector<std::string> line = {"render", model,  "--cameras",     scene / "cameras.json",
+                                     "--view", "0001", "--mono",        "--size",
+                                     "88x160", "-o",   folder / "p.png"};
+    if (lod != nullptr) line.insert(line.end(), {"--lod", lod});
+    EXPECT_TRUE(good(run_program(line)));
+    return load_image(folder / "p.png");
+  };
+  const Image exact = picture(scene / "fox.ply", nullptr);
+  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "1")), 37.0);
+  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "2")), 32.0);
 }
 
 TEST(LevelsScaffold, AreRefused) {
