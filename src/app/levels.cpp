@@ -49,8 +49,8 @@ nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   return run;
 }
 
-/// That the folder is empty, or of such a run.
-bool check_folder(const LevelsOptions& o, const nlohmann::ordered_json& run) {
+/// Whether the folder has an earlier run like this one; throws Error where it has anything else.
+bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   const fs::path folder = o.output, file = folder / "levels-run.json";
   check_output(file);
   check_output(folder / "lod-meta.json");
@@ -65,7 +65,7 @@ bool check_folder(const LevelsOptions& o, const nlohmann::ordered_json& run) {
 
 ExitCode levels(const LevelsOptions& o) {
   const nlohmann::ordered_json run = identity_of(o);
-  const bool again = check_folder(o, run);
+  const bool again = has_run(o, run);
   Model model = load_scene(o.scene);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(ModelFormat::sog));
