@@ -7,16 +7,20 @@
 
 #include "app/command.h"
 #include "app/content_key.h"
+#include "app/context_options.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
 #include "app/option_checks.h"
 #include "app/run_file.h"
 #include "base/log.h"
+#include "base/mapped_file.h"
 #include "base/output_file.h"
+#include "formats/content.h"
 #include "formats/model_output.h"
 #include "formats/streamed_sog_writer.h"
 #include "scene/axes.h"
 #include "study/fields.h"
+#include "study/level_errors.h"
 
 namespace binosplat::app {
 
@@ -28,16 +32,19 @@ struct LevelsOptions {
   SceneOptions scene;
   std::string output;
   LevelSettings settings;
+  ContextOptions context;
 };
 
 LevelFolder folder_at(const fs::path& folder) {
-  return {[folder](const std::string& name) { return fs::exists(folder / name); },
-          [folder](const std::string& name, std::span<const std::byte> bytes) {
-            const Uninterrupted hold;
-            OutputFile file(folder / name);
-            file.write(bytes);
-            file.commit();
-          }};
+  return {
+      [folder](const std::string& name) { return fs::exists(folder / name); },
+      [folder](const std::string& name) { return std::string(as_text(MappedFile(folder / name).bytes())); },
+      [folder](const std::string& name, std::span<const std::byte> bytes) {
+        const Uninterrupted hold;
+        OutputFile file(folder / name);
+        file.write(bytes);
+        file.commit();
+      }};
 }
 
 /// What tells a run from others.
@@ -70,7 +77,10 @@ ExitCode levels(const LevelsOptions& o) {
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(ModelFormat::sog));
   if (!again) save_json(fs::path(o.output) / "levels-run.json", run);
-  const LevelsWritten written = write_streamed_sog(model, o.settings, folder_at(o.output));
+  const auto context = open_context(o.context);
+  const LevelsWritten written = write_streamed_sog(
+      model, o.settings, folder_at(o.output),
+      [&](std::span<const std::vector<Model>> leaves) { return study::level_errors(*context, leaves); });
   for (const std::string& loss : written.losses) log_warning("{}", loss);
   if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
   fmt::print("level   Gaussians\n");
@@ -101,6 +111,7 @@ void add_levels(CLI::App& program, Command& command) {
       ->check(range(64, 131072));
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
+  add_context_options(*sub, o->context);
   sub->footer(
       "A run that was interrupted goes on where it ended when it is started again.\n"
       "Examples:\n"

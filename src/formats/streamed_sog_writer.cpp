@@ -43,8 +43,9 @@ struct Box {
 /// A leaf of the tree.
 struct Leaf {
   std::span<const std::uint32_t> indices;
-  Box box;            // around ellipsoids of one standard deviation
-  ordered_json lods;  // where its levels lie
+  Box box;                   // around ellipsoids of one standard deviation
+  ordered_json lods;         // where its levels lie, and what they lose
+  double error_pixel = 1.0;  // the narrowest by which that was found
 
   std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
   double pixel(int level) const {
@@ -62,6 +63,7 @@ struct File {
 
 /// Leaves that are worked on together, and the files in which all their levels lie.
 struct Piece {
+  std::string errors;  // the file that tells what its levels lose
   std::size_t first_leaf = 0, leaves = 0;
   std::vector<File> files;
 };
@@ -100,12 +102,30 @@ ordered_json json_of(const Box& b) {
   return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
 }
 
+/// Four digits are more than two directions tell.
+double rounded(double error) { return std::stod(fmt::format("{:.4g}", error)); }
+
+ordered_json json_of(const std::vector<LeafErrors>& leaves) {
+  ordered_json json = ordered_json::array();
+  for (const LeafErrors& leaf : leaves) {
+    ordered_json errors = ordered_json::array();
+    for (const std::vector<double>& of_level : leaf.of_level) {
+      ordered_json& row = errors.emplace_back(ordered_json::array());
+      for (const double error : of_level) row.push_back(rounded(error));
+    }
+    json.push_back({{"pixel", leaf.pixel}, {"errors", std::move(errors)}});
+  }
+  return json;
+}
+
 class Writer {
  public:
-  Writer(const Model& model, const LevelSettings& settings, const LevelFolder& folder)
+  Writer(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
+         const JudgeLevels& judge)
       : model_(model),
         settings_(settings),
         folder_(folder),
+        judge_(judge),
         tree_(make_space_tree(model.position, settings.leaf)),
         gaussians_(static_cast<std::size_t>(settings.levels)) {
     plan(tree_.root);
@@ -119,12 +139,13 @@ class Writer {
       written.kept +=
           std::erase_if(piece.files, [&](const File& file) { return folder_.has(file.folder + meta_name); });
       for (const File& file : piece.files) work += file.count;
-      for (std::size_t i = 0; i < piece.leaves && !piece.files.empty(); ++i)
+      for (std::size_t i = 0; i < piece.leaves && !is_done(piece); ++i)
         work += leaves_[piece.first_leaf + i].count(0);
     }
     Progress progress("writing levels of detail", work);
     for (const Piece& piece : pieces_) {
-      if (!piece.files.empty()) write(piece, progress);
+      if (!is_done(piece)) write(piece, progress);
+      tell_errors(piece);
     }
     std::size_t leaf = 0;
     const ordered_json meta = {
@@ -142,13 +163,15 @@ class Writer {
   }
 
  private:
+  bool is_done(const Piece& piece) const { return piece.files.empty() && folder_.has(piece.errors); }
+
   /// Which leaves are a piece, and what of them goes where.
   void plan(const SpaceNode& node) {
     if (node.count > settings_.piece && !node.children.empty()) {
       for (const SpaceNode& child : node.children) plan(child);
       return;
     }
-    Piece piece{leaves_.size(), 0, {}};
+    Piece piece{fmt::format("errors_{}.json", pieces_.size()), leaves_.size(), 0, {}};
     add_leaves(node);
     piece.leaves = leaves_.size() - piece.first_leaf;
     for (int level = 0; level < settings_.levels; ++level) add_files(piece, level);
@@ -180,7 +203,8 @@ class Writer {
 
   void write(const Piece& piece, Progress& progress) {
     const std::vector<File>& files = piece.files;
-    const int coarsest = files.back().level;
+    const bool judged = folder_.has(piece.errors);
+    const int coarsest = judged ? files.back().level : settings_.levels - 1;
     std::mutex counting;
     const auto count = [&](std::size_t gaussians) {
       const std::lock_guard lock(counting);
@@ -192,6 +216,10 @@ class Writer {
       levels[i] = levels_of(model_, leaf, coarsest);
       count(leaf.count(0));
     });
+    if (!judged) {
+      const std::string text = json_of(judge_(levels)).dump() + "\n";
+      folder_.write(piece.errors, std::as_bytes(std::span(text)));
+    }
     parallel_for(files.size(), [&](std::size_t i) {
       const File& file = files[i];
       Model all = without_gaussians(model_);
@@ -207,11 +235,22 @@ class Writer {
     });
   }
 
+  void tell_errors(const Piece& piece) {
+    const ordered_json of_leaves = ordered_json::parse(folder_.read(piece.errors));
+    for (std::size_t i = 0; i < piece.leaves; ++i) {
+      Leaf& leaf = leaves_[piece.first_leaf + i];
+      const ordered_json& of_leaf = of_leaves.at(i);
+      leaf.error_pixel = of_leaf.at("pixel");
+      for (int level = 0; level < settings_.levels; ++level)
+        leaf.lods[std::to_string(level)]["errors"] = of_leaf.at("errors").at(static_cast<std::size_t>(level));
+    }
+  }
+
   /// The node and the box around it, from the next leaf on.
   std::pair<ordered_json, Box> node_json(const SpaceNode& node, std::size_t& next_leaf) const {
     if (node.children.empty()) {
       const Leaf& leaf = leaves_[next_leaf++];
-      return {{{"bound", json_of(leaf.box)}, {"lods", leaf.lods}}, leaf.box};
+      return {{{"bound", json_of(leaf.box)}, {"pixel", leaf.error_pixel}, {"lods", leaf.lods}}, leaf.box};
     }
     Box around;
     ordered_json children;
@@ -226,6 +265,7 @@ class Writer {
   const Model& model_;
   const LevelSettings& settings_;
   const LevelFolder& folder_;
+  const JudgeLevels& judge_;
   SpaceTree tree_;
   std::vector<Leaf> leaves_;
   std::vector<Piece> pieces_;
@@ -237,9 +277,9 @@ class Writer {
 
 }  // namespace
 
-LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings,
-                                 const LevelFolder& folder) {
-  return Writer(model, settings, folder).write();
+LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
+                                 const JudgeLevels& judge) {
+  return Writer(model, settings, folder, judge).write();
 }
 
 }  // namespace binosplat

@@ -18,10 +18,22 @@ struct LevelSettings {
   std::size_t piece = 1048576;  // of the finest level, at most, in memory at a time; no SOG has leaves of two
 };
 
+/// What the levels of a leaf lose: squared errors of the leaf's picture, by itself over black, against that
+/// of its finest level, summed over pixels and meaned over channels (px times squared colour); by level,
+/// where pixels are `pixel`, 2 `pixel`, 4 `pixel` ... wide.
+struct LeafErrors {
+  double pixel = 1.0;  // world units
+  std::vector<std::vector<double>> of_level;
+};
+
+/// Finds them for leaves, given their levels from the finest.
+using JudgeLevels = std::function<std::vector<LeafErrors>(std::span<const std::vector<Model>> leaves)>;
+
 /// The folder that a streamed SOG is written to; names are relative to it. Files may be written by several
 /// threads at a time.
 struct LevelFolder {
   std::function<bool(const std::string& name)> has;
+  std::function<std::string(const std::string& name)> read;
   std::function<void(const std::string& name, std::span<const std::byte> bytes)> write;
 };
 
@@ -36,8 +48,9 @@ struct LevelsWritten {
 /// chosen (formats/detail.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
-/// bytes. Progress is shown.
-LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings,
-                                 const LevelFolder& folder);
+/// bytes. What levels lose is kept beside the SOGs until then, in errors_0.json and so on, and told in
+/// lod-meta.json: a leaf has "pixel", and each of its lods "errors". Progress is shown.
+LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
+                                 const JudgeLevels& judge);
 
 }  // namespace binosplat

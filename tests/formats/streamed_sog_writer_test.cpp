@@ -28,12 +28,26 @@ struct StreamedSogWriter : testing::Test {
     std::mutex one_at_a_time;
     return write_streamed_sog(model, settings,
                               {[&](const std::string& name) { return files.contains(name); },
+                               [&](const std::string& name) { return files.at(name); },
                                [&](const std::string& name, std::span<const std::byte> bytes) {
                                  const std::lock_guard lock(one_at_a_time);
                                  if (files.size() == most) throw std::runtime_error("interrupted");
                                  EXPECT_FALSE(files.contains(name)) << name << " is written twice";
                                  files[name] = as_text(bytes);
-                               }});
+                               }},
+                              errors_of);
+  }
+
+  /// By what can be told apart in lod-meta.json.
+  static std::vector<LeafErrors> errors_of(std::span<const std::vector<Model>> leaves) {
+    std::vector<LeafErrors> errors;
+    for (const std::vector<Model>& levels : leaves) {
+      LeafErrors& leaf = errors.emplace_back(LeafErrors{levels[0].position[0].x + 100.0, {}});
+      for (std::size_t level = 0; level < levels.size(); ++level)
+        leaf.of_level.push_back(
+            {0.123456 * static_cast<double>(level), static_cast<double>(levels[level].count())});
+    }
+    return errors;
   }
 
   Model read(const Files& files, int lod) const {
@@ -101,8 +115,15 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
     const std::size_t finest = leaf["lods"]["0"]["count"];
     EXPECT_LE(finest, 200u);
     EXPECT_GE(finest, 100u);
-    for (std::size_t lod = 1; lod < 4; ++lod)
-      EXPECT_EQ(leaf["lods"][std::to_string(lod)]["count"], (finest + (1u << lod) - 1) >> lod);
+    for (std::size_t lod = 0; lod < 4; ++lod) {
+      const json& part = leaf["lods"][std::to_string(lod)];
+      EXPECT_EQ(part["count"], (finest + (1u << lod) - 1) >> lod);
+      const double error = lod == 1 ? 0.1235 : lod == 2 ? 0.2469 : lod == 3 ? 0.3704 : 0.0;
+      EXPECT_EQ(part["errors"], json({error, part["count"].get<double>()})) << "four digits";
+    }
+    const double x = leaf["pixel"].get<double>() - 100.0;
+    EXPECT_GE(x, leaf["bound"]["min"][0].get<double>()) << "of this leaf";
+    EXPECT_LE(x, leaf["bound"]["max"][0].get<double>());
   });
   EXPECT_EQ(leaves, 16);
   EXPECT_EQ(written.gaussians[0], model.count());
@@ -155,7 +176,7 @@ TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
 TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
   Files whole;
   write(whole);
-  ASSERT_EQ(whole.size(), 4u * 8 + 1);  // seven pictures and meta.json each
+  ASSERT_EQ(whole.size(), 4u * 8 + 2);  // seven pictures and meta.json each
   for (const std::size_t most : {0, 1, 8, 9, 20, 32}) {
     Files files;
     EXPECT_THROW(write(files, most), std::runtime_error);
@@ -169,12 +190,16 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
       if (!files.contains(folder + "meta.json"))
         std::erase_if(files, [&](const auto& file) { return file.first.starts_with(folder); });
     }
-    EXPECT_EQ(files.size(), 8 * complete) << "meta.json is written last";
+    EXPECT_EQ(files.size(), 8 * complete + files.count("errors_0.json")) << "meta.json is written last";
     EXPECT_EQ(write(files).kept, complete);
     EXPECT_EQ(files, whole) << most;
   }
   Files again = whole;
   again.erase("lod-meta.json");
+  EXPECT_EQ(write(again).kept, 4u);
+  EXPECT_EQ(again, whole);
+  again.erase("lod-meta.json");
+  again.erase("errors_0.json");
   EXPECT_EQ(write(again).kept, 4u);
   EXPECT_EQ(again, whole);
 }
