@@ -42,7 +42,9 @@ void check(const SpaceTree& tree, const SpaceNode& node, const std::vector<glm::
   EXPECT_LE(b.count - a.count, 1u);
   const glm::vec3 side = box(node).second - box(node).first;
   for (int k = 0; k < 3; ++k) {
-    if (side[k] == std::max({side.x, side.y, side.z})) EXPECT_LE(box(a).second[k], box(b).first[k]);
+    if (side[k] == std::max({side.x, side.y, side.z})) {
+      EXPECT_LE(box(a).second[k], box(b).first[k]);
+    }
   }
   for (const SpaceNode& child : node.children) check(tree, child, at, most);
 }
