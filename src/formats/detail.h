@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <functional>
 #include <glm/glm.hpp>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,14 +17,25 @@ struct DetailBudget {
   std::vector<glm::dvec3> eyes;                      // in the model's frame; empty: as if from far away
 };
 
+/// What the levels of a frame go by.
+struct DetailNeed {
+  double apart_px = 0.0;  // parts whose Gaussians are seen no farther apart are fine enough; 0: none is
+  std::size_t most = std::numeric_limits<std::size_t>::max();  // Gaussians of the model
+  std::optional<double> db = {};  // instead of apart_px: each view's PSNR against the finest levels
+};
+
 /// A part of a model: its box, and its levels from the finest to the coarsest.
 struct DetailPart {
   struct Level {
     int number = 0;
     std::size_t count = 0;  // Gaussians
+    /// What its picture of the part alone loses against the finest, before black: squared, summed over
+    /// pixels that are 1, 2, 4 ... times the part's `pixel` wide, meaned over channels.
+    std::vector<double> errors = {};
   };
   glm::dvec3 low{0.0}, high{0.0};
   std::vector<Level> levels;  // may be empty
+  double pixel = 0.0;         // world units; 0: the errors are not known
 };
 
 /// For each part the place of its level in `levels`. All begin with their coarsest; then, as long as there is
@@ -34,5 +47,32 @@ struct DetailPart {
 std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
                                        const std::vector<glm::dvec3>& eyes, std::size_t most,
                                        double enough = 0.0, std::span<const std::size_t> before = {});
+
+/// A view, in the model's frame.
+struct DetailView {
+  glm::dvec3 eye{0.0}, forward{0.0, 0.0, 1.0};
+  double slope = 1.0;   // the largest tangent between `forward` and a ray in the picture
+  double focal = 1.0;   // px
+  double pixels = 1.0;  // of the picture
+};
+
+/// A level's squared error (DetailPart::Level::errors) in pixels that are so wide, in world units. What is
+/// nearer or farther than its errors tell loses as much of each area as at their end.
+double squared_error(const DetailPart& part, std::size_t level, double width);
+
+struct DetailChoice {
+  std::vector<std::size_t> levels;  // as choose_levels says them
+  double error = 0.0;               // squared, meaned over pixels and channels of the view that loses most
+};
+
+/// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All
+/// parts begin with their coarsest level; then, as long as a view loses more, that part gets that finer level
+/// which saves the most error per Gaussian. The choice is one for all views: a part's error is that in the
+/// view that sees it largest. One that no view sees takes part in this as if it were seen, and goes on until
+/// all such parts lose no more than `error` of the pixels of a whole sphere: heads turn. A part of unknown
+/// errors gets its finest level. More than `most`, and more error, only where they leave no choice.
+/// `before` is kept to: its levels go on until a tenth less is lost, finer ones end at a tenth more.
+DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
+                                  double error, std::size_t most, std::span<const std::size_t> before = {});
 
 }  // namespace binosplat

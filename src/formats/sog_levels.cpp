@@ -20,6 +20,16 @@ glm::dvec3 corner(const JsonValue& value) {
   return {three.at(0).number(), three.at(1).number(), three.at(2).number()};
 }
 
+std::vector<double> errors_of(const JsonValue& value) {
+  if (value.size() == 0) value.fail_here("expected one error at least");
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    errors.push_back(value.at(i).number());
+    if (errors.back() < 0.0) value.at(i).fail_here("expected an error of 0 or more, found {}", errors.back());
+  }
+  return errors;
+}
+
 }  // namespace
 
 SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json)
@@ -74,11 +84,23 @@ std::vector<DetailPart> SogLevels::leaves() const {
   walk([&](const JsonValue& node) {
     const JsonValue bound = node.at("bound"), lods = node.at("lods");
     DetailPart leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
+    if (node.has("pixel")) {
+      leaf.pixel = node.at("pixel").number();
+      if (leaf.pixel <= 0.0) node.at("pixel").fail_here("expected a width above zero, found {}", leaf.pixel);
+    }
+    std::size_t errors = 0;  // of each level
     for (int level = 0; level < count_; ++level) {
       const std::string& key = keys_[static_cast<std::size_t>(level)];
       if (!lods.has(key)) continue;
-      const auto [index, range] = part(lods.at(key));
-      if (is_there[index]) leaf.levels.push_back({level, range.count});
+      const JsonValue lod = lods.at(key);
+      const auto [index, range] = part(lod);
+      DetailPart::Level of_leaf{level, range.count};
+      if (leaf.pixel > 0.0) {
+        const JsonValue list = lod.at("errors");
+        of_leaf.errors = errors_of(errors == 0 ? list : list.list_of(errors));
+        errors = of_leaf.errors.size();
+      }
+      if (is_there[index]) leaf.levels.push_back(std::move(of_leaf));
     }
     result.push_back(std::move(leaf));
   });

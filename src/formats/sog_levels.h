@@ -36,7 +36,7 @@ class SogLevels {
   std::vector<std::vector<Taken>> taken(const std::function<int(std::size_t leaf)>& level_of) const;
   std::vector<std::vector<Taken>> taken(int level) const;
 
-  /// The tree's leaves, with the levels whose files are there.
+  /// The tree's leaves, with the levels whose files are there, and their errors where those are told.
   std::vector<DetailPart> leaves() const;
 
   /// For each level the first file that it needs and that is not there.

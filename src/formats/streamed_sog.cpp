@@ -1,6 +1,8 @@
 #include "formats/streamed_sog.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <mutex>
 #include <set>
 
@@ -169,6 +171,18 @@ void copy(const Model& from, std::size_t first, std::size_t count, Model& to, st
   take(from.sh, to.sh, 3 * static_cast<std::size_t>(sh_count(from.degree)));
 }
 
+std::vector<DetailView> detail_views(std::span<const shared::View> views) {
+  std::vector<DetailView> result;
+  for (const shared::View& view : views) {
+    result.push_back({.eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye),
+                      .forward = glm::dvec3(view.row_z),
+                      .slope = std::sqrt(static_cast<double>(view.centre.w)),
+                      .focal = std::max<double>(view.lens.x, view.lens.y),
+                      .pixels = static_cast<double>(view.width) * view.height});
+  }
+  return result;
+}
+
 fs::path lod_meta_of(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored) ? path / "lod-meta.json" : path;
@@ -277,17 +291,32 @@ StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source
 StreamedSog::~StreamedSog() = default;
 
 bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& need) {
-  std::vector<glm::dvec3> eyes;
-  double focal = 0.0;
-  for (const shared::View& view : views) {
-    eyes.push_back(glm::dvec3(view.anchor) + glm::dvec3(view.eye));
-    focal = std::max({focal, static_cast<double>(view.lens.x), static_cast<double>(view.lens.y)});
+  if (need.db && std::none_of(leaves_.begin(), leaves_.end(), [](const auto& l) { return l.pixel > 0.0; })) {
+    fail(
+        "--detail {}dB: {} has no errors of its levels to go by; `binosplat levels` writes them; or use "
+        "--detail PX",
+        *need.db, source_->path.string());
   }
   const auto& environment = source_->levels.environment();
   const std::size_t around = environment ? source_->files.back()->count() : 0;
-  const double enough = views.empty() ? std::numeric_limits<double>::infinity() : need.apart_px / focal;
+  const std::size_t most = need.most - std::min(need.most, around);
   const std::span<const std::size_t> before = seen_ ? std::span(chosen_) : std::span<std::size_t>();
-  chosen_ = choose_levels(leaves_, eyes, need.most - std::min(need.most, around), enough, before);
+  const std::vector<DetailView> seen = detail_views(views);
+  predicted_psnr_.reset();
+  if (need.db && !views.empty()) {
+    DetailChoice choice = choose_levels_within(leaves_, seen, std::pow(10.0, -0.1 * *need.db), most, before);
+    chosen_ = std::move(choice.levels);
+    predicted_psnr_ = -10.0 * std::log10(choice.error);
+  } else {
+    std::vector<glm::dvec3> eyes;
+    double focal = 0.0;
+    for (const DetailView& view : seen) {
+      eyes.push_back(view.eye);
+      focal = std::max(focal, view.focal);
+    }
+    const double enough = views.empty() ? std::numeric_limits<double>::infinity() : need.apart_px / focal;
+    chosen_ = choose_levels(leaves_, eyes, most, enough, before);
+  }
   seen_ = !views.empty();
   return chosen_ != levels_;
 }

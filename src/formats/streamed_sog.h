@@ -3,7 +3,6 @@
 // model at which level of detail. Frame: the trainer's (RDF).
 
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,12 +29,6 @@ bool is_streamed_sog(const std::filesystem::path& path);
 Model load_streamed_sog(const std::filesystem::path& lod_meta, const nlohmann::json& root,
                         std::optional<int> lod, const std::optional<DetailBudget>& budget = {});
 
-/// What the levels of a frame go by.
-struct DetailNeed {
-  double apart_px = 0.0;  // parts whose Gaussians are seen no farther apart are fine enough; 0: none is
-  std::size_t most = std::numeric_limits<std::size_t>::max();  // Gaussians of the model
-};
-
 /// A streamed SOG whose leaves change their levels as somebody moves through it. choose() and read() may be
 /// called by different threads, but not at a time.
 class StreamedSog {
@@ -48,10 +41,14 @@ class StreamedSog {
   int degree() const { return degree_; }
 
   /// Chooses a level for each leaf: the same for all views, which are those of one frame in the model's
-  /// frame; by the nearest eye and the longest focal length of them, wherever they look (choose_levels, with
-  /// the levels of the last choice as those before). Without views: the coarsest. True if the model that was
-  /// read last is another one.
+  /// frame; by the nearest eye and the longest focal length of them, wherever they look (choose_levels), or
+  /// by what each of them loses (choose_levels_within), with the levels of the last choice as those before.
+  /// Without views: the coarsest. True if the model that was read last is another one. Throws Error for dB
+  /// where the file has no errors.
   bool choose(std::span<const shared::View> views, const DetailNeed& need);
+
+  /// What the views are taken to have against the finest levels, in dB; none where dB were not chosen by.
+  std::optional<double> predicted_psnr() const { return predicted_psnr_; }
 
   /// The model at the levels chosen. Only leaves whose level has changed are read, the others come from the
   /// last model, a copy of which stays here. Throws Error where a file has become unreadable.
@@ -72,6 +69,7 @@ class StreamedSog {
   int degree_ = 0;
   std::vector<std::size_t> chosen_;  // places in a leaf's `levels`
   bool seen_ = false;                // by views
+  std::optional<double> predicted_psnr_;
   // The last model, the levels that it has, and where its leaves lie; the environment lies last.
   Model model_;
   std::vector<std::size_t> levels_;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "formats/model_file.h"
@@ -130,6 +131,99 @@ TEST(StreamedSog, SaysWhatItCannotOpen) {
   fs::remove_all(copy.path() / "1_0");
   EXPECT_TRUE(test::fails_saying([&] { StreamedSog scene(copy.path()); },
                                  {"lod-meta.json", "none of its levels of detail is there"}));
+}
+
+/// The tree's leaves, and what their level 1 loses in pixels 0.02 and 0.04 wide.
+const std::vector<std::pair<const char*, std::vector<double>>> learnt = {
+    {"/tree/children/0", {40.0, 10.0}},
+    {"/tree/children/1/children/0", {20.0, 5.0}},
+    {"/tree/children/1/children/1", {30.0, 6.0}}};
+
+/// Such errors in lod-meta.json.
+void teach(nlohmann::json& meta) {
+  for (const auto& [pointer, errors] : learnt) {
+    nlohmann::json& leaf = meta[nlohmann::json::json_pointer(pointer)];
+    leaf["pixel"] = 0.02;
+    leaf["lods"]["0"]["errors"] = {0.0, 0.0};
+    leaf["lods"]["1"]["errors"] = errors;
+  }
+}
+
+/// A picture of 100 x 100 px of all that is ahead.
+shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
+  shared::View view = at(eye);
+  view.row_z = {0, 0, forward, 0};
+  view.centre.w = 1.0f;
+  view.width = view.height = 100;
+  return view;
+}
+
+TEST(StreamedSog, ByErrorsThatItsFileTells) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", teach);
+  StreamedSog scene(copy.path());
+  EXPECT_FALSE(scene.predicted_psnr());
+  // So far away its pixels are 3.8 to 4 wide, and a 16,000th to a 10,000th of the last error is left.
+  const std::size_t coarse = read(scene, {ahead(far_away)}, {.db = 40.0}).count();
+  EXPECT_EQ(coarse, 250u);
+  const double lost = 1e-4 * 21.0 / 1e4;
+  EXPECT_NEAR(*scene.predicted_psnr(), -10.0 * std::log10(lost), 1.0);
+  std::size_t last = coarse;
+  for (const double db : {60.0, 66.0, 69.0, 72.0, 80.0}) {
+    const std::size_t count = read(scene, {ahead(far_away)}, {.db = db}).count();
+    EXPECT_GE(count, last) << db;
+    EXPECT_GE(*scene.predicted_psnr(), db - 0.5) << db;
+    last = count;
+  }
+  EXPECT_EQ(last, 1000u);
+  // Nothing of it is seen: nothing is lost.
+  StreamedSog behind(copy.path());
+  behind.choose(std::vector{ahead(far_away, -1.0f)}, {.db = 40.0});
+  EXPECT_TRUE(std::isinf(*behind.predicted_psnr()));
+  EXPECT_TRUE(behind.choose({}, {.db = 40.0}));
+  EXPECT_FALSE(behind.predicted_psnr()) << "the coarsest, unless somebody looks";
+  EXPECT_EQ(behind.read().count(), 250u);
+}
+
+TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
+  REQUIRE_FIXTURES(folder);
+  const auto says = [&](auto edit, std::initializer_list<std::string> parts) {
+    const Copy copy(folder / "sog/st-lod");
+    copy.edit("lod-meta.json", [&](nlohmann::json& meta) {
+      teach(meta);
+      edit(meta["tree"]["children"][0]);
+    });
+    return test::fails_saying([&] { StreamedSog(copy.path()).choose({}, {.db = 40.0}); }, parts);
+  };
+  using Json = nlohmann::json;
+  for (const Json& wrong : {Json(0), Json(-0.5), Json("1"), Json::array({1})}) {
+    EXPECT_TRUE(says([&](Json& leaf) { leaf["pixel"] = wrong; },
+                     {"lod-meta.json, key 'tree.children[0].pixel': expected a"}))
+        << wrong;
+  }
+  const std::string errors = "lod-meta.json, key 'tree.children[0].lods.1.errors";
+  for (const auto& [wrong, text] : {std::pair<Json, std::string>{nullptr, "': expected a list"},
+                                    {3, "': expected a list"},
+                                    {Json::array(), "': expected 2 values, found 0"},
+                                    {{1.0}, "': expected 2 values, found 1"},
+                                    {{1, 2, 3}, "': expected 2 values, found 3"},
+                                    {{1.0, -1.0}, "[1]': expected an error of 0 or more, found -1"},
+                                    {{nullptr, 1.0}, "[0]': expected a finite number"},
+                                    {{1.0, "x"}, "[1]': expected a finite number"}}) {
+    EXPECT_TRUE(says([&](Json& leaf) { leaf["lods"]["1"]["errors"] = wrong; }, {errors + text})) << wrong;
+  }
+  EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["0"]["errors"] = Json::array(); },
+                   {"lods.0.errors': expected one error at least"}));
+  EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["1"].erase("errors"); },
+                   {"the key 'tree.children[0].lods.1.errors' is missing"}));
+  // Without a width they are nobody's, and without any there is nothing to go by.
+  EXPECT_FALSE(says([](Json& leaf) { leaf.erase("pixel"), leaf["lods"]["1"]["errors"] = -1; }, {""}));
+  StreamedSog none(folder / "sog/st-lod");
+  EXPECT_TRUE(
+      test::fails_saying([&] { none.choose(std::vector{ahead(far_away)}, {.db = 40.0}); },
+                         {"--detail 40dB", "st-lod/lod-meta.json has no errors of its levels to go by",
+                          "`binosplat levels` writes them", "--detail PX"}));
 }
 
 TEST(StreamedSog, RoomIsMadeForWhatIsThere) {

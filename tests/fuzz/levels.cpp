@@ -27,17 +27,25 @@ void check(const SogLevels& levels) {
     }
   }
   // Its files are not there; as if they were:
-  for (DetailPart& leaf : leaves) leaf.levels = {{0, 1000}, {1, 100}, {2, 10}};
-  std::vector<std::size_t> before;
-  for (const double x : {0.0, 10.0, 1e9}) {
-    const std::size_t most = 500 * leaves.size();
-    const std::vector<std::size_t> chosen = choose_levels(leaves, {{x, 0, 0}}, most, 0.01, before);
-    std::size_t total = 0;
-    demand(chosen.size() == leaves.size(), "a leaf without a choice");
-    for (std::size_t i = 0; i < leaves.size(); ++i) total += leaves[i].levels.at(chosen[i]).count;
-    demand(total <= most, "more than there is room for");
-    before = chosen;
-  }
+  for (DetailPart& leaf : leaves) leaf.levels = {{0, 1000, {0.0}}, {1, 100, {1.0}}, {2, 10, {9.0}}};
+  const std::size_t most = 500 * leaves.size();
+  const auto follow = [&](const auto& choose) {
+    std::vector<std::size_t> before;
+    for (const double x : {0.0, 10.0, 1e9}) {
+      const std::vector<std::size_t> chosen = choose(x, before);
+      std::size_t total = 0;
+      demand(chosen.size() == leaves.size(), "a leaf without a choice");
+      for (std::size_t i = 0; i < leaves.size(); ++i) total += leaves[i].levels.at(chosen[i]).count;
+      demand(total <= most, "more than there is room for");
+      before = chosen;
+    }
+  };
+  follow([&](double x, const auto& before) {
+    return choose_levels(leaves, {{x, 0, 0}}, most, 0.01, before);
+  });
+  follow([&](double x, const auto& before) {
+    return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most, before).levels;
+  });
 }
 
 }  // namespace

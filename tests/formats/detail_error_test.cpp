@@ -1,0 +1,204 @@
+// Levels of detail by what views lose.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "formats/detail.h"
+
+namespace binosplat {
+namespace {
+
+using Levels = std::vector<std::size_t>;
+
+constexpr std::size_t any = 1'000'000;  // Gaussians
+
+/// Boxes of 1 along x, of four levels each; what a coarser one loses is up to chance.
+std::vector<DetailPart> row(int count, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> factor(1.5, 6.0);
+  std::vector<DetailPart> parts;
+  for (int i = 0; i < count; ++i) {
+    DetailPart part{{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {}, 0.01};
+    double error = 0.0;
+    for (int level = 0; level < 4; ++level) {
+      part.levels.push_back({level, std::size_t{400} >> level, {error, 0.3 * error, 0.1 * error}});
+      error = factor(random) * std::max(error, 0.2);
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+DetailView along_x(double x, double forward = 1.0) {
+  return {.eye = {x, 0.5, 0.5}, .forward = {forward, 0, 0}, .slope = 1.0, .focal = 100.0, .pixels = 1e4};
+}
+
+std::size_t total(const std::vector<DetailPart>& parts, const Levels& chosen) {
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!parts[i].levels.empty()) sum += parts[i].levels[chosen[i]].count;
+  }
+  return sum;
+}
+
+/// What an eye loses per pixel that sees all of the row, as far away as it is.
+double loss(const std::vector<DetailPart>& parts, const Levels& chosen, const DetailView& view) {
+  double sum = 0.0;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double distance = glm::distance(view.eye, glm::clamp(view.eye, parts[p].low, parts[p].high));
+    sum += squared_error(parts[p], chosen[p], distance / view.focal);
+  }
+  return sum / view.pixels;
+}
+
+/// The fewest Gaussians of all choices that lose no more.
+std::size_t fewest(const std::vector<DetailPart>& parts, const DetailView& view, double error) {
+  std::size_t best = any;
+  Levels chosen(parts.size(), 0);
+  for (std::size_t n = 0; n < std::size_t{1} << (2 * parts.size()); ++n) {
+    for (std::size_t p = 0; p < parts.size(); ++p) chosen[p] = n >> (2 * p) & 3;
+    if (total(parts, chosen) < best && loss(parts, chosen, view) <= error) best = total(parts, chosen);
+  }
+  return best;
+}
+
+TEST(DetailErrors, LieOnLinesBetweenThePixelsThatAreKnown) {
+  const DetailPart part{{}, {1, 1, 1}, {{0, 9, {0.0, 0.0, 0.0}}, {1, 4, {8.0, 2.0, 0.0}}}, 0.5};
+  for (const auto& [width, error] : {std::pair(0.5, 8.0),
+                                     {1.0, 2.0},
+                                     {2.0, 0.0},
+                                     {std::sqrt(0.5), 4.0},
+                                     {std::sqrt(2.0), 1.0},
+                                     {0.25, 32.0},
+                                     {4.0, 0.0}}) {
+    EXPECT_NEAR(squared_error(part, 1, width), error, 1e-12) << width;
+    EXPECT_EQ(squared_error(part, 0, width), 0.0) << width;
+  }
+  const DetailPart one{{}, {1, 1, 1}, {{1, 4, {8.0}}}, 0.5};
+  EXPECT_NEAR(squared_error(one, 0, 2.0), 0.5, 1e-12) << "of a 16th of the pixels";
+  EXPECT_NEAR(squared_error(one, 0, 0.125), 128.0, 1e-9);
+  for (const double width : {0.0, 1e300, std::numeric_limits<double>::infinity()})
+    EXPECT_TRUE(std::isfinite(squared_error(one, 0, width))) << width;
+}
+
+TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
+  double worst = 1.0;
+  std::size_t planted = 0, cases = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    const std::vector<DetailPart> parts = row(6, seed);
+    const DetailView near = along_x(-1.0), far = along_x(-40.0);
+    for (const double error : {1e-5, 1e-4, 3e-4, 1e-3}) {
+      const DetailChoice choice = choose_levels_within(parts, {near}, error, any);
+      EXPECT_LE(loss(parts, choice.levels, near), error);
+      EXPECT_NEAR(choice.error, loss(parts, choice.levels, near), 1e-12);
+      worst = std::max(worst, static_cast<double>(total(parts, choice.levels)) /
+                                  static_cast<double>(fewest(parts, near, error)));
+      // Planted faults: levels for another place, and for a bound that is ignored.
+      planted += loss(parts, choose_levels_within(parts, {far}, error, any).levels, near) > error;
+      planted += loss(parts, Levels(parts.size(), 3), near) > error;
+      cases += 2;
+    }
+  }
+  EXPECT_LE(worst, 1.25);
+  EXPECT_GT(planted, cases * 3 / 4);
+}
+
+TEST(DetailErrors, MoreDecibelsAreMoreGaussians) {
+  const std::vector<DetailPart> parts = row(20);
+  std::size_t last = 0;
+  for (double db = 20.0; db <= 80.0; db += 1.0) {
+    const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, std::pow(10, -0.1 * db), any);
+    EXPECT_GE(total(parts, choice.levels), last) << db;
+    last = total(parts, choice.levels);
+  }
+  EXPECT_EQ(last, 20u * 400);
+}
+
+TEST(DetailErrors, OneChoiceForAllViews) {
+  const std::vector<DetailPart> parts = row(8);
+  const DetailView first = along_x(-1.0), last = along_x(16.0, -1.0);
+  const DetailChoice both = choose_levels_within(parts, {first, last}, 1e-4, any);
+  EXPECT_EQ(both.levels, choose_levels_within(parts, {last, first}, 1e-4, any).levels);
+  EXPECT_LE(std::max(loss(parts, both.levels, first), loss(parts, both.levels, last)), both.error);
+  EXPECT_LE(both.error, 1e-4);
+  EXPECT_GT(loss(parts, choose_levels_within(parts, {first}, 1e-4, any).levels, last), 1e-4)
+      << "planted: the choice for one";
+}
+
+TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
+  const std::vector<DetailPart> parts = row(8);
+  const DetailView ahead = along_x(6.5), beside = along_x(-1.0, -1.0);
+  const DetailChoice one = choose_levels_within(parts, {ahead}, 1e-4, any);
+  EXPECT_LE(one.error, 1e-4);
+  EXPECT_LT(one.levels[2], 3u) << "behind";
+  // What it costs is what is seen of it.
+  EXPECT_LT(one.error, loss(parts, one.levels, ahead));
+  // Who sees nothing yet has what the sphere around it asks, which is more than nothing, and not all.
+  const DetailChoice nothing = choose_levels_within(parts, {beside}, 1e-4, any);
+  EXPECT_EQ(nothing.error, 0.0);
+  EXPECT_LT(nothing.levels.front(), 3u);
+  EXPECT_LT(total(parts, nothing.levels),
+            total(parts, choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any).levels));
+  // A part beside the picture whose ball reaches into it is seen.
+  const std::vector<DetailPart> at_edge = {row(1).front()};
+  DetailView view{.eye = {0.5, 0.5, -2.0},
+                  .forward = {std::sin(0.8), 0, std::cos(0.8)},
+                  .slope = 0.5,
+                  .focal = 100.0,
+                  .pixels = 1.0};
+  EXPECT_GT(choose_levels_within(at_edge, {view}, 1e9, any).error, 0.0);
+  view.forward = {std::sin(0.9), 0, std::cos(0.9)};
+  EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any).error, 0.0);
+}
+
+TEST(DetailErrors, KeepToWhatWasChosenBefore) {
+  const std::vector<DetailPart> parts = row(20);
+  std::size_t anew = 0;
+  for (double x = -12.0; x < -0.5; x += 0.25) {
+    Levels here = choose_levels_within(parts, {along_x(x)}, 1e-4, any).levels;
+    // Trembling by as little switches nothing once it is settled.
+    here = choose_levels_within(parts, {along_x(x)}, 1e-4, any, here).levels;
+    for (const double by : {0.97, 1.03}) {
+      const DetailChoice kept = choose_levels_within(parts, {along_x(x * by)}, 1e-4, any, here);
+      EXPECT_EQ(kept.levels, here) << x << " times " << by;
+      EXPECT_LE(kept.error, 1.1e-4 * 1.0001);
+      anew += choose_levels_within(parts, {along_x(x * by)}, 1e-4, any).levels != here;
+    }
+  }
+  EXPECT_GT(anew, 10u) << "without a memory it would switch";
+  const Levels far = choose_levels_within(parts, {along_x(-100.0)}, 1e-4, any).levels;
+  EXPECT_NE(choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any, far).levels, far);
+}
+
+TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
+  std::vector<DetailPart> parts = row(6);
+  for (std::size_t most = 300; most < 2500; most += 50) {
+    Levels chosen = choose_levels_within(parts, {along_x(-1.0)}, 1e-9, most).levels;
+    EXPECT_LE(total(parts, chosen), most);
+    for (std::size_t& level : chosen) {
+      if (level == 0) continue;
+      --level;
+      EXPECT_GT(total(parts, chosen), most) << "room for a step is left";
+      ++level;
+    }
+  }
+  // Where the best step is too large, a smaller one is taken.
+  const std::vector<DetailPart> leap = {
+      {{}, {1, 1, 1}, {{0, 400, {0.0}}, {1, 200, {0.9}}, {2, 100, {1.0}}}, 0.01}};
+  EXPECT_EQ(choose_levels_within(leap, {along_x(-1.0)}, 1e-9, 400).levels, Levels{0});
+  EXPECT_EQ(choose_levels_within(leap, {along_x(-1.0)}, 1e-9, 399).levels, Levels{1});
+  parts[3].pixel = 0.0;
+  for (DetailPart::Level& level : parts[3].levels) level.errors.clear();
+  parts[4].levels.clear();
+  const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, 1e9, any);
+  EXPECT_EQ(choice.levels, (Levels{3, 3, 3, 0, 0, 3}));
+  EXPECT_EQ(choose_levels_within(parts, {along_x(-1.0)}, 1e9, 450).levels[3], 1u);
+  EXPECT_TRUE(choose_levels_within({}, {along_x(0.0)}, 1.0, any).levels.empty());
+}
+
+}  // namespace
+}  // namespace binosplat
