@@ -22,7 +22,7 @@ std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> v
 
 DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
                        const StreamedSog& scene, std::span<const shared::View> views) {
-  DetailNeed need{options.detail.value_or(0.0)};
+  DetailNeed need = options.detail.value_or(DetailNeed{});
   if (options.gpu_memory)
     need.most = gaussians_that_fit(*options.gpu_memory, settings, views, scene.degree());
   return need;
@@ -62,6 +62,7 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
     if (report_) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
   }
   levels.gaussians = model.count();
+  levels.predicted_psnr = scene_.predicted_psnr();
   levels.read_ms = std::exchange(read_ms_, 0.0);
   return levels;
 }

@@ -21,7 +21,8 @@ struct ShotLevels {
   double upload_ms = 0.0;     // for the GPU
   std::optional<double>
       switch_psnr;  // dB, between the shot with the levels before and with these, both exact
-  std::optional<double> finest_psnr;  // dB, against the exact picture of the finest levels
+  std::optional<double> finest_psnr;     // dB, against the exact picture of the finest levels
+  std::optional<double> predicted_psnr;  // the same by the errors of the levels, of the worse eye
 };
 
 /// What views of a run need (formats/streamed_sog.h): --detail, or the finest, and --gpu-memory for the model

@@ -101,6 +101,7 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
 
 std::string levels_text(const ShotLevels& levels) {
   std::string text = fmt::format("  levels of {} Gaussians", levels.gaussians);
+  if (levels.predicted_psnr) text += fmt::format(", {:.2f} dB predicted", *levels.predicted_psnr);
   if (levels.finest_psnr) text += fmt::format(", {:.2f} dB against the finest", *levels.finest_psnr);
   if (levels.switched) {
     text += fmt::format("; switched: {:.0f} ms to read, {:.1f} to upload", levels.read_ms, levels.upload_ms);
@@ -111,7 +112,8 @@ std::string levels_text(const ShotLevels& levels) {
 
 ordered_json levels_json(const ShotLevels& l) {
   return object("gaussians", l.gaussians, "switched", l.switched, "read_ms", l.read_ms, "upload_ms",
-                l.upload_ms, "switch_psnr_db", l.switch_psnr, "finest_psnr_db", l.finest_psnr);
+                l.upload_ms, "switch_psnr_db", l.switch_psnr, "finest_psnr_db", l.finest_psnr,
+                "predicted_psnr_db", l.predicted_psnr);
 }
 
 // Along a path: how much is drawn, how often it changes, and the worst of what that costs.
@@ -176,6 +178,7 @@ ordered_json settings_json(const RenderReport& report) {
   const DrawingOptions& o = report.options.drawing;
   const Background& background = report.options.output.background;
   const Model& model = report.model;
+  const std::optional<DetailNeed>& detail = report.options.scene.detail;
   const bool vr180 = report.options.camera.lens.vr180();
   const int order = vr180 ? ORDER_DISTANCE : o.order.value_or(model.perspective.order);
   const int projection = vr180 ? PROJECTION_TANGENT : o.projection.value_or(model.perspective.projection);
@@ -187,7 +190,8 @@ ordered_json settings_json(const RenderReport& report) {
                 th_choices[threshold_of(o)].name, "tolerance", o.tolerance, "transmittance",
                 transmittance_choices[o.transmittance].name, "decode",
                 given(model.scaffold != nullptr, decode_choices[o.decode.value_or(DECODE_EYES)].name),
-                "detail_px", report.options.scene.detail, "quality_db", o.quality, "calibration",
+                "detail_px", given(detail && !detail->db, detail ? detail->apart_px : 0.0), "detail_db",
+                detail ? detail->db : std::nullopt, "quality_db", o.quality, "calibration",
                 given(!o.calibration.empty(), o.calibration), "background",
                 background ? list(glm::dvec3(*background)) : ordered_json(), "reference_until",
                 o.reference_until ? std::optional(render::name_of(*o.reference_until)) : std::nullopt);

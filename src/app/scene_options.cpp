@@ -1,6 +1,8 @@
 #include "app/scene_options.h"
 
 #include <cctype>
+#include <charconv>
+#include <cmath>
 
 #include "app/option_checks.h"
 #include "base/error.h"
@@ -8,6 +10,22 @@
 #include "scene/axes.h"
 
 namespace binosplat::app {
+
+namespace {
+
+/// "5", px, or "40dB".
+DetailNeed parse_detail(const std::string& text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  std::string unit(end, text.data() + text.size());
+  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const bool is_number = error == std::errc() && std::isfinite(number);
+  if (is_number && unit.empty() && number >= 0.0) return {.apart_px = number};
+  if (is_number && unit == "db" && number >= 20.0 && number <= 80.0) return {.db = number};
+  fail("--detail {}: expected pixels as in 5, or decibels from 20 to 80 as in 40dB", text);
+}
+
+}  // namespace
 
 void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.add_option(
@@ -17,12 +35,13 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
       ->required();
   sub.option_defaults()->group("Scene");
   add_lod_option(sub, o, "Level of detail of a streamed SOG, 0 the finest (the finest that\nis there)");
-  sub.add_option(
-         "--detail", o.detail,
+  sub.add_option_function<std::string>(
+         "--detail", [&o](const std::string& text) { o.detail = parse_detail(text); },
          "Of a streamed SOG instead: for each view levels whose Gaussians are\nseen no farther than PX "
-         "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit")
-      ->type_name("PX")
-      ->check(not_negative);
+         "apart, the same for both eyes (render: the\nfinest, always; view: 0); 0: the finest that fit; or "
+         "as in 40dB\n(20dB to 80dB) those that cost so much against the finest, of files\nthat tell their "
+         "levels' errors")
+      ->type_name("PX|DB");
   sub.add_option(
          "--gpu-memory", o.gpu_memory,
          "Of a streamed SOG: levels, near the eyes the finest, that fit in so\nmany MB; for each view "

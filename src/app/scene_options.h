@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/cli.h"
+#include "formats/detail.h"
 
 namespace binosplat::app {
 
@@ -18,7 +19,7 @@ struct SceneOptions {
 
   std::optional<int> lod;                 // of a model file that has levels of detail
   std::optional<double> gpu_memory;       // MB, which levels are chosen to fit; instead of lod
-  std::optional<double> detail;           // px, by which levels are chosen for each view anew
+  std::optional<DetailNeed> detail;       // by which levels are chosen for each view anew; not `most`
   std::string axes;                       // where a file's x, y and z point; empty: what its format says
   std::optional<std::size_t> appearance;  // of a Scaffold-GS model
 

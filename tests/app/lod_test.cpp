@@ -7,6 +7,7 @@
 #include "app/scene.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
+#include "support/broken.h"
 #include "support/fixtures.h"
 
 namespace binosplat {
@@ -108,6 +109,39 @@ TEST(RenderLevels, FollowAPathAndTellWhatTheyCost) {
   }
 }
 
+TEST(RenderLevels, ByDecibelsAsAFileTells) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  const test::Copy copy(fixtures / "sog/st-lod");
+  const auto render = [&] {
+    return test::run_program({"render", copy.path(), "--path", write_path(folder, {-200, -20}), "--detail",
+                              "40dB", "--detail-report", "-o", folder / "out", "--json", folder / "j"});
+  };
+  EXPECT_TRUE(ended(render(), 2, "has no errors of its levels to go by"));
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"}) {
+      nlohmann::json& node = meta["tree"][nlohmann::json::json_pointer(leaf)];
+      node["pixel"] = 0.1;
+      node["lods"]["0"]["errors"] = {0.0};
+      node["lods"]["1"]["errors"] = {40.0};
+    }
+  });
+  const Outcome told = render();
+  ASSERT_TRUE(good(told));
+  const auto report = test::load_json(folder / "j");
+  EXPECT_EQ(report["settings"]["detail_db"], 40.0);
+  EXPECT_FALSE(report["settings"].contains("detail_px"));
+  const auto far = report["views"][0]["levels_of_detail"], near = report["views"][1]["levels_of_detail"];
+  EXPECT_EQ(far["gaussians"], 250);
+  EXPECT_GT(near["gaussians"], 250);
+  EXPECT_GE(far["predicted_psnr_db"], 40.0);
+  EXPECT_NE(
+      told.out.find(fmt::format(", {:.2f} dB predicted, {:.2f} dB against the finest",
+                                far["predicted_psnr_db"].get<double>(), far["finest_psnr_db"].get<double>())),
+      std::string::npos)
+      << told.out;
+}
+
 using LevelErrors = test::SceneTest;
 
 TEST_F(LevelErrors, SayWhatToDo) {
@@ -116,7 +150,12 @@ TEST_F(LevelErrors, SayWhatToDo) {
   EXPECT_TRUE(ended(render({"--detail", "2", "-o", out}), 2, "no levels of detail to choose from"));
   EXPECT_TRUE(ended(render({"--detail", "2", "--lod", "1", "-o", out}), 2, "leave one of them out"));
   EXPECT_TRUE(ended(render({"--detail-report", "-o", out}), 2, "--detail"));
-  EXPECT_TRUE(ended(render({"--detail", "-1", "-o", out}), 2, "--detail"));
+  EXPECT_TRUE(ended(render({"--detail", "40DB", "-o", out}), 2, "no levels of detail to choose from"));
+  for (const char* wrong : {"-1", "nan", "inf", "5px", "dB", "40 dB", "19.9dB", "80.1dB", "-40dB"}) {
+    EXPECT_TRUE(ended(render({"--detail", wrong, "-o", out}), 2,
+                      "expected pixels as in 5, or decibels from 20 to 80 as in 40dB"))
+        << wrong;
+  }
   EXPECT_TRUE(ended(render({"--gpu-memory", "0", "-o", out}), 2, "--gpu-memory"));
   EXPECT_TRUE(ended(test::run_program({"render", "demo:room", "--gpu-memory", "100", "-o", out}), 2,
                     "--gpu-memory is for model files"));

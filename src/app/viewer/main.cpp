@@ -76,7 +76,7 @@ void follow_levels(const Wanted& wanted, preview::Opened& opened) {
   opened.load = [scene, levels, read, asked, other = opened.load] {
     if (!asked && !is_streamed_sog(scene.name)) return other();
     levels->emplace(scene.name);
-    (*levels)->choose({}, {});
+    (*levels)->choose({}, scene.detail.value_or(DetailNeed{}));
     return read();
   };
   opened.levels = [wanted, levels, read](std::span<const shared::View> views) -> std::function<Model()> {
