@@ -71,11 +71,9 @@ class Sheet {
       const Model& part = parts_[i][level];
       const std::size_t first = all.count();
       append(all, part, 0, part.count());
-      // A world unit is a pixel, at the distance of one pixel a focal length.
-      const glm::dvec3 at(
-          static_cast<double>(static_cast<int>(i) % across_ * square_) + 0.5 * square_ - camera_.cx,
-          static_cast<double>(static_cast<int>(i) / across_ * square_) + 0.5 * square_ - camera_.cy,
-          camera_.fx);
+      // As far away as the focal length has pixels a world unit is one of them.
+      const glm::dvec2 centre = glm::dvec2(corner(i)) + 0.5 * square_ - glm::dvec2(camera_.cx, camera_.cy);
+      const glm::dvec3 at(centre, camera_.fx);
       const glm::dvec3 to = camera_.rotation * at, middle = 0.5 * (boxes_[i].low + boxes_[i].high);
       for (std::size_t k = first; k < all.count(); ++k) {
         all.position[k] = glm::vec3((glm::dvec3(all.position[k]) - middle) / pixel(i) + to);
@@ -91,10 +89,10 @@ class Sheet {
   /// Adds what each part's square differs by.
   void add_difference(const Picture& a, const Picture& b, double share, std::span<double> sums) const {
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      const int left = static_cast<int>(i) % across_ * square_, top = static_cast<int>(i) / across_ * square_;
+      const glm::ivec2 first = corner(i);
       double sum = 0.0;
-      for (int y = top; y < top + square_; ++y) {
-        for (int x = left; x < left + square_; ++x) {
+      for (int y = first.y; y < first.y + square_; ++y) {
+        for (int x = first.x; x < first.x + square_; ++x) {
           const auto k = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) +
                          static_cast<std::size_t>(x);
           const glm::dvec3 apart = glm::dvec3(glm::clamp(glm::vec3(a.colour[k]), 0.0f, 1.0f)) -
@@ -107,6 +105,10 @@ class Sheet {
   }
 
  private:
+  glm::ivec2 corner(std::size_t i) const {  // of a part's square
+    const int k = static_cast<int>(i);
+    return square_ * glm::ivec2(k % across_, k / across_);
+  }
   double pixel(std::size_t i) const { return std::ldexp(errors_[i].pixel, width_); }
 
   std::span<const std::vector<Model>> parts_;
