@@ -211,7 +211,8 @@ TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
                                     {{1.0, -1.0}, "[1]': expected an error of 0 or more, found -1"},
                                     {{nullptr, 1.0}, "[0]': expected a finite number"},
                                     {{1.0, "x"}, "[1]': expected a finite number"}}) {
-    EXPECT_TRUE(says([&](Json& leaf) { leaf["lods"]["1"]["errors"] = wrong; }, {errors + text})) << wrong;
+    const auto plant = [&wrong = wrong](Json& leaf) { leaf["lods"]["1"]["errors"] = wrong; };
+    EXPECT_TRUE(says(plant, {errors + text})) << wrong;
   }
   EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["0"]["errors"] = Json::array(); },
                    {"lods.0.errors': expected one error at least"}));
