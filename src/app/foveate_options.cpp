@@ -3,6 +3,7 @@
 #include "app/command_line.h"
 #include "app/option_checks.h"
 #include "base/error.h"
+#include "base/numbers.h"
 
 namespace binosplat::app {
 
@@ -11,11 +12,10 @@ namespace {
 const std::vector<std::string> words = {"inset", "context", "gaze", "seam"};
 
 double number_of(std::string_view text, const std::string& word, const char* expected) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    fail("--foveate {}={}: expected {}", word, text, expected);
-  return value;
+  std::string_view rest = text;
+  const std::optional<double> value = take_real(rest);
+  if (!value || !rest.empty()) fail("--foveate {}={}: expected {}", word, text, expected);
+  return *value;
 }
 
 // A word and its numbers, of which a gaze has several.

@@ -76,8 +76,8 @@ ExitCode levels(const LevelsOptions& o) {
   Model model = load_scene(o.scene);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(ModelFormat::sog));
-  if (!again) save_json(fs::path(o.output) / "levels-run.json", run);
   const auto context = open_context(o.context);
+  if (!again) save_json(fs::path(o.output) / "levels-run.json", run);
   const LevelsWritten written = write_streamed_sog(
       model, o.settings, folder_at(o.output),
       [&](std::span<const std::vector<Model>> leaves) { return study::level_errors(*context, leaves); });

@@ -2,6 +2,7 @@
 
 #include "app/option_checks.h"
 #include "base/error.h"
+#include "base/numbers.h"
 
 namespace binosplat::app {
 
@@ -10,19 +11,18 @@ namespace {
 // Metres. A bare number beyond what a human or a low flight has is taken for millimetres that were meant.
 double parse_ipd(const std::string& text) {
   constexpr double most = 1.0;
-  double value = 0.0;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data() + (text.starts_with("+") ? 1 : 0), last, value);
-  const std::string unit(end, last);
-  if (error != std::errc() || !std::isfinite(value))
+  std::string_view unit = text;
+  if (unit.starts_with("+")) unit.remove_prefix(1);
+  const std::optional<double> value = take_real(unit);
+  if (!value || !std::isfinite(*value))
     fail("--ipd {}: expected metres, or a number with a unit, as in 0.064, 64mm or 3m", text);
-  if (unit == "mm") return 1e-3 * value;
-  if (unit == "cm") return 1e-2 * value;
-  if (unit == "m") return value;
+  if (unit == "mm") return 1e-3 * *value;
+  if (unit == "cm") return 1e-2 * *value;
+  if (unit == "m") return *value;
   if (!unit.empty()) fail("--ipd {}: its unit may be m, cm or mm", text);
-  if (std::abs(value) > most)
+  if (std::abs(*value) > most)
     fail("--ipd {0}: that is {0} metres, and eyes are 0.063 apart; say {0}mm, or {0}m if it is meant", text);
-  return value;
+  return *value;
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "app/scene_options.h"
 
 #include <cctype>
-#include <charconv>
 #include <cmath>
 
 #include "app/option_checks.h"
 #include "base/error.h"
+#include "base/numbers.h"
 #include "demo/city.h"
 #include "scene/axes.h"
 
@@ -15,13 +15,12 @@ namespace {
 
 /// "5", px, or "40dB".
 DetailNeed parse_detail(const std::string& text) {
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  std::string unit(end, text.data() + text.size());
+  std::string_view rest = text;
+  const std::optional<double> number = take_real(rest);
+  std::string unit(rest);
   for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const bool is_number = error == std::errc() && std::isfinite(number);
-  if (is_number && unit.empty() && number >= 0.0) return {.apart_px = number};
-  if (is_number && unit == "db" && number >= 20.0 && number <= 80.0) return {.db = number};
+  if (number && std::isfinite(*number) && unit.empty() && *number >= 0.0) return {.apart_px = *number};
+  if (number && unit == "db" && *number >= 20.0 && *number <= 80.0) return {.db = *number};
   fail("--detail {}: expected pixels as in 5, or decibels from 20 to 80 as in 40dB", text);
 }
 

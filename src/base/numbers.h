@@ -18,6 +18,15 @@ inline std::optional<unsigned> take_number(std::string_view& text) {
   return value;
 }
 
+/// The same for a number with a fraction, a sign or an exponent; "inf" and "nan" are numbers, too.
+inline std::optional<double> take_real(std::string_view& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
 /// "1280x720" or "2/8" as two numbers with `between` between them; nothing for other text.
 inline std::optional<std::pair<unsigned, unsigned>> two_numbers(std::string_view text, char between) {
   const auto first = take_number(text);

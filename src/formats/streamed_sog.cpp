@@ -16,6 +16,7 @@
 #include "formats/plausible.h"
 #include "formats/sog_levels.h"
 #include "formats/sog_source.h"
+#include "scene/reduce.h"
 
 namespace binosplat {
 
@@ -328,16 +329,6 @@ std::vector<Taken> StreamedSog::Source::wanted(const std::function<int(std::size
   return taken;
 }
 
-Model StreamedSog::empty_model() const {
-  Model model;
-  model.name = model_.name;
-  model.format = model_.format;
-  model.degree = degree_;
-  model.antialiased = model_.antialiased;
-  model.perspective = model_.perspective;
-  return model;
-}
-
 Model StreamedSog::read() {
   const auto level_of = [&](std::size_t leaf) {
     return leaves_[leaf].levels.empty() ? no_level : leaves_[leaf].levels[chosen_[leaf]].number;
@@ -358,7 +349,7 @@ Model StreamedSog::read() {
   }
   if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), model_.format);
   check_total(source_->path, total, bytes);
-  Model model = empty_model();
+  Model model = without_gaussians(model_);
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
   parallel_for(taken.size(), [&](std::size_t i) { fill(model, kept, taken[i], i); });

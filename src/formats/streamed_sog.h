@@ -59,7 +59,6 @@ class StreamedSog {
   struct Span {
     std::size_t first = 0, count = 0;
   };
-  Model empty_model() const;
   void fill(Model& model, std::vector<std::uint8_t>& kept, std::span<const SogLevels::Taken> taken,
             std::size_t file) const;
   static void close_gaps(std::vector<Span>& spans, const std::vector<std::uint8_t>& kept);

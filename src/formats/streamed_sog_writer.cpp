@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "formats/json_file.h"
 #include "formats/model_writers.h"
 #include "formats/morton.h"
 #include "scene/merge.h"
@@ -236,13 +237,14 @@ class Writer {
   }
 
   void tell_errors(const Piece& piece) {
-    const ordered_json of_leaves = ordered_json::parse(folder_.read(piece.errors));
+    const nlohmann::json told = parse_json(piece.errors, folder_.read(piece.errors));
+    const JsonValue of_leaves = JsonValue(piece.errors, told).list_of(piece.leaves);
     for (std::size_t i = 0; i < piece.leaves; ++i) {
       Leaf& leaf = leaves_[piece.first_leaf + i];
-      const ordered_json& of_leaf = of_leaves.at(i);
-      leaf.error_pixel = of_leaf.at("pixel");
-      for (int level = 0; level < settings_.levels; ++level)
-        leaf.lods[std::to_string(level)]["errors"] = of_leaf.at("errors").at(static_cast<std::size_t>(level));
+      leaf.error_pixel = of_leaves.at(i).at("pixel").number();
+      const JsonValue of_levels = of_leaves.at(i).at("errors").list_of(gaussians_.size());
+      for (std::size_t level = 0; level < gaussians_.size(); ++level)
+        leaf.lods[std::to_string(level)]["errors"] = of_levels.at(level).value();
     }
   }
 

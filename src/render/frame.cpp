@@ -137,6 +137,8 @@ FrameReport Frame::attempt(const Workings& workings, Stage last) {
     buffers_.keep_last(shape_);
   }
   fill(report);
+  const double splats = static_cast<double>(report.visible) * shape_.view_count();
+  tiles_a_splat_ = static_cast<double>(report.pairs) / std::max(1.0, splats);
   return report;
 }
 
@@ -179,7 +181,7 @@ void Frame::run_stages(const Workings& workings, Stage last, FrameReport& report
   counters_ = buffers_.counters.read<shared::Counters>(1).front();
 }
 
-void Frame::fill(FrameReport& report) {
+void Frame::fill(FrameReport& report) const {
   report.attempts = 1;
   report.visible = counters_.visible;
   report.pairs = shape_.supertile_side == 1 ? counters_.pairs : counters_.tile_pairs;
@@ -195,8 +197,6 @@ void Frame::fill(FrameReport& report) {
   report.remembered = shape_.remembers;
   report.recorded = shape_.records;
   report.on_canvases = !shape_.canvases.empty();
-  const double splats = static_cast<double>(report.visible) * shape_.view_count();
-  tiles_a_splat_ = static_cast<double>(report.pairs) / std::max(1.0, splats);
 }
 
 }  // namespace binosplat::render

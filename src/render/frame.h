@@ -122,7 +122,7 @@ class Frame {
                                 const Workings& workings, std::span<const Canvas> canvases, int depth_rows);
   FrameReport attempt(const Workings& workings, Stage last = Stage::probe);
   void run_stages(const Workings& workings, Stage last, FrameReport& report);
-  void fill(FrameReport& report);
+  void fill(FrameReport& report) const;
 
   std::shared_ptr<GpuModel> model_;
   int uploads_ = 0;  // of the model, as far as was seen

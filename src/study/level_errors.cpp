@@ -86,22 +86,20 @@ class Sheet {
     return std::move(frame.read_pictures().front());
   }
 
-  /// Adds what each part's square differs by.
-  void add_difference(const Picture& a, const Picture& b, double share, std::span<double> sums) const {
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      const glm::ivec2 first = corner(i);
-      double sum = 0.0;
-      for (int y = first.y; y < first.y + square_; ++y) {
-        for (int x = first.x; x < first.x + square_; ++x) {
-          const auto k = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) +
-                         static_cast<std::size_t>(x);
-          const glm::dvec3 apart = glm::dvec3(glm::clamp(glm::vec3(a.colour[k]), 0.0f, 1.0f)) -
-                                   glm::dvec3(glm::clamp(glm::vec3(b.colour[k]), 0.0f, 1.0f));
-          sum += glm::dot(apart, apart) / 3.0;
-        }
+  /// What a part's square differs by.
+  double difference(const Picture& a, const Picture& b, std::size_t i) const {
+    const glm::ivec2 first = corner(i);
+    double sum = 0.0;
+    for (int y = first.y; y < first.y + square_; ++y) {
+      for (int x = first.x; x < first.x + square_; ++x) {
+        const auto k = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) +
+                       static_cast<std::size_t>(x);
+        const glm::dvec3 apart = glm::dvec3(glm::clamp(glm::vec3(a.colour[k]), 0.0f, 1.0f)) -
+                                 glm::dvec3(glm::clamp(glm::vec3(b.colour[k]), 0.0f, 1.0f));
+        sum += glm::dot(apart, apart) / 3.0;
       }
-      sums[i] += share * sum;
     }
+    return sum;
   }
 
  private:
@@ -126,16 +124,15 @@ void judge(gl::Context& context, std::span<const std::vector<Model>> parts, std:
            std::span<LeafErrors> errors) {
   const std::size_t levels = parts[0].size();
   const double share = 1.0 / static_cast<double>(directions.size());
-  std::vector<double> sums(parts.size());
   for (const glm::dvec3& direction : directions) {
     for (int width = 0; width < widths; ++width) {
       const Sheet sheet(parts, boxes, errors, width, direction);
       const Picture finest = sheet.draw(context, 0);
       for (std::size_t level = 1; level < levels && first_width(level) <= width; ++level) {
-        std::fill(sums.begin(), sums.end(), 0.0);
-        sheet.add_difference(sheet.draw(context, level), finest, share, sums);
+        const Picture drawn = sheet.draw(context, level);
         for (std::size_t i = 0; i < parts.size(); ++i)
-          errors[i].of_level[level][static_cast<std::size_t>(width)] += sums[i];
+          errors[i].of_level[level][static_cast<std::size_t>(width)] +=
+              share * sheet.difference(drawn, finest, i);
       }
     }
   }
