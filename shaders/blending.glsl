@@ -57,7 +57,9 @@ uniform uint scale;  // bits of a float
 #endif
 #define MEASURED ivec4
 shared ivec4 batch_measured[BATCH];
+#if SUMS != SUMS_SEEN
 vec4 picture[COLUMN];  // transposed: scaled
+#endif
 #endif
 #if SHOW != SHOW_PICTURE
 layout(std430, binding = 8) writeonly buffer Shown { float shown[]; };  // below 0: nothing to tell
@@ -97,11 +99,14 @@ float least[COLUMN];          // and this -T; until then the T that the blend st
 // The most that a splat's alpha counts for in any pixel: T (docs/method.md 5). A maximum in shared memory, and one a tile in
 // the buffer, cost little beside the blend. Or sums over all pixels, in whole numbers, so that the order of the additions does
 // not matter. The transposed blend: the picture, by what the splat counts for. Changes: without the splat alone, what lies
-// behind it, of which it leaves the share 1 - alpha, is in its place.
+// behind it, of which it leaves the share 1 - alpha, is in its place. Seen: what an error of its colour would count for,
+// alpha T, times the T that an error of its alpha would.
 void measure(uint at, uint p, float weight) {
 #if SUMS != SUMS_NONE
 #if SUMS == SUMS_TRANSPOSED
   ivec4 steps = ivec4(floor(weight * picture[p] + 0.5));
+#elif SUMS == SUMS_SEEN
+  ivec4 steps = ivec4(floor(weight * transmittance[p] * float(SEEN_SCALE) + 0.5), 0, 0, 0);
 #else
   vec3 own = batch_colour[at].rgb;
   vec3 behind = (picture[p].rgb - colour[p] - weight * own) / (transmittance[p] - weight);
@@ -261,8 +266,13 @@ void blend(uint at[AHEAD]) {
     vec4 c = batch_colour[at[k]];
     for (uint p = 0u; p < COLUMN; ++p) {
       float weight = weights[p][k];
+#if DEPTH == DEPTH_SEEN
+      z_sum[p] += weight * transmittance[p];
+#endif
 #if RECORDS || SUMS != SUMS_NONE
       if (IS_MET(p, k)) measure(at[k], p, weight);
+      transmittance[p] -= weight;
+#elif DEPTH == DEPTH_SEEN
       transmittance[p] -= weight;
 #elif SHOW == SHOW_MEDIAN_DEPTH
       transmittance[p] -= weight;

@@ -68,7 +68,7 @@ void begin_pixels(uvec2 in_tile) {
     nearness[p] = inverse;
 #endif
     least[p] = inside ? float(TRANSMITTANCE_MIN) : -1.0;
-#if SUMS != SUMS_NONE
+#if SUMS == SUMS_TRANSPOSED || SUMS == SUMS_CHANGES
     picture[p] = inside ? colours[place_of(view, p)] : vec4(0.0);
 #endif
 #if SUMS == SUMS_TRANSPOSED
@@ -114,7 +114,7 @@ void write_pixels() {
     colours[to] = vec4(colour[p], left);
 #endif
 #if DEPTH != DEPTH_NONE
-#if PROJECTION == PROJECTION_TANGENT
+#if PROJECTION == PROJECTION_TANGENT && DEPTH != DEPTH_SEEN
     precise float along = z_sum[p] * sqrt(nearness[p]);  // of distances
     z_sum[p] = along;
 #endif

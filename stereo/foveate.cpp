@@ -119,8 +119,8 @@ FoveatedViews foveated_views(std::span<const shared::View> eyes, const Foveation
   if (eyes.empty() || eyes.size() > MAX_VIEWS / 2)
     fail("foveation of {} eyes: expected 1 to {}", eyes.size(), MAX_VIEWS / 2);
   if (!settings.parts.empty()) fail("foveation of views of which only parts are drawn");
-  if (settings.depth == Depth::median)
-    fail("foveation with the median depth: between inset and context only means are mixed");
+  if (settings.depth == Depth::median || settings.depth == Depth::seen)
+    fail("foveation with the median depth, or what is seen: between inset and context only means are mixed");
   FoveatedViews out{.settings = settings};
   for (std::size_t k = 0; k < eyes.size(); ++k) {
     const FoveatedEye& eye = out.eyes.emplace_back(foveate(eyes[k], foveation, k));

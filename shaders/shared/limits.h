@@ -61,15 +61,20 @@
 // The squared change of a pixel without a splat, likewise, which counts as no more than this.
 #define CHANGE_SCALE 67108864.0
 #define CHANGE_MOST 0.015625
+// And what a splat shows in a pixel, alpha T^2.
+#define SEEN_SCALE 1048576.0
 // What a blend that draws no picture sums over the pixels of each splat.
 #define SUMS_NONE 0
 #define SUMS_TRANSPOSED 1
 #define SUMS_CHANGES 2
-// What a blend tells of a pixel's depth; the last at least in every second row.
+#define SUMS_SEEN 3
+// What a blend tells of a pixel's depth; the last at least in every second row. Or, in its place, what is
+// seen.
 #define DEPTH_NONE 0
 #define DEPTH_MEAN 1
-#define DEPTH_MEDIAN 2
-#define DEPTH_MEDIAN_OF_TWO_ROWS 3
+#define DEPTH_SEEN 2
+#define DEPTH_MEDIAN 3
+#define DEPTH_MEDIAN_OF_TWO_ROWS 4
 
 // A splat that reaches over more rows of tiles than this has its tiles counted by many invocations together;
 // so many splats a work group, and so many groups along x.

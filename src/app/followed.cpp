@@ -7,10 +7,13 @@
 #include "base/clock.h"
 #include "formats/model_file.h"
 #include "measure/metrics.h"
+#include "study/seen_parts.h"
 
 namespace binosplat::app {
 
 namespace {
+
+constexpr int looks = 3;  // by dB; then a choice hardly changes any more
 
 std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views,
                            const render::FrameSettings& settings) {
@@ -35,8 +38,30 @@ Model FollowedLevels::coarsest() {
   return model;
 }
 
-void FollowedLevels::bring(Model& model, std::span<const shared::View> views) {
-  if (scene_.choose(views, detail_need(options_, settings_, scene_, views))) read(model);
+void FollowedLevels::bring(gl::Context& context, Model& model, std::span<const shared::View> views) {
+  std::shared_ptr<render::GpuModel> gpu_model;
+  if (goes_by_db()) gpu_model = std::make_shared<render::GpuModel>(context, model);
+  settle(model, gpu_model, views, settings_, [] {});
+}
+
+template <typename Changing>
+bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel>& gpu_model,
+                            std::span<const shared::View> views, const render::FrameSettings& settings,
+                            const Changing& changing) {
+  std::optional<render::LinearBlend> shown;  // not longer than this: it takes as much memory as a frame
+  if (goes_by_db()) shown.emplace(gpu_model);
+  bool switched = false;
+  for (int look = 0; look < (shown ? looks : 1); ++look) {
+    if (!choose(shown ? &*shown : nullptr, model, views, settings)) break;
+    if (!switched) changing();
+    switched = true;
+    read(model);
+    if (!gpu_model) continue;
+    const auto start = Clock::now();
+    gpu_model->reload();
+    upload_ms_ += ms_since(start);
+  }
+  return switched;
 }
 
 void FollowedLevels::read(Model& model) {
@@ -46,24 +71,30 @@ void FollowedLevels::read(Model& model) {
   read_ms_ += ms_since(start);
 }
 
+bool FollowedLevels::choose(render::LinearBlend* shown, const Model& model,
+                            std::span<const shared::View> views, const render::FrameSettings& settings) {
+  std::vector<std::vector<SeenPart>> seen;
+  if (shown != nullptr) {
+    for (const shared::View& view : views)
+      seen.push_back(study::seen_parts(*shown, model, scene_.ranges(), view, settings));
+  }
+  return scene_.choose(views, detail_need(options_, settings_, scene_, views), seen);
+}
+
 ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Show& show,
                                   std::span<const shared::View> views,
                                   const render::FrameSettings& settings) {
   ShotLevels levels;
-  if (scene_.choose(views, detail_need(options_, settings_, scene_, views))) {
-    levels.switched = true;
-    std::vector<Picture> before;
+  std::vector<Picture> before;
+  levels.switched = settle(model, frame.model(), views, settings, [&] {
     if (report_) before = exact(frame, views, settings);
-    read(model);
     show.release();
-    const auto start = Clock::now();
-    frame.model()->reload();
-    levels.upload_ms = ms_since(start);
-    if (report_) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
-  }
+  });
+  if (!before.empty()) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
   levels.gaussians = model.count();
   levels.predicted_psnr = scene_.predicted_psnr();
   levels.read_ms = std::exchange(read_ms_, 0.0);
+  levels.upload_ms = std::exchange(upload_ms_, 0.0);
   return levels;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // --detail: levels of detail that follow what is drawn.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "base/image.h"
 #include "formats/streamed_sog.h"
 #include "render/frame.h"
+#include "render/linear_blend.h"
 #include "stereo/show.h"
 
 namespace binosplat::app {
@@ -46,9 +48,10 @@ class FollowedLevels {
   Model coarsest();
 
   /// Brings the model to the levels that the views need, before there is a frame of it.
-  void bring(Model& model, std::span<const shared::View> views);
+  void bring(gl::Context& context, Model& model, std::span<const shared::View> views);
 
-  /// The same with a frame and maps of the model.
+  /// The same with a frame and maps of the model. For dB it looks what the views show, by the levels that
+  /// there are, before it chooses, up to three times.
   ShotLevels follow(Model& model, render::Frame& frame, stereo::Show& show,
                     std::span<const shared::View> views, const render::FrameSettings& settings);
 
@@ -57,14 +60,24 @@ class FollowedLevels {
                         std::span<const Picture> pictures, const render::FrameSettings& settings);
 
  private:
+  bool goes_by_db() const { return options_.detail && options_.detail->db; }
+  /// Brings the model, and what there is of it on the GPU (by dB it must be there), to what the views need;
+  /// whether that was other levels. `changing` is called before the first of them is read.
+  template <typename Changing>
+  bool settle(Model& model, const std::shared_ptr<render::GpuModel>& gpu_model,
+              std::span<const shared::View> views, const render::FrameSettings& settings,
+              const Changing& changing);
   void read(Model& model);
+  /// Whether the views need other levels, by what they show of those of `shown`; none: for no dB.
+  bool choose(render::LinearBlend* shown, const Model& model, std::span<const shared::View> views,
+              const render::FrameSettings& settings);
 
   SceneOptions options_;
   render::FrameSettings settings_;
   bool report_;
   glm::vec3 background_;
   StreamedSog scene_;
-  double read_ms_ = 0.0;  // since the last shot
+  double read_ms_ = 0.0, upload_ms_ = 0.0;  // since the last shot
   std::optional<Model> finest_;
   std::optional<stereo::Show> show_finest_;
 };

@@ -50,8 +50,12 @@ LevelFolder folder_at(const fs::path& folder) {
 /// What tells a run from others.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   nlohmann::ordered_json run =
-      study::object("format", "binosplat levels", "program", BINOSPLAT_VERSION, "leaf", o.settings.leaf,
-                    "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
+      study::object("format", "binosplat levels", "version", 2, "program", BINOSPLAT_VERSION, "leaf",
+                    o.settings.leaf, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
+  if (o.scene.seed) run["seed"] = *o.scene.seed;
+  if (o.scene.count) run["count"] = *o.scene.count;
+  if (o.scene.repeat) run["repeat"] = {o.scene.repeat->x, o.scene.repeat->y};
+  if (o.scene.spacing) run["spacing"] = *o.scene.spacing;
   run["model"] = is_built_in(o.scene.name) ? o.scene.name : content_key(fs::path(o.scene.name));
   return run;
 }
@@ -71,6 +75,7 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
 }
 
 ExitCode levels(const LevelsOptions& o) {
+  check(o.scene);
   const nlohmann::ordered_json run = identity_of(o);
   const bool again = has_run(o, run);
   Model model = load_scene(o.scene);
@@ -101,22 +106,25 @@ void add_levels(CLI::App& program, Command& command) {
       ->type_name("FOLDER")
       ->required();
   sub->add_option("--levels", o->settings.levels,
-                  "Levels; each has half of the Gaussians of the one before (7)")
+                  "Levels; each has half of the Gaussians of the one before (8)")
       ->type_name("N")
       ->check(range(1, 16));
   sub->add_option(
          "--leaf", o->settings.leaf,
-         "Gaussians of the finest level, at most, in a part that is seen at a\nlevel of its own (16384)")
+         "Gaussians of the finest level, at most, in a part that is seen at a\nlevel of its own (2048)")
       ->type_name("N")
       ->check(range(64, 131072));
   add_lod_option(*sub, o->scene);
   add_axes_option(*sub, o->scene);
+  add_seed_option(*sub, o->scene);
+  add_count_option(*sub, o->scene);
+  add_repeat_options(*sub, o->scene);
   add_context_options(*sub, o->context);
   sub->footer(
       "A run that was interrupted goes on where it ended when it is started again.\n"
       "Examples:\n"
       "  binosplat levels garden.ply -o garden\n"
-      "  binosplat render garden --detail 5");
+      "  binosplat render garden --detail 40dB");
   sub->callback([o, &command] { command = [o] { return levels(*o); }; });
 }
 

@@ -289,9 +289,8 @@ ExitCode render(const RenderOptions& o) {
   }
   take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
-  if (work.followed) work.followed->bring(model, views_of(work.shots[0]));
-
   context = open_context(o.context);
+  if (work.followed) work.followed->bring(*context, model, views_of(work.shots[0]));
   const auto vr180_near = work.plan.vr180 ? std::optional(near_plane) : std::nullopt;
   RenderReport report{o,
                       model,

@@ -66,16 +66,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
       ->check(whole);
   add_seed_option(sub, o);
   add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
-  sub.add_option_function<std::string>(
-         "--repeat",
-         [&o](const std::string& text) {
-           o.repeat = parse_two("--repeat", text, "copies along x and z as NXxNZ, for one 4x4");
-         },
-         "Copies of the scene along x and z; needs --spacing")
-      ->type_name("NXxNZ");
-  sub.add_option("--spacing", o.spacing, "From one copy to the next, in world units")
-      ->type_name("S")
-      ->check(positive);
+  add_repeat_options(sub, o);
 }
 
 CLI::Option* add_lod_option(CLI::App& sub, SceneOptions& o, const char* help) {
@@ -95,6 +86,19 @@ CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& o) {
           "or Back, "
           "as in rdf, rub (the format's)")
       ->type_name("XYZ");
+}
+
+void add_repeat_options(CLI::App& sub, SceneOptions& o) {
+  sub.add_option_function<std::string>(
+         "--repeat",
+         [&o](const std::string& text) {
+           o.repeat = parse_two("--repeat", text, "copies along x and z as NXxNZ, for one 4x4");
+         },
+         "Copies of the scene along x and z; needs --spacing")
+      ->type_name("NXxNZ");
+  sub.add_option("--spacing", o.spacing, "From one copy to the next, in world units")
+      ->type_name("S")
+      ->check(positive);
 }
 
 CLI::Option* add_seed_option(CLI::App& sub, SceneOptions& o) {

@@ -42,8 +42,9 @@ struct Picture {
         z_sum(static_cast<std::size_t>(w) * h) {}
 };
 
-/// Of a pixel: not asked for, of all that is seen in it, or where half of the light is gone.
-enum class Depth { none, mean, median };
+/// Of a pixel: not asked for, of all that is seen in it, or where half of the light is gone. Or, in its
+/// place, how much is seen: the sum of alpha T^2, without a unit.
+enum class Depth { none, mean, median, seen };
 
 /// Whether pictures are the same in number, size and every bit.
 bool same_bits(std::span<const Picture> a, std::span<const Picture> b);

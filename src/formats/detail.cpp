@@ -1,7 +1,9 @@
 #include "formats/detail.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <queue>
 
@@ -11,6 +13,13 @@ namespace {
 
 /// By how much a level must be too coarse, or finer than need be, before it is left: heads are never still.
 constexpr double inertia = 1.1;
+
+/// In pixels narrower than those that are known errors grow by this power of how much narrower, at most so
+/// many times.
+constexpr double growth = 0.55, growth_most = 8.0;
+
+/// So many times the distance between the Gaussians of a level it reaches out from behind what hides it.
+constexpr double reach = 0.5;
 
 /// By how much more a level is needed that is not finer than the one before, and by how much less one that
 /// is.
@@ -47,66 +56,171 @@ bool sees(const DetailView& view, const DetailPart& part, double pixel) {
   return away <= 0.5 * glm::distance(part.low, part.high) + blurred_px * pixel;
 }
 
-/// A part as the views see it.
-struct Seen {
-  std::vector<std::size_t> by;  // views; the sphere around them, whose number follows theirs, if none does
-  std::vector<double> errors;   // of its levels; 0 where they are not known
+/// What relative_error says of each level of one part, seen from one place.
+class LookedAt {
+ public:
+  LookedAt(const DetailPart& part, double width, const glm::dvec3& along)
+      : part_(part),
+        squares_(along == glm::dvec3(0.0) ? glm::dvec3(1.0) : along * along),
+        grown_(std::clamp(std::pow(part.pixels.front() / width, growth), 1.0, growth_most)) {
+    for (glm::length_t axis = 0; axis < 3; ++axis)
+      direction_[axis] = 2 * static_cast<std::size_t>(axis) + (along[axis] < 0.0 ? 1 : 0);
+    const std::vector<double>& widths = part.pixels;
+    const auto wider = std::upper_bound(widths.begin(), widths.end(), width);
+    wider_ = static_cast<std::size_t>(std::min(wider, widths.end() - 1) - widths.begin());
+    narrower_ = wider == widths.begin() || wider == widths.end() ? wider_ : wider_ - 1;
+    if (narrower_ != wider_)
+      share_ = std::log(width / widths[narrower_]) / std::log(widths[wider_] / widths[narrower_]);
+    seen_ = of(part.seen);
+  }
+
+  double error(std::size_t level) const {
+    return seen_ == 0.0 ? 0.0 : of(part_.levels[level].errors) / seen_ * grown_;
+  }
+
+ private:
+  /// Of a list by directions and widths: its mean over directions, and between widths by lines between the
+  /// logarithms.
+  double of(const std::vector<double>& list) const {
+    double sum = 0.0;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+      const std::size_t first = direction_[axis] * part_.pixels.size();
+      sum += squares_[axis] * between(list[first + narrower_], list[first + wider_]);
+    }
+    return sum;
+  }
+
+  double between(double a, double b) const {
+    if (narrower_ == wider_) return a;
+    return a > 0.0 && b > 0.0 ? a * std::pow(b / a, share_) : std::lerp(a, b, share_);
+  }
+
+  const DetailPart& part_;
+  glm::dvec3 squares_;
+  std::array<std::size_t, 3> direction_{};  // by axis
+  std::size_t narrower_ = 0, wider_ = 0;    // of the widths that are known
+  double share_ = 0.0, seen_ = 0.0, grown_;
 };
 
-Seen seen(const DetailPart& part, const std::vector<DetailView>& views) {
-  Seen result;
-  double width = INFINITY, unseen = INFINITY;  // of a pixel at the part
-  for (std::size_t v = 0; v < views.size(); ++v) {
-    const double here = distance_to(part, views[v].eye) / views[v].focal;
-    unseen = std::min(unseen, here);
-    if (!sees(views[v], part, here)) continue;
-    width = std::min(width, here);
-    result.by.push_back(v);
-  }
-  if (result.by.empty()) {
-    result.by = {views.size()};
-    width = unseen;
-  }
-  for (std::size_t level = 0; level < part.levels.size(); ++level)
-    result.errors.push_back(part.pixel > 0.0 ? squared_error(part, level, width) : 0.0);
-  return result;
+/// What a view would show of a part that nothing hides.
+SeenPart unhidden(const DetailPart& part, const DetailView& view) {
+  const double distance = distance_to(part, view.eye);
+  if (part.pixels.empty()) return {0.0, distance};
+  double area = 0.0;  // in pixels of the narrowest width
+  for (std::size_t d = 0; d < detail_directions; ++d)
+    area += part.seen[d * part.pixels.size()] / double{detail_directions};
+  const double px = part.pixels.front() * view.focal / distance;
+  return {area * px * px, distance};
 }
+
+/// What is seen of all parts by each view, and by the sphere around them, which comes last and sees what
+/// none of them does.
+class Sights {
+ public:
+  Sights(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
+         std::span<const std::vector<SeenPart>> found, std::span<const std::size_t> before)
+      : parts_(parts),
+        before_(found.empty() ? std::span<const std::size_t>() : before),
+        seen_(views.size() + 1, std::vector<SeenPart>(parts.size())) {
+    double shown = 0.0, all = 0.0;  // px
+    std::vector<std::uint8_t> is_seen(parts.size(), 0);
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      focal_.push_back(views[v].focal);
+      eye_.push_back(views[v].eye);
+      for (std::size_t p = 0; p < parts.size(); ++p) {
+        const SeenPart open = unhidden(parts[p], views[v]);
+        const bool was_seen = !found.empty() && found[v][p].area > 0.0;
+        if (!was_seen && !sees(views[v], parts[p], open.distance / views[v].focal)) continue;
+        is_seen[p] = 1;
+        SeenPart& seen = seen_[v][p] = open;
+        if (found.empty()) continue;
+        seen.area = found[v][p].area;
+        if (was_seen) seen.distance = found[v][p].distance;
+        shown += seen.area;
+        all += open.area;
+      }
+    }
+    const double share = all > 0.0 ? std::min(1.0, shown / all) : 1.0;
+    focal_.push_back(0.0);  // the sphere's: the longest
+    for (const DetailView& view : views) focal_.back() = std::max(focal_.back(), view.focal);
+    eye_.push_back(views.empty() ? glm::dvec3(0.0) : views.front().eye);
+    for (std::size_t p = 0; p < parts.size() && !views.empty(); ++p) {
+      if (is_seen[p]) continue;
+      SeenPart& most = seen_.back()[p];
+      for (const DetailView& view : views) {
+        const SeenPart open = unhidden(parts[p], view);
+        if (share * open.area > most.area) most = {share * open.area, open.distance};
+      }
+    }
+  }
+
+  /// Squared error of each level of a part, summed over px.
+  std::vector<double> errors(std::size_t view, std::size_t p) const {
+    const DetailPart& part = parts_[p];
+    std::vector<double> result(part.levels.size(), 0.0);
+    const SeenPart& seen = seen_[view][p];
+    if (seen.distance == 0.0 || part.pixels.empty()) return result;
+    const LookedAt look(part, seen.distance / focal_[view], 0.5 * (part.low + part.high) - eye_[view]);
+    for (std::size_t level = 0; level < result.size(); ++level)
+      result[level] = area(view, p, level) * look.error(level);
+    return result;
+  }
+
+  double longest_focal() const { return focal_.back(); }
+
+ private:
+  /// What is seen of a part at a level, px. Where a finer one was drawn, it is more.
+  double area(std::size_t view, std::size_t p, std::size_t level) const {
+    const SeenPart& seen = seen_[view][p];
+    const DetailPart& part = parts_[p];
+    if (before_.empty() || level <= before_[p]) return seen.area;
+    const double apart = glm::distance(part.low, part.high) /
+                         std::sqrt(static_cast<double>(std::max<std::size_t>(part.levels[level].count, 1)));
+    const double side = std::sqrt(seen.area) + reach * apart * focal_[view] / seen.distance;
+    return side * side;
+  }
+
+  const std::vector<DetailPart>& parts_;
+  std::span<const std::size_t> before_;
+  std::vector<double> focal_;
+  std::vector<glm::dvec3> eye_;
+  std::vector<std::vector<SeenPart>> seen_;
+};
 
 /// What choose_levels_within does.
 class ErrorChooser {
  public:
-  ErrorChooser(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views, double error,
-               std::size_t most, std::span<const std::size_t> before)
+  ErrorChooser(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
+               const Sights& sights, double error, std::size_t most, std::span<const std::size_t> before)
       : parts_(parts), most_(most), before_(before), chosen_(parts.size(), 0), finest_(parts.size(), 0) {
-    double focal = 0.0;
-    for (const DetailView& view : views) {
-      focal = std::max(focal, view.focal);
-      allowed_.push_back(error * view.pixels);
-    }
-    allowed_.push_back(error * 4.0 * std::numbers::pi * focal * focal);
+    for (const DetailView& view : views) allowed_.push_back(error * view.pixels);
+    allowed_.push_back(error * 4.0 * std::numbers::pi * sights.longest_focal() * sights.longest_focal());
+    lost_.resize(allowed_.size());
+    errors_.resize(parts.size());
     for (std::size_t p = 0; p < parts.size(); ++p) {
-      seen_.push_back(seen(parts[p], views));
+      for (std::size_t v = 0; v < allowed_.size(); ++v) {
+        const std::vector<double> of_levels = sights.errors(v, p);
+        errors_[p].insert(errors_[p].end(), of_levels.begin(), of_levels.end());
+      }
       if (parts[p].levels.empty()) continue;
       chosen_[p] = parts[p].levels.size() - 1;
       total_ += parts[p].levels.back().count;
+      for (std::size_t v = 0; v < lost_.size(); ++v) lost_[v] += error_of(v, p, chosen_[p]);
     }
   }
 
   std::vector<std::size_t> choose() {
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      for (std::size_t level = 0; parts_[p].pixel == 0.0 && level < chosen_[p]; ++level) {
+      for (std::size_t level = 0; parts_[p].pixels.empty() && level < chosen_[p]; ++level) {
         if (fits(p, level)) take(p, level);
       }
     }
-    lost_ = lost();
     std::priority_queue<Step> steps;
     for (std::size_t p = 0; p < parts_.size(); ++p) add(steps, p);
     while (!steps.empty()) {
       const auto [worth, p, level] = steps.top();
       steps.pop();
       if (fits(p, level) && needed(p, level)) {
-        for (const std::size_t v : seen_[p].by)
-          lost_[v] += seen_[p].errors[level] - seen_[p].errors[chosen_[p]];
         take(p, level);
       } else {
         finest_[p] = level + 1;  // coarser ones may be smaller, or needed more by what was before
@@ -116,14 +230,12 @@ class ErrorChooser {
     return chosen_;
   }
 
-  /// By view, the sphere's last.
-  std::vector<double> lost() const {
-    std::vector<double> sums(allowed_.size(), 0.0);
-    for (std::size_t p = 0; p < parts_.size(); ++p) {
-      if (parts_[p].levels.empty()) continue;
-      for (const std::size_t v : seen_[p].by) sums[v] += seen_[p].errors[chosen_[p]];
-    }
-    return sums;
+  /// Squared error of a view, summed over px.
+  double lost(std::size_t view) const {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < parts_.size(); ++p)
+      sum += parts_[p].levels.empty() ? 0.0 : error_of(view, p, chosen_[p]);
+    return sum;
   }
 
  private:
@@ -138,21 +250,23 @@ class ErrorChooser {
     return total_ - count(p, chosen_[p]) + count(p, level);
   }
   bool fits(std::size_t p, std::size_t level) const { return with(p, level) <= most_; }
+  double error_of(std::size_t view, std::size_t p, std::size_t level) const {
+    return errors_[p][view * parts_[p].levels.size() + level];
+  }
 
   void take(std::size_t p, std::size_t level) {
+    for (std::size_t v = 0; v < lost_.size(); ++v)
+      lost_[v] += error_of(v, p, level) - error_of(v, p, chosen_[p]);
     total_ = with(p, level);
     chosen_[p] = level;
   }
 
   /// Whether a view that sees the part loses too much; any, where none sees it.
   bool needed(std::size_t p, std::size_t level) const {
-    const auto too_much = [&](std::size_t v) {
-      return lost_[v] * inertia_of(before_, p, level) > allowed_[v];
-    };
-    const std::vector<std::size_t>& by = seen_[p].by;
-    if (by.front() + 1 < allowed_.size()) return std::any_of(by.begin(), by.end(), too_much);
+    const bool is_seen = error_of(allowed_.size() - 1, p, chosen_[p]) == 0.0;
     for (std::size_t v = 0; v < allowed_.size(); ++v) {
-      if (too_much(v)) return true;
+      if (is_seen && error_of(v, p, chosen_[p]) == 0.0) continue;
+      if (lost_[v] * inertia_of(before_, p, level) > allowed_[v]) return true;
     }
     return false;
   }
@@ -161,7 +275,9 @@ class ErrorChooser {
   void add(std::priority_queue<Step>& steps, std::size_t p) const {
     Step best{0.0, p, 0};
     for (std::size_t level = chosen_[p]; level-- > finest_[p];) {
-      const double saved = seen_[p].errors[chosen_[p]] - seen_[p].errors[level];
+      double saved = 0.0;
+      for (std::size_t v = 0; v < lost_.size(); ++v)
+        saved = std::max(saved, error_of(v, p, chosen_[p]) - error_of(v, p, level));
       const double added = static_cast<double>(count(p, level)) - static_cast<double>(count(p, chosen_[p]));
       const double worth = inertia_of(before_, p, level) * saved / std::max(added, 1.0);
       if (worth > best.worth) best = {worth, p, level};
@@ -172,13 +288,19 @@ class ErrorChooser {
   const std::vector<DetailPart>& parts_;
   std::size_t most_;
   std::span<const std::size_t> before_;
-  std::vector<double> allowed_, lost_;  // squared error, by view
-  std::vector<Seen> seen_;
+  std::vector<double> allowed_, lost_;        // squared error, by view, the sphere's last
+  std::vector<std::vector<double>> errors_;   // by part: by view, of each level
   std::vector<std::size_t> chosen_, finest_;  // the finest that may be taken
   std::size_t total_ = 0;
 };
 
 }  // namespace
+
+glm::dvec3 detail_direction(std::size_t d) {
+  glm::dvec3 direction(0.0);
+  direction[static_cast<glm::length_t>(d / 2)] = d % 2 == 0 ? 1.0 : -1.0;
+  return direction;
+}
 
 std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
                                        const std::vector<glm::dvec3>& eyes, std::size_t most, double enough,
@@ -209,7 +331,8 @@ std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
   while (!coarse.empty()) {
     const std::size_t p = coarse.top().part;
     coarse.pop();
-    const std::size_t now = parts[p].levels[chosen[p]].count, finer = parts[p].levels[chosen[p] - 1].count;
+    const std::size_t now = parts[p].levels[chosen[p]].count;
+    const std::size_t finer = parts[p].levels[chosen[p] - 1].count;
     if (total - now + finer > most) continue;  // others may be smaller
     total = total - now + finer;
     --chosen[p];
@@ -218,26 +341,17 @@ std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
   return chosen;
 }
 
-double squared_error(const DetailPart& part, std::size_t level, double width) {
-  const std::vector<double>& errors = part.levels[level].errors;
-  // Where it lies among the errors; 2^50 times beyond them is far enough for a part without extent.
-  const double last = static_cast<double>(errors.size() - 1);
-  const double place = std::clamp(std::log2(width / part.pixel), -50.0, last + 50.0);
-  if (place <= 0.0) return errors.front() * std::exp2(-2.0 * place);
-  if (place >= last) return errors.back() * std::exp2(2.0 * (last - place));
-  const auto before = static_cast<std::size_t>(place);
-  const double a = errors[before], b = errors[before + 1], share = place - std::floor(place);
-  if (a > 0.0 && b > 0.0) return std::exp2(std::lerp(std::log2(a), std::log2(b), share));
-  return std::lerp(a, b, share);
+double relative_error(const DetailPart& part, std::size_t level, double width, const glm::dvec3& along) {
+  return LookedAt(part, width, along).error(level);
 }
 
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
-                                  double error, std::size_t most, std::span<const std::size_t> before) {
-  ErrorChooser chooser(parts, views, error, most, before);
+                                  double error, std::size_t most, std::span<const std::vector<SeenPart>> seen,
+                                  std::span<const std::size_t> before) {
+  ErrorChooser chooser(parts, views, Sights(parts, views, seen, before), error, most, before);
   DetailChoice result{chooser.choose()};
-  const std::vector<double> lost = chooser.lost();
   for (std::size_t v = 0; v < views.size(); ++v)
-    result.error = std::max(result.error, lost[v] / views[v].pixels);
+    result.error = std::max(result.error, chooser.lost(v) / views[v].pixels);
   return result;
 }
 

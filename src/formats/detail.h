@@ -24,18 +24,32 @@ struct DetailNeed {
   std::optional<double> db = {};  // instead of apart_px: each view's PSNR against the finest levels
 };
 
+/// Directions in which what levels lose is known: along x, against it, along y and so on.
+constexpr std::size_t detail_directions = 6;
+glm::dvec3 detail_direction(std::size_t d);
+
 /// A part of a model: its box, and its levels from the finest to the coarsest.
 struct DetailPart {
   struct Level {
     int number = 0;
     std::size_t count = 0;  // Gaussians
-    /// What its picture of the part alone loses against the finest, before black: squared, summed over
-    /// pixels that are 1, 2, 4 ... times the part's `pixel` wide, meaned over channels.
+    /// By what its picture of the part, by itself over what looks much like it, differs from that of the
+    /// finest: squared, summed over pixels and meaned over channels; in each direction, in pixels of each
+    /// width.
     std::vector<double> errors = {};
   };
   glm::dvec3 low{0.0}, high{0.0};
-  std::vector<Level> levels;  // may be empty
-  double pixel = 0.0;         // world units; 0: the errors are not known
+  std::vector<Level> levels;   // may be empty
+  std::vector<double> pixels;  // widths, world units, from the narrowest; empty: the errors are not known
+  std::vector<double> seen;    // what those pictures of the finest show (SeenPart), px, likewise
+};
+
+/// What a view shows of a part: alpha T^2, summed over its Gaussians and the view's pixels, and how far away
+/// that is, world units. T once for the light that comes from it, and once since an error behind others is
+/// seen less.
+struct SeenPart {
+  double area = 0.0;  // px
+  double distance = 0.0;
 };
 
 /// For each part the place of its level in `levels`. All begin with their coarsest; then, as long as there is
@@ -56,9 +70,10 @@ struct DetailView {
   double pixels = 1.0;  // of the picture
 };
 
-/// A level's squared error (DetailPart::Level::errors) in pixels that are so wide, in world units. What is
-/// nearer or farther than its errors tell loses as much of each area as at their end.
-double squared_error(const DetailPart& part, std::size_t level, double width);
+/// A level's squared error for each pixel's worth that is seen of the part (SeenPart), by an eye that looks
+/// `along`, of any length, where pixels are so wide, world units: by lines between the logarithms of what is
+/// known. Narrower ones lose as much as detail does that grows finer and finer, wider ones as at the end.
+double relative_error(const DetailPart& part, std::size_t level, double width, const glm::dvec3& along);
 
 struct DetailChoice {
   std::vector<std::size_t> levels;  // as choose_levels says them
@@ -67,12 +82,16 @@ struct DetailChoice {
 
 /// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All
 /// parts begin with their coarsest level; then, as long as a view loses more, that part gets that finer level
-/// which saves the most error per Gaussian. The choice is one for all views: a part's error is that in the
-/// view that sees it largest. One that no view sees takes part in this as if it were seen, and goes on until
-/// all such parts lose no more than `error` of the pixels of a whole sphere: heads turn. A part of unknown
-/// errors gets its finest level. More than `most`, and more error, only where they leave no choice.
-/// `before` is kept to: its levels go on until a tenth less is lost, finer ones end at a tenth more.
+/// which saves the most error per Gaussian. The choice is one for all views. `seen` says what each view was
+/// found to show of each part, maybe a moment ago; what it does not know (empty, for all views) is taken to
+/// be hidden by nothing. A part that no view sees takes part in this as if it were seen, and as hidden as
+/// others are on the whole, and goes on until all such parts lose no more than `error` of the pixels of a
+/// whole sphere: heads turn. A part of unknown errors gets its finest level. More than `most`, and more
+/// error, only where they leave no choice. `before` is kept to: its levels go on until a tenth less is lost,
+/// finer ones end at a tenth more.
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
-                                  double error, std::size_t most, std::span<const std::size_t> before = {});
+                                  double error, std::size_t most,
+                                  std::span<const std::vector<SeenPart>> seen = {},
+                                  std::span<const std::size_t> before = {});
 
 }  // namespace binosplat

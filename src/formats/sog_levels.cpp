@@ -20,14 +20,29 @@ glm::dvec3 corner(const JsonValue& value) {
   return {three.at(0).number(), three.at(1).number(), three.at(2).number()};
 }
 
-std::vector<double> errors_of(const JsonValue& value) {
-  if (value.size() == 0) value.fail_here("expected one error at least");
-  std::vector<double> errors;
+std::vector<double> widths_of(const JsonValue& value) {
+  if (value.size() == 0) value.fail_here("expected one width at least");
+  std::vector<double> widths;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    errors.push_back(value.at(i).number());
-    if (errors.back() < 0.0) value.at(i).fail_here("expected an error of 0 or more, found {}", errors.back());
+    const double width = value.at(i).number(), before = widths.empty() ? 0.0 : widths.back();
+    if (width <= before) value.at(i).fail_here("expected a width above {}, found {}", before, width);
+    widths.push_back(width);
   }
-  return errors;
+  return widths;
+}
+
+/// A list of numbers for each direction, of one for each width.
+std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
+  const JsonValue directions = value.list_of(detail_directions);
+  std::vector<double> numbers;
+  for (std::size_t d = 0; d < detail_directions; ++d) {
+    const JsonValue list = directions.at(d).list_of(widths);
+    for (std::size_t i = 0; i < widths; ++i) {
+      numbers.push_back(list.at(i).number());
+      if (numbers.back() < 0.0) list.at(i).fail_here("expected 0 or more, found {}", numbers.back());
+    }
+  }
+  return numbers;
 }
 
 }  // namespace
@@ -84,22 +99,17 @@ std::vector<DetailPart> SogLevels::leaves() const {
   walk([&](const JsonValue& node) {
     const JsonValue bound = node.at("bound"), lods = node.at("lods");
     DetailPart leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
-    if (node.has("pixel")) {
-      leaf.pixel = node.at("pixel").number();
-      if (leaf.pixel <= 0.0) node.at("pixel").fail_here("expected a width above zero, found {}", leaf.pixel);
+    if (node.has("pixels")) {
+      leaf.pixels = widths_of(node.at("pixels"));
+      leaf.seen = by_direction(node.at("seen"), leaf.pixels.size());
     }
-    std::size_t errors = 0;  // of each level
     for (int level = 0; level < count_; ++level) {
       const std::string& key = keys_[static_cast<std::size_t>(level)];
       if (!lods.has(key)) continue;
       const JsonValue lod = lods.at(key);
       const auto [index, range] = part(lod);
       DetailPart::Level of_leaf{level, range.count};
-      if (leaf.pixel > 0.0) {
-        const JsonValue list = lod.at("errors");
-        of_leaf.errors = errors_of(errors == 0 ? list : list.list_of(errors));
-        errors = of_leaf.errors.size();
-      }
+      if (!leaf.pixels.empty()) of_leaf.errors = by_direction(lod.at("errors"), leaf.pixels.size());
       if (is_there[index]) leaf.levels.push_back(std::move(of_leaf));
     }
     result.push_back(std::move(leaf));

@@ -291,8 +291,10 @@ StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source
 
 StreamedSog::~StreamedSog() = default;
 
-bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& need) {
-  if (need.db && std::none_of(leaves_.begin(), leaves_.end(), [](const auto& l) { return l.pixel > 0.0; })) {
+bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& need,
+                         std::span<const std::vector<SeenPart>> seen) {
+  if (need.db &&
+      std::none_of(leaves_.begin(), leaves_.end(), [](const auto& l) { return !l.pixels.empty(); })) {
     fail(
         "--detail {}dB: {} has no errors of its levels to go by; `binosplat levels` writes them; or use "
         "--detail PX",
@@ -301,24 +303,25 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   const auto& environment = source_->levels.environment();
   const std::size_t around = environment ? source_->files.back()->count() : 0;
   const std::size_t most = need.most - std::min(need.most, around);
-  const std::span<const std::size_t> before = seen_ ? std::span(chosen_) : std::span<std::size_t>();
-  const std::vector<DetailView> seen = detail_views(views);
+  const std::span<const std::size_t> before = by_views_ ? std::span(chosen_) : std::span<std::size_t>();
+  const std::vector<DetailView> detail = detail_views(views);
   predicted_psnr_.reset();
   if (need.db && !views.empty()) {
-    DetailChoice choice = choose_levels_within(leaves_, seen, std::pow(10.0, -0.1 * *need.db), most, before);
+    DetailChoice choice =
+        choose_levels_within(leaves_, detail, std::pow(10.0, -0.1 * *need.db), most, seen, before);
     chosen_ = std::move(choice.levels);
     predicted_psnr_ = -10.0 * std::log10(choice.error);
   } else {
     std::vector<glm::dvec3> eyes;
     double focal = 0.0;
-    for (const DetailView& view : seen) {
+    for (const DetailView& view : detail) {
       eyes.push_back(view.eye);
       focal = std::max(focal, view.focal);
     }
     const double enough = views.empty() ? std::numeric_limits<double>::infinity() : need.apart_px / focal;
     chosen_ = choose_levels(leaves_, eyes, most, enough, before);
   }
-  seen_ = !views.empty();
+  by_views_ = !views.empty();
   return chosen_ != levels_;
 }
 
@@ -334,7 +337,7 @@ Model StreamedSog::read() {
     return leaves_[leaf].levels.empty() ? no_level : leaves_[leaf].levels[chosen_[leaf]].number;
   };
   std::vector<Taken> taken = source_->wanted(level_of, leaves_.size());
-  std::vector<Span> spans(leaves_.size() + 1);
+  std::vector<Range> ranges(leaves_.size() + 1);
   std::size_t total = 0;
   std::uint64_t bytes = 0;
   for (std::size_t i = 0; i < taken.size(); ++i) {
@@ -344,7 +347,7 @@ Model StreamedSog::read() {
     for (SogLevels::Taken& of_leaf : taken[i]) {
       of_leaf.range.slot = total;
       total += of_leaf.range.count;
-      spans[of_leaf.leaf] = {of_leaf.range.slot, of_leaf.range.count};
+      ranges[of_leaf.leaf] = {of_leaf.range.slot, of_leaf.range.count};
     }
   }
   if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), model_.format);
@@ -353,11 +356,11 @@ Model StreamedSog::read() {
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
   parallel_for(taken.size(), [&](std::size_t i) { fill(model, kept, taken[i], i); });
-  close_gaps(spans, kept);
+  close_gaps(ranges, kept);
   keep_only(model, kept);
   model_ = model;
   levels_ = chosen_;
-  spans_ = std::move(spans);
+  ranges_ = std::move(ranges);
   return model;
 }
 
@@ -366,11 +369,11 @@ void StreamedSog::fill(Model& model, std::vector<std::uint8_t>& kept, std::span<
   std::vector<SogSource::Range> changed;
   for (const SogLevels::Taken& of_leaf : taken) {
     const std::size_t leaf = of_leaf.leaf;
-    if (spans_.empty() || (leaf < leaves_.size() && chosen_[leaf] != levels_[leaf])) {
+    if (ranges_.empty() || (leaf < leaves_.size() && chosen_[leaf] != levels_[leaf])) {
       changed.push_back(of_leaf.range);
       continue;
     }
-    const Span& before = spans_[leaf];
+    const Range& before = ranges_[leaf];
     copy(model_, before.first, before.count, model, of_leaf.range.slot);
     std::fill_n(kept.begin() + static_cast<std::ptrdiff_t>(of_leaf.range.slot), before.count, 1);
   }
@@ -379,12 +382,12 @@ void StreamedSog::fill(Model& model, std::vector<std::uint8_t>& kept, std::span<
 }
 
 // Where leaves lie once keep_only has left out what is not kept.
-void StreamedSog::close_gaps(std::vector<Span>& spans, const std::vector<std::uint8_t>& kept) {
+void StreamedSog::close_gaps(std::vector<Range>& ranges, const std::vector<std::uint8_t>& kept) {
   std::vector<std::size_t> before(kept.size() + 1, 0);
   for (std::size_t i = 0; i < kept.size(); ++i) before[i + 1] = before[i] + kept[i];
-  for (Span& span : spans) {
-    const std::size_t first = before[span.first];
-    span = {first, before[span.first + span.count] - first};
+  for (Range& range : ranges) {
+    const std::size_t first = before[range.first];
+    range = {first, before[range.first + range.count] - first};
   }
 }
 

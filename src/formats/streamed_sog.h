@@ -45,7 +45,9 @@ class StreamedSog {
   /// by what each of them loses (choose_levels_within), with the levels of the last choice as those before.
   /// Without views: the coarsest. True if the model that was read last is another one. Throws Error for dB
   /// where the file has no errors.
-  bool choose(std::span<const shared::View> views, const DetailNeed& need);
+  /// `seen`: what each view shows of each of ranges(), as far as that was found (choose_levels_within).
+  bool choose(std::span<const shared::View> views, const DetailNeed& need,
+              std::span<const std::vector<SeenPart>> seen = {});
 
   /// What the views are taken to have against the finest levels, in dB; none where dB were not chosen by.
   std::optional<double> predicted_psnr() const { return predicted_psnr_; }
@@ -54,25 +56,28 @@ class StreamedSog {
   /// last model, a copy of which stays here. Throws Error where a file has become unreadable.
   Model read();
 
- private:
-  struct Source;
-  struct Span {
+  /// Which Gaussians of the model that was read last are which leaf, and at the end the environment.
+  struct Range {
     std::size_t first = 0, count = 0;
   };
+  std::span<const Range> ranges() const { return ranges_; }
+
+ private:
+  struct Source;
   void fill(Model& model, std::vector<std::uint8_t>& kept, std::span<const SogLevels::Taken> taken,
             std::size_t file) const;
-  static void close_gaps(std::vector<Span>& spans, const std::vector<std::uint8_t>& kept);
+  static void close_gaps(std::vector<Range>& ranges, const std::vector<std::uint8_t>& kept);
 
   std::unique_ptr<Source> source_;
   std::vector<DetailPart> leaves_;
   int degree_ = 0;
   std::vector<std::size_t> chosen_;  // places in a leaf's `levels`
-  bool seen_ = false;                // by views
+  bool by_views_ = false;            // chosen
   std::optional<double> predicted_psnr_;
   // The last model, the levels that it has, and where its leaves lie; the environment lies last.
   Model model_;
   std::vector<std::size_t> levels_;
-  std::vector<Span> spans_;
+  std::vector<Range> ranges_;
 };
 
 }  // namespace binosplat

@@ -44,9 +44,9 @@ struct Box {
 /// A leaf of the tree.
 struct Leaf {
   std::span<const std::uint32_t> indices;
-  Box box;                   // around ellipsoids of one standard deviation
-  ordered_json lods;         // where its levels lie, and what they lose
-  double error_pixel = 1.0;  // the narrowest by which that was found
+  Box box;                    // around ellipsoids of one standard deviation
+  ordered_json lods;          // where its levels lie, and what they lose
+  ordered_json pixels, seen;  // by which that was found
 
   std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
   double pixel(int level) const {
@@ -103,20 +103,22 @@ ordered_json json_of(const Box& b) {
   return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
 }
 
-/// Four digits are more than two directions tell.
-double rounded(double error) { return std::stod(fmt::format("{:.4g}", error)); }
+/// Three digits are more than six directions tell.
+double rounded(double number) { return std::stod(fmt::format("{:.3g}", number)); }
 
-ordered_json json_of(const std::vector<LeafErrors>& leaves) {
+ordered_json json_of(double number) { return rounded(number); }
+
+ordered_json json_of(const LeafErrors& leaf);
+
+template <typename Item>
+ordered_json json_of(const std::vector<Item>& list) {
   ordered_json json = ordered_json::array();
-  for (const LeafErrors& leaf : leaves) {
-    ordered_json errors = ordered_json::array();
-    for (const std::vector<double>& of_level : leaf.of_level) {
-      ordered_json& row = errors.emplace_back(ordered_json::array());
-      for (const double error : of_level) row.push_back(rounded(error));
-    }
-    json.push_back({{"pixel", leaf.pixel}, {"errors", std::move(errors)}});
-  }
+  for (const Item& item : list) json.push_back(json_of(item));
   return json;
+}
+
+ordered_json json_of(const LeafErrors& leaf) {
+  return {{"pixels", json_of(leaf.pixels)}, {"seen", json_of(leaf.seen)}, {"errors", json_of(leaf.of_level)}};
 }
 
 class Writer {
@@ -129,7 +131,7 @@ class Writer {
         judge_(judge),
         tree_(make_space_tree(model.position, settings.leaf)),
         gaussians_(static_cast<std::size_t>(settings.levels)) {
-    plan(tree_.root);
+    plan();
     parallel_for(leaves_.size(), [&](std::size_t i) { measure(model_, leaves_[i]); });
   }
 
@@ -166,17 +168,28 @@ class Writer {
  private:
   bool is_done(const Piece& piece) const { return piece.files.empty() && folder_.has(piece.errors); }
 
-  /// Which leaves are a piece, and what of them goes where.
-  void plan(const SpaceNode& node) {
-    if (node.count > settings_.piece && !node.children.empty()) {
-      for (const SpaceNode& child : node.children) plan(child);
-      return;
+  /// Which leaves are a piece, and what of it goes where. Nodes that follow one another share a piece, since
+  /// what lies far out is a node of a few.
+  void plan() {
+    std::vector<const SpaceNode*> nodes;
+    find_nodes(tree_.root, nodes);
+    for (std::size_t i = 0; i < nodes.size();) {
+      Piece piece{fmt::format("errors_{}.json", pieces_.size()), leaves_.size(), 0, {}};
+      std::size_t count = 0;
+      do {
+        add_leaves(*nodes[i]);
+        count += nodes[i]->count;
+      } while (++i < nodes.size() && count + nodes[i]->count <= settings_.piece);
+      piece.leaves = leaves_.size() - piece.first_leaf;
+      for (int level = 0; level < settings_.levels; ++level) add_files(piece, level);
+      pieces_.push_back(std::move(piece));
     }
-    Piece piece{fmt::format("errors_{}.json", pieces_.size()), leaves_.size(), 0, {}};
-    add_leaves(node);
-    piece.leaves = leaves_.size() - piece.first_leaf;
-    for (int level = 0; level < settings_.levels; ++level) add_files(piece, level);
-    pieces_.push_back(std::move(piece));
+  }
+
+  /// Those that fit into a piece, in order.
+  void find_nodes(const SpaceNode& node, std::vector<const SpaceNode*>& nodes) const {
+    if (node.count <= settings_.piece || node.children.empty()) return nodes.push_back(&node);
+    for (const SpaceNode& child : node.children) find_nodes(child, nodes);
   }
 
   void add_leaves(const SpaceNode& node) {
@@ -241,7 +254,8 @@ class Writer {
     const JsonValue of_leaves = JsonValue(piece.errors, told).list_of(piece.leaves);
     for (std::size_t i = 0; i < piece.leaves; ++i) {
       Leaf& leaf = leaves_[piece.first_leaf + i];
-      leaf.error_pixel = of_leaves.at(i).at("pixel").number();
+      leaf.pixels = of_leaves.at(i).at("pixels").value();
+      leaf.seen = of_leaves.at(i).at("seen").value();
       const JsonValue of_levels = of_leaves.at(i).at("errors").list_of(gaussians_.size());
       for (std::size_t level = 0; level < gaussians_.size(); ++level)
         leaf.lods[std::to_string(level)]["errors"] = of_levels.at(level).value();
@@ -252,7 +266,9 @@ class Writer {
   std::pair<ordered_json, Box> node_json(const SpaceNode& node, std::size_t& next_leaf) const {
     if (node.children.empty()) {
       const Leaf& leaf = leaves_[next_leaf++];
-      return {{{"bound", json_of(leaf.box)}, {"pixel", leaf.error_pixel}, {"lods", leaf.lods}}, leaf.box};
+      return {
+          {{"bound", json_of(leaf.box)}, {"pixels", leaf.pixels}, {"seen", leaf.seen}, {"lods", leaf.lods}},
+          leaf.box};
     }
     Box around;
     ordered_json children;

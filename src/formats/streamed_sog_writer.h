@@ -7,23 +7,23 @@
 #include <string>
 #include <vector>
 
+#include "formats/detail.h"
 #include "scene/model.h"
 
 namespace binosplat {
 
 struct LevelSettings {
-  std::size_t leaf = 16384;     // Gaussians of the finest level in a leaf of the tree, at most
-  int levels = 7;               // each with half of the Gaussians of the one before in each leaf, rounded up
+  std::size_t leaf = 2048;      // Gaussians of the finest level in a leaf of the tree, at most
+  int levels = 8;               // each with half of the Gaussians of the one before in each leaf, rounded up
   std::size_t file = 131072;    // Gaussians of a SOG, at most, or one leaf: readers decode whole files
   std::size_t piece = 1048576;  // of the finest level, at most, in memory at a time; no SOG has leaves of two
 };
 
-/// What the levels of a leaf lose: squared errors of the leaf's picture, by itself over black, against that
-/// of its finest level, summed over pixels and meaned over channels (px times squared colour); by level,
-/// where pixels are `pixel`, 2 `pixel`, 4 `pixel` ... wide.
+/// What the levels of a leaf lose (formats/detail.h), in lists of a number for each width of a pixel.
 struct LeafErrors {
-  double pixel = 1.0;  // world units
-  std::vector<std::vector<double>> of_level;
+  std::vector<double> pixels;                              // world units, from the narrowest
+  std::vector<std::vector<double>> seen;                   // by direction, px
+  std::vector<std::vector<std::vector<double>>> of_level;  // by level and direction, px times squared colour
 };
 
 /// Finds them for leaves, given their levels from the finest.
@@ -49,7 +49,7 @@ struct LevelsWritten {
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
 /// bytes. What levels lose is kept beside the SOGs until then, in errors_0.json and so on, and told in
-/// lod-meta.json: a leaf has "pixel", and each of its lods "errors". Progress is shown.
+/// lod-meta.json: a leaf has "pixels" and "seen", and each of its lods "errors". Progress is shown.
 LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
                                  const JudgeLevels& judge);
 

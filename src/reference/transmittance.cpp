@@ -39,6 +39,7 @@ std::vector<double> measure_pairs(const std::vector<Splat>& splats, const TileLi
 }
 
 void keep_largest(double& largest, double value) { largest = std::max(largest, value); }
+void add_up(double& sum, double value) { sum += value; }
 
 }  // namespace
 
@@ -61,8 +62,15 @@ std::vector<double> measure_contributions(const std::vector<Splat>& splats, cons
 std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
                                     const shared::View& view) {
   const auto measure = [](double& sum, double alpha, double transmittance) { sum += alpha * transmittance; };
-  const auto join = [](double& sum, double more) { sum += more; };
-  return measure_pairs(splats, lists, view, 0.0, measure, join);
+  return measure_pairs(splats, lists, view, 0.0, measure, add_up);
+}
+
+std::vector<double> measure_seen(const std::vector<Splat>& splats, const TileLists& lists,
+                                 const shared::View& view) {
+  const auto measure = [](double& sum, double alpha, double transmittance) {
+    sum += alpha * transmittance * transmittance;
+  };
+  return measure_pairs(splats, lists, view, 0.0, measure, add_up);
 }
 
 std::vector<double> floored(std::vector<double> measured, double floor) {

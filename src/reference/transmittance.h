@@ -26,6 +26,10 @@ std::vector<double> measure_contributions(const std::vector<Splat>& splats, cons
 std::vector<double> measure_weights(const std::vector<Splat>& splats, const TileLists& lists,
                                     const shared::View& view);
 
+/// For each Gaussian alpha T^2, likewise: how much an error of it would be seen.
+std::vector<double> measure_seen(const std::vector<Splat>& splats, const TileLists& lists,
+                                 const shared::View& view);
+
 /// A measurement as set_thresholds() takes it: at least `floor`, and 1 where the Gaussian was not seen.
 std::vector<double> floored(std::vector<double> measured, double floor);
 

@@ -39,6 +39,7 @@ std::string name_of_program(const gl::Context& context, const FrameShape& shape,
 int depth_of(const FrameShape& shape) {
   if (!shape.keeps_depth()) return DEPTH_NONE;
   if (shape.settings.depth == Depth::mean) return DEPTH_MEAN;
+  if (shape.settings.depth == Depth::seen) return DEPTH_SEEN;
   return !shape.canvases.empty() && shape.depth_rows == 2 ? DEPTH_MEDIAN_OF_TWO_ROWS : DEPTH_MEDIAN;
 }
 
@@ -162,6 +163,11 @@ void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, Frame
 void blend_changes(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
                    const gl::Buffer& sums) {
   run(dispatcher, shape, buffers, {.sums = SUMS_CHANGES}, sums);
+}
+
+void blend_seen(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
+                const gl::Buffer& sums) {
+  run(dispatcher, shape, buffers, {.sums = SUMS_SEEN}, sums);
 }
 
 void refuse_cut(const gl::Context& context, const shared::Counters& counters) {

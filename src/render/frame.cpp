@@ -58,6 +58,8 @@ FrameReport Frame::draw(std::span<const shared::View> views, const FrameSettings
 }
 
 void Frame::take_canvases(std::span<const Canvas> canvases, int depth_rows) {
+  if (!canvases.empty() && shape_.settings.depth == Depth::seen)
+    fail("canvases take depths, and no sums of what is seen");
   shape_.canvases.assign(canvases.begin(), canvases.end());
   shape_.depth_rows = depth_rows;
 }

@@ -6,11 +6,11 @@
 
 namespace binosplat::render {
 
-LinearBlend::LinearBlend(gl::Context& context, const Model& model)
-    : frame_(context, model),
-      dispatcher_(context),
-      colours_(context, "colours by slot"),
-      sums_(context, "sums of the transposed blend") {}
+LinearBlend::LinearBlend(std::shared_ptr<GpuModel> model)
+    : frame_(model),
+      dispatcher_(model->context()),
+      colours_(model->context(), "colours by slot"),
+      sums_(model->context(), "sums of the transposed blend") {}
 
 template <typename Record>
 void LinearBlend::run(const Record& record) {
@@ -70,9 +70,19 @@ std::vector<double> LinearBlend::changes() {
     blend(dispatcher_, frame_.shape(), frame_.buffers());
     blend_changes(dispatcher_, frame_.shape(), frame_.buffers(), sums_);
   });
+  return first_channel(by_slot, CHANGE_SCALE);
+}
+
+std::vector<double> LinearBlend::seen() {
+  const std::vector<std::int64_t> by_slot =
+      sums([&] { blend_seen(dispatcher_, frame_.shape(), frame_.buffers(), sums_); });
+  return first_channel(by_slot, SEEN_SCALE);
+}
+
+std::vector<double> LinearBlend::first_channel(const std::vector<std::int64_t>& by_slot, double scale) const {
   std::vector<double> found;
   for (const DrawnGaussian& drawn : drawn_)
-    found.push_back(static_cast<double>(by_slot[std::size_t{4} * drawn.slot]) / CHANGE_SCALE);
+    found.push_back(static_cast<double>(by_slot[std::size_t{4} * drawn.slot]) / scale);
   return found;
 }
 

@@ -65,6 +65,7 @@ struct FrameSettings {
   bool between = false;
   /// The median is the depth at which T falls below a half: z_sum is then (1 - T) times that. With none z_sum
   /// is 0, and a frame takes some 3 % less time. Foveated frames have the mean, on canvases none.
+  /// `seen` is for frames by themselves.
   Depth depth = Depth::mean;
   std::vector<ViewPart> parts;  // what is drawn of each view; empty: all of every view
   glm::vec3 background{0.0f};   // behind the scene, for the probe only: the pictures are without

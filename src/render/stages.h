@@ -53,6 +53,10 @@ void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, Frame
 void blend_changes(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
                    const gl::Buffer& sums);
 
+/// Adds alpha T^2 over the pixels of each splat to `sums`, in channel 0 and multiples of 1 / SEEN_SCALE.
+void blend_seen(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
+                const gl::Buffer& sums);
+
 /// Throws Error(out_of_memory) where the driver ended a list of splats before its end.
 void refuse_cut(const gl::Context& context, const shared::Counters& counters);
 

@@ -10,9 +10,11 @@
 
 namespace binosplat::study {
 
-/// Draws each part by itself over black, exactly, by each of its levels, from afar and from two directions,
-/// and compares with its finest level, in pixels of six widths. Many parts lie side by side in a picture.
-/// Each part is the levels of a leaf, from the finest; none is without Gaussians.
-std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::vector<Model>> parts);
+/// Draws each leaf by itself over what looks much like its mean colour, exactly, by each of its levels, from
+/// afar and from six directions, and compares with its finest level, in pixels of two widths. Many leaves lie
+/// side by side in a picture. Each has its levels from the finest on; none is without Gaussians. In the wide
+/// pixels both sides are taken to look alike, and in the narrow ones levels beyond the second to lose as much
+/// of each area as in the wide.
+std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::vector<Model>> leaves);
 
 }  // namespace binosplat::study

@@ -53,12 +53,12 @@ TEST_F(LevelsTest, AreReadAndDrawn) {
   test::save_ply(model, test::floor_model());
   const Outcome outcome = levels(out);
   ASSERT_TRUE(good(outcome));
-  EXPECT_NE(outcome.out.find("    0        2000\n    1        1008\n    2         512\n"), std::string::npos)
+  EXPECT_NE(outcome.out.find("    0        2000\n    1        1004\n    2         516\n"), std::string::npos)
       << outcome.out;
   EXPECT_EQ(load_model(out).count(), 2000u);
   const Outcome info = run_program({"info", out, "--lod", "1"});
   ASSERT_TRUE(good(info));
-  EXPECT_NE(info.out.find("1008"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("1004"), std::string::npos) << info.out;
 
   const auto picture = [&](const std::string& scene, const Arguments& more) {
     Arguments all = {"render", scene,    "--eye", "0,-12,8", "--at", "0,0,0",         "--up",
@@ -124,22 +124,22 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   EXPECT_EQ(contents(out), before);
 }
 
-// 38.1 and 33.1 dB; where areas leave the low-pass out 31.0 and 28.5.
+// 35.4 and 30.7 dB; where areas leave the low-pass out 32.5 and less (docs/levels.md).
 TEST(LevelsScenes, LookLikeFox) {
   REQUIRE_SCENE("fox", scene);
   const test::TempFolder folder;
   ASSERT_TRUE(good(run_program({"levels", scene / "fox.ply", "-o", folder / "fox", "--levels", "3"})));
   const auto picture = [&](const std::string& model, const char* lod) {
-    std::vector<std::string> line = {"render", model,  "--cameras",     scene / "cameras.json",
-                                     "--view", "0001", "--mono",        "--size",
-                                     "88x160", "-o",   folder / "p.png"};
+    std::vector<std::string> line = {"render",  model,  "--cameras",     scene / "cameras.json",
+                                     "--view",  "0001", "--mono",        "--size",
+                                     "176x320", "-o",   folder / "p.png"};
     if (lod != nullptr) line.insert(line.end(), {"--lod", lod});
     EXPECT_TRUE(good(run_program(line)));
     return load_image(folder / "p.png");
   };
   const Image exact = picture(scene / "fox.ply", nullptr);
-  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "1")), 37.0);
-  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "2")), 32.0);
+  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "1")), 35.0);
+  EXPECT_GT(measure::psnr(exact, picture(folder / "fox", "2")), 30.3);
 }
 
 TEST(LevelsScaffold, AreRefused) {
@@ -150,10 +150,28 @@ TEST(LevelsScaffold, AreRefused) {
                     "is a Scaffold-GS model, which makes its Gaussians anew for each eye"));
 }
 
+// Of scenes of many sizes another size is another run.
+TEST_F(LevelsTest, OfACityAndOfCopies) {
+  const auto city = [&](const char* count) {
+    return run_program({"levels", "demo:city", "--count", count, "--levels", "2", "-o", out});
+  };
+  const Outcome first = city("10000");
+  ASSERT_TRUE(good(first));
+  EXPECT_NE(first.out.find("    0       10000\n"), std::string::npos) << first.out;
+  EXPECT_TRUE(ended(city("10001"), 2, "says other count"));
+  const Outcome copies = levels(folder / "copies", {"--repeat", "2x1", "--spacing", "20"});
+  ASSERT_TRUE(good(copies));
+  EXPECT_NE(copies.out.find("    0         600\n"), std::string::npos) << copies.out;
+  EXPECT_TRUE(
+      ended(levels(folder / "copies", {"--repeat", "2x1", "--spacing", "21"}), 2, "says other spacing"));
+}
+
 TEST_F(LevelsTest, SayWhatTheyCannotTake) {
   EXPECT_TRUE(ended(levels(out, {"--levels", "0"}), 2, "--levels"));
   EXPECT_TRUE(ended(run_program({"levels", model, "-o", out, "--leaf", "1"}), 2, "--leaf"));
   EXPECT_TRUE(ended(levels(out, {"--lod", "1"}), 2, "--lod"));
+  EXPECT_TRUE(ended(levels(out, {"--count", "10000"}), 2, "--count is for demo:city"));
+  EXPECT_TRUE(ended(levels(out, {"--repeat", "2x2"}), 2, "--repeat and --spacing go together"));
   EXPECT_TRUE(ended(run_program({"levels", folder / "none.ply", "-o", out}), 2, "none.ply"));
   test::write_text(model, test::to_bytes(test::inria_file(0, 0)));
   EXPECT_TRUE(ended(levels(out), 2, "holds no Gaussians"));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/scene.h"
+#include "formats/detail.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
 #include "support/broken.h"
@@ -121,9 +122,13 @@ TEST(RenderLevels, ByDecibelsAsAFileTells) {
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {
     for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"}) {
       nlohmann::json& node = meta["tree"][nlohmann::json::json_pointer(leaf)];
-      node["pixel"] = 0.1;
-      node["lods"]["0"]["errors"] = {0.0};
-      node["lods"]["1"]["errors"] = {40.0};
+      const auto from_everywhere = [](double number) {
+        return std::vector(detail_directions, std::vector(1, number));
+      };
+      node["pixels"] = {0.1};
+      node["seen"] = from_everywhere(100.0);
+      node["lods"]["0"]["errors"] = from_everywhere(0.0);
+      node["lods"]["1"]["errors"] = from_everywhere(2.0);
     }
   });
   const Outcome told = render();

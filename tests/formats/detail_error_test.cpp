@@ -16,16 +16,25 @@ using Levels = std::vector<std::size_t>;
 
 constexpr std::size_t any = 1'000'000;  // Gaussians
 
+/// As many of each number as there are directions, after one another.
+std::vector<double> in_all_directions(const std::vector<double>& by_width) {
+  std::vector<double> all;
+  for (std::size_t d = 0; d < detail_directions; ++d) all.insert(all.end(), by_width.begin(), by_width.end());
+  return all;
+}
+
 /// Boxes of 1 along x, of four levels each; what a coarser one loses is up to chance.
 std::vector<DetailPart> row(int count, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> factor(1.5, 6.0);
   std::vector<DetailPart> parts;
   for (int i = 0; i < count; ++i) {
-    DetailPart part{{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {}, 0.01};
+    DetailPart part{{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {}, {0.01, 0.02, 0.04}};
+    part.seen = in_all_directions({6000.0, 1600.0, 400.0});
     double error = 0.0;
     for (int level = 0; level < 4; ++level) {
-      part.levels.push_back({level, std::size_t{400} >> level, {error, 0.3 * error, 0.1 * error}});
+      part.levels.push_back(
+          {level, std::size_t{400} >> level, in_all_directions({error, 0.3 * error, 0.1 * error})});
       error = factor(random) * std::max(error, 0.2);
     }
     parts.push_back(std::move(part));
@@ -45,12 +54,21 @@ std::size_t total(const std::vector<DetailPart>& parts, const Levels& chosen) {
   return sum;
 }
 
+/// What an eye would see of a part that nothing hides.
+SeenPart open_sight(const DetailPart& part, const DetailView& view) {
+  const double distance = std::max(glm::distance(view.eye, glm::clamp(view.eye, part.low, part.high)),
+                                   0.01 * glm::distance(part.low, part.high));
+  const double px = part.pixels.front() * view.focal / distance;
+  return {part.seen.front() * px * px, distance};
+}
+
 /// What an eye loses per pixel that sees all of the row, as far away as it is.
 double loss(const std::vector<DetailPart>& parts, const Levels& chosen, const DetailView& view) {
   double sum = 0.0;
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const double distance = glm::distance(view.eye, glm::clamp(view.eye, parts[p].low, parts[p].high));
-    sum += squared_error(parts[p], chosen[p], distance / view.focal);
+    const SeenPart seen = open_sight(parts[p], view);
+    const glm::dvec3 along = 0.5 * (parts[p].low + parts[p].high) - view.eye;
+    sum += seen.area * relative_error(parts[p], chosen[p], seen.distance / view.focal, along);
   }
   return sum / view.pixels;
 }
@@ -67,22 +85,34 @@ std::size_t fewest(const std::vector<DetailPart>& parts, const DetailView& view,
 }
 
 TEST(DetailErrors, LieOnLinesBetweenThePixelsThatAreKnown) {
-  const DetailPart part{{}, {1, 1, 1}, {{0, 9, {0.0, 0.0, 0.0}}, {1, 4, {8.0, 2.0, 0.0}}}, 0.5};
-  for (const auto& [width, error] : {std::pair(0.5, 8.0),
-                                     {1.0, 2.0},
+  DetailPart part{{}, {1, 1, 1}, {{0, 9, in_all_directions({0.0, 0.0, 0.0})}}, {0.5, 1.0, 2.0}};
+  part.seen = in_all_directions({100.0, 25.0, 0.0});
+  part.levels.push_back({1, 4, in_all_directions({8.0, 1.0, 0.0})});
+  for (const auto& [width, error] : {std::pair(0.5, 0.08),
+                                     {1.0, 0.04},
                                      {2.0, 0.0},
-                                     {std::sqrt(0.5), 4.0},
-                                     {std::sqrt(2.0), 1.0},
-                                     {0.25, 32.0},
+                                     {std::sqrt(0.5), std::sqrt(0.08 * 0.04)},
+                                     {std::sqrt(2.0), 0.04},  // half of both is left
+                                     {0.25, 0.08 * std::pow(2.0, 0.55)},
+                                     {1e-9, 0.64},
                                      {4.0, 0.0}}) {
-    EXPECT_NEAR(squared_error(part, 1, width), error, 1e-12) << width;
-    EXPECT_EQ(squared_error(part, 0, width), 0.0) << width;
+    EXPECT_NEAR(relative_error(part, 1, width, {1, 0, 0}), error, 1e-9) << width;
+    EXPECT_EQ(relative_error(part, 0, width, {1, 0, 0}), 0.0) << width;
   }
-  const DetailPart one{{}, {1, 1, 1}, {{1, 4, {8.0}}}, 0.5};
-  EXPECT_NEAR(squared_error(one, 0, 2.0), 0.5, 1e-12) << "of a 16th of the pixels";
-  EXPECT_NEAR(squared_error(one, 0, 0.125), 128.0, 1e-9);
   for (const double width : {0.0, 1e300, std::numeric_limits<double>::infinity()})
-    EXPECT_TRUE(std::isfinite(squared_error(one, 0, width))) << width;
+    EXPECT_TRUE(std::isfinite(relative_error(part, 1, width, {0, 0, 1}))) << width;
+}
+
+TEST(DetailErrors, AreThoseOfTheDirectionsBeside) {
+  DetailPart part{{}, {1, 1, 1}, {{0, 9, {}}}, {0.5}};
+  part.seen = {1, 2, 3, 4, 5, 6};
+  part.levels[0].errors = {0.1, 0.1, 0.2, 0.2, 0.3, 0.6};
+  for (std::size_t d = 0; d < detail_directions; ++d)
+    EXPECT_NEAR(relative_error(part, 0, 0.5, 3.0 * detail_direction(d)),
+                part.levels[0].errors[d] / part.seen[d], 1e-12);
+  EXPECT_NEAR(relative_error(part, 0, 0.5, {1, -1, 0}), (0.1 + 0.2) / (1 + 4), 1e-12);
+  EXPECT_NEAR(relative_error(part, 0, 0.5, {-2, 0, -1}), (4 * 0.1 + 0.6) / (4 * 2 + 6), 1e-12);
+  EXPECT_NEAR(relative_error(part, 0, 0.5, {0, 0, 0}), (0.1 + 0.2 + 0.3) / (1 + 3 + 5), 1e-12) << "of none";
 }
 
 TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
@@ -155,15 +185,43 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any).error, 0.0);
 }
 
+// What is hidden, or out of the picture, need not be fine.
+TEST(DetailErrors, GoByWhatIsSeen) {
+  const std::vector<DetailPart> parts = row(8);
+  const DetailView view = along_x(-1.0);
+  const DetailChoice blind = choose_levels_within(parts, {view}, 1e-4, any);
+  std::vector<SeenPart> seen;
+  for (const DetailPart& part : parts) seen.push_back(open_sight(part, view));
+  const Levels coarsest(parts.size(), 3);
+  const auto by = [&](const std::vector<SeenPart>& found, const Levels& drawn) {
+    const std::vector<std::vector<SeenPart>> by_view = {found};
+    return choose_levels_within(parts, {view}, 1e-4, any, by_view, drawn);
+  };
+  EXPECT_NEAR(by(seen, Levels()).error, blind.error, 1e-12) << "nothing hides anything";
+  for (std::size_t p = 1; p < parts.size(); ++p) seen[p].area = 0.0;
+  const DetailChoice first_only = by(seen, coarsest);
+  EXPECT_EQ(first_only.levels[0], blind.levels[0]);
+  for (std::size_t p = 1; p < parts.size(); ++p) EXPECT_EQ(first_only.levels[p], 3u) << p;
+  EXPECT_LT(first_only.error, blind.error);
+  // A little of a part that is seen loses so much less.
+  for (SeenPart& part : seen) part.area *= 0.5;
+  EXPECT_NEAR(by(seen, coarsest).error, 0.5 * loss({parts[0]}, {by(seen, coarsest).levels[0]}, view), 1e-12);
+  // Coarser levels than those that were drawn may show what these do not.
+  seen.assign(parts.size(), SeenPart{});
+  const DetailChoice from_finest = by(seen, Levels(parts.size(), 0));
+  EXPECT_EQ(by(seen, coarsest).error, 0.0);
+  EXPECT_GT(from_finest.error, 0.0);
+}
+
 TEST(DetailErrors, KeepToWhatWasChosenBefore) {
   const std::vector<DetailPart> parts = row(20);
   std::size_t anew = 0;
   for (double x = -12.0; x < -0.5; x += 0.25) {
     Levels here = choose_levels_within(parts, {along_x(x)}, 1e-4, any).levels;
     // Trembling by as little switches nothing once it is settled.
-    here = choose_levels_within(parts, {along_x(x)}, 1e-4, any, here).levels;
+    here = choose_levels_within(parts, {along_x(x)}, 1e-4, any, {}, here).levels;
     for (const double by : {0.97, 1.03}) {
-      const DetailChoice kept = choose_levels_within(parts, {along_x(x * by)}, 1e-4, any, here);
+      const DetailChoice kept = choose_levels_within(parts, {along_x(x * by)}, 1e-4, any, {}, here);
       EXPECT_EQ(kept.levels, here) << x << " times " << by;
       EXPECT_LE(kept.error, 1.1e-4 * 1.0001);
       anew += choose_levels_within(parts, {along_x(x * by)}, 1e-4, any).levels != here;
@@ -171,7 +229,7 @@ TEST(DetailErrors, KeepToWhatWasChosenBefore) {
   }
   EXPECT_GT(anew, 10u) << "without a memory it would switch";
   const Levels far = choose_levels_within(parts, {along_x(-100.0)}, 1e-4, any).levels;
-  EXPECT_NE(choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any, far).levels, far);
+  EXPECT_NE(choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any, {}, far).levels, far);
 }
 
 TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
@@ -188,10 +246,15 @@ TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
   }
   // Where the best step is too large, a smaller one is taken.
   const std::vector<DetailPart> leap = {
-      {{}, {1, 1, 1}, {{0, 400, {0.0}}, {1, 200, {0.9}}, {2, 100, {1.0}}}, 0.01}};
+      {{},
+       {1, 1, 1},
+       {{0, 400, std::vector(6, 0.0)}, {1, 200, std::vector(6, 0.9)}, {2, 100, std::vector(6, 1.0)}},
+       {0.01},
+       std::vector(6, 100.0)}};
   EXPECT_EQ(choose_levels_within(leap, {along_x(-1.0)}, 1e-9, 400).levels, Levels{0});
   EXPECT_EQ(choose_levels_within(leap, {along_x(-1.0)}, 1e-9, 399).levels, Levels{1});
-  parts[3].pixel = 0.0;
+  parts[3].pixels.clear();
+  parts[3].seen.clear();
   for (DetailPart::Level& level : parts[3].levels) level.errors.clear();
   parts[4].levels.clear();
   const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, 1e9, any);

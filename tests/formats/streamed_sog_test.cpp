@@ -133,7 +133,7 @@ TEST(StreamedSog, SaysWhatItCannotOpen) {
                                  {"lod-meta.json", "none of its levels of detail is there"}));
 }
 
-/// The tree's leaves, and what their level 1 loses in pixels 0.02 and 0.04 wide.
+/// The tree's leaves, and what their level 1 loses in pixels 0.02 and 0.04 wide, from everywhere.
 const std::vector<std::pair<const char*, std::vector<double>>> learnt = {
     {"/tree/children/0", {40.0, 10.0}},
     {"/tree/children/1/children/0", {20.0, 5.0}},
@@ -143,9 +143,13 @@ const std::vector<std::pair<const char*, std::vector<double>>> learnt = {
 void teach(nlohmann::json& meta) {
   for (const auto& [pointer, errors] : learnt) {
     nlohmann::json& leaf = meta[nlohmann::json::json_pointer(pointer)];
-    leaf["pixel"] = 0.02;
-    leaf["lods"]["0"]["errors"] = {0.0, 0.0};
-    leaf["lods"]["1"]["errors"] = errors;
+    const auto from_everywhere = [](const std::vector<double>& by_width) {
+      return std::vector(detail_directions, by_width);
+    };
+    leaf["pixels"] = {0.02, 0.04};
+    leaf["seen"] = from_everywhere({4000.0, 1000.0});
+    leaf["lods"]["0"]["errors"] = from_everywhere({0.0, 0.0});
+    leaf["lods"]["1"]["errors"] = from_everywhere(errors);
   }
 }
 
@@ -164,10 +168,10 @@ TEST(StreamedSog, ByErrorsThatItsFileTells) {
   copy.edit("lod-meta.json", teach);
   StreamedSog scene(copy.path());
   EXPECT_FALSE(scene.predicted_psnr());
-  // So far away its pixels are 3.8 to 4 wide, and a 16,000th to a 10,000th of the last error is left.
+  // So far away its pixels are 3.8 to 4 wide, and a 10,000th of the pixels is left that the narrowest show.
   const std::size_t coarse = read(scene, {ahead(far_away)}, {.db = 40.0}).count();
   EXPECT_EQ(coarse, 250u);
-  const double lost = 1e-4 * 21.0 / 1e4;
+  const double lost = 4000.0 * 0.02 * 0.02 / (3.9 * 3.9) * 21.0 / 1000.0 / 1e4;
   EXPECT_NEAR(*scene.predicted_psnr(), -10.0 * std::log10(lost), 1.0);
   std::size_t last = coarse;
   for (const double db : {60.0, 66.0, 69.0, 72.0, 80.0}) {
@@ -197,29 +201,40 @@ TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
     return test::fails_saying([&] { StreamedSog(copy.path()).choose({}, {.db = 40.0}); }, parts);
   };
   using Json = nlohmann::json;
-  for (const Json& wrong : {Json(0), Json(-0.5), Json("1"), Json::array({1})}) {
-    EXPECT_TRUE(says([&](Json& leaf) { leaf["pixel"] = wrong; },
-                     {"lod-meta.json, key 'tree.children[0].pixel': expected a"}))
+  const std::string leaf_key = "lod-meta.json, key 'tree.children[0].";
+  for (const auto& [wrong, text] : {std::pair<Json, std::string>{0, "': expected a list"},
+                                    {Json::array(), "': expected one width at least"},
+                                    {{0.0, 1.0}, "[0]': expected a width above 0, found 0"},
+                                    {{0.5, 0.5}, "[1]': expected a width above 0.5, found 0.5"},
+                                    {{0.5, "x"}, "[1]': expected a finite number"}}) {
+    EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["pixels"] = wrong; }, {leaf_key + "pixels" + text}))
         << wrong;
   }
-  const std::string errors = "lod-meta.json, key 'tree.children[0].lods.1.errors";
+  const Json right = std::vector(detail_directions, std::vector(2, 1.0));
+  const auto with = [&](std::size_t d, const Json& wrong) {
+    Json json = right;
+    json[d] = wrong;
+    return json;
+  };
   for (const auto& [wrong, text] : {std::pair<Json, std::string>{nullptr, "': expected a list"},
-                                    {3, "': expected a list"},
-                                    {Json::array(), "': expected 2 values, found 0"},
-                                    {{1.0}, "': expected 2 values, found 1"},
-                                    {{1, 2, 3}, "': expected 2 values, found 3"},
-                                    {{1.0, -1.0}, "[1]': expected an error of 0 or more, found -1"},
-                                    {{nullptr, 1.0}, "[0]': expected a finite number"},
-                                    {{1.0, "x"}, "[1]': expected a finite number"}}) {
-    const auto plant = [&wrong = wrong](Json& leaf) { leaf["lods"]["1"]["errors"] = wrong; };
-    EXPECT_TRUE(says(plant, {errors + text})) << wrong;
+                                    {Json::array(), "': expected 6 values, found 0"},
+                                    {with(2, 3), "[2]': expected a list"},
+                                    {with(5, {1.0}), "[5]': expected 2 values, found 1"},
+                                    {with(0, {1, 2, 3}), "[0]': expected 2 values, found 3"},
+                                    {with(1, {1.0, -1.0}), "[1][1]': expected 0 or more, found -1"},
+                                    {with(1, {nullptr, 1.0}), "[1][0]': expected a finite number"},
+                                    {with(1, {1.0, "x"}), "[1][1]': expected a finite number"}}) {
+    EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["lods"]["1"]["errors"] = wrong; },
+                     {leaf_key + "lods.1.errors" + text}))
+        << wrong;
+    EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["seen"] = wrong; }, {leaf_key + "seen" + text}))
+        << wrong;
   }
-  EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["0"]["errors"] = Json::array(); },
-                   {"lods.0.errors': expected one error at least"}));
   EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["1"].erase("errors"); },
                    {"the key 'tree.children[0].lods.1.errors' is missing"}));
-  // Without a width they are nobody's, and without any there is nothing to go by.
-  EXPECT_FALSE(says([](Json& leaf) { leaf.erase("pixel"), leaf["lods"]["1"]["errors"] = -1; }, {""}));
+  EXPECT_TRUE(says([](Json& leaf) { leaf.erase("seen"); }, {"the key 'tree.children[0].seen' is missing"}));
+  // Without widths they are nobody's, and without any there is nothing to go by.
+  EXPECT_FALSE(says([](Json& leaf) { leaf.erase("pixels"), leaf["lods"]["1"]["errors"] = -1; }, {""}));
   StreamedSog none(folder / "sog/st-lod");
   EXPECT_TRUE(
       test::fails_saying([&] { none.choose(std::vector{ahead(far_away)}, {.db = 40.0}); },

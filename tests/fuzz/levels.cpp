@@ -27,7 +27,10 @@ void check(const SogLevels& levels) {
     }
   }
   // Its files are not there; as if they were:
-  for (DetailPart& leaf : leaves) leaf.levels = {{0, 1000, {0.0}}, {1, 100, {1.0}}, {2, 10, {9.0}}};
+  for (DetailPart& leaf : leaves) {
+    const auto losing = [&](double error) { return std::vector<double>(leaf.seen.size(), error); };
+    leaf.levels = {{0, 1000, losing(0.0)}, {1, 100, losing(1.0)}, {2, 10, losing(9.0)}};
+  }
   const std::size_t most = 500 * leaves.size();
   const auto follow = [&](const auto& choose) {
     std::vector<std::size_t> before;
@@ -44,7 +47,13 @@ void check(const SogLevels& levels) {
     return choose_levels(leaves, {{x, 0, 0}}, most, 0.01, before);
   });
   follow([&](double x, const auto& before) {
-    return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most, before).levels;
+    const std::vector<std::vector<SeenPart>> seen = {std::vector<SeenPart>(leaves.size(), {x, x + 1.0})};
+    const bool was_seen = !before.empty();
+    return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most,
+                                was_seen ? std::span<const std::vector<SeenPart>>(seen)
+                                         : std::span<const std::vector<SeenPart>>(),
+                                before)
+        .levels;
   });
 }
 

@@ -24,45 +24,58 @@ Model ball(float scale, float opacity, const glm::vec3& at) {
   return model;
 }
 
-/// A ball of so much less opacity: the integral of (o - p)^2 exp(-r^2 / s^2) over the plane, in pixels of so
-/// many times the narrowest.
-double expected(const LeafErrors& errors, double scale, double less, int width) {
-  const double pixel = std::ldexp(errors.pixel, width), deviation = scale / pixel;
-  return less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
+/// What is seen of a ball, alpha over pixels of a width.
+double shown(const LeafErrors& errors, double scale, double opacity, std::size_t width) {
+  const double deviation = scale / errors.pixels[width];
+  return 2.0 * opacity * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
+}
+
+/// A white ball beside a black one: their mean colour is grey, over which what a ball lacks is seen.
+std::vector<Model> part(double scale, double opacity, double less) {
+  std::vector<Model> levels;
+  for (const double o : {opacity, opacity - less, opacity}) {
+    const auto s = static_cast<float>(scale);
+    Model& level = levels.emplace_back(ball(s, static_cast<float>(o), {1.0f, 2.0f, 3.0f}));
+    const auto add = [&](const Model& other) {
+      level.position.push_back(other.position[0]);
+      level.scale.push_back(other.scale[0]);
+      level.rotation.push_back(other.rotation[0]);
+      level.opacity.push_back(other.opacity[0]);
+    };
+    const glm::vec3 aside(12.0f * s);
+    add(ball(s, static_cast<float>(opacity), glm::vec3(1.0f, 2.0f, 3.0f) + aside));         // black
+    for (int k = 0; k < 300; ++k) add(ball(s, 0.0f, glm::vec3(1.0f, 2.0f, 3.0f) + aside));  // finer pixels
+    level.sh.resize(3 * level.count(), static_cast<float>(-0.5 / sh_c0));
+  }
+  return levels;
 }
 
 TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
-  // Two balls, so that the narrowest pixel is narrow beside them; one of three parts loses something.
-  const auto part = [](float scale, float opacity, float less) {
-    std::vector<Model> levels;
-    for (const float o : {opacity, opacity - less, opacity}) {
-      levels.push_back(ball(scale, o, {1.0f, 2.0f, 3.0f}));
-      const Model far_away = ball(scale, o, glm::vec3(1.0f, 2.0f, 3.0f) + 12.0f * scale);
-      for (int k = 0; k < 300; ++k) {  // faint ones make the picture finer
-        levels.back().position.push_back(far_away.position[0]);
-        levels.back().scale.push_back(far_away.scale[0]);
-        levels.back().rotation.push_back(far_away.rotation[0]);
-        levels.back().opacity.push_back(0.0f);
-        levels.back().sh.insert(levels.back().sh.end(), 3, 0.0f);
-      }
-    }
-    return levels;
-  };
-  const std::vector<std::vector<Model>> parts = {part(1.0f, 0.8f, 0.0f), part(2.0f, 0.8f, 0.4f),
-                                                 part(200.0f, 0.9f, 0.3f)};
+  // One of three parts loses nothing.
+  const std::vector<std::vector<Model>> parts = {part(1.0, 0.8, 0.0), part(2.0, 0.8, 0.4),
+                                                 part(200.0, 0.9, 0.3)};
   const auto errors = level_errors(test::gl_context(), parts);
   ASSERT_EQ(errors.size(), 3u);
-  EXPECT_NEAR(errors[1].pixel, 2.0 * errors[0].pixel, 1e-5);
-  for (std::size_t width = 0; width < 6; ++width) {
-    const int w = static_cast<int>(width);
-    EXPECT_EQ(errors[0].of_level[1][width], 0.0) << "nothing of its neighbours";
-    for (const std::size_t i : {0u, 1u, 2u}) EXPECT_EQ(errors[i].of_level[0][width], 0.0);
-    const double second = expected(errors[1], 2.0, 0.4, w), third = expected(errors[2], 200.0, 0.3, w);
-    // Wide pixels sample what is as narrow as they are.
-    EXPECT_NEAR(errors[1].of_level[1][width], second, 0.15 * second) << width;
-    EXPECT_NEAR(errors[2].of_level[1][width], third, 0.15 * third) << width;
-    EXPECT_GT(std::abs(errors[1].of_level[1][width] - expected(errors[1], 2.0, 0.3, w)), 0.15 * second);
-    EXPECT_EQ(errors[1].of_level[2][width], 0.0) << "as the finest";
+  for (std::size_t width = 0; width < 2; ++width) {
+    EXPECT_NEAR(errors[1].pixels[width], 2.0 * errors[0].pixels[width], 1e-5 * errors[1].pixels[width]);
+    for (std::size_t d = 0; d < detail_directions; ++d) {
+      EXPECT_EQ(errors[0].of_level[1][d][width], 0.0) << "nothing of its neighbours";
+      for (const std::size_t i : {0u, 1u, 2u}) EXPECT_EQ(errors[i].of_level[0][d][width], 0.0);
+      // White over a grey of a half, give or take 0.15, less of it.
+      const auto expected = [&](double scale, double less, const LeafErrors& of) {
+        const double deviation = scale / of.pixels[width];
+        return (0.25 + 0.15 * 0.15) * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
+      };
+      const double second = expected(2.0, 0.4, errors[1]), third = expected(200.0, 0.3, errors[2]);
+      // Wide pixels sample what is as narrow as they are.
+      EXPECT_NEAR(errors[1].of_level[1][d][width], second, 0.15 * second) << width;
+      EXPECT_NEAR(errors[2].of_level[1][d][width], third, 0.15 * third) << width;
+      EXPECT_GT(std::abs(errors[1].of_level[1][d][width] - expected(2.0, 0.3, errors[1])), 0.2 * second);
+      EXPECT_EQ(errors[1].of_level[2][d][width], 0.0) << "as the finest";
+      // Both balls: alpha, as T is 1 wherever they are alone.
+      EXPECT_NEAR(errors[1].seen[d][width], 2.0 * shown(errors[1], 2.0, 0.8, width),
+                  0.2 * errors[1].seen[d][width]);
+    }
   }
 }
 
@@ -82,18 +95,23 @@ TEST(LevelErrors, OfManyPartsAreThoseOfEachAlone) {
   const auto all = level_errors(test::gl_context(), parts);
   for (const std::size_t i : {0u, 7u, 29u}) {
     const auto alone = level_errors(test::gl_context(), std::span(parts).subspan(i, 1));
-    EXPECT_EQ(alone[0].pixel, all[i].pixel);
-    for (std::size_t width = 0; width < 6; ++width)  // directions differ by up to 5 degrees, and rounding
-      EXPECT_NEAR(alone[0].of_level[1][width], all[i].of_level[1][width], 0.05 * alone[0].of_level[1][width]);
+    EXPECT_EQ(alone[0].pixels, all[i].pixels);
+    for (std::size_t d = 0; d < detail_directions; ++d) {
+      for (std::size_t width = 0; width < 2; ++width) {  // directions differ by up to 5 degrees, and rounding
+        EXPECT_NEAR(alone[0].of_level[1][d][width], all[i].of_level[1][d][width],
+                    0.1 * alone[0].of_level[1][d][width]);
+        EXPECT_NEAR(alone[0].seen[d][width], all[i].seen[d][width], 0.05 * alone[0].seen[d][width]);
+      }
+    }
   }
 }
 
 TEST(LevelErrors, WhatHasNoExtentIsDrawn) {
   const std::vector<std::vector<Model>> parts = {{ball(0.0f, 0.5f, {0, 0, 0}), ball(0.0f, 0.25f, {0, 0, 0})}};
   const auto errors = level_errors(test::gl_context(), parts);
-  EXPECT_EQ(errors[0].pixel, 1.0);
-  for (const double error : errors[0].of_level[1])
-    EXPECT_NEAR(error, expected(errors[0], 0.0, 0.25, 0), 0.015);
+  EXPECT_EQ(errors[0].pixels.front(), 1.0);
+  for (std::size_t d = 0; d < detail_directions; ++d)
+    EXPECT_NEAR(errors[0].seen[d][0], shown(errors[0], 0.0, 0.5, 0), 0.1);
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+#include "study/seen_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace binosplat::study {
+
+std::vector<SeenPart> seen_parts(render::LinearBlend& blend, const Model& model,
+                                 std::span<const StreamedSog::Range> parts, const shared::View& view,
+                                 const render::FrameSettings& settings) {
+  std::vector<std::uint32_t> part_of(model.count());
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    std::fill_n(part_of.begin() + static_cast<std::ptrdiff_t>(parts[p].first), parts[p].count,
+                static_cast<std::uint32_t>(p));
+  blend.set_view(view, settings);
+  const std::vector<double> seen = blend.seen();
+  const glm::dvec3 eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye);
+  std::vector<SeenPart> result(parts.size());
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (seen[k] == 0.0) continue;
+    const std::uint32_t i = blend.drawn()[k].index;
+    SeenPart& part = result[part_of[i]];
+    part.area += seen[k];
+    part.distance += seen[k] * std::log(glm::distance(glm::dvec3(model.position[i]), eye));
+  }
+  for (SeenPart& part : result) {
+    if (part.area > 0.0) part.distance = std::exp(part.distance / part.area);
+  }
+  return result;
+}
+
+}  // namespace binosplat::study
