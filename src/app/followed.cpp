@@ -1,5 +1,7 @@
 #include "app/followed.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "app/detail.h"
@@ -42,6 +44,7 @@ void FollowedLevels::bring(gl::Context& context, Model& model, std::span<const s
   std::shared_ptr<render::GpuModel> gpu_model;
   if (goes_by_db()) gpu_model = std::make_shared<render::GpuModel>(context, model);
   settle(model, gpu_model, views, settings_, [] {});
+  brought_.assign(views.begin(), views.end());
 }
 
 template <typename Changing>
@@ -51,15 +54,19 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
   std::optional<render::LinearBlend> shown;  // not longer than this: it takes as much memory as a frame
   if (goes_by_db()) shown.emplace(gpu_model);
   bool switched = false;
-  for (int look = 0; look < (shown ? looks : 1); ++look) {
-    if (!choose(shown ? &*shown : nullptr, model, views, settings)) break;
+  const auto change = [&] {
     if (!switched) changing();
     switched = true;
     read(model);
-    if (!gpu_model) continue;
+    if (!gpu_model) return;
     const auto start = Clock::now();
     gpu_model->reload();
     upload_ms_ += ms_since(start);
+  };
+  if (!heads_turn_ && scene_.choose({}, {}) && shown) change();  // what is looked at is the coarsest
+  for (int look = 0; look < (shown ? looks : 1); ++look) {
+    if (!choose(shown ? &*shown : nullptr, model, views, settings)) break;
+    change();
   }
   return switched;
 }
@@ -78,7 +85,9 @@ bool FollowedLevels::choose(render::LinearBlend* shown, const Model& model,
     for (const shared::View& view : views)
       seen.push_back(study::seen_parts(*shown, model, scene_.ranges(), view, settings));
   }
-  return scene_.choose(views, detail_need(options_, settings_, scene_, views), seen);
+  DetailNeed need = detail_need(options_, settings_, scene_, views);
+  need.heads_turn = heads_turn_;
+  return scene_.choose(views, need, seen);
 }
 
 ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Show& show,
@@ -86,10 +95,13 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
                                   const render::FrameSettings& settings) {
   ShotLevels levels;
   std::vector<Picture> before;
-  levels.switched = settle(model, frame.model(), views, settings, [&] {
-    if (report_) before = exact(frame, views, settings);
+  const auto changing = [&] {
+    if (report_ && heads_turn_) before = exact(frame, views, settings);
     show.release();
-  });
+  };
+  const auto brought = std::exchange(brought_, {});
+  if (!std::ranges::equal(std::as_bytes(std::span(brought)), std::as_bytes(views)))
+    levels.switched = settle(model, frame.model(), views, settings, changing);
   if (!before.empty()) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
   levels.gaussians = model.count();
   levels.predicted_psnr = scene_.predicted_psnr();

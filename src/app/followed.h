@@ -35,13 +35,15 @@ DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings&
 class FollowedLevels {
  public:
   /// Opens the scene, for frames of such settings. With `report` it says what a switch changes, in pictures
-  /// before `background`. Throws Error where it is no streamed SOG.
+  /// before `background`. Shots are those of a head that turns, or single pictures, which do not depend on
+  /// those before them. Throws Error where it is no streamed SOG.
   FollowedLevels(const SceneOptions& options, const render::FrameSettings& settings, bool report,
-                 const glm::vec3& background)
+                 const glm::vec3& background, bool heads_turn)
       : options_(options),
         settings_(settings),
         report_(report),
         background_(background),
+        heads_turn_(heads_turn),
         scene_(options.name) {}
 
   /// The coarsest levels, by which cameras are made up where there are none.
@@ -76,7 +78,9 @@ class FollowedLevels {
   render::FrameSettings settings_;
   bool report_;
   glm::vec3 background_;
+  bool heads_turn_;
   StreamedSog scene_;
+  std::vector<shared::View> brought_;       // what bring() was for, until the first shot
   double read_ms_ = 0.0, upload_ms_ = 0.0;  // since the last shot
   std::optional<Model> finest_;
   std::optional<stereo::Show> show_finest_;

@@ -267,7 +267,9 @@ ExitCode render(const RenderOptions& o) {
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
   if (o.scene.detail) {
-    work.followed.emplace(o.scene, settings, o.output.detail_report, o.output.backdrop());
+    const bool heads_turn =
+        work.list.path || work.plan.vr180;  // such a picture shows what lies beside the view
+    work.followed.emplace(o.scene, settings, o.output.detail_report, o.output.backdrop(), heads_turn);
   } else if (o.scene.gpu_memory) {
     budget = detail_budget(o, work.list);
   }

@@ -118,7 +118,7 @@ SeenPart unhidden(const DetailPart& part, const DetailView& view) {
 class Sights {
  public:
   Sights(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
-         std::span<const std::vector<SeenPart>> found, std::span<const std::size_t> before)
+         std::span<const std::vector<SeenPart>> found, std::span<const std::size_t> before, bool heads_turn)
       : parts_(parts),
         before_(found.empty() ? std::span<const std::size_t>() : before),
         seen_(views.size() + 1, std::vector<SeenPart>(parts.size())) {
@@ -144,7 +144,8 @@ class Sights {
     focal_.push_back(0.0);  // the sphere's: the longest
     for (const DetailView& view : views) focal_.back() = std::max(focal_.back(), view.focal);
     eye_.push_back(views.empty() ? glm::dvec3(0.0) : views.front().eye);
-    for (std::size_t p = 0; p < parts.size() && !views.empty(); ++p) {
+    if (views.empty() || !heads_turn) return;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
       if (is_seen[p]) continue;
       SeenPart& most = seen_.back()[p];
       for (const DetailView& view : views) {
@@ -347,8 +348,8 @@ double relative_error(const DetailPart& part, std::size_t level, double width, c
 
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
                                   double error, std::size_t most, std::span<const std::vector<SeenPart>> seen,
-                                  std::span<const std::size_t> before) {
-  ErrorChooser chooser(parts, views, Sights(parts, views, seen, before), error, most, before);
+                                  std::span<const std::size_t> before, bool heads_turn) {
+  ErrorChooser chooser(parts, views, Sights(parts, views, seen, before, heads_turn), error, most, before);
   DetailChoice result{chooser.choose()};
   for (std::size_t v = 0; v < views.size(); ++v)
     result.error = std::max(result.error, chooser.lost(v) / views[v].pixels);

@@ -22,6 +22,7 @@ struct DetailNeed {
   double apart_px = 0.0;  // parts whose Gaussians are seen no farther apart are fine enough; 0: none is
   std::size_t most = std::numeric_limits<std::size_t>::max();  // Gaussians of the model
   std::optional<double> db = {};  // instead of apart_px: each view's PSNR against the finest levels
+  bool heads_turn = true;         // by dB: what is out of sight may be seen a moment later
 };
 
 /// Directions in which what levels lose is known: along x, against it, along y and so on.
@@ -86,12 +87,12 @@ struct DetailChoice {
 /// found to show of each part, maybe a moment ago; what it does not know (empty, for all views) is taken to
 /// be hidden by nothing. A part that no view sees takes part in this as if it were seen, and as hidden as
 /// others are on the whole, and goes on until all such parts lose no more than `error` of the pixels of a
-/// whole sphere: heads turn. A part of unknown errors gets its finest level. More than `most`, and more
-/// error, only where they leave no choice. `before` is kept to: its levels go on until a tenth less is lost,
-/// finer ones end at a tenth more.
+/// whole sphere; unless `heads_turn` is false: then it keeps its coarsest. A part of unknown errors gets its
+/// finest level. More than `most`, and more error, only where they leave no choice. `before` is kept to: its
+/// levels go on until a tenth less is lost, finer ones end at a tenth more.
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
                                   double error, std::size_t most,
                                   std::span<const std::vector<SeenPart>> seen = {},
-                                  std::span<const std::size_t> before = {});
+                                  std::span<const std::size_t> before = {}, bool heads_turn = true);
 
 }  // namespace binosplat

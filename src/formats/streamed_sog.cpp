@@ -307,8 +307,8 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   const std::vector<DetailView> detail = detail_views(views);
   predicted_psnr_.reset();
   if (need.db && !views.empty()) {
-    DetailChoice choice =
-        choose_levels_within(leaves_, detail, std::pow(10.0, -0.1 * *need.db), most, seen, before);
+    DetailChoice choice = choose_levels_within(leaves_, detail, std::pow(10.0, -0.1 * *need.db), most, seen,
+                                               before, need.heads_turn);
     chosen_ = std::move(choice.levels);
     predicted_psnr_ = -10.0 * std::log10(choice.error);
   } else {

@@ -103,22 +103,17 @@ TEST(RenderLevels, FollowAPathAndTellWhatTheyCost) {
                 .max,
             0.1);
   // Within a memory that has room for fewer.
-  ASSERT_TRUE(good(render({"--detail", "0", "--gpu-memory", "1.2"}, "small")));
-  for (const auto& view : test::load_json(folder / "small.json")["views"]) {
+  ASSERT_TRUE(good(render({"--detail", "0", "--gpu-memory", "1.5"}, "small")));
+  const auto small = test::load_json(folder / "small.json");
+  ASSERT_EQ(small["views"].size(), 5u);
+  for (const auto& view : small["views"]) {
     EXPECT_LT(view["levels_of_detail"]["gaussians"], 1000);
     EXPECT_GT(view["levels_of_detail"]["gaussians"], 250);
   }
 }
 
-TEST(RenderLevels, ByDecibelsAsAFileTells) {
-  REQUIRE_FIXTURES(fixtures);
-  const test::TempFolder folder;
-  const test::Copy copy(fixtures / "sog/st-lod");
-  const auto render = [&] {
-    return test::run_program({"render", copy.path(), "--path", write_path(folder, {-200, -20}), "--detail",
-                              "40dB", "--detail-report", "-o", folder / "out", "--json", folder / "j"});
-  };
-  EXPECT_TRUE(ended(render(), 2, "has no errors of its levels to go by"));
+/// Writes what level 1 of each leaf of sog/st-lod loses into its lod-meta.json.
+void add_errors(const test::Copy& copy) {
   copy.edit("lod-meta.json", [](nlohmann::json& meta) {
     for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"}) {
       nlohmann::json& node = meta["tree"][nlohmann::json::json_pointer(leaf)];
@@ -131,6 +126,18 @@ TEST(RenderLevels, ByDecibelsAsAFileTells) {
       node["lods"]["1"]["errors"] = from_everywhere(2.0);
     }
   });
+}
+
+TEST(RenderLevels, ByDecibelsAsAFileTells) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  const test::Copy copy(fixtures / "sog/st-lod");
+  const auto render = [&] {
+    return test::run_program({"render", copy.path(), "--path", write_path(folder, {-200, -20}), "--detail",
+                              "40dB", "--detail-report", "-o", folder / "out", "--json", folder / "j"});
+  };
+  EXPECT_TRUE(ended(render(), 2, "has no errors of its levels to go by"));
+  add_errors(copy);
   const Outcome told = render();
   ASSERT_TRUE(good(told));
   const auto report = test::load_json(folder / "j");
@@ -145,6 +152,32 @@ TEST(RenderLevels, ByDecibelsAsAFileTells) {
                                 far["predicted_psnr_db"].get<double>(), far["finest_psnr_db"].get<double>())),
       std::string::npos)
       << told.out;
+}
+
+// Neither by those before them, nor by what heads might turn to.
+TEST(RenderLevels, OfSinglePicturesGoByThemAlone) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  const test::Copy copy(fixtures / "sog/st-lod");
+  add_errors(copy);
+  const std::string cameras = write_path(folder, {-20, -60, 16});
+  const auto levels = [&](const std::vector<std::string>& of) {
+    std::vector<std::string> arguments = {"render", copy.path(),    "--detail", "40dB",
+                                          "-o",     folder / "out", "--json",   folder / "j"};
+    arguments.insert(arguments.end(), of.begin(), of.end());
+    EXPECT_TRUE(good(test::run_program(arguments)));
+    std::vector<std::size_t> gaussians;
+    const auto report = test::load_json(folder / "j");
+    for (const auto& view : report["views"]) gaussians.push_back(view["levels_of_detail"]["gaussians"]);
+    return gaussians;
+  };
+  const std::vector<std::size_t> all = levels({"--cameras", cameras, "--view", "all"});
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_GT(all[0], 250u);
+  EXPECT_EQ(all[2], 250u) << "all of it is behind";
+  EXPECT_EQ(levels({"--cameras", cameras, "--view", "z-20"}), std::vector(1, all[0]));
+  EXPECT_EQ(levels({"--cameras", cameras, "--view", "z-60"}), std::vector(1, all[1]));
+  EXPECT_GT(levels({"--path", cameras}).back(), 250u) << "planted: heads turn";
 }
 
 using LevelErrors = test::SceneTest;

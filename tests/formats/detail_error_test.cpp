@@ -173,6 +173,12 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   EXPECT_LT(nothing.levels.front(), 3u);
   EXPECT_LT(total(parts, nothing.levels),
             total(parts, choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any).levels));
+  // A single picture needs none of it, and has the same of what it sees.
+  const DetailChoice still = choose_levels_within(parts, {ahead}, 1e-4, any, {}, {}, false);
+  EXPECT_EQ(still.levels[2], 3u);
+  EXPECT_EQ(still.levels[7], one.levels[7]);
+  EXPECT_LE(still.error, 1e-4);
+  EXPECT_EQ(choose_levels_within(parts, {beside}, 1e-4, any, {}, {}, false).levels, Levels(parts.size(), 3));
   // A part beside the picture whose ball reaches into it is seen.
   const std::vector<DetailPart> at_edge = {row(1).front()};
   DetailView view{.eye = {0.5, 0.5, -2.0},
