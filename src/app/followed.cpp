@@ -29,21 +29,24 @@ DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings&
                        const StreamedSog& scene, std::span<const shared::View> views) {
   DetailNeed need = options.detail.value_or(DetailNeed{});
   if (options.gpu_memory)
-    need.most = gaussians_that_fit(*options.gpu_memory, settings, views, scene.degree());
+    need.most = gaussians_that_fit(*options.gpu_memory, settings, views, scene.like().degree);
   return need;
 }
 
 Model FollowedLevels::coarsest() {
-  scene_.choose({}, {});
-  Model model = scene_.read();
+  Model model = scene_.like();
   set_as_asked(options_, model);
+  scene_.choose({}, {});
+  read(model);
   return model;
 }
 
 void FollowedLevels::bring(gl::Context& context, Model& model, std::span<const shared::View> views) {
   std::shared_ptr<render::GpuModel> gpu_model;
   if (goes_by_db()) gpu_model = std::make_shared<render::GpuModel>(context, model);
+  parts_.take_changes();
   settle(model, gpu_model, views, settings_, [] {});
+  parts_.take_changes();
   brought_.assign(views.begin(), views.end());
 }
 
@@ -60,10 +63,18 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
     read(model);
     if (!gpu_model) return;
     const auto start = Clock::now();
-    gpu_model->reload();
+    if (heads_turn_) {
+      gpu_model->reload(parts_.take_changes());
+    } else {
+      gpu_model->reload();
+    }
     upload_ms_ += ms_since(start);
   };
-  if (!heads_turn_ && scene_.choose({}, {}) && shown) change();  // what is looked at is the coarsest
+  if (!heads_turn_) {
+    scene_.choose({}, {});
+    if (shown || choose(nullptr, model, views, settings)) forget(model);
+    if (shown && scene_.choose({}, {})) change();  // what is looked at is the coarsest
+  }
   for (int look = 0; look < (shown ? looks : 1); ++look) {
     if (!choose(shown ? &*shown : nullptr, model, views, settings)) break;
     change();
@@ -73,9 +84,14 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
 
 void FollowedLevels::read(Model& model) {
   const auto start = Clock::now();
-  model = scene_.read();
-  set_as_asked(options_, model);
+  scene_.read([&](const StreamedSog::Piece& piece) { parts_.replace(model, piece.part, piece.model); });
   read_ms_ += ms_since(start);
+}
+
+void FollowedLevels::forget(Model& model) {
+  scene_.forget();
+  parts_ = ModelParts(scene_.parts());
+  model.resize(0);
 }
 
 bool FollowedLevels::choose(render::LinearBlend* shown, const Model& model,
@@ -83,7 +99,7 @@ bool FollowedLevels::choose(render::LinearBlend* shown, const Model& model,
   std::vector<std::vector<SeenPart>> seen;
   if (shown != nullptr) {
     for (const shared::View& view : views)
-      seen.push_back(study::seen_parts(*shown, model, scene_.ranges(), view, settings));
+      seen.push_back(study::seen_parts(*shown, model, parts_, view, settings));
   }
   DetailNeed need = detail_need(options_, settings_, scene_, views);
   need.heads_turn = heads_turn_;
@@ -103,7 +119,7 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
   if (!std::ranges::equal(std::as_bytes(std::span(brought)), std::as_bytes(views)))
     levels.switched = settle(model, frame.model(), views, settings, changing);
   if (!before.empty()) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
-  levels.gaussians = model.count();
+  levels.gaussians = parts_.gaussians();
   levels.predicted_psnr = scene_.predicted_psnr();
   levels.read_ms = std::exchange(read_ms_, 0.0);
   levels.upload_ms = std::exchange(upload_ms_, 0.0);

@@ -11,6 +11,7 @@
 #include "formats/streamed_sog.h"
 #include "render/frame.h"
 #include "render/linear_blend.h"
+#include "scene/model_parts.h"
 #include "stereo/show.h"
 
 namespace binosplat::app {
@@ -44,10 +45,13 @@ class FollowedLevels {
         report_(report),
         background_(background),
         heads_turn_(heads_turn),
-        scene_(options.name) {}
+        scene_(options.name),
+        parts_(scene_.parts()) {}
 
   /// The coarsest levels, by which cameras are made up where there are none.
   Model coarsest();
+  /// Of the model that there is.
+  std::size_t gaussians() const { return parts_.gaussians(); }
 
   /// Brings the model to the levels that the views need, before there is a frame of it.
   void bring(gl::Context& context, Model& model, std::span<const shared::View> views);
@@ -70,6 +74,8 @@ class FollowedLevels {
               std::span<const shared::View> views, const render::FrameSettings& settings,
               const Changing& changing);
   void read(Model& model);
+  /// As if there were nothing yet.
+  void forget(Model& model);
   /// Whether the views need other levels, by what they show of those of `shown`; none: for no dB.
   bool choose(render::LinearBlend* shown, const Model& model, std::span<const shared::View> views,
               const render::FrameSettings& settings);
@@ -80,6 +86,7 @@ class FollowedLevels {
   glm::vec3 background_;
   bool heads_turn_;
   StreamedSog scene_;
+  ModelParts parts_;
   std::vector<shared::View> brought_;       // what bring() was for, until the first shot
   double read_ms_ = 0.0, upload_ms_ = 0.0;  // since the last shot
   std::optional<Model> finest_;

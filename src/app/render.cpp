@@ -207,14 +207,15 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
                 why_empty(report.model, report.drawn[0].shot, report.near_plane));
 }
 
-void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model) {
+void log_model(const std::string& scene, const std::optional<int>& decode, const Model& model,
+               std::size_t gaussians) {
   if (model.scaffold) {
     log_info("{}: {}", scene, describe(*model.scaffold));
   } else if (decode) {
     fail("--decode {}: {} is no Scaffold-GS model, whose Gaussians are made for each eye",
          decode_choices[*decode].name, scene);
   } else {
-    log_info("{}: {} Gaussians, harmonics of degree {}", scene, model.count(), model.degree);
+    log_info("{}: {} Gaussians, harmonics of degree {}", scene, gaussians, model.degree);
   }
 }
 
@@ -274,7 +275,8 @@ ExitCode render(const RenderOptions& o) {
     budget = detail_budget(o, work.list);
   }
   Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget);
-  log_model(o.scene.name, o.drawing.decode, model);
+  log_model(o.scene.name, o.drawing.decode, model,
+            work.followed ? work.followed->gaussians() : model.count());
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
 
   const double near_plane = near_plane_of(o.camera, work.list);

@@ -204,7 +204,9 @@ ordered_json scene_json(const RenderReport& report) {
   ordered_json json = object("name", o.name, "seed", given(city, city_settings(o).seed), "count",
                              given(city, city_settings(o).count));
   if (o.repeat) json["repeat"] = object("x", o.repeat->x, "z", o.repeat->y, "spacing", *o.spacing);
-  FieldWriter{json}("gaussians", model.count(), "left_out", model.left_out, "degree", model.degree);
+  const bool follows = !report.drawn.empty() && report.drawn.back().levels;
+  FieldWriter{json}("gaussians", follows ? report.drawn.back().levels->gaussians : model.count(), "left_out",
+                    model.left_out, "degree", model.degree);
   if (const Scaffold* s = model.scaffold.get())
     json["scaffold"] = object("anchors", s->anchor_count(), "gaussians_per_anchor", s->offset_count,
                               "features", s->feature_count, "appearances", s->appearance_count(),

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "formats/plausible.h"
 #include "formats/zip_file.h"
 
 namespace binosplat {
@@ -173,6 +174,20 @@ void SogLevels::sort(std::vector<Taken>& taken, std::size_t index) const {
            now.first, files_[index].string());
     }
   }
+}
+
+void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file, const SogSource& source,
+                 std::span<const SogLevels::Taken> taken) {
+  const SogSource::Range& last = taken.back().range;
+  if (last.first + last.count <= source.count()) return;
+  fail("{}: Gaussians {} to {} of {} are wanted, which has {}", lod_meta.string(), last.first,
+       last.first + last.count - 1, file.string(), source.count());
+}
+
+void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes) {
+  if (total <= most_gaussians_in(bytes)) return;
+  fail("{}: {} Gaussians are wanted of files whose positions take {} bytes, which cannot hold them{}",
+       lod_meta.string(), total, bytes, more_may_be_allowed);
 }
 
 }  // namespace binosplat

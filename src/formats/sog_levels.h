@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "formats/detail.h"
@@ -56,5 +57,13 @@ class SogLevels {
   std::vector<std::filesystem::path> files_;
   std::optional<std::filesystem::path> environment_;
 };
+
+/// Throws Error unless what is taken of a file, which is something, is in it.
+void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
+                 const SogSource& source, std::span<const SogLevels::Taken> taken);
+
+/// Throws Error where so many Gaussians are wanted of files of so many bytes (SogSource::bytes) in all: each
+/// may have its million without a reason, but not a thousand files.
+void check_total(const std::filesystem::path& lod_meta, std::size_t total, std::uint64_t bytes);
 
 }  // namespace binosplat

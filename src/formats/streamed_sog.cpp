@@ -13,7 +13,6 @@
 #include "base/progress.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
-#include "formats/plausible.h"
 #include "formats/sog_levels.h"
 #include "formats/sog_source.h"
 #include "scene/reduce.h"
@@ -26,6 +25,7 @@ namespace fs = std::filesystem;
 using Taken = std::vector<SogLevels::Taken>;
 
 constexpr int no_level = -1;
+constexpr std::size_t files_at_a_time = 8;  // each by several threads, and whole in memory meanwhile
 
 /// A SOG and what is taken of it.
 struct Part {
@@ -38,20 +38,9 @@ SogSource open_part(const fs::path& path) {
   return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
 }
 
-/// What is taken of a file must be in it.
-void check_taken(const fs::path& lod_meta, const fs::path& file, const SogSource& source,
-                 std::span<const SogLevels::Taken> taken) {
-  const SogSource::Range& last = taken.back().range;
-  if (last.first + last.count <= source.count()) return;
-  fail("{}: Gaussians {} to {} of {} are wanted, which has {}", lod_meta.string(), last.first,
-       last.first + last.count - 1, file.string(), source.count());
-}
-
-/// Each file may have its million without a reason, but not a thousand files.
-void check_total(const fs::path& lod_meta, std::size_t total, std::uint64_t bytes) {
-  if (total <= most_gaussians_in(bytes)) return;
-  fail("{}: {} Gaussians are wanted of files whose positions take {} bytes, which cannot hold them{}",
-       lod_meta.string(), total, bytes, more_may_be_allowed);
+void tell_no_room(const fs::path& path, std::size_t total, std::size_t most) {
+  log_warning("{}: even its coarsest levels of detail have {} Gaussians, and there is room for {}",
+              path.string(), total, most);
 }
 
 /// The finest level that is there, or the one that was asked for.
@@ -118,9 +107,7 @@ Selection choose(const fs::path& path, const SogLevels& levels, const DetailBudg
     of_level[static_cast<std::size_t>(level.number)] += level.count;
     total += level.count;
   }
-  if (total > most)
-    log_warning("{}: even its coarsest levels of detail have {} Gaussians, and there is room for {}",
-                path.string(), total, most);
+  if (total > most) tell_no_room(path, total, most);
   std::string parts;
   for (std::size_t level = 0; level < of_level.size(); ++level) {
     if (of_level[level] > 0)
@@ -157,19 +144,6 @@ std::vector<SogSource::Range> ranges_of(const Taken& taken) {
   std::vector<SogSource::Range> ranges;
   for (const SogLevels::Taken& of_leaf : taken) ranges.push_back(of_leaf.range);
   return ranges;
-}
-
-/// Copies Gaussians from one model to another of the same degree.
-void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t slot) {
-  const auto take = [&](const auto& a, auto& b, std::size_t each) {
-    std::copy_n(a.begin() + static_cast<std::ptrdiff_t>(first * each), count * each,
-                b.begin() + static_cast<std::ptrdiff_t>(slot * each));
-  };
-  take(from.position, to.position, 1);
-  take(from.scale, to.scale, 1);
-  take(from.rotation, to.rotation, 1);
-  take(from.opacity, to.opacity, 1);
-  take(from.sh, to.sh, 3 * static_cast<std::size_t>(sh_count(from.degree)));
 }
 
 std::vector<DetailView> detail_views(std::span<const shared::View> views) {
@@ -270,23 +244,20 @@ struct StreamedSog::Source {
   const fs::path& name(std::size_t file) const {
     return file == levels.files().size() ? *levels.environment() : levels.files()[file];
   }
-
-  /// What is taken of each of the files, where leaf number i of so many has level_of(i).
-  std::vector<Taken> wanted(const std::function<int(std::size_t)>& level_of, std::size_t leaves) const;
 };
 
 StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source>(path)) {
   leaves_ = source_->levels.leaves();
   check_leaves(source_->path, leaves_);
-  model_.name = source_->path.filename().string();
-  model_.format = name_of(source_->levels);
+  read_.resize(leaves_.size());
+  like_.name = source_->path.filename().string();
+  like_.format = name_of(source_->levels);
   for (const auto& file : source_->files) {
     if (!file) continue;
-    degree_ = std::max(degree_, file->degree());
-    model_.antialiased = model_.antialiased || file->antialiased();
-    model_.perspective = file->perspective();
+    like_.degree = std::max(like_.degree, file->degree());
+    like_.antialiased = like_.antialiased || file->antialiased();
+    like_.perspective = file->perspective();
   }
-  model_.degree = degree_;
 }
 
 StreamedSog::~StreamedSog() = default;
@@ -322,73 +293,100 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
     chosen_ = choose_levels(leaves_, eyes, most, enough, before);
   }
   by_views_ = !views.empty();
-  return chosen_ != levels_;
+  const std::size_t total = chosen_count();
+  if (total > need.most && !told_no_room_) tell_no_room(source_->path, total, need.most);
+  told_no_room_ = total > need.most;
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    if (!leaves_[leaf].levels.empty() && read_[leaf] != chosen_[leaf]) return true;
+  }
+  return environment && !environment_read_;
 }
 
-std::vector<Taken> StreamedSog::Source::wanted(const std::function<int(std::size_t)>& level_of,
-                                               std::size_t leaves) const {
-  std::vector<Taken> taken = levels.taken(level_of);
-  if (levels.environment()) taken.emplace_back().push_back({leaves, {0, files.back()->count(), 0}});
-  return taken;
+// Leaves that get fewer Gaussians come first: never are there more than before or after.
+void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
+  check_chosen();
+  for (const bool shrinks : {true, false}) {
+    const auto level_of = [&](std::size_t leaf) {
+      const auto& levels = leaves_[leaf].levels;
+      if (levels.empty() || read_[leaf] == chosen_[leaf]) return no_level;
+      const std::size_t before = read_[leaf] ? levels[*read_[leaf]].count : 0;
+      return (levels[chosen_[leaf]].count < before) == shrinks ? levels[chosen_[leaf]].number : no_level;
+    };
+    std::vector<Taken> taken = source_->levels.taken(level_of);
+    if (source_->levels.environment() && !environment_read_ && !shrinks)
+      taken.emplace_back().push_back({leaves_.size(), {0, source_->files.back()->count(), 0}});
+    std::vector<std::size_t> files;
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      if (!taken[i].empty()) files.push_back(i);
+    }
+    for (std::size_t at = 0; at < files.size(); at += files_at_a_time) {
+      std::vector<std::vector<Piece>> pieces(std::min(files_at_a_time, files.size() - at));
+      parallel_for(pieces.size(),
+                   [&](std::size_t i) { pieces[i] = read_file(files[at + i], taken[files[at + i]]); });
+      for (std::vector<Piece>& of_file : pieces) {
+        for (Piece& piece : of_file) {
+          if (piece.part < leaves_.size()) read_[piece.part] = chosen_[piece.part];
+          environment_read_ = environment_read_ || piece.part == leaves_.size();
+          take(std::move(piece));
+        }
+      }
+      if (goes_on && !goes_on()) return;
+    }
+  }
 }
 
-Model StreamedSog::read() {
+std::size_t StreamedSog::chosen_count() const {
+  std::size_t total = source_->levels.environment() ? source_->files.back()->count() : 0;
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
+    total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[chosen_[leaf]].count;
+  return total;
+}
+
+void StreamedSog::forget() {
+  read_.assign(leaves_.size(), std::nullopt);
+  environment_read_ = by_views_ = false;
+}
+
+void StreamedSog::check_chosen() const {
   const auto level_of = [&](std::size_t leaf) {
     return leaves_[leaf].levels.empty() ? no_level : leaves_[leaf].levels[chosen_[leaf]].number;
   };
-  std::vector<Taken> taken = source_->wanted(level_of, leaves_.size());
-  std::vector<Range> ranges(leaves_.size() + 1);
-  std::size_t total = 0;
-  std::uint64_t bytes = 0;
+  const std::vector<Taken> taken = source_->levels.taken(level_of);
   for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (taken[i].empty()) continue;
-    check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
-    bytes += source_->files[i]->bytes();
-    for (SogLevels::Taken& of_leaf : taken[i]) {
-      of_leaf.range.slot = total;
-      total += of_leaf.range.count;
-      ranges[of_leaf.leaf] = {of_leaf.range.slot, of_leaf.range.count};
-    }
+    if (!taken[i].empty()) check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
   }
-  if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), model_.format);
+  const std::size_t total = chosen_count();
+  if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), like_.format);
+  std::uint64_t bytes = 0;
+  for (const auto& file : source_->files) bytes += file ? file->bytes() : 0;
   check_total(source_->path, total, bytes);
-  Model model = without_gaussians(model_);
+}
+
+std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, Taken taken) const {
+  const SogSource& source = *source_->files[file];
+  std::vector<SogSource::Range> ranges;
+  std::size_t total = 0;
+  for (SogLevels::Taken& of_leaf : taken) {
+    of_leaf.range.slot = total;
+    total += of_leaf.range.count;
+    ranges.push_back(of_leaf.range);
+  }
+  Model model = like_;
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
-  parallel_for(taken.size(), [&](std::size_t i) { fill(model, kept, taken[i], i); });
-  close_gaps(ranges, kept);
+  source.decode(model, ranges, kept);
+  std::vector<Piece> pieces;
+  std::size_t at = 0;  // once keep_only has left out what is not kept
   keep_only(model, kept);
-  model_ = model;
-  levels_ = chosen_;
-  ranges_ = std::move(ranges);
-  return model;
-}
-
-void StreamedSog::fill(Model& model, std::vector<std::uint8_t>& kept, std::span<const SogLevels::Taken> taken,
-                       std::size_t file) const {
-  std::vector<SogSource::Range> changed;
   for (const SogLevels::Taken& of_leaf : taken) {
-    const std::size_t leaf = of_leaf.leaf;
-    if (ranges_.empty() || (leaf < leaves_.size() && chosen_[leaf] != levels_[leaf])) {
-      changed.push_back(of_leaf.range);
-      continue;
-    }
-    const Range& before = ranges_[leaf];
-    copy(model_, before.first, before.count, model, of_leaf.range.slot);
-    std::fill_n(kept.begin() + static_cast<std::ptrdiff_t>(of_leaf.range.slot), before.count, 1);
+    const auto first = kept.begin() + static_cast<std::ptrdiff_t>(of_leaf.range.slot);
+    const auto count = static_cast<std::size_t>(
+        std::count(first, first + static_cast<std::ptrdiff_t>(of_leaf.range.count), 1));
+    pieces.push_back({of_leaf.leaf, like_});
+    append(pieces.back().model, model, at, count);
+    at += count;
   }
-  if (changed.empty()) return;
-  source_->files[file]->decode(model, changed, kept);
-}
-
-// Where leaves lie once keep_only has left out what is not kept.
-void StreamedSog::close_gaps(std::vector<Range>& ranges, const std::vector<std::uint8_t>& kept) {
-  std::vector<std::size_t> before(kept.size() + 1, 0);
-  for (std::size_t i = 0; i < kept.size(); ++i) before[i + 1] = before[i] + kept[i];
-  for (Range& range : ranges) {
-    const std::size_t first = before[range.first];
-    range = {first, before[range.first + range.count] - first};
-  }
+  return pieces;
 }
 
 }  // namespace binosplat

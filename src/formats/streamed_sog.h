@@ -3,6 +3,7 @@
 // model at which level of detail. Frame: the trainer's (RDF).
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,8 +30,8 @@ bool is_streamed_sog(const std::filesystem::path& path);
 Model load_streamed_sog(const std::filesystem::path& lod_meta, const nlohmann::json& root,
                         std::optional<int> lod, const std::optional<DetailBudget>& budget = {});
 
-/// A streamed SOG whose leaves change their levels as somebody moves through it. choose() and read() may be
-/// called by different threads, but not at a time.
+/// A streamed SOG whose leaves change their levels as somebody moves through it. Its members may be called by
+/// different threads, but not at a time.
 class StreamedSog {
  public:
   /// `path`: a lod-meta.json or the folder of one. Opens what is there of its SOGs. Throws Error as
@@ -38,46 +39,52 @@ class StreamedSog {
   explicit StreamedSog(const std::filesystem::path& path);
   ~StreamedSog();
 
-  int degree() const { return degree_; }
+  /// The model without Gaussians.
+  const Model& like() const { return like_; }
+  /// Its leaves, and at the end the environment.
+  std::size_t parts() const { return leaves_.size() + 1; }
 
   /// Chooses a level for each leaf: the same for all views, which are those of one frame in the model's
   /// frame; by the nearest eye and the longest focal length of them, wherever they look (choose_levels), or
   /// by what each of them loses (choose_levels_within), with the levels of the last choice as those before.
-  /// Without views: the coarsest. True if the model that was read last is another one. Throws Error for dB
-  /// where the file has no errors.
-  /// `seen`: what each view shows of each of ranges(), as far as that was found (choose_levels_within).
+  /// Without views: the coarsest. True if there is something to read. Throws Error for dB where the file has
+  /// no errors.
+  /// `seen`: what each view shows of each part, as far as that was found (choose_levels_within).
   bool choose(std::span<const shared::View> views, const DetailNeed& need,
               std::span<const std::vector<SeenPart>> seen = {});
 
   /// What the views are taken to have against the finest levels, in dB; none where dB were not chosen by.
   std::optional<double> predicted_psnr() const { return predicted_psnr_; }
 
-  /// The model at the levels chosen. Only leaves whose level has changed are read, the others come from the
-  /// last model, a copy of which stays here. Throws Error where a file has become unreadable.
-  Model read();
-
-  /// Which Gaussians of the model that was read last are which leaf, and at the end the environment.
-  struct Range {
-    std::size_t first = 0, count = 0;
+  /// The Gaussians of a part at the level chosen.
+  struct Piece {
+    std::size_t part = 0;
+    Model model;
   };
-  std::span<const Range> ranges() const { return ranges_; }
+  using Take = std::function<void(Piece piece)>;
+
+  /// Reads the leaves whose level is another one than when they were read last, and hands them to `take`, in
+  /// the same thread; those that get fewer Gaussians first. Asks `goes_on` in between, where it is not empty,
+  /// and leaves out the rest if it does not. Throws Error where a file has become unreadable.
+  void read(const Take& take, const std::function<bool()>& goes_on = {});
+  /// Nothing counts as read any more.
+  void forget();
 
  private:
   struct Source;
-  void fill(Model& model, std::vector<std::uint8_t>& kept, std::span<const SogLevels::Taken> taken,
-            std::size_t file) const;
-  static void close_gaps(std::vector<Range>& ranges, const std::vector<std::uint8_t>& kept);
+  std::size_t chosen_count() const;
+  void check_chosen() const;
+  std::vector<Piece> read_file(std::size_t file, std::vector<SogLevels::Taken> taken) const;
 
   std::unique_ptr<Source> source_;
+  Model like_;
   std::vector<DetailPart> leaves_;
-  int degree_ = 0;
   std::vector<std::size_t> chosen_;  // places in a leaf's `levels`
   bool by_views_ = false;            // chosen
   std::optional<double> predicted_psnr_;
-  // The last model, the levels that it has, and where its leaves lie; the environment lies last.
-  Model model_;
-  std::vector<std::size_t> levels_;
-  std::vector<Range> ranges_;
+  std::vector<std::optional<std::size_t>> read_;  // of the leaves
+  bool environment_read_ = false;
+  bool told_no_room_ = false;
 };
 
 }  // namespace binosplat

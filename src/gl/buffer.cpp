@@ -14,6 +14,9 @@ namespace {
 // buffer than through glGetNamedBufferSubData, and a piece bounds what the driver has to pin.
 constexpr std::int64_t piece_bytes = std::int64_t{64} << 20;
 
+// A binding of size 0 is an error.
+std::int64_t rounded(std::int64_t bytes) { return std::max<std::int64_t>((bytes + 15) / 16 * 16, 16); }
+
 }  // namespace
 
 Buffer::Buffer(Context& context, std::string label) : context_(context), label_(std::move(label)) {}
@@ -29,17 +32,54 @@ void Buffer::release() {
 }
 
 void Buffer::reserve(std::int64_t bytes) {
-  bytes = std::max<std::int64_t>((bytes + 15) / 16 * 16, 16);  // a binding of size 0 is an error
+  bytes = rounded(bytes);
   if (bytes <= bytes_) return;
-  const std::int64_t limit = context_.limits().storage_block_bytes;
-  if (bytes > limit) {
-    throw Error(
-        ExitCode::out_of_memory,
-        fmt::format(
-            "{} needs {} MiB; a shader on {} reaches {} MiB of one buffer. Use a smaller picture or model.",
-            label_, bytes >> 20, context_.renderer(), limit >> 20));
-  }
+  check_reach(bytes);
   release();
+  allocate(bytes);
+}
+
+void Buffer::grow(std::int64_t bytes) {
+  bytes = rounded(bytes);
+  if (bytes <= bytes_) return;
+  check_reach(bytes);
+  bytes = std::max(bytes, std::min(rounded(bytes_ + bytes_ / 8), context_.limits().storage_block_bytes));
+  const std::uint32_t before = std::exchange(id_, 0);
+  const std::int64_t bytes_before = std::exchange(bytes_, 0);
+  const Functions& gl = context_.gl();
+  try {
+    allocate(bytes);
+  } catch (...) {
+    id_ = before;
+    bytes_ = bytes_before;
+    throw;
+  }
+  if (before == 0) return;
+  gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  gl.CopyNamedBufferSubData(before, id_, 0, 0, bytes_before);
+  gl.DeleteBuffers(1, &before);
+  context_.count_allocation(-bytes_before);
+}
+
+void Buffer::clear(std::int64_t offset, std::int64_t bytes) {
+  if (bytes == 0) return;
+  context_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  context_.gl().ClearNamedBufferSubData(id_, GL_R32UI, offset, bytes, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                                        nullptr);
+  context_.check("clearing " + label_);
+}
+
+void Buffer::check_reach(std::int64_t bytes) const {
+  const std::int64_t limit = context_.limits().storage_block_bytes;
+  if (bytes <= limit) return;
+  throw Error(
+      ExitCode::out_of_memory,
+      fmt::format(
+          "{} needs {} MiB; a shader on {} reaches {} MiB of one buffer. Use a smaller picture or model.",
+          label_, bytes >> 20, context_.renderer(), limit >> 20));
+}
+
+void Buffer::allocate(std::int64_t bytes) {
   const Functions& gl = context_.gl();
   gl.CreateBuffers(1, &id_);
   gl.NamedBufferStorage(id_, bytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
@@ -60,9 +100,7 @@ void Buffer::reserve(std::int64_t bytes) {
 
 void Buffer::reserve_zeros(std::int64_t bytes) {
   reserve(bytes);
-  context_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  context_.gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-  context_.check("clearing " + label_);
+  clear(0, bytes_);
 }
 
 void Buffer::write(const void* data, std::int64_t bytes, std::int64_t offset) {

@@ -23,6 +23,13 @@ class Buffer {
   /// if the GPU has no room, or if a shader on this driver could not reach all of it.
   void reserve(std::int64_t bytes);
 
+  /// Makes room for at least `bytes`, and for an eighth more than there was; what was in it stays. Throws as
+  /// reserve does.
+  void grow(std::int64_t bytes);
+
+  /// Sets `bytes` from `offset` on, both multiples of 4, to 0.
+  void clear(std::int64_t offset, std::int64_t bytes);
+
   template <typename T>
   void upload(std::span<const T> data) {
     reserve(static_cast<std::int64_t>(data.size_bytes()));
@@ -58,6 +65,8 @@ class Buffer {
 
  private:
   void release();
+  void check_reach(std::int64_t bytes) const;
+  void allocate(std::int64_t bytes);
   void write(const void* data, std::int64_t bytes, std::int64_t offset = 0);
   void read_bytes(void* out, std::int64_t offset, std::int64_t bytes) const;
 

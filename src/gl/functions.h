@@ -19,7 +19,7 @@ namespace binosplat::gl {
   X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS)                           \
   X(Clear, CLEAR)                                                                       \
   X(ClearColor, CLEARCOLOR)                                                             \
-  X(ClearNamedBufferData, CLEARNAMEDBUFFERDATA)                                         \
+  X(ClearNamedBufferSubData, CLEARNAMEDBUFFERSUBDATA)                                   \
   X(ClientWaitSync, CLIENTWAITSYNC)                                                     \
   X(ClipControl, CLIPCONTROL)                                                           \
   X(CompileShader, COMPILESHADER)                                                       \

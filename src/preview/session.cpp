@@ -17,6 +17,7 @@ namespace binosplat::preview {
 namespace {
 
 constexpr std::size_t reports_kept = 240;
+constexpr std::size_t gaussians_a_frame = 1 << 16;  // of levels that change; nobody sees the wait
 
 // Where the densest part of a model lies before a camera: the median view depth of what is ahead.
 double depth_ahead(const Model& model, const Camera& of_world) {
@@ -25,7 +26,7 @@ double depth_ahead(const Model& model, const Camera& of_world) {
   const std::size_t step = std::max<std::size_t>(1, model.count() / 10000);
   for (std::size_t i = 0; i < model.count(); i += step) {
     const double z = glm::dot(camera.rotation[2], glm::dvec3(model.position[i]) - camera.position);
-    if (z > 0.0) depths.push_back(z);
+    if (z > 0.0 && model.opacity[i] > 0.0f) depths.push_back(z);
   }
   if (depths.empty()) return 1.0;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
@@ -157,10 +158,11 @@ void Session::make_shown(std::span<const shared::View> views) {
   shown_colours_.upload(colours);
 }
 
-void Session::replace(Model model) {
-  model_ = std::move(model);
+void Session::follow(LevelStream& levels) {
+  const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
+  if (changes.empty()) return;
   show_.release();
-  frame_.model()->reload();
+  frame_.model()->reload(changes);
   change();
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/level_stream.h"
 #include "gl/texture.h"
 #include "preview/key_list.h"
 #include "preview/navigator.h"
@@ -62,8 +63,9 @@ class Session {
   Navigator head;
   Choices choices;
 
-  /// The same scene at other levels of detail; all else stays.
-  void replace(Model model);
+  /// Takes some of the levels of detail that were read of the model; all else stays. Throws what reading
+  /// them threw.
+  void follow(LevelStream& levels);
 
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
   /// settled.

@@ -97,7 +97,7 @@ void Window::run() {
     if (ui_frames_ > 0) show();
     context_->check_alive();
   }
-  if (loading_.valid() || levels_.valid()) {
+  if (loading_.valid() || levels_move()) {
     // Nobody waits for a model that is not looked at, and nothing but memory was taken for it.
     log_info("left while {} was being read", loading_.valid() ? next_.name : scene_.name);
     std::quick_exit(0);
@@ -113,7 +113,7 @@ void Window::wait() {
   std::optional<double> seconds = messages_.next_change(glfwGetTime());
   const auto at_most = [&](double most) { seconds = std::min(seconds.value_or(most), most); };
   if (loading_.valid()) at_most(0.05);
-  if (levels_.valid()) at_most(0.02);
+  if (levels_move()) at_most(0.02);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
@@ -122,7 +122,6 @@ void Window::wait() {
 }
 
 void Window::take_loaded() {
-  if (levels_.valid()) return;  // their thread reads from the scene that would go
   if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   if (!read_) {  // first say so: the driver takes the model in one go
     read_ = true;
@@ -130,9 +129,9 @@ void Window::take_loaded() {
     return;
   }
   try {
-    Model model = loading_.get();
+    Loaded loaded = loading_.get();
     Choices choices = session_ ? session_->choices : choices_;
-    Start start = next_.start(model, choices);
+    Start start = next_.start(loaded.model, choices);
     std::optional<Navigator> head;
     std::optional<KeyList> keys;
     if (session_ && again_) {
@@ -142,10 +141,11 @@ void Window::take_loaded() {
       choices.seeks_screen = choices.seeks_screen && !choices.rig.convergence;  // it stays where it is
     }
     session_.reset();  // its memory first
-    log_info("{}: {} Gaussians", next_.name, model.count());
+    levels_ = std::move(loaded.levels);
+    log_info("{}: {} Gaussians", next_.name, levels_ ? levels_->gaussians() : loaded.model.count());
     scene_ = std::move(next_);
-    session_ = std::make_unique<Session>(*context_, std::move(model), std::move(start.cameras), start.up,
-                                         choices, scene_.folder);
+    session_ = std::make_unique<Session>(*context_, std::move(loaded.model), std::move(start.cameras),
+                                         start.up, choices, scene_.folder);
     announced_ = false;
     playing_.reset();
     if (head) session_->head = *head;
@@ -158,25 +158,23 @@ void Window::take_loaded() {
   ui_frames_ = 3;
 }
 
-// Takes the levels that were read, and has those read that the head needs now. What cannot be read leaves
-// the levels as they are.
+bool Window::levels_move() const { return levels_ && !levels_->settled(); }
+
+// Takes levels that were read, and has those read that the head needs now. What cannot be read leaves the
+// levels as they are.
 void Window::follow_levels() {
-  if (!levels_.valid()) {
-    if (!scene_.levels || loading_.valid()) return;
-    const auto read = scene_.levels(session_->views());
-    if (read) levels_ = std::async(std::launch::async, read);
-    return;
-  }
-  if (levels_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (!levels_) return;
+  const bool moved = levels_move();
   try {
-    session_->replace(levels_.get());
-    log_info("{}: levels of {} Gaussians", scene_.name, session_->model().count());
+    levels_->want(session_->views());
+    session_->follow(*levels_);
+    if (moved && !levels_move()) log_info("{}: levels of {} Gaussians", scene_.name, levels_->gaussians());
   } catch (const Error& error) {
     if (error.code() == ExitCode::no_gl) throw;
-    scene_.levels = nullptr;
+    levels_.reset();
     tell(error.what(), true);
   }
-  ui_frames_ = 3;
+  if (moved) ui_frames_ = 3;
 }
 
 void Window::reload_shaders() {

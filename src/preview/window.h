@@ -3,11 +3,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "formats/level_stream.h"
 #include "preview/session.h"
 
 namespace binosplat::preview {
@@ -18,18 +19,21 @@ struct Start {
   glm::dvec3 up;                // the world's
 };
 
+/// A model that was read, and what follows its levels of detail, where it has such.
+struct Loaded {
+  Model model;
+  std::unique_ptr<LevelStream> levels;
+};
+
 /// A scene to open: read in a thread of its own, then shown.
 struct Opened {
   std::string name;
   std::filesystem::path folder;     // for its pictures and keys
   std::function<void()> claim;      // called before each that is written there; may be empty
   std::filesystem::path pose_file;  // where its pose is saved; empty: nowhere
-  std::function<Model()> load;
+  std::function<Loaded()> load;
   /// Sets what of the choices follows from the model, too, such as the near plane.
   std::function<Start(const Model& model, Choices& choices)> start;
-  /// Of a model with levels of detail: what reads the levels that these views need, in a thread of its own
-  /// and one at a time; nothing where they are the last ones that were read.
-  std::function<std::function<Model()>(std::span<const shared::View> views)> levels;
 };
 
 struct WindowSettings {

@@ -110,7 +110,6 @@ void Window::open_file(const std::string& file) {
 // The same model as its file is now.
 void Window::read_again() {
   if (loading_.valid()) return;
-  if (levels_.valid()) return tell(fmt::format("levels of {} are still being read", scene_.name), true);
   load(scene_, true);
 }
 

@@ -35,6 +35,7 @@ class Window {
   void listen();
   void wait();
   void take_loaded();
+  bool levels_move() const;
   void follow_levels();
   void reload_shaders();
   bool draw();
@@ -76,7 +77,8 @@ class Window {
   bool read_ = false;       // that is done, and to be handed to the GPU
   bool again_ = false;      // that is the same one
   bool announced_ = false;  // that the first frame of what is shown takes longer
-  std::future<Model> loading_, levels_;
+  std::future<Loaded> loading_;
+  std::unique_ptr<LevelStream> levels_;
   double loading_since_ = 0.0, last_time_ = 0.0, last_click_ = 0.0, moved_at_ = 0.0;
   std::optional<KeyPath> playing_;
   Camera played_;  // where that has brought the head

@@ -13,47 +13,62 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
   return {glm::vec4(model.position[i], model.opacity[i]), model.rotation[i], glm::vec4(model.scale[i], 0.0f)};
 }
 
-// Fills a buffer with `stride` numbers of each Gaussian of a page, which pack(Gaussian, room) makes; in
-// pieces: switches of levels must not wait for memory that is touched once. The room is zero where it leaves
-// it alone.
+using Range = ModelParts::Range;
+
+// Fills `stride` numbers of each of some Gaussians of the model in a page's buffer, which pack(Gaussian,
+// room) makes; in pieces: switches of levels must not wait for memory that is touched once. The room is zero
+// where it leaves it alone.
 template <typename T, typename Pack>
-void upload_in_pieces(const ModelBuffers::Page& page, std::size_t stride, gl::Buffer& buffer,
-                      const Pack& pack_one) {
+void upload_in_pieces(const Range& range, const ModelBuffers::Page& page, std::size_t stride,
+                      gl::Buffer& buffer, const Pack& pack_one) {
   constexpr std::size_t piece = 1 << 15;
-  std::vector<T> packed(std::min<std::size_t>(piece, page.count) * stride);
-  for (std::size_t at = 0; at < page.count; at += piece) {
-    const std::size_t count = std::min<std::size_t>(piece, page.count - at);
+  std::vector<T> packed(std::min(piece, range.count) * stride);
+  for (std::size_t at = 0; at < range.count; at += piece) {
+    const std::size_t first = range.first + at, count = std::min(piece, range.count - at);
     for (std::size_t k = 0; k < count; ++k)
-      pack_one(page.first + at + k, std::span(packed).subspan(k * stride, stride));
-    buffer.upload_part<T>(std::span(packed).first(count * stride), at * stride);
+      pack_one(first + k, std::span(packed).subspan(k * stride, stride));
+    buffer.upload_part<T>(std::span(packed).first(count * stride), (first - page.first) * stride);
   }
 }
 
-void upload_halves(const Model& model, const ModelBuffers::Page& page) {
-  const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  const std::size_t words = static_cast<std::size_t>(harmonic_bytes(model.degree, PRECISION_HALF)) / 4;
-  upload_in_pieces<Halves>(page, 1, *page.gaussians, [&](std::size_t i, std::span<Halves> room) {
-    room[0] = pack(gaussian_of(model, i));
-  });
-  upload_in_pieces<std::uint32_t>(page, words, *page.harmonics,
-                                  [&](std::size_t i, std::span<std::uint32_t> room) {
-                                    pack(std::span(model.sh).subspan(i * floats, floats), room);
-                                  });
+void upload_gaussians(const Model& model, int precision, const ModelBuffers::Page& page, const Range& range) {
+  if (precision == PRECISION_HALF) {
+    upload_in_pieces<Halves>(range, page, 1, *page.gaussians, [&](std::size_t i, std::span<Halves> room) {
+      room[0] = pack(gaussian_of(model, i));
+    });
+  } else {
+    upload_in_pieces<shared::Gaussian>(
+        range, page, 1, *page.gaussians,
+        [&](std::size_t i, std::span<shared::Gaussian> room) { room[0] = gaussian_of(model, i); });
+  }
 }
 
-void upload_floats(const Model& model, const ModelBuffers::Page& page) {
+void upload_harmonics(const Model& model, int precision, const ModelBuffers::Page& page, const Range& range) {
   const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
   const std::size_t stride =
-      static_cast<std::size_t>(harmonic_bytes(model.degree, PRECISION_FULL)) / sizeof(float);
-  upload_in_pieces<shared::Gaussian>(
-      page, 1, *page.gaussians,
-      [&](std::size_t i, std::span<shared::Gaussian> room) { room[0] = gaussian_of(model, i); });
-  if (stride == floats) {
-    page.harmonics->upload_part(std::span(model.sh).subspan(page.first * floats, page.count * floats), 0);
+      static_cast<std::size_t>(harmonic_bytes(model.degree, precision)) / sizeof(float);
+  if (precision == PRECISION_HALF) {
+    upload_in_pieces<std::uint32_t>(range, page, stride, *page.harmonics,
+                                    [&](std::size_t i, std::span<std::uint32_t> room) {
+                                      pack(std::span(model.sh).subspan(i * floats, floats), room);
+                                    });
+  } else if (stride == floats) {
+    page.harmonics->upload_part(std::span(model.sh).subspan(range.first * floats, range.count * floats),
+                                (range.first - page.first) * floats);
   } else {
-    upload_in_pieces<float>(page, stride, *page.harmonics, [&](std::size_t i, std::span<float> room) {
+    upload_in_pieces<float>(range, page, stride, *page.harmonics, [&](std::size_t i, std::span<float> room) {
       std::copy_n(&model.sh[i * floats], floats, room.begin());
     });
+  }
+}
+
+// What of the ranges lies in the page.
+template <typename Upload>
+void each_in(const ModelBuffers::Page& page, std::span<const Range> ranges, const Upload& upload) {
+  for (const Range& range : ranges) {
+    const std::size_t first = std::max<std::size_t>(range.first, page.first);
+    const std::size_t end = std::min<std::size_t>(range.first + range.count, page.first + page.count);
+    if (first < end) upload(Range{first, end - first});
   }
 }
 
@@ -65,21 +80,58 @@ ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, int in_prec
   upload(context, model);
 }
 
-void ModelBuffers::upload(gl::Context& context, const Model& model) {
+std::size_t ModelBuffers::page_step(gl::Context& context, const Model& model) const {
+  if (page_gaussians_ != 0) return page_gaussians_;
   const std::int64_t each = std::max(gaussian_bytes(precision), harmonic_bytes(model.degree, precision));
-  const std::int64_t reach = context.limits().storage_block_bytes / each;
-  const std::size_t step = page_gaussians_ != 0 ? page_gaussians_ : static_cast<std::size_t>(reach);
+  const auto reach = static_cast<std::size_t>(context.limits().storage_block_bytes / each);
+  return model.scaffold ? reach / MAX_VIEWS : reach;
+}
+
+void ModelBuffers::upload(gl::Context& context, const Model& model) {
   box.reset();
   if (model.scaffold) {
     pages.clear();
-    upload_pages(context, *model.scaffold, page_gaussians_ != 0 ? step : step / MAX_VIEWS);
-  } else {
-    upload_pages(context, model, step);
-    if (model.count() > 0) box = all_bounds(model);
+    upload_pages(context, *model.scaffold, page_step(context, model));
+    return;
+  }
+  set_pages(context, model);
+  for (Page& page : pages) {
+    page.gaussians->reserve(page.count * gaussian_bytes(precision));
+    page.harmonics->reserve(page.count * harmonic_bytes(model.degree, precision));
+    upload_gaussians(model, precision, page, {page.first, page.count});
+    upload_harmonics(model, precision, page, {page.first, page.count});
+  }
+  if (model.count() > 0) box = all_bounds(model);
+}
+
+void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelParts::Changes& changes) {
+  std::vector<std::int64_t> before;
+  for (const Page& page : pages) before.push_back(page.count);
+  set_pages(context, model);
+  before.resize(pages.size());
+  for (std::size_t k = 0; k < pages.size(); ++k) {
+    const Page& page = pages[k];
+    const std::int64_t each = gaussian_bytes(precision);
+    page.gaussians->grow(page.count * each);
+    page.gaussians->clear(before[k] * each, (page.count - before[k]) * each);
+    page.harmonics->grow(page.count * harmonic_bytes(model.degree, precision));
+    each_in(page, changes.filled, [&](const Range& range) {
+      upload_gaussians(model, precision, page, range);
+      upload_harmonics(model, precision, page, range);
+    });
+    each_in(page, changes.emptied,
+            [&](const Range& range) { upload_gaussians(model, precision, page, range); });
+  }
+  for (const Range& range : changes.filled) {
+    for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+      const glm::vec3& p = model.position[i];
+      box = box ? Bounds{glm::min(box->low, p), glm::max(box->high, p)} : Bounds{p, p};
+    }
   }
 }
 
-void ModelBuffers::upload_pages(gl::Context& context, const Model& model, std::size_t step) {
+void ModelBuffers::set_pages(gl::Context& context, const Model& model) {
+  const std::size_t step = page_step(context, model);
   pages.resize((model.count() + step - 1) / step);
   for (std::size_t k = 0; k < pages.size(); ++k) {
     Page& page = pages[k];
@@ -88,13 +140,6 @@ void ModelBuffers::upload_pages(gl::Context& context, const Model& model, std::s
     page.anchors.reset();
     if (!page.gaussians) page.gaussians = std::make_unique<gl::Buffer>(context, "Gaussians");
     if (!page.harmonics) page.harmonics = std::make_unique<gl::Buffer>(context, "SH coefficients");
-    page.gaussians->reserve(page.count * gaussian_bytes(precision));
-    page.harmonics->reserve(page.count * harmonic_bytes(model.degree, precision));
-    if (precision == PRECISION_HALF) {
-      upload_halves(model, page);
-    } else {
-      upload_floats(model, page);
-    }
   }
 }
 
@@ -139,15 +184,26 @@ std::shared_ptr<ModelBuffers> GpuModel::in(int precision) {
   return latest_;
 }
 
-void GpuModel::reload() {
-  ++uploads_;
+template <typename Upload>
+void GpuModel::upload_all(const Upload& upload) {
   const auto other_is_held = [&] {
     return !all_.at(static_cast<std::size_t>(1 - latest_->precision)).expired();
   };
   if (latest_.use_count() == 1 && other_is_held()) latest_.reset();  // nobody draws it any more
   for (const auto& each : all_) {
-    if (const auto held = each.lock()) held->upload(context_, model_);
+    if (const auto held = each.lock()) upload(*held);
   }
+}
+
+void GpuModel::reload() {
+  ++uploads_;
+  upload_all([&](ModelBuffers& buffers) { buffers.upload(context_, model_); });
+}
+
+void GpuModel::reload(const ModelParts::Changes& changes) {
+  if (changes.empty()) return;
+  ++uploads_;
+  upload_all([&](ModelBuffers& buffers) { buffers.upload(context_, model_, changes); });
 }
 
 }  // namespace binosplat::render

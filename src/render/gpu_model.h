@@ -10,7 +10,7 @@
 #include "gl/buffer.h"
 #include "render/anchors.h"
 #include "render/shape.h"
-#include "scene/model.h"
+#include "scene/model_parts.h"
 
 namespace binosplat::render {
 
@@ -32,6 +32,10 @@ struct ModelBuffers {
   /// Another model in the place of this one, in the buffers that there are where they are large enough.
   void upload(gl::Context& context, const Model& model);
 
+  /// What of the model has changed, which has grown if anything: places that were never filled have an
+  /// opacity of 0. Of no Scaffold-GS.
+  void upload(gl::Context& context, const Model& model, const ModelParts::Changes& changes);
+
   /// Room for what a frame of this shape decodes.
   void reserve(const FrameShape& shape);
 
@@ -41,7 +45,8 @@ struct ModelBuffers {
   std::optional<Bounds> box;  // around all positions; none of a model that is decoded or empty
 
  private:
-  void upload_pages(gl::Context& context, const Model& model, std::size_t step);
+  std::size_t page_step(gl::Context& context, const Model& model) const;
+  void set_pages(gl::Context& context, const Model& model);
   void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 
   std::uint32_t page_gaussians_;
@@ -67,9 +72,16 @@ class GpuModel {
   /// Buffers are used again where they are large enough. Frames see by `uploads` that what they measured is
   /// of another model. Throws as the constructor does.
   void reload();
+  /// The same of these places only (ModelBuffers::upload): what frames measured of all others is of the same
+  /// Gaussians still.
+  void reload(const ModelParts::Changes& changes);
   int uploads() const { return uploads_; }
 
  private:
+  /// What is uploaded, without what nobody draws any more.
+  template <typename Upload>
+  void upload_all(const Upload& upload);
+
   gl::Context& context_;
   const Model& model_;
   std::uint32_t page_gaussians_;

@@ -81,10 +81,15 @@ void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {
 
 Bounds core_bounds(const Model& model) {
   Bounds bounds;
-  std::vector<float> axis(model.count());
-  if (axis.empty()) return bounds;
+  std::vector<glm::vec3> positions;
+  for (std::size_t k = 0; k < model.count(); ++k) {
+    if (model.opacity[k] > 0.0f) positions.push_back(model.position[k]);
+  }
+  if (positions.empty()) positions = model.position;
+  if (positions.empty()) return bounds;
+  std::vector<float> axis(positions.size());
   for (int i = 0; i < 3; ++i) {
-    for (std::size_t k = 0; k < axis.size(); ++k) axis[k] = model.position[k][i];
+    for (std::size_t k = 0; k < axis.size(); ++k) axis[k] = positions[k][i];
     const auto percentile = [&](double share) {
       const auto at =
           axis.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(axis.size() - 1));

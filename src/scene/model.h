@@ -73,7 +73,7 @@ bool place(Model& model, std::size_t i, const glm::vec3& position, const glm::ve
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
 
 /// Box around the middle of the model, robust against far outliers: the 2nd to 98th percentile of positions
-/// per axis.
+/// per axis, of Gaussians that are not wholly transparent, unless all are.
 struct Bounds {
   glm::vec3 low{0.0f};
   glm::vec3 high{0.0f};

@@ -6,13 +6,8 @@
 
 namespace binosplat::study {
 
-std::vector<SeenPart> seen_parts(render::LinearBlend& blend, const Model& model,
-                                 std::span<const StreamedSog::Range> parts, const shared::View& view,
-                                 const render::FrameSettings& settings) {
-  std::vector<std::uint32_t> part_of(model.count());
-  for (std::size_t p = 0; p < parts.size(); ++p)
-    std::fill_n(part_of.begin() + static_cast<std::ptrdiff_t>(parts[p].first), parts[p].count,
-                static_cast<std::uint32_t>(p));
+std::vector<SeenPart> seen_parts(render::LinearBlend& blend, const Model& model, const ModelParts& parts,
+                                 const shared::View& view, const render::FrameSettings& settings) {
   blend.set_view(view, settings);
   const std::vector<double> seen = blend.seen();
   const glm::dvec3 eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye);
@@ -20,7 +15,7 @@ std::vector<SeenPart> seen_parts(render::LinearBlend& blend, const Model& model,
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (seen[k] == 0.0) continue;
     const std::uint32_t i = blend.drawn()[k].index;
-    SeenPart& part = result[part_of[i]];
+    SeenPart& part = result[parts.part_of(i)];
     part.area += seen[k];
     part.distance += seen[k] * std::log(glm::distance(glm::dvec3(model.position[i]), eye));
   }

@@ -1,7 +1,6 @@
 #include "xr/headset.h"
 
 #include <chrono>
-#include <future>
 #include <glm/gtc/quaternion.hpp>
 #include <thread>
 
@@ -133,18 +132,12 @@ class Viewer {
     last_ = time.display;
   }
 
-  /// Takes the levels that were read, and has those read that the last frame's views need.
+  /// By what the last frame's views need.
   void follow_levels() {
-    if (!beside_.levels) return;
-    if (!levels_.valid()) {
-      const render::Frame& frame = frame_.frame();
-      if (frame.views().empty()) return;
-      const auto read = beside_.levels(std::span(frame.views()).first(frame.shape().asked));
-      if (read) levels_ = std::async(std::launch::async, read);
-    } else if (levels_.wait_for(milliseconds(0)) == std::future_status::ready) {
-      model_ = levels_.get();
-      frame_.frame().model()->reload();
-    }
+    const render::Frame& frame = frame_.frame();
+    if (!beside_.levels || frame.views().empty()) return;
+    const auto views = std::span(frame.views()).first(frame.shape().asked);
+    frame_.frame().model()->reload(beside_.levels(model_, views));
   }
 
   const Instance& instance_;
@@ -153,7 +146,6 @@ class Viewer {
   const Beside& beside_;
   Model model_;
   stereo::FoveatedFrame frame_;
-  std::future<Model> levels_;
   std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<Budget> budget_;
   std::optional<XrTime> last_;  // when the last frame was seen

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "scene/model.h"
+#include "scene/model_parts.h"
 #include "xr/projection.h"
 
 namespace binosplat::xr {
@@ -26,9 +26,9 @@ struct Beside {
   std::function<bool()> step;
   /// Shows the left eye's picture. May be empty.
   Projection::DrawnLeft show;
-  /// Of a model with levels of detail: what reads the levels that these views need, in a thread of its own
-  /// and one at a time; nothing where they are the last ones that were read. May be empty.
-  std::function<std::function<Model()>(std::span<const shared::View> views)> levels;
+  /// Of a model with levels of detail: changes the model, a little for each frame, to what these views need.
+  /// May be empty.
+  std::function<ModelParts::Changes(Model& model, std::span<const shared::View> views)> levels;
 };
 
 /// Where OpenXR's space lies at first: its origin at the start camera, 1.6 m lower where it lies on the

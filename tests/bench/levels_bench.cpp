@@ -1,19 +1,25 @@
-// levels_bench: frame times of a headset pair along a path through a streamed SOG, for several --detail, and
-// what the levels cost against the finest.
+// levels_bench: frame times of a headset pair along a path through a streamed SOG whose levels are read
+// meanwhile, for several --detail, and what the levels cost against the finest.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <deque>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <thread>
 
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/statistics.h"
 #include "formats/cameras_file.h"
+#include "formats/level_stream.h"
 #include "formats/model_file.h"
-#include "formats/streamed_sog.h"
 #include "render/frame.h"
 #include "stereo/rig.h"
 #include "study/squared_error.h"
@@ -26,10 +32,14 @@ using Views = std::array<shared::View, 2>;
 
 struct Plan {
   std::string scene, keys, json;
-  std::vector<double> details = {0, 2, 4, 8, 16};  // px
-  int frames = 480;                                // along the path
-  int judged = 8;  // of them, evenly spread, against the finest; and as many switches
+  std::vector<std::string> details = {"2", "8", "40dB"};
+  int frames = 480;    // along the path
+  double rate = 90.0;  // a second
+  int judged = 8;      // of the frames, evenly spread, against the finest
   int shrink = 1;
+  std::size_t gaussians_a_frame = 1 << 14;
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+  render::FrameSettings settings;
 };
 
 // Heads on straight lines from key to key, each at its time or as far from the next as all others.
@@ -52,90 +62,115 @@ std::vector<Views> path_of(const Plan& plan) {
 }
 
 // The pictures of the finest levels at the frames that are judged.
-std::vector<std::vector<Picture>> judge(gl::Context& context, const Plan& plan,
-                                        const std::vector<Views>& path) {
-  const Model finest = load_model(plan.scene);
+std::deque<study::SquaredError> judge(gl::Context& context, const Plan& plan,
+                                      const std::vector<Views>& path) {
+  std::deque<study::SquaredError> pictures;
+  if (plan.judged == 0) return pictures;
+  const Model finest = load_model(plan.scene, {.lod = 0});
   render::Frame frame(context, finest);
-  std::vector<std::vector<Picture>> pictures;
   for (int k = 0; k < plan.judged; ++k) {
     frame.draw(path[path.size() * static_cast<std::size_t>(k) / static_cast<std::size_t>(plan.judged)]);
-    pictures.push_back(frame.read_pictures());
+    pictures.emplace_back(context, frame.read_pictures());
   }
   return pictures;
 }
 
-struct Numbers {
-  std::vector<double> gaussians, frame_ms, read_ms, upload_ms, finest_db, switch_db;
-};
-
-// Draws for a while: a GPU's clock falls while the model is read. A viewer draws on meanwhile.
+// Draws for a while: a GPU's clock falls while a model is read.
 void wake(render::Frame& frame, const Views& views) {
   const auto start = Clock::now();
   while (ms_since(start) < 150) frame.draw(views);
 }
 
-// Along the path; what a switch changes is seen in the exact pair before and after it.
-Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& path, double detail,
-            const std::vector<std::vector<Picture>>& finest) {
+struct Numbers {
+  std::vector<double> gaussians, read_gaussians, frame_ms, all_ms, finest_db, late_s;
+};
+
+DetailNeed need_of(const std::string& detail) {
+  char* end = nullptr;
+  const double number = std::strtod(detail.c_str(), &end);
+  if (end != detail.c_str() && std::string_view(end) == "dB") return {.db = number};
+  if (end != detail.c_str() && *end == '\0') return {number};
+  fail("--detail {}: expected px, or dB as in 40dB", detail);
+}
+
+// Along the path in real time, as a headset would: a frame begins when it is due, draws with the levels that
+// have come by then, and nothing waits for those that have not. Judging takes time of its own: then the clock
+// stands still, but for what is read meanwhile.
+Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& path, const std::string& detail,
+            std::deque<study::SquaredError>& finest) {
   Numbers numbers;
-  StreamedSog scene(plan.scene);
-  scene.choose(path[0], {detail});
-  Model model = scene.read();
-  render::Frame frame(context, model);
+  DetailNeed need = need_of(detail);
+  need.most = plan.most;
+  LevelStream levels(plan.scene, [&](const StreamedSog&, std::span<const shared::View>) { return need; });
+  Model model = levels.coarsest(need);
+  const auto gpu_model = std::make_shared<render::GpuModel>(context, model);
+  render::Frame frame(gpu_model);
+  levels.want(path[0]);
+  const auto start = Clock::now();
+  while (!levels.settled()) gpu_model->reload(levels.take(model, plan.gaussians_a_frame));
+  numbers.late_s.push_back(1e-3 * ms_since(start));
   wake(frame, path[0]);
+  auto due = Clock::now();
+  const std::chrono::duration<double> period(1.0 / plan.rate);
+  std::optional<Clock::time_point> unsettled;
   for (std::size_t n = 0; n < path.size(); ++n) {
-    std::optional<study::SquaredError> before;
-    const bool switches = scene.choose(path[n], {detail});
-    if (switches && numbers.switch_db.size() < static_cast<std::size_t>(plan.judged)) {
-      frame.draw(path[n]);
-      before.emplace(context, frame.read_pictures());
+    std::this_thread::sleep_until(due);
+    const auto begin = Clock::now();
+    levels.want(path[n]);
+    const ModelParts::Changes changes = levels.take(model, plan.gaussians_a_frame);
+    gpu_model->reload(changes);
+    numbers.frame_ms.push_back(frame.draw(path[n], plan.settings).total_ms);
+    numbers.all_ms.push_back(ms_since(begin));
+    numbers.gaussians.push_back(static_cast<double>(levels.gaussians()));
+    std::size_t filled = 0;
+    for (const ModelParts::Range& range : changes.filled) filled += range.count;
+    if (filled > 0) numbers.read_gaussians.push_back(static_cast<double>(filled));
+    if (levels.settled()) {
+      unsettled.reset();
+    } else {
+      if (!unsettled) unsettled = begin;
+      numbers.late_s.push_back(1e-3 * ms_since(*unsettled));
     }
-    if (switches) {
-      auto start = Clock::now();
-      model = scene.read();
-      numbers.read_ms.push_back(ms_since(start));
-      start = Clock::now();
-      frame.model()->reload();
-      numbers.upload_ms.push_back(ms_since(start));
-      wake(frame, path[n]);
-    }
-    numbers.frame_ms.push_back(frame.draw(path[n]).total_ms);
-    numbers.gaussians.push_back(static_cast<double>(model.count()));
-    if (before) numbers.switch_db.push_back(before->psnr(frame.colours()));
+    due = std::max(due + std::chrono::duration_cast<Clock::duration>(period), begin);
     for (std::size_t k = 0; k < finest.size(); ++k) {
       if (n != path.size() * k / finest.size()) continue;
-      numbers.finest_db.push_back(study::SquaredError(context, finest[k]).psnr(frame.colours()));
-      wake(frame, path[n]);
+      numbers.finest_db.push_back(finest[k].psnr(frame.colours()));
+      due = Clock::now();
     }
   }
   return numbers;
 }
 
-Json row_of(double detail, const Numbers& n) {
+Json row_of(const std::string& detail, const Numbers& n) {
   const auto at = [](const std::vector<double>& values, double share) {
     return values.empty() ? Json() : Json(quantile(values, share));
   };
-  return {{"detail_px", detail},
+  return {{"detail", detail},
           {"gaussians", at(n.gaussians, 0.5)},
           {"gaussians_most", at(n.gaussians, 1.0)},
-          {"frame_median_ms", at(n.frame_ms, 0.5)},
-          {"frame_p99_ms", at(n.frame_ms, 0.99)},
-          {"frame_max_ms", at(n.frame_ms, 1.0)},
-          {"switches", n.read_ms.size()},
-          {"read_median_ms", at(n.read_ms, 0.5)},
-          {"read_max_ms", at(n.read_ms, 1.0)},
-          {"upload_median_ms", at(n.upload_ms, 0.5)},
-          {"upload_max_ms", at(n.upload_ms, 1.0)},
+          {"start_s", n.late_s.front()},
+          {"frames_with_new", n.read_gaussians.size()},
+          {"new_median", at(n.read_gaussians, 0.5)},
+          {"new_most", at(n.read_gaussians, 1.0)},
+          {"behind_most_s", at({n.late_s.begin() + 1, n.late_s.end()}, 1.0)},
+          {"gpu_median_ms", at(n.frame_ms, 0.5)},
+          {"gpu_p99_ms", at(n.frame_ms, 0.99)},
+          {"gpu_max_ms", at(n.frame_ms, 1.0)},
+          {"all_median_ms", at(n.all_ms, 0.5)},
+          {"all_p99_ms", at(n.all_ms, 0.99)},
+          {"all_max_ms", at(n.all_ms, 1.0)},
           {"finest_median_db", at(n.finest_db, 0.5)},
-          {"finest_worst_db", at(n.finest_db, 0.0)},
-          {"switch_median_db", at(n.switch_db, 0.5)},
-          {"switch_worst_db", at(n.switch_db, 0.0)}};
+          {"finest_worst_db", at(n.finest_db, 0.0)}};
 }
 
 void print_row(const Json& row) {
   fmt::print("|");
   for (const auto& [key, value] : row.items()) {
-    const bool fine = key.ends_with("_db") || key.starts_with("frame") || key == "detail_px";
+    if (value.is_string()) {
+      fmt::print(" {} |", value.get<std::string>());
+      continue;
+    }
+    const bool fine = key.ends_with("_db") || key.ends_with("_ms") || key.ends_with("_s");
     fmt::print(" {} |", value.is_null() ? "-" : fmt::format("{:.{}f}", value.get<double>(), fine ? 2 : 0));
   }
   fmt::print("\n");
@@ -148,12 +183,12 @@ void run_all(const Plan& plan) {
   fmt::print("{}, {} frames of 2 x {} x {} px, {}\n\n", context->renderer(), path.size(), path[0][0].width,
              path[0][0].height, plan.scene);
   fmt::print(
-      "| detail px | Gaussians | at most | frame ms | p99 | max | switches | read ms | max | upload ms | max "
-      "| "
-      "dB to the finest | worst | dB across a switch | worst |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-  const auto finest = judge(*context, plan, path);
-  for (const double detail : plan.details) {
+      "| detail | Gaussians | at most | start s | frames with new ones | of these | at most | behind s, at "
+      "most | "
+      "GPU ms | p99 | max | with upload and CPU ms | p99 | max | dB to the finest | worst |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::deque<study::SquaredError> finest = judge(*context, plan, path);
+  for (const std::string& detail : plan.details) {
     const Json row = row_of(detail, run(*context, plan, path, detail, finest));
     print_row(row);
     if (!plan.json.empty()) std::ofstream(plan.json, std::ios::app) << row.dump() << "\n";
@@ -170,10 +205,14 @@ int main(int argc, char** argv) {
   app.add_option("scene", plan.scene, "A streamed SOG")->required();
   app.add_option("keys", plan.keys, "cameras.json: heads that the path joins, its directions and ups")
       ->required();
-  app.add_option("--detail", plan.details, "px, one row each (0 2 4 8 16)");
+  app.add_option("--detail", plan.details, "px, or dB as in 40dB; one row each (2 8 40dB)");
   app.add_option("--frames", plan.frames, "Frames of the path (480)")->check(CLI::Range(2, 100000));
-  app.add_option("--judged", plan.judged, "Frames, and switches, that are compared (8)")
-      ->check(CLI::Range(1, 1000));
+  app.add_option("--judged", plan.judged, "Frames that are compared with the finest levels (8)")
+      ->check(CLI::Range(0, 1000));
+  app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
+  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (16384)");
+  app.add_option("--most", plan.most, "Gaussians of the model, at most");
+  app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");
   app.add_option("--shrink", plan.shrink, "Pictures so many times smaller: tries it where there is no GPU");
   CLI11_PARSE(app, argc, argv);

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "formats/model_file.h"
+#include "scene/model_parts.h"
+#include "scene/reduce.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 
@@ -32,45 +34,64 @@ shared::View at(const glm::dvec3& eye, float focal = 100.0f) {
 
 const glm::dvec3 beside_first = {-14, -1, 0}, beside_last = {6, 0, 15}, far_away = {0, 0, -400};
 
-Model read(StreamedSog& scene, const std::vector<shared::View>& views, const DetailNeed& need) {
-  scene.choose(views, need);
-  return scene.read();
-}
+/// A streamed SOG, and the parts of it that were read, in their order.
+struct Followed {
+  StreamedSog scene;
+  std::vector<Model> parts;
+  std::size_t read_at_last = 0;
+
+  explicit Followed(const fs::path& path) : scene(path), parts(scene.parts(), scene.like()) {}
+
+  Model read() {
+    read_at_last = 0;
+    scene.read([&](StreamedSog::Piece piece) {
+      parts.at(piece.part) = std::move(piece.model);
+      ++read_at_last;
+    });
+    Model all = scene.like();
+    for (const Model& part : parts) append(all, part, 0, part.count());
+    return all;
+  }
+
+  Model read(const std::vector<shared::View>& views, const DetailNeed& need) {
+    scene.choose(views, need);
+    return read();
+  }
+};
 
 /// The same without anything read before.
 Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailNeed& need) {
-  StreamedSog scene(path);
-  return read(scene, {at(eye)}, need);
+  return Followed(path).read({at(eye)}, need);
 }
 
 TEST(StreamedSog, FineWhereItIsNearCoarseWhereItIsFar) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
   const Model fine = load_model(lod, {.lod = 0}), coarse = load_model(lod, {.lod = 1});
-  StreamedSog scene(lod);
-  EXPECT_EQ(scene.degree(), 3);
-  EXPECT_TRUE(scene.choose({}, {}));
+  Followed scene(lod);
+  EXPECT_EQ(scene.scene.like().degree, 3);
+  EXPECT_TRUE(scene.scene.choose({}, {}));
   EXPECT_TRUE(equal(scene.read(), coarse)) << "the coarsest, unless somebody looks";
-  EXPECT_FALSE(scene.choose(std::vector{at(far_away)}, {30.0}));
-  EXPECT_TRUE(equal(read(scene, {at(beside_last)}, {0.0}), fine)) << "0 px: nothing is fine enough";
-  EXPECT_TRUE(equal(read(scene, {at(far_away)}, {30.0}), coarse));
-  const Model last = read(scene, {at(beside_last)}, {30.0});
+  EXPECT_FALSE(scene.scene.choose(std::vector{at(far_away)}, {30.0}));
+  EXPECT_TRUE(equal(scene.read({at(beside_last)}, {0.0}), fine)) << "0 px: nothing is fine enough";
+  EXPECT_TRUE(equal(scene.read({at(far_away)}, {30.0}), coarse));
+  const Model last = scene.read({at(beside_last)}, {30.0});
   EXPECT_EQ(last.count(), 120u + 65 + 248);
-  const Model first = read(scene, {at(beside_first)}, {30.0});
+  const Model first = scene.read({at(beside_first)}, {30.0});
   EXPECT_EQ(first.count(), 505u + 65 + 65);
   EXPECT_EQ(first.position[0], fine.position[0]);
   EXPECT_EQ(first.position[505], coarse.position[120]);
   // A longer lens sees more of it.
-  EXPECT_TRUE(equal(read(scene, {at(far_away, 1e5f)}, {30.0}), fine));
+  EXPECT_TRUE(equal(scene.read({at(far_away, 1e5f)}, {30.0}), fine));
 }
 
 TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", [](nlohmann::json& meta) { meta["environment"] = "1_0/meta.json"; });
-  StreamedSog scene(copy.path());
+  Followed scene(copy.path());
   for (const glm::dvec3& eye : {far_away, beside_last, beside_first, far_away, beside_first}) {
-    const Model model = read(scene, {at(eye)}, {30.0});
+    const Model model = scene.read({at(eye)}, {30.0});
     const Model anew = read_anew(copy.path(), eye, {30.0});
     EXPECT_TRUE(equal(model, anew)) << eye.x;
     Model faulty = anew;  // planted: a Gaussian of another level
@@ -79,14 +100,34 @@ TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
   }
 }
 
+TEST(StreamedSog, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
+  REQUIRE_FIXTURES(folder);
+  Followed scene(folder / "sog/st-lod");
+  scene.read({at(beside_last)}, {30.0});
+  EXPECT_EQ(scene.read_at_last, 3u);
+  scene.read({at(beside_last)}, {30.0});
+  EXPECT_EQ(scene.read_at_last, 0u);
+  scene.scene.choose(std::vector{at(beside_first)}, {30.0});
+  std::vector<std::size_t> counts;
+  const auto take = [&](const StreamedSog::Piece& piece) { counts.push_back(piece.model.count()); };
+  scene.scene.read(take, [] { return false; });
+  EXPECT_EQ(counts, std::vector<std::size_t>{65}) << "a file, and then it was asked to end";
+  EXPECT_TRUE(scene.scene.choose(std::vector{at(beside_first)}, {30.0}));
+  scene.scene.read(take);
+  EXPECT_EQ(counts, (std::vector<std::size_t>{65, 505}));
+  scene.scene.forget();
+  scene.read({at(beside_first)}, {30.0});
+  EXPECT_EQ(scene.read_at_last, 3u);
+}
+
 TEST(StreamedSog, OneChoiceForBothEyes) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
   const shared::View left = at(beside_first), right = at(beside_last);
-  StreamedSog scene(lod), swapped(lod);
-  const Model both = read(scene, {left, right}, {30.0});
+  Followed scene(lod), swapped(lod);
+  const Model both = scene.read({left, right}, {30.0});
   EXPECT_EQ(both.count(), 505u + 65 + 248) << "each part as the nearer eye sees it";
-  EXPECT_TRUE(equal(both, read(swapped, {right, left}, {30.0})));
+  EXPECT_TRUE(equal(both, swapped.read({right, left}, {30.0})));
   EXPECT_FALSE(equal(both, read_anew(lod, beside_first, {30.0}))) << "planted: the left eye's choice";
 }
 
@@ -100,7 +141,7 @@ TEST(StreamedSog, AHeadThatTremblesSwitchesOnce) {
   for (int n = 0; n < 20; ++n) {
     if (scene.choose(std::vector{at(place(n))}, {5.4})) {
       ++switches;
-      scene.read();
+      scene.read([](const StreamedSog::Piece&) {});
     }
     anew.insert(read_anew(folder / "sog/st-lod", place(n), {5.4}).count());
   }
@@ -110,10 +151,10 @@ TEST(StreamedSog, AHeadThatTremblesSwitchesOnce) {
 
 TEST(StreamedSog, KeepsToTheRoomThereIs) {
   REQUIRE_FIXTURES(folder);
-  StreamedSog scene(folder / "sog/st-lod");
+  Followed scene(folder / "sog/st-lod");
   for (const std::size_t most : {1000, 999, 700, 440, 250}) {
     for (const glm::dvec3& eye : {beside_first, far_away, beside_last})
-      EXPECT_LE(read(scene, {at(eye)}, {0.0, most}).count(), most);
+      EXPECT_LE(scene.read({at(eye)}, {0.0, most}).count(), most);
   }
 }
 
@@ -166,27 +207,27 @@ TEST(StreamedSog, ByErrorsThatItsFileTells) {
   REQUIRE_FIXTURES(folder);
   const Copy copy(folder / "sog/st-lod");
   copy.edit("lod-meta.json", teach);
-  StreamedSog scene(copy.path());
-  EXPECT_FALSE(scene.predicted_psnr());
+  Followed scene(copy.path());
+  EXPECT_FALSE(scene.scene.predicted_psnr());
   // So far away its pixels are 3.8 to 4 wide, and a 10,000th of the pixels is left that the narrowest show.
-  const std::size_t coarse = read(scene, {ahead(far_away)}, {.db = 40.0}).count();
+  const std::size_t coarse = scene.read({ahead(far_away)}, {.db = 40.0}).count();
   EXPECT_EQ(coarse, 250u);
   const double lost = 4000.0 * 0.02 * 0.02 / (3.9 * 3.9) * 21.0 / 1000.0 / 1e4;
-  EXPECT_NEAR(*scene.predicted_psnr(), -10.0 * std::log10(lost), 1.0);
+  EXPECT_NEAR(*scene.scene.predicted_psnr(), -10.0 * std::log10(lost), 1.0);
   std::size_t last = coarse;
   for (const double db : {60.0, 66.0, 69.0, 72.0, 80.0}) {
-    const std::size_t count = read(scene, {ahead(far_away)}, {.db = db}).count();
+    const std::size_t count = scene.read({ahead(far_away)}, {.db = db}).count();
     EXPECT_GE(count, last) << db;
-    EXPECT_GE(*scene.predicted_psnr(), db - 0.5) << db;
+    EXPECT_GE(*scene.scene.predicted_psnr(), db - 0.5) << db;
     last = count;
   }
   EXPECT_EQ(last, 1000u);
   // Nothing of it is seen: nothing is lost.
-  StreamedSog behind(copy.path());
-  behind.choose(std::vector{ahead(far_away, -1.0f)}, {.db = 40.0});
-  EXPECT_TRUE(std::isinf(*behind.predicted_psnr()));
-  EXPECT_TRUE(behind.choose({}, {.db = 40.0}));
-  EXPECT_FALSE(behind.predicted_psnr()) << "the coarsest, unless somebody looks";
+  Followed behind(copy.path());
+  behind.scene.choose(std::vector{ahead(far_away, -1.0f)}, {.db = 40.0});
+  EXPECT_TRUE(std::isinf(*behind.scene.predicted_psnr()));
+  EXPECT_TRUE(behind.scene.choose({}, {.db = 40.0}));
+  EXPECT_FALSE(behind.scene.predicted_psnr()) << "the coarsest, unless somebody looks";
   EXPECT_EQ(behind.read().count(), 250u);
 }
 
@@ -250,7 +291,7 @@ TEST(StreamedSog, RoomIsMadeForWhatIsThere) {
   });
   StreamedSog scene(copy.path());
   scene.choose(std::vector{at(beside_last)}, {0.0});
-  EXPECT_TRUE(test::fails_saying([&] { scene.read(); },
+  EXPECT_TRUE(test::fails_saying([&] { scene.read([](const StreamedSog::Piece&) {}); },
                                  {"Gaussians 752 to 4000000751 of", "0_0/meta.json", "which has 1000"}));
 }
 

@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "formats/image_file.h"
+#include "formats/model_file.h"
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
+#include "support/fixtures.h"
 #include "support/gl.h"
 #include "support/models.h"
 #include "support/program.h"
@@ -60,21 +62,37 @@ TEST_F(SessionTest, TheSplitIsWhereTheSliderStands) {
   EXPECT_EQ(apart(picture(), exact), 0.0);
 }
 
-TEST_F(SessionTest, OtherLevelsTakeThePlaceOfTheModel) {
-  session.choices.settings = {};
-  const Image before = picture();
-  session.choices.show = SHOW_SPLIT;  // has a frame of the exact picture, too
-  session.choices.split = 0.0;
-  session.change_show();
-  EXPECT_EQ(apart(picture(), before), 0.0);
-  session.replace(test::random_model(10, 900, 0, 0.6));
-  const Image after = picture();
-  EXPECT_GT(apart(after, before), 0.1);
-  session.choices.show = SHOW_PICTURE;
-  session.change_show();
-  EXPECT_EQ(apart(picture(), after), 0.0);
-  session.replace(test::random_model(9, 400, 0, 0.6));
-  EXPECT_EQ(apart(picture(), before), 0.0);
+TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  const Camera camera = look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40);
+  const auto fine = [](const StreamedSog&, std::span<const shared::View>) { return DetailNeed{}; };
+  LevelStream levels(fixtures / "sog/st-lod", fine);
+  Model coarsest = levels.coarsest();
+  const auto session_of = [&](Model model) {
+    auto session = std::make_unique<Session>(test::gl_context(), std::move(model), std::vector{camera},
+                                             glm::dvec3(0, -1, 0), Choices{}, folder.path());
+    session->resize({128, 40});
+    return session;
+  };
+  const auto picture = [](Session& session) {
+    session.draw();
+    return load_image(session.save_picture(false));
+  };
+  const Image of_finest = picture(*session_of(load_model(fixtures / "sog/st-lod", {.lod = 0})));
+  const auto session = session_of(std::move(coarsest));
+  const Image before = picture(*session);
+  EXPECT_GT(apart(before, of_finest), 0.1);
+  session->choices.show = SHOW_SPLIT;  // has a frame of the exact picture, too
+  session->choices.split = 0.0;
+  session->change_show();
+  EXPECT_EQ(apart(picture(*session), before), 0.0);
+  levels.want(session->views());
+  while (!levels.settled()) session->follow(levels);
+  EXPECT_EQ(apart(picture(*session), of_finest), 0.0);
+  session->choices.show = SHOW_PICTURE;
+  session->change_show();
+  EXPECT_EQ(apart(picture(*session), of_finest), 0.0);
 }
 
 TEST(Session, SmallerPicturesAreDrawnWhileFramesAreLate) {

@@ -60,5 +60,43 @@ TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, views, half)[0]));
 }
 
+TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
+  const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
+  // Pages end amid blocks and parts.
+  for (const std::uint32_t page : {0u, 1000u}) {
+    for (const int precision : {PRECISION_FULL, PRECISION_HALF}) {
+      for (const int degree : {0, 2}) {
+        const render::FrameSettings settings{.precision = precision};
+        Model model;
+        model.degree = degree;
+        ModelParts parts(6);
+        auto replace = [&, seed = 95u](std::size_t part, int count) mutable {
+          parts.replace(model, part, test::random_model(seed++, count, degree));
+        };
+        for (std::size_t p = 0; p < 6; ++p) replace(p, 500);
+        parts.take_changes();
+        const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model, precision, page);
+        Frame frame(gpu_model);
+        const auto draw = [&] {
+          frame.draw(views, settings);
+          return frame.read_pictures()[0];
+        };
+        draw();
+        test::Uniform random(9);
+        for (int n = 0; n < 8; ++n) {
+          const auto part = static_cast<std::size_t>(random(0.0, 6.0));
+          replace(part, static_cast<int>(random(0.0, 900.0)));
+          const Picture before = draw();
+          EXPECT_FALSE(test::same_bits(before, test::draw(model, views, settings)[0]))
+              << "planted: told nothing";
+          gpu_model->reload(parts.take_changes());
+          ASSERT_TRUE(test::same_bits(draw(), test::draw(model, views, settings)[0]))
+              << page << " " << precision << " " << degree << " " << n;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace binosplat

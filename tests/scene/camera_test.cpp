@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 
 #include "base/error.h"
@@ -95,13 +97,19 @@ TEST(Model, LeavesOutWhatIsNotFinite) {
 
 TEST(Model, CoreBoundsIgnoreOutliers) {
   Model model;
-  for (int i = 0; i <= 1000; ++i) model.position.emplace_back(i, -i, 5);
+  model.resize(1001);
+  for (int i = 0; i <= 1000; ++i) model.position[static_cast<std::size_t>(i)] = glm::vec3(i, -i, 5);
   model.position[500] = {1e9f, 1e9f, 1e9f};
+  const Bounds transparent = core_bounds(model);
+  std::fill(model.opacity.begin(), model.opacity.end(), 0.5f);
   const Bounds bounds = core_bounds(model);
+  EXPECT_EQ(transparent.high, bounds.high) << "all alike";
   EXPECT_NEAR(bounds.low.x, 20.0f, 1.5f);
   EXPECT_NEAR(bounds.high.x, 980.0f, 1.5f);
   EXPECT_NEAR(bounds.high.y, -20.0f, 1.5f);
   EXPECT_EQ(bounds.low.z, 5.0f);
+  for (std::size_t i = 600; i <= 1000; ++i) model.opacity[i] = 0.0f;
+  EXPECT_NEAR(core_bounds(model).high.x, 588.0f, 1.5f) << "nobody sees the others";
   EXPECT_EQ(core_bounds(Model{}).high, glm::vec3(0.0f));
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "render/support.h"
+#include "scene/reduce.h"
 
 namespace binosplat::study {
 namespace {
@@ -24,8 +25,11 @@ Model scene() {
   return model;
 }
 
-std::vector<SeenPart> seen(const std::vector<StreamedSog::Range>& parts) {
-  const Model model = scene();
+/// With the Gaussians at these indices as parts.
+std::vector<SeenPart> seen(const std::vector<std::vector<std::uint32_t>>& indices) {
+  Model model;
+  ModelParts parts(indices.size());
+  for (std::size_t p = 0; p < indices.size(); ++p) parts.replace(model, p, with_order(scene(), indices[p]));
   render::LinearBlend blend(test::gl_context(), model);
   const shared::View view = make_view(test::front_camera(side, side, focal));
   return seen_parts(blend, model, parts, view, {});
@@ -36,7 +40,7 @@ double of_ball(double opacity, double deviation_px) {
 }
 
 TEST(SeenParts, AreLessBehindOthers) {
-  const auto parts = seen({{0, 1}, {1, 1}, {2, 1}, {3, 1}, {4, 0}});
+  const auto parts = seen({{0}, {1}, {2}, {3}, {}});
   ASSERT_EQ(parts.size(), 5u);
   const double front = of_ball(0.5, 0.05 * focal), behind = of_ball(0.9, 0.1 * focal / 3.0) / 16.0;
   EXPECT_NEAR(parts[2].area, front, 0.05 * front);
@@ -51,12 +55,12 @@ TEST(SeenParts, AreLessBehindOthers) {
 }
 
 TEST(SeenParts, AreSumsAndMeans) {
-  const auto alone = seen({{0, 1}, {1, 1}, {2, 1}, {3, 1}});
-  const auto both = seen({{0, 1}, {2, 2}, {1, 1}});
+  const auto alone = seen({{0}, {1}, {2}, {3}});
+  const auto both = seen({{0}, {2, 3}, {1}});
   EXPECT_EQ(both[0].area, alone[0].area);
   EXPECT_EQ(both[1].area, alone[2].area + alone[3].area);
   EXPECT_EQ(both[2].area, alone[1].area) << "in whatever order they lie";
-  const auto all = seen({{0, 4}});
+  const auto all = seen({{0, 1, 2, 3}});
   double area = 0.0, logarithm = 0.0;
   for (const SeenPart& part : alone) {
     area += part.area;

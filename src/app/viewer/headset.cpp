@@ -20,6 +20,8 @@ namespace binosplat::app {
 
 namespace {
 
+constexpr std::size_t gaussians_a_frame = 1 << 14;  // of levels that change: no frame waits for more
+
 volatile std::sig_atomic_t signalled = 0;
 
 // The first signal is told, so that the runtime's session can be ended in order; the next one ends the
@@ -73,9 +75,10 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   gl::Context& context = mirror ? mirror->context() : *own;
   if (!o.context.shader_dir.empty()) context.set_shader_folder(o.context.shader_dir);
 
-  Model model = scene.load();
+  preview::Loaded loaded = scene.load();
+  Model& model = loaded.model;
   const preview::Start start = scene.start(model, choices);
-  log_info("{}: {} Gaussians", scene.name, model.count());
+  log_info("{}: {} Gaussians", scene.name, loaded.levels ? loaded.levels->gaussians() : model.count());
   xr::HeadsetSettings settings;
   settings.projection = {o.headset.scale, choices.rig.near_plane, choices.rig.units_per_metre,
                          choices.background, o.foveate};
@@ -85,9 +88,14 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   settings.up = glm::transpose(world_from_axes(model.axes)) * start.up;
   settings.units_per_metre = choices.rig.units_per_metre;
   tell_first_signal();
-  xr::Beside beside = {.step = [&] { return (!mirror || mirror->step()) && signalled == 0; },
-                       .show = {},
-                       .levels = scene.levels};
+  xr::Beside beside = {
+      .step = [&] { return (!mirror || mirror->step()) && signalled == 0; }, .show = {}, .levels = {}};
+  if (loaded.levels) {
+    beside.levels = [&levels = *loaded.levels](Model& drawn, std::span<const shared::View> views) {
+      levels.want(views);
+      return levels.take(drawn, gaussians_a_frame);
+    };
+  }
   if (mirror)
     beside.show = [&](const stereo::Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   xr::run(instance, context, std::move(model), settings, beside);

@@ -63,27 +63,17 @@ struct Wanted {
 };
 
 // The coarsest levels of a streamed SOG are there at once, the others come while one looks.
-void follow_levels(const Wanted& wanted, preview::Opened& opened) {
-  const SceneOptions& scene = wanted.scene;
-  if (scene.lod || is_built_in(scene.name)) return;
+preview::Loaded load(const SceneOptions& scene, const render::FrameSettings& settings) {
   const bool asked = scene.detail || scene.gpu_memory;
-  const auto levels = std::make_shared<std::optional<StreamedSog>>();
-  const auto read = [scene, levels] {
-    Model model = (*levels)->read();
-    set_as_asked(scene, model);
-    return model;
+  const bool follows = !scene.lod && !is_built_in(scene.name) && (asked || is_streamed_sog(scene.name));
+  if (!follows) return {load_scene(scene), nullptr};
+  const auto need = [scene, settings](const StreamedSog& levels, std::span<const shared::View> views) {
+    return detail_need(scene, settings, levels, views);
   };
-  opened.load = [scene, levels, read, asked, other = opened.load] {
-    if (!asked && !is_streamed_sog(scene.name)) return other();
-    levels->emplace(scene.name);
-    (*levels)->choose({}, scene.detail.value_or(DetailNeed{}));
-    return read();
-  };
-  opened.levels = [wanted, levels, read](std::span<const shared::View> views) -> std::function<Model()> {
-    if (!*levels || views.empty()) return nullptr;
-    const DetailNeed need = detail_need(wanted.scene, wanted.settings, **levels, views);
-    return (*levels)->choose(views, need) ? std::function<Model()>(read) : nullptr;
-  };
+  auto levels = std::make_unique<LevelStream>(scene.name, need);
+  Model model = levels->coarsest(scene.detail.value_or(DetailNeed{}));
+  set_as_asked(scene, model);
+  return {std::move(model), std::move(levels)};
 }
 
 // Cameras that come as pairs of eyes are taken one by one.
@@ -102,8 +92,7 @@ preview::Opened open(const Wanted& wanted) {
   }
   check_output(opened.folder / "picture");
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
-  opened.load = [scene = scene] { return load_scene(scene); };
-  follow_levels(wanted, opened);
+  opened.load = [scene = scene, settings = wanted.settings] { return load(scene, settings); };
   opened.start = [wanted, list, pose](const Model& model, preview::Choices& choices) {
     const CameraOptions& o = wanted.camera;
     const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);

@@ -1,0 +1,78 @@
+#pragma once
+// Levels of detail that are read while frames are drawn.
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "formats/streamed_sog.h"
+#include "scene/model_parts.h"
+
+namespace binosplat {
+
+/// A streamed SOG that is read by a thread of its own. The parts of its model that are there stay until
+/// others have been read, and then change places with them a few at a time, so that no frame waits for more.
+class LevelStream {
+ public:
+  /// What views of a frame need; called by that thread.
+  using Need = std::function<DetailNeed(const StreamedSog& scene, std::span<const shared::View> views)>;
+
+  /// Throws Error as StreamedSog does.
+  LevelStream(const std::filesystem::path& path, Need need);
+  /// Waits for what is being decoded.
+  ~LevelStream() = default;
+  LevelStream(const LevelStream&) = delete;
+  LevelStream& operator=(const LevelStream&) = delete;
+
+  /// The model at its coarsest levels, to begin with. Throws Error where a file has become unreadable, or if
+  /// the file has no errors to go by for such a need.
+  Model coarsest(const DetailNeed& need = {});
+
+  /// Has read what these views need, which are those of one frame in the model's frame, instead of what
+  /// others needed. `seen`: what each of them shows of each part, as StreamedSog::choose takes it.
+  void want(std::span<const shared::View> views, std::vector<std::vector<SeenPart>> seen = {});
+
+  /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, but one
+  /// part at least. Throws what reading it threw; then nothing more is read.
+  ModelParts::Changes take(Model& model, std::size_t most);
+
+  /// Whether the model has all that was wanted.
+  bool settled() const;
+  /// Gaussians of the model.
+  std::size_t gaussians() const { return parts_.gaussians(); }
+  const ModelParts& parts() const { return parts_; }
+  /// Of the views that were wanted last, once that is settled (StreamedSog::predicted_psnr).
+  std::optional<double> predicted_psnr() const;
+
+ private:
+  struct Wish {
+    std::vector<shared::View> views;
+    std::vector<std::vector<SeenPart>> seen;
+  };
+  void work(const std::stop_token& stop);
+  void read(const Wish& wish, const std::stop_token& stop);
+
+  StreamedSog scene_;  // the thread's, once there is one
+  Need need_;
+  ModelParts parts_;
+  std::vector<shared::View> wanted_last_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<Wish> wish_;
+  bool works_ = false;
+  std::deque<StreamedSog::Piece> pieces_;
+  std::size_t gaussians_read_ = 0;  // of these
+  std::optional<double> predicted_psnr_;
+  std::exception_ptr trouble_;
+  std::jthread thread_;  // last: it ends first
+};
+
+}  // namespace binosplat

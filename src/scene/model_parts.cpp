@@ -1,0 +1,79 @@
+#include "scene/model_parts.h"
+
+#include <algorithm>
+
+namespace binosplat {
+
+namespace {
+
+void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t at) {
+  const auto take = [&](const auto& a, auto& b, std::size_t each) {
+    std::copy_n(a.begin() + static_cast<std::ptrdiff_t>(first * each), count * each,
+                b.begin() + static_cast<std::ptrdiff_t>(at * each));
+  };
+  take(from.position, to.position, 1);
+  take(from.scale, to.scale, 1);
+  take(from.rotation, to.rotation, 1);
+  take(from.opacity, to.opacity, 1);
+  take(from.sh, to.sh, 3 * static_cast<std::size_t>(sh_count(from.degree)));
+}
+
+void hide(Model& model, std::size_t first, std::size_t count) {
+  std::fill_n(model.opacity.begin() + static_cast<std::ptrdiff_t>(first), count, 0.0f);
+}
+
+}  // namespace
+
+std::size_t ModelParts::take_block(Model& model) {
+  if (free_.empty()) {
+    const std::size_t before = owners_.size();
+    owners_.resize(before + std::max<std::size_t>(1, before / 8));
+    model.resize(owners_.size() * block);
+    for (std::size_t b = before; b < owners_.size(); ++b) free_.push(b);
+    hide(model, before * block, (owners_.size() - before) * block);
+    const auto at = static_cast<std::ptrdiff_t>(before * block);
+    std::fill(model.rotation.begin() + at, model.rotation.end(), glm::vec4(1, 0, 0, 0));
+    std::fill(model.position.begin() + at, model.position.end(),
+              model.position.front());  // makes no box larger
+  }
+  const std::size_t found = free_.top();
+  free_.pop();
+  return found;
+}
+
+void ModelParts::replace(Model& model, std::size_t part, const Model& by) {
+  for (const std::size_t b : blocks_[part]) {
+    hide(model, b * block, block);
+    changed_[b] = false;
+    free_.push(b);
+  }
+  blocks_[part].clear();
+  for (std::size_t first = 0; first < by.count(); first += block) {
+    const std::size_t b = take_block(model), count = std::min(block, by.count() - first);
+    copy(by, first, count, model, b * block);
+    hide(model, b * block + count, block - count);
+    std::fill_n(model.position.begin() + static_cast<std::ptrdiff_t>(b * block + count), block - count,
+                by.position[first]);
+    owners_[b] = part;
+    changed_[b] = true;
+    blocks_[part].push_back(b);
+  }
+  gaussians_ = gaussians_ - counts_[part] + by.count();
+  counts_[part] = by.count();
+}
+
+ModelParts::Changes ModelParts::take_changes() {
+  Changes changes;
+  for (const auto& [b, filled] : changed_) {
+    std::vector<Range>& ranges = filled ? changes.filled : changes.emptied;
+    if (!ranges.empty() && ranges.back().first + ranges.back().count == b * block) {
+      ranges.back().count += block;
+    } else {
+      ranges.push_back({b * block, block});
+    }
+  }
+  changed_.clear();
+  return changes;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,59 @@
+#pragma once
+// A model whose parts come and go while it is drawn.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <queue>
+#include <vector>
+
+#include "scene/model.h"
+
+namespace binosplat {
+
+/// Which Gaussians of a model are which part. A part lies in blocks of Gaussians anywhere in the model, and
+/// stays there until it is replaced; what is left of its last block, and blocks of no part, have an opacity
+/// of 0, so that they are never drawn.
+class ModelParts {
+ public:
+  static constexpr std::size_t block = 64;  // Gaussians
+
+  /// Of a model without Gaussians.
+  explicit ModelParts(std::size_t parts) : blocks_(parts), counts_(parts) {}
+
+  std::size_t size() const { return counts_.size(); }
+  /// Gaussians of all parts.
+  std::size_t gaussians() const { return gaussians_; }
+  /// Of a Gaussian of a part.
+  std::size_t part_of(std::size_t gaussian) const { return owners_[gaussian / block]; }
+  /// In which blocks a part lies, in the order of its Gaussians.
+  const std::vector<std::size_t>& blocks(std::size_t part) const { return blocks_[part]; }
+
+  /// Puts `by`, of the model's degree, in the place of a part. The model, which is the same in every call,
+  /// grows by an eighth or more where there is no room.
+  void replace(Model& model, std::size_t part, const Model& by);
+
+  struct Range {
+    std::size_t first = 0, count = 0;  // Gaussians of the model
+  };
+  /// Places that are others than before; those that were never filled are not among them.
+  struct Changes {
+    std::vector<Range> filled, emptied;  // in order and apart
+    bool empty() const { return filled.empty() && emptied.empty(); }
+  };
+  /// What has changed since the last call.
+  Changes take_changes();
+
+ private:
+  std::size_t take_block(Model& model);
+
+  std::vector<std::vector<std::size_t>> blocks_;  // by part
+  std::vector<std::size_t> counts_;               // by part
+  std::vector<std::size_t> owners_;               // by block
+  std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> free_;
+  std::map<std::size_t, bool> changed_;  // blocks, and whether they are filled
+  std::size_t gaussians_ = 0;
+};
+
+}  // namespace binosplat

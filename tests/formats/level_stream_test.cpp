@@ -1,0 +1,92 @@
+// Levels that are read by a thread of their own: leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+
+#include "formats/level_stream.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "formats/model_file.h"
+#include "support/broken.h"
+#include "support/fixtures.h"
+
+namespace binosplat {
+namespace {
+
+shared::View at(const glm::dvec3& eye) {
+  shared::View view{};
+  view.anchor = glm::vec4(eye, 0.2f);
+  view.lens = {100, 100, 0, 0};
+  return view;
+}
+
+DetailNeed coarse_to_30_px(const StreamedSog&, std::span<const shared::View>) { return {30.0}; }
+
+/// Takes what comes for a view, so many Gaussians at a time; how many there were after each that came.
+std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dvec3& eye, std::size_t most) {
+  stream.want(std::vector{at(eye)});
+  std::vector<std::size_t> counts;
+  const auto start = std::chrono::steady_clock::now();
+  while (!stream.settled()) {
+    if (!stream.take(model, most).empty()) counts.push_back(stream.gaussians());
+    if (std::chrono::steady_clock::now() - start > std::chrono::seconds(60)) ADD_FAILURE() << "it hangs";
+    if (testing::Test::HasFailure()) break;
+    std::this_thread::yield();
+  }
+  return counts;
+}
+
+const glm::dvec3 beside_first = {-14, -1, 0}, beside_last = {6, 0, 15}, far_away = {0, 0, -400};
+
+TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
+  REQUIRE_FIXTURES(folder);
+  LevelStream stream(folder / "sog/st-lod", coarse_to_30_px);
+  Model model = stream.coarsest();
+  EXPECT_EQ(stream.gaussians(), 250u);
+  EXPECT_TRUE(stream.settled());
+  EXPECT_TRUE(follow(stream, model, far_away, 1).empty());
+  EXPECT_EQ(follow(stream, model, beside_last, 1), (std::vector<std::size_t>{120u + 65 + 248}));
+  EXPECT_EQ(follow(stream, model, beside_first, 1), (std::vector<std::size_t>{250, 505 + 65 + 65}))
+      << "what shrinks comes first";
+  EXPECT_TRUE(follow(stream, model, beside_first, 1).empty());
+  EXPECT_EQ(follow(stream, model, beside_last, 100'000).back(), 120u + 65 + 248);
+  // Each part is what the file says.
+  const Model fine = load_model(folder / "sog/st-lod", {.lod = 0});
+  std::size_t same = 0;
+  for (const std::size_t b : stream.parts().blocks(2)) {
+    for (std::size_t i = b * ModelParts::block; i < (b + 1) * ModelParts::block; ++i)
+      same += std::count(fine.position.begin() + 752, fine.position.end(), model.position[i]) == 1 &&
+                      model.opacity[i] > 0.0f
+                  ? 1
+                  : 0;
+  }
+  EXPECT_EQ(same, 248u);
+}
+
+TEST(LevelStream, EndsInTheMidstOfIt) {
+  REQUIRE_FIXTURES(folder);
+  for (int n = 0; n < 20; ++n) {
+    LevelStream stream(folder / "sog/st-lod", coarse_to_30_px);
+    Model model = stream.coarsest();
+    for (int k = 0; k < n; ++k) {
+      stream.want(std::vector{at(k % 2 == 0 ? beside_first : beside_last)});
+      stream.take(model, 300);
+    }
+  }
+}
+
+TEST(LevelStream, TellsWhatIsWrong) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  LevelStream stream(copy.path(), coarse_to_30_px);
+  Model model = stream.coarsest();
+  EXPECT_TRUE(test::fails_saying([&] { LevelStream(copy.path(), coarse_to_30_px).coarsest({.db = 40.0}); },
+                                 {"--detail 40dB", "has no errors of its levels to go by"}));
+  std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
+  EXPECT_TRUE(test::fails_saying([&] { follow(stream, model, beside_first, 1); }, {"0_0", "means_l.webp"}));
+  EXPECT_EQ(stream.gaussians(), 250u);
+  EXPECT_TRUE(test::fails_saying([&] { stream.take(model, 1); }, {"0_0", "means_l.webp"})) << "still";
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,123 @@
+// A model whose parts come and go.
+
+#include "scene/model_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "scene/reduce.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+constexpr std::size_t block = ModelParts::block;
+
+bool equal(const Model& a, std::size_t i, const Model& b, std::size_t k) {
+  const auto values = 3 * static_cast<std::size_t>(sh_count(a.degree));
+  return a.position[i] == b.position[k] && a.scale[i] == b.scale[k] && a.rotation[i] == b.rotation[k] &&
+         a.opacity[i] == b.opacity[k] &&
+         std::equal(&a.sh[values * i], &a.sh[values * (i + 1)], &b.sh[values * k]);
+}
+
+/// Whether the model has the Gaussians of each part where they are said to be, and no others that are drawn.
+testing::AssertionResult holds(const Model& model, const ModelParts& parts,
+                               const std::vector<Model>& wanted) {
+  std::size_t drawn = 0, total = 0;
+  for (std::size_t p = 0; p < wanted.size(); ++p) {
+    total += wanted[p].count();
+    for (std::size_t k = 0; k < wanted[p].count(); ++k) {
+      const std::size_t i = parts.blocks(p).at(k / block) * block + k % block;
+      if (!equal(model, i, wanted[p], k)) return testing::AssertionFailure() << k << " of part " << p;
+      if (parts.part_of(i) != p) return testing::AssertionFailure() << i << " is not of part " << p;
+      drawn += wanted[p].opacity[k] > 0.0f ? 1 : 0;
+    }
+  }
+  for (const float opacity : model.opacity) drawn -= opacity > 0.0f ? 1 : 0;
+  if (drawn != 0) return testing::AssertionFailure() << "others are drawn, too";
+  if (parts.gaussians() != total) return testing::AssertionFailure() << parts.gaussians() << " Gaussians";
+  return testing::AssertionSuccess();
+}
+
+struct Parts : testing::Test {
+  Model like = [] {
+    Model model;
+    model.degree = 1;
+    return model;
+  }();
+  Model model = like;
+  ModelParts parts{5};
+  std::vector<Model> wanted{5, like};
+  std::uint32_t seed = 1;
+
+  void replace(std::size_t part, int count) {
+    wanted[part] = test::random_model(seed++, count, 1);
+    parts.replace(model, part, wanted[part]);
+  }
+};
+
+TEST_F(Parts, ComeAndGo) {
+  test::Uniform random(7);
+  std::size_t most = 0;
+  for (int n = 0; n < 300; ++n) {
+    const auto size = static_cast<std::size_t>(std::exp(random(0.0, 8.0)));
+    replace(static_cast<std::size_t>(random(0.0, 5.0)), static_cast<int>(n % 11 == 0 ? 0 : size));
+    ASSERT_TRUE(holds(model, parts, wanted)) << n;
+    std::size_t blocks = 0;
+    for (std::size_t p = 0; p < 5; ++p) blocks += parts.blocks(p).size();
+    most = std::max(most, blocks);
+  }
+  EXPECT_LE(model.count(), (most + most / 8 + 1) * block) << "room that is free is used first";
+  for (float& opacity : model.opacity) opacity *= 0.9f;  // planted
+  EXPECT_FALSE(holds(model, parts, wanted));
+}
+
+TEST_F(Parts, TellWhatHasChangedAndNothingElse) {
+  for (std::size_t p = 0; p < 5; ++p) replace(p, 700);
+  parts.take_changes();
+  EXPECT_TRUE(parts.take_changes().empty());
+  test::Uniform random(8);
+  for (int n = 0; n < 100; ++n) {
+    const Model before = model;
+    const std::size_t part = static_cast<std::size_t>(random(0.0, 5.0));
+    replace(part, static_cast<int>(random(0.0, 1400.0)));
+    replace((part + 1) % 5, static_cast<int>(random(0.0, 1400.0)));
+    const ModelParts::Changes changes = parts.take_changes();
+    std::set<std::size_t> told, empty;
+    for (const auto& [first, count] : changes.filled) {
+      for (std::size_t i = first; i < first + count; ++i) EXPECT_TRUE(told.insert(i).second);
+    }
+    for (const auto& [first, count] : changes.emptied) {
+      for (std::size_t i = first; i < first + count; ++i) EXPECT_TRUE(told.insert(i).second);
+      empty.insert(first);
+      EXPECT_EQ(model.opacity[first], 0.0f);
+    }
+    for (std::size_t i = 0; i < model.count(); ++i) {
+      if (told.count(i) != 0) continue;
+      if (i < before.count()) {
+        ASSERT_TRUE(equal(model, i, before, i)) << "not told: " << i;
+      } else {
+        ASSERT_EQ(model.opacity[i], 0.0f) << "not told: " << i;
+      }
+    }
+  }
+}
+
+TEST_F(Parts, MakeNoBoxLarger) {
+  for (std::size_t p = 0; p < 5; ++p) {
+    wanted[p] = test::random_model(seed++, 1000, 1);
+    for (glm::vec3& position : wanted[p].position) position += 100.0f;
+    parts.replace(model, p, wanted[p]);
+  }
+  Model all = like;
+  for (const Model& part : wanted) append(all, part, 0, part.count());
+  EXPECT_GT(model.count(), all.count());
+  EXPECT_EQ(all_bounds(model).low, all_bounds(all).low);
+  EXPECT_EQ(all_bounds(model).high, all_bounds(all).high);
+  EXPECT_EQ(core_bounds(model).low, core_bounds(all).low);
+  EXPECT_EQ(core_bounds(model).high, core_bounds(all).high);
+}
+
+}  // namespace
+}  // namespace binosplat
