@@ -9,7 +9,6 @@
 #include "base/clock.h"
 #include "formats/model_file.h"
 #include "measure/metrics.h"
-#include "study/seen_parts.h"
 
 namespace binosplat::app {
 
@@ -43,7 +42,7 @@ Model FollowedLevels::coarsest() {
 
 void FollowedLevels::bring(gl::Context& context, Model& model, std::span<const shared::View> views) {
   std::shared_ptr<render::GpuModel> gpu_model;
-  if (goes_by_db()) gpu_model = std::make_shared<render::GpuModel>(context, model);
+  if (goes_by_db()) gpu_model = std::make_shared<render::GpuModel>(context, model, settings_.precision);
   parts_.take_changes();
   settle(model, gpu_model, views, settings_, [] {});
   parts_.take_changes();
@@ -54,8 +53,8 @@ template <typename Changing>
 bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel>& gpu_model,
                             std::span<const shared::View> views, const render::FrameSettings& settings,
                             const Changing& changing) {
-  std::optional<render::LinearBlend> shown;  // not longer than this: it takes as much memory as a frame
-  if (goes_by_db()) shown.emplace(gpu_model);
+  std::optional<render::Sight> sight;  // not longer than this: it takes the memory of a small frame
+  if (goes_by_db()) sight.emplace(gpu_model);
   bool switched = false;
   const auto change = [&] {
     if (!switched) changing();
@@ -72,11 +71,11 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
   };
   if (!heads_turn_) {
     scene_.choose({}, {});
-    if (shown || choose(nullptr, model, views, settings)) forget(model);
-    if (shown && scene_.choose({}, {})) change();  // what is looked at is the coarsest
+    if (sight || choose(nullptr, views, settings)) forget(model);
+    if (sight && scene_.choose({}, {})) change();  // what is looked at is the coarsest
   }
-  for (int look = 0; look < (shown ? looks : 1); ++look) {
-    if (!choose(shown ? &*shown : nullptr, model, views, settings)) break;
+  for (int look = 0; look < (sight ? looks : 1); ++look) {
+    if (!choose(sight ? &*sight : nullptr, views, settings)) break;
     change();
   }
   return switched;
@@ -94,13 +93,10 @@ void FollowedLevels::forget(Model& model) {
   model.resize(0);
 }
 
-bool FollowedLevels::choose(render::LinearBlend* shown, const Model& model,
-                            std::span<const shared::View> views, const render::FrameSettings& settings) {
+bool FollowedLevels::choose(render::Sight* sight, std::span<const shared::View> views,
+                            const render::FrameSettings& settings) {
   std::vector<std::vector<SeenPart>> seen;
-  if (shown != nullptr) {
-    for (const shared::View& view : views)
-      seen.push_back(study::seen_parts(*shown, model, parts_, view, settings));
-  }
+  if (sight != nullptr) seen = sight->look(views, settings, parts_);
   DetailNeed need = detail_need(options_, settings_, scene_, views);
   need.heads_turn = heads_turn_;
   return scene_.choose(views, need, seen);

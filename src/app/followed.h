@@ -10,7 +10,7 @@
 #include "base/image.h"
 #include "formats/streamed_sog.h"
 #include "render/frame.h"
-#include "render/linear_blend.h"
+#include "render/sight.h"
 #include "scene/model_parts.h"
 #include "stereo/show.h"
 
@@ -76,8 +76,8 @@ class FollowedLevels {
   void read(Model& model);
   /// As if there were nothing yet.
   void forget(Model& model);
-  /// Whether the views need other levels, by what they show of those of `shown`; none: for no dB.
-  bool choose(render::LinearBlend* shown, const Model& model, std::span<const shared::View> views,
+  /// Whether the views need other levels, by what they show of those that there are; no `sight`: for no dB.
+  bool choose(render::Sight* sight, std::span<const shared::View> views,
               const render::FrameSettings& settings);
 
   SceneOptions options_;

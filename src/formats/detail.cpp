@@ -342,6 +342,18 @@ std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
   return chosen;
 }
 
+std::vector<DetailView> detail_views(std::span<const shared::View> views) {
+  std::vector<DetailView> result;
+  for (const shared::View& view : views) {
+    result.push_back({.eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye),
+                      .forward = glm::dvec3(view.row_z),
+                      .slope = std::sqrt(static_cast<double>(view.centre.w)),
+                      .focal = std::max<double>(view.lens.x, view.lens.y),
+                      .pixels = static_cast<double>(view.width) * view.height});
+  }
+  return result;
+}
+
 double relative_error(const DetailPart& part, std::size_t level, double width, const glm::dvec3& along) {
   return LookedAt(part, width, along).error(level);
 }

@@ -9,6 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "scene/model_parts.h"
+#include "shared/types.h"
+
 namespace binosplat {
 
 /// How much of a model with levels of detail may be there, and from where it is looked at.
@@ -45,14 +48,6 @@ struct DetailPart {
   std::vector<double> seen;    // what those pictures of the finest show (SeenPart), px, likewise
 };
 
-/// What a view shows of a part: alpha T^2, summed over its Gaussians and the view's pixels, and how far away
-/// that is, world units. T once for the light that comes from it, and once since an error behind others is
-/// seen less.
-struct SeenPart {
-  double area = 0.0;  // px
-  double distance = 0.0;
-};
-
 /// For each part the place of its level in `levels`. All begin with their coarsest; then, as long as there is
 /// room, that part gets its next finer one whose Gaussians lie farthest apart as the nearest eye sees them:
 /// the box's diagonal by the root of the count, over the distance to the box, in radians; parts where that is
@@ -70,6 +65,7 @@ struct DetailView {
   double focal = 1.0;   // px
   double pixels = 1.0;  // of the picture
 };
+std::vector<DetailView> detail_views(std::span<const shared::View> views);
 
 /// A level's squared error for each pixel's worth that is seen of the part (SeenPart), by an eye that looks
 /// `along`, of any length, where pixels are so wide, world units: by lines between the logarithms of what is

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/clock.h"
 #include "formats/streamed_sog.h"
 #include "scene/model_parts.h"
 
@@ -31,19 +32,21 @@ class LevelStream {
   LevelStream(const LevelStream&) = delete;
   LevelStream& operator=(const LevelStream&) = delete;
 
-  /// The model at its coarsest levels, to begin with. Throws Error where a file has become unreadable, or if
-  /// the file has no errors to go by for such a need.
+  /// The model at its coarsest levels, to begin with; whether it goes by dB is for good. Throws Error where a
+  /// file has become unreadable, or if the file has no errors to go by for such a need.
   Model coarsest(const DetailNeed& need = {});
 
   /// Has read what these views need, which are those of one frame in the model's frame, instead of what
-  /// others needed. `seen`: what each of them shows of each part, as StreamedSog::choose takes it.
-  void want(std::span<const shared::View> views, std::vector<std::vector<SeenPart>> seen = {});
+  /// others needed. By dB it calls `look` first, which tells what each of them shows of each part as
+  /// StreamedSog::choose takes it; no more than ten times a second, and until then what was wanted stays.
+  using Look = std::function<std::vector<std::vector<SeenPart>>(const ModelParts& parts)>;
+  void want(std::span<const shared::View> views, const Look& look);
 
   /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, but one
   /// part at least. Throws what reading it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
 
-  /// Whether the model has all that was wanted.
+  /// Whether the model has all that was wanted, and nothing is to be looked at again.
   bool settled() const;
   /// Gaussians of the model.
   std::size_t gaussians() const { return parts_.gaussians(); }
@@ -58,11 +61,17 @@ class LevelStream {
   };
   void work(const std::stop_token& stop);
   void read(const Wish& wish, const std::stop_token& stop);
+  void drop_unwanted();
 
   StreamedSog scene_;  // the thread's, once there is one
   Need need_;
   ModelParts parts_;
-  std::vector<shared::View> wanted_last_;
+  bool by_db_ = false;
+  std::vector<shared::View> wanted_;
+  // By dB:
+  int looks_ = 0;             // at these views, with all that they needed by the look before
+  bool look_is_due_ = false;  // at them, or once more since parts have changed
+  std::optional<Clock::time_point> looked_at_;
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;

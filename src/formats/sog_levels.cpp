@@ -176,8 +176,8 @@ void SogLevels::sort(std::vector<Taken>& taken, std::size_t index) const {
   }
 }
 
-void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file, const SogSource& source,
-                 std::span<const SogLevels::Taken> taken) {
+void check_taken(const std::filesystem::path& lod_meta, const std::filesystem::path& file,
+                 const SogSource& source, std::span<const SogLevels::Taken> taken) {
   const SogSource::Range& last = taken.back().range;
   if (last.first + last.count <= source.count()) return;
   fail("{}: Gaussians {} to {} of {} are wanted, which has {}", lod_meta.string(), last.first,

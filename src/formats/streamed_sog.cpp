@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -146,18 +147,6 @@ std::vector<SogSource::Range> ranges_of(const Taken& taken) {
   return ranges;
 }
 
-std::vector<DetailView> detail_views(std::span<const shared::View> views) {
-  std::vector<DetailView> result;
-  for (const shared::View& view : views) {
-    result.push_back({.eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye),
-                      .forward = glm::dvec3(view.row_z),
-                      .slope = std::sqrt(static_cast<double>(view.centre.w)),
-                      .focal = std::max<double>(view.lens.x, view.lens.y),
-                      .pixels = static_cast<double>(view.width) * view.height});
-  }
-  return result;
-}
-
 fs::path lod_meta_of(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored) ? path / "lod-meta.json" : path;
@@ -241,6 +230,9 @@ struct StreamedSog::Source {
     if (levels.environment()) files.emplace_back(open_part(*levels.environment()));
   }
 
+  /// Gaussians of the environment.
+  std::size_t around() const { return levels.environment() ? files.back()->count() : 0; }
+
   const fs::path& name(std::size_t file) const {
     return file == levels.files().size() ? *levels.environment() : levels.files()[file];
   }
@@ -271,9 +263,7 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
         "--detail PX",
         *need.db, source_->path.string());
   }
-  const auto& environment = source_->levels.environment();
-  const std::size_t around = environment ? source_->files.back()->count() : 0;
-  const std::size_t most = need.most - std::min(need.most, around);
+  const std::size_t most = need.most - std::min(need.most, source_->around());
   const std::span<const std::size_t> before = by_views_ ? std::span(chosen_) : std::span<std::size_t>();
   const std::vector<DetailView> detail = detail_views(views);
   predicted_psnr_.reset();
@@ -299,7 +289,7 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     if (!leaves_[leaf].levels.empty() && read_[leaf] != chosen_[leaf]) return true;
   }
-  return environment && !environment_read_;
+  return source_->around() > 0 && !environment_read_;
 }
 
 // Leaves that get fewer Gaussians come first: never are there more than before or after.
@@ -313,20 +303,25 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
       return (levels[chosen_[leaf]].count < before) == shrinks ? levels[chosen_[leaf]].number : no_level;
     };
     std::vector<Taken> taken = source_->levels.taken(level_of);
-    if (source_->levels.environment() && !environment_read_ && !shrinks)
-      taken.emplace_back().push_back({leaves_.size(), {0, source_->files.back()->count(), 0}});
+    if (source_->around() > 0 && !environment_read_ && !shrinks)
+      taken.emplace_back().push_back({leaves_.size(), {0, source_->around(), 0}});
     std::vector<std::size_t> files;
     for (std::size_t i = 0; i < taken.size(); ++i) {
       if (!taken[i].empty()) files.push_back(i);
     }
+    // Few Gaussians that mend much come before many that mend little.
+    std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) {
+      const std::size_t leaf = taken[i].front().leaf;
+      return leaf < leaves_.size() ? level_of(leaf) : std::numeric_limits<int>::max();
+    });
     for (std::size_t at = 0; at < files.size(); at += files_at_a_time) {
       std::vector<std::vector<Piece>> pieces(std::min(files_at_a_time, files.size() - at));
       parallel_for(pieces.size(),
                    [&](std::size_t i) { pieces[i] = read_file(files[at + i], taken[files[at + i]]); });
       for (std::vector<Piece>& of_file : pieces) {
         for (Piece& piece : of_file) {
-          if (piece.part < leaves_.size()) read_[piece.part] = chosen_[piece.part];
-          environment_read_ = environment_read_ || piece.part == leaves_.size();
+          if (piece.level) read_[piece.part] = piece.level;
+          environment_read_ = environment_read_ || !piece.level;
           take(std::move(piece));
         }
       }
@@ -335,16 +330,17 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
   }
 }
 
-std::size_t StreamedSog::chosen_count() const {
-  std::size_t total = source_->levels.environment() ? source_->files.back()->count() : 0;
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
-    total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[chosen_[leaf]].count;
+std::size_t StreamedSog::finest() const {
+  std::size_t total = source_->around();
+  for (const DetailPart& leaf : leaves_) total += leaf.levels.empty() ? 0 : leaf.levels.front().count;
   return total;
 }
 
-void StreamedSog::forget() {
-  read_.assign(leaves_.size(), std::nullopt);
-  environment_read_ = by_views_ = false;
+std::size_t StreamedSog::chosen_count() const {
+  std::size_t total = source_->around();
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
+    total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[chosen_[leaf]].count;
+  return total;
 }
 
 void StreamedSog::check_chosen() const {
@@ -375,14 +371,17 @@ std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, Taken t
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
   source.decode(model, ranges, kept);
-  std::vector<Piece> pieces;
-  std::size_t at = 0;  // once keep_only has left out what is not kept
   keep_only(model, kept);
+  std::vector<Piece> pieces;
+  std::size_t at = 0;
   for (const SogLevels::Taken& of_leaf : taken) {
-    const auto first = kept.begin() + static_cast<std::ptrdiff_t>(of_leaf.range.slot);
-    const auto count = static_cast<std::size_t>(
-        std::count(first, first + static_cast<std::ptrdiff_t>(of_leaf.range.count), 1));
-    pieces.push_back({of_leaf.leaf, like_});
+    const auto of = std::span(kept).subspan(of_leaf.range.slot, of_leaf.range.count);
+    const auto count = static_cast<std::size_t>(std::ranges::count(of, 1));
+    pieces.push_back({.part = of_leaf.leaf, .model = like_});
+    if (of_leaf.leaf < leaves_.size()) {
+      pieces.back().level = chosen_[of_leaf.leaf];
+      pieces.back().before = read_[of_leaf.leaf];
+    }
     append(pieces.back().model, model, at, count);
     at += count;
   }

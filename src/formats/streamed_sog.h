@@ -43,6 +43,8 @@ class StreamedSog {
   const Model& like() const { return like_; }
   /// Its leaves, and at the end the environment.
   std::size_t parts() const { return leaves_.size() + 1; }
+  /// Gaussians at the finest levels.
+  std::size_t finest() const;
 
   /// Chooses a level for each leaf: the same for all views, which are those of one frame in the model's
   /// frame; by the nearest eye and the longest focal length of them, wherever they look (choose_levels), or
@@ -59,16 +61,27 @@ class StreamedSog {
   /// The Gaussians of a part at the level chosen.
   struct Piece {
     std::size_t part = 0;
+    std::optional<std::size_t> level, before;  // places among the leaf's levels; none of the environment
     Model model;
   };
   using Take = std::function<void(Piece piece)>;
 
   /// Reads the leaves whose level is another one than when they were read last, and hands them to `take`, in
-  /// the same thread; those that get fewer Gaussians first. Asks `goes_on` in between, where it is not empty,
-  /// and leaves out the rest if it does not. Throws Error where a file has become unreadable.
+  /// the same thread; those that get fewer Gaussians first, then coarse levels before fine ones. Asks
+  /// `goes_on` in between, where it is not empty, and leaves out the rest if it does not. Throws Error where
+  /// a file has become unreadable.
   void read(const Take& take, const std::function<bool()>& goes_on = {});
+  /// Whether a piece that was read is of the level chosen now.
+  bool wants(const Piece& piece) const {
+    return piece.part == leaves_.size() || piece.level == chosen_[piece.part];
+  }
+  /// The last piece that was read of a part counts as not read.
+  void put_back(const Piece& piece) { read_[piece.part] = piece.before; }
   /// Nothing counts as read any more.
-  void forget();
+  void forget() {
+    read_.assign(leaves_.size(), std::nullopt);
+    environment_read_ = by_views_ = false;
+  }
 
  private:
   struct Source;

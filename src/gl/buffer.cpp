@@ -43,7 +43,6 @@ void Buffer::grow(std::int64_t bytes) {
   bytes = rounded(bytes);
   if (bytes <= bytes_) return;
   check_reach(bytes);
-  bytes = std::max(bytes, std::min(rounded(bytes_ + bytes_ / 8), context_.limits().storage_block_bytes));
   const std::uint32_t before = std::exchange(id_, 0);
   const std::int64_t bytes_before = std::exchange(bytes_, 0);
   const Functions& gl = context_.gl();
@@ -57,16 +56,9 @@ void Buffer::grow(std::int64_t bytes) {
   if (before == 0) return;
   gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   gl.CopyNamedBufferSubData(before, id_, 0, 0, bytes_before);
+  gl.Finish();  // uploads that follow overtook a clear on an H200 (driver 580)
   gl.DeleteBuffers(1, &before);
   context_.count_allocation(-bytes_before);
-}
-
-void Buffer::clear(std::int64_t offset, std::int64_t bytes) {
-  if (bytes == 0) return;
-  context_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  context_.gl().ClearNamedBufferSubData(id_, GL_R32UI, offset, bytes, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                                        nullptr);
-  context_.check("clearing " + label_);
 }
 
 void Buffer::check_reach(std::int64_t bytes) const {
@@ -100,7 +92,9 @@ void Buffer::allocate(std::int64_t bytes) {
 
 void Buffer::reserve_zeros(std::int64_t bytes) {
   reserve(bytes);
-  clear(0, bytes_);
+  context_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  context_.gl().ClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  context_.check("clearing " + label_);
 }
 
 void Buffer::write(const void* data, std::int64_t bytes, std::int64_t offset) {

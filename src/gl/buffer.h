@@ -23,12 +23,8 @@ class Buffer {
   /// if the GPU has no room, or if a shader on this driver could not reach all of it.
   void reserve(std::int64_t bytes);
 
-  /// Makes room for at least `bytes`, and for an eighth more than there was; what was in it stays. Throws as
-  /// reserve does.
+  /// Makes room for at least `bytes`; what was in it stays. Throws as reserve does.
   void grow(std::int64_t bytes);
-
-  /// Sets `bytes` from `offset` on, both multiples of 4, to 0.
-  void clear(std::int64_t offset, std::int64_t bytes);
 
   template <typename T>
   void upload(std::span<const T> data) {

@@ -19,7 +19,7 @@ namespace binosplat::gl {
   X(CheckNamedFramebufferStatus, CHECKNAMEDFRAMEBUFFERSTATUS)                           \
   X(Clear, CLEAR)                                                                       \
   X(ClearColor, CLEARCOLOR)                                                             \
-  X(ClearNamedBufferSubData, CLEARNAMEDBUFFERSUBDATA)                                   \
+  X(ClearNamedBufferData, CLEARNAMEDBUFFERDATA)                                         \
   X(ClientWaitSync, CLIENTWAITSYNC)                                                     \
   X(ClipControl, CLIPCONTROL)                                                           \
   X(CompileShader, COMPILESHADER)                                                       \

@@ -159,6 +159,11 @@ void Session::make_shown(std::span<const shared::View> views) {
 }
 
 void Session::follow(LevelStream& levels) {
+  const std::vector<shared::View> asked = views();
+  levels.want(asked, [&](const ModelParts& parts) {
+    if (!sight_) sight_.emplace(frame_.model());
+    return sight_->look(asked, choices.settings, parts);
+  });
   const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
   if (changes.empty()) return;
   show_.release();

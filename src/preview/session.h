@@ -14,6 +14,7 @@
 #include "preview/key_list.h"
 #include "preview/navigator.h"
 #include "render/frame.h"
+#include "render/sight.h"
 #include "scene/model.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
@@ -63,8 +64,8 @@ class Session {
   Navigator head;
   Choices choices;
 
-  /// Takes some of the levels of detail that were read of the model; all else stays. Throws what reading
-  /// them threw.
+  /// Has levels of detail read that the next frame needs, and takes some that were read of the model; all
+  /// else stays. Throws what reading them threw.
   void follow(LevelStream& levels);
 
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
@@ -140,8 +141,9 @@ class Session {
   render::Frame frame_;
   stereo::Presenter presenter_;
   stereo::Show show_;
-  stereo::Shown shown_;       // in place of the frame's own pictures; none: those
-  gl::Buffer shown_colours_;  // as the frame's colours
+  std::optional<render::Sight> sight_;  // where levels go by dB
+  stereo::Shown shown_;                 // in place of the frame's own pictures; none: those
+  gl::Buffer shown_colours_;            // as the frame's colours
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
   int divisor_ = 1;                       // of the last frame drawn

@@ -166,7 +166,6 @@ void Window::follow_levels() {
   if (!levels_) return;
   const bool moved = levels_move();
   try {
-    levels_->want(session_->views());
     session_->follow(*levels_);
     if (moved && !levels_move()) log_info("{}: levels of {} Gaussians", scene_.name, levels_->gaussians());
   } catch (const Error& error) {

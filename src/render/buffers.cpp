@@ -85,7 +85,7 @@ void FrameBuffers::upload(const FrameShape& shape) {
 
 void FrameBuffers::reserve(const FrameShape& shape, const ModelBuffers& model, std::int64_t pair_capacity,
                            std::int64_t tile_pair_capacity) {
-  const std::int64_t gaussians = shape.gaussian_count;
+  const std::int64_t gaussians = shape.gaussian_room;
   const std::int64_t slots = shape.slots;
   const std::int64_t blocks = (gaussians + COMPACT_BLOCK - 1) / COMPACT_BLOCK;
   counters.reserve(sizeof(shared::Counters));

@@ -74,8 +74,8 @@ void Frame::begin(std::span<const shared::View> views, const FrameSettings& sett
                   const Workings& workings, const std::optional<Probe>& probe) {
   check(workings, settings);
   const Model& model = model_->model();
-  const std::int64_t slots =
-      std::max({static_cast<std::int64_t>(model.count()), capacity_.slots, workings.slots});
+  const std::int64_t slots = std::max(
+      {static_cast<std::int64_t>(std::max(model.count(), model.room)), capacity_.slots, workings.slots});
   const std::uint64_t splats =
       static_cast<std::uint64_t>(slots) * (views.size() + 1);  // a probe is a view, too
   shape_ = make_shape(views, settings, model, chosen_supertile_side(settings, workings, splats), probe);

@@ -1,6 +1,7 @@
 #include "render/gpu_model.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <span>
 
 #include "render/halves.h"
@@ -96,8 +97,9 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
   }
   set_pages(context, model);
   for (Page& page : pages) {
-    page.gaussians->reserve(page.count * gaussian_bytes(precision));
-    page.harmonics->reserve(page.count * harmonic_bytes(model.degree, precision));
+    page.gaussians->reserve(room_in(page, model) * gaussian_bytes(precision));
+    page.harmonics->reserve(room_in(page, model) * harmonic_bytes(model.degree, precision));
+    hide(page, page.count);
     upload_gaussians(model, precision, page, {page.first, page.count});
     upload_harmonics(model, precision, page, {page.first, page.count});
   }
@@ -105,16 +107,13 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
 }
 
 void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelParts::Changes& changes) {
-  std::vector<std::int64_t> before;
-  for (const Page& page : pages) before.push_back(page.count);
   set_pages(context, model);
-  before.resize(pages.size());
-  for (std::size_t k = 0; k < pages.size(); ++k) {
-    const Page& page = pages[k];
+  for (const Page& page : pages) {
     const std::int64_t each = gaussian_bytes(precision);
-    page.gaussians->grow(page.count * each);
-    page.gaussians->clear(before[k] * each, (page.count - before[k]) * each);
-    page.harmonics->grow(page.count * harmonic_bytes(model.degree, precision));
+    const std::int64_t before = page.gaussians->bytes() / each;
+    page.gaussians->grow(room_in(page, model) * each);
+    page.harmonics->grow(room_in(page, model) * harmonic_bytes(model.degree, precision));
+    hide(page, before);
     each_in(page, changes.filled, [&](const Range& range) {
       upload_gaussians(model, precision, page, range);
       upload_harmonics(model, precision, page, range);
@@ -130,8 +129,25 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelP
   }
 }
 
+std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {
+  const std::size_t room = std::max(model.count(), model.room) - page.first;
+  return static_cast<std::int64_t>(std::min(page_step_, room));
+}
+
+// Zeros from a Gaussian of the page on: an opacity of 0. By uploads: those that follow in the same place must
+// not overtake them.
+void ModelBuffers::hide(const Page& page, std::int64_t first) const {
+  constexpr std::int64_t piece = std::int64_t{1} << 22;  // bytes
+  const std::vector<std::byte> zeros(piece);
+  for (std::int64_t at = first * gaussian_bytes(precision); at < page.gaussians->bytes(); at += piece) {
+    const std::int64_t bytes = std::min(piece, page.gaussians->bytes() - at);
+    page.gaussians->upload_part(std::span(zeros).first(static_cast<std::size_t>(bytes)),
+                                static_cast<std::size_t>(at));
+  }
+}
+
 void ModelBuffers::set_pages(gl::Context& context, const Model& model) {
-  const std::size_t step = page_step(context, model);
+  const std::size_t step = page_step_ = page_step(context, model);
   pages.resize((model.count() + step - 1) / step);
   for (std::size_t k = 0; k < pages.size(); ++k) {
     Page& page = pages[k];

@@ -47,9 +47,12 @@ struct ModelBuffers {
  private:
   std::size_t page_step(gl::Context& context, const Model& model) const;
   void set_pages(gl::Context& context, const Model& model);
+  void hide(const Page& page, std::int64_t first) const;
+  std::int64_t room_in(const Page& page, const Model& model) const;  // Gaussians
   void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 
   std::uint32_t page_gaussians_;
+  std::size_t page_step_ = 0;  // Gaussians
 };
 
 class GpuModel {

@@ -70,19 +70,9 @@ std::vector<double> LinearBlend::changes() {
     blend(dispatcher_, frame_.shape(), frame_.buffers());
     blend_changes(dispatcher_, frame_.shape(), frame_.buffers(), sums_);
   });
-  return first_channel(by_slot, CHANGE_SCALE);
-}
-
-std::vector<double> LinearBlend::seen() {
-  const std::vector<std::int64_t> by_slot =
-      sums([&] { blend_seen(dispatcher_, frame_.shape(), frame_.buffers(), sums_); });
-  return first_channel(by_slot, SEEN_SCALE);
-}
-
-std::vector<double> LinearBlend::first_channel(const std::vector<std::int64_t>& by_slot, double scale) const {
   std::vector<double> found;
   for (const DrawnGaussian& drawn : drawn_)
-    found.push_back(static_cast<double>(by_slot[std::size_t{4} * drawn.slot]) / scale);
+    found.push_back(static_cast<double>(by_slot[std::size_t{4} * drawn.slot]) / CHANGE_SCALE);
   return found;
 }
 

@@ -46,18 +46,12 @@ class LinearBlend {
   /// or those that were set last.
   std::vector<double> changes();
 
-  /// How much of the view shows each of drawn(): alpha T^2 summed over its pixels, px, each pixel's to the
-  /// nearest 1 / SEEN_SCALE. T once for the light that comes from it, and once since less of what is wrong
-  /// with it is seen.
-  std::vector<double> seen();
-
  private:
   template <typename Record>
   void run(const Record& record);
   std::uint32_t slots() const { return drawn_.empty() ? 0 : drawn_.back().slot + 1; }
   template <typename Record>
   std::vector<std::int64_t> sums(const Record& record);
-  std::vector<double> first_channel(const std::vector<std::int64_t>& by_slot, double scale) const;
 
   Frame frame_;
   gl::Dispatcher dispatcher_;

@@ -25,7 +25,7 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
   const std::uint32_t decodings = shape.offset_count == 0 ? 1 : shape.decoding_count();
   const int precision = shape.settings.precision;
   needs.model =
-      shape.anchor_bytes + std::int64_t{decodings} * shape.gaussian_count *
+      shape.anchor_bytes + std::int64_t{decodings} * shape.gaussian_room *
                                (gaussian_bytes(precision) + harmonic_bytes(shape.degree, precision));
   const bool measured = measures(shape.settings.transmittance);
   const std::int64_t bytes_a_splat = splat_bytes(precision) + (measured ? 12 : 8);
@@ -35,7 +35,7 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
       4 * 4 + (has_supertiles ? 4 : 0);  // supertile and splat, twice; the tiles' lists
   const std::int64_t slot_bytes =
       shape.view_count() * bytes_a_splat + 6 * 4;  // indices, order twice, offsets
-  needs.frame = shape.gaussian_count * bytes_a_gaussian + shape.slots * slot_bytes + shape.pixel_count * 20 +
+  needs.frame = shape.gaussian_room * bytes_a_gaussian + shape.slots * slot_bytes + shape.pixel_count * 20 +
                 shape.tile_count() * (has_supertiles ? 14LL : 12LL) + starting_pairs(shape) * pair_bytes +
                 4 * primitives::RadixSort::counters_of(starting_pairs(shape), shape.supertile_bits());
   return needs;
@@ -43,7 +43,7 @@ MemoryNeeds memory_needs(const FrameShape& shape) {
 
 void Capacity::start(const FrameShape& shape, const Workings& asked) {
   // What stands in for stages needs all the room that it takes at once.
-  slots = std::max<std::int64_t>(slots, asked.stand_in ? shape.gaussian_count : shape.slots);
+  slots = std::max<std::int64_t>(slots, asked.stand_in ? shape.gaussian_room : shape.slots);
   if (asked.slots > 0) slots = asked.slots;
   for (std::int64_t* of_pairs : {&pairs, &tile_pairs})
     *of_pairs = asked.pairs > 0 ? asked.pairs : std::max(*of_pairs, starting_pairs(shape));
@@ -57,7 +57,7 @@ void Capacity::grow(const FrameShape& shape, const shared::Counters& counters) {
   }
   if ((counters.overflow & OVERFLOW_ORDER) != 0) {
     log_info("drawn again: {} Gaussians in view, room for {}", counters.order_wanted, slots);
-    slots = std::min<std::int64_t>(larger(counters.order_wanted), shape.gaussian_count);
+    slots = std::min<std::int64_t>(larger(counters.order_wanted), shape.gaussian_room);
   }
   if ((counters.overflow & OVERFLOW_PAIRS) != 0) {
     log_info("drawn again: {} Gaussian-{} pairs, room for {}", counters.pairs,

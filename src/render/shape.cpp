@@ -148,7 +148,8 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
     shape.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
     shape.anchor_bytes = anchor_bytes(*model.scaffold);
   }
-  shape.slots = starting_slots(shape.gaussian_count);
+  shape.gaussian_room = std::max(shape.gaussian_count, static_cast<std::uint32_t>(model.room));
+  shape.slots = starting_slots(shape.gaussian_room);
   shape.asked = static_cast<std::uint32_t>(views.size());
   const auto part_of = [&](std::size_t v) { return settings.parts.empty() ? ViewPart{} : settings.parts[v]; };
   for (std::size_t v = 0; v < views.size(); ++v) add_view(shape, views[v], part_of(v));

@@ -47,6 +47,7 @@ struct FrameShape {
   bool antialiased = false;
   Perspective perspective;
   std::uint32_t gaussian_count = 0;
+  std::uint32_t gaussian_room = 0;  // as many, or more where the model grows
   bool remembers = false;           // an earlier frame measured for this one
   bool records = false;             // this one measures for those to come
   std::uint32_t slots = 0;          // room for the Gaussians that one order group draws

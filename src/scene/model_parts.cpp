@@ -18,6 +18,8 @@ void copy(const Model& from, std::size_t first, std::size_t count, Model& to, st
   take(from.sh, to.sh, 3 * static_cast<std::size_t>(sh_count(from.degree)));
 }
 
+constexpr std::size_t blocks_at_once = 1024;  // which the model grows by: no frame should wait for more
+
 void hide(Model& model, std::size_t first, std::size_t count) {
   std::fill_n(model.opacity.begin() + static_cast<std::ptrdiff_t>(first), count, 0.0f);
 }
@@ -27,7 +29,11 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 std::size_t ModelParts::take_block(Model& model) {
   if (free_.empty()) {
     const std::size_t before = owners_.size();
-    owners_.resize(before + std::max<std::size_t>(1, before / 8));
+    owners_.resize(before + std::clamp<std::size_t>(before / 8, 1, blocks_at_once));
+    if (owners_.size() * block > model.room) {
+      model.room = (owners_.size() + owners_.size() / 8) * block;
+      model.reserve(model.room);
+    }
     model.resize(owners_.size() * block);
     for (std::size_t b = before; b < owners_.size(); ++b) free_.push(b);
     hide(model, before * block, (owners_.size() - before) * block);
@@ -54,7 +60,7 @@ void ModelParts::replace(Model& model, std::size_t part, const Model& by) {
     hide(model, b * block + count, block - count);
     std::fill_n(model.position.begin() + static_cast<std::ptrdiff_t>(b * block + count), block - count,
                 by.position[first]);
-    owners_[b] = part;
+    owners_[b] = static_cast<std::uint32_t>(part);
     changed_[b] = true;
     blocks_[part].push_back(b);
   }

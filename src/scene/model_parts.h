@@ -27,11 +27,13 @@ class ModelParts {
   std::size_t gaussians() const { return gaussians_; }
   /// Of a Gaussian of a part.
   std::size_t part_of(std::size_t gaussian) const { return owners_[gaussian / block]; }
+  /// By block; of those of no part it says nothing.
+  const std::vector<std::uint32_t>& owners() const { return owners_; }
   /// In which blocks a part lies, in the order of its Gaussians.
   const std::vector<std::size_t>& blocks(std::size_t part) const { return blocks_[part]; }
 
   /// Puts `by`, of the model's degree, in the place of a part. The model, which is the same in every call,
-  /// grows by an eighth or more where there is no room.
+  /// grows where there is no place left, and its `room` by an eighth where that is full.
   void replace(Model& model, std::size_t part, const Model& by);
 
   struct Range {
@@ -50,10 +52,18 @@ class ModelParts {
 
   std::vector<std::vector<std::size_t>> blocks_;  // by part
   std::vector<std::size_t> counts_;               // by part
-  std::vector<std::size_t> owners_;               // by block
+  std::vector<std::uint32_t> owners_;             // by block
   std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> free_;
   std::map<std::size_t, bool> changed_;  // blocks, and whether they are filled
   std::size_t gaussians_ = 0;
+};
+
+/// What a view shows of a part: alpha T^2, summed over its Gaussians and the view's pixels, and how far away
+/// that is, world units. T once for the light that comes from it, and once since an error behind others is
+/// seen less.
+struct SeenPart {
+  double area = 0.0;  // px
+  double distance = 0.0;
 };
 
 }  // namespace binosplat

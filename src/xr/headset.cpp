@@ -137,7 +137,7 @@ class Viewer {
     const render::Frame& frame = frame_.frame();
     if (!beside_.levels || frame.views().empty()) return;
     const auto views = std::span(frame.views()).first(frame.shape().asked);
-    frame_.frame().model()->reload(beside_.levels(model_, views));
+    beside_.levels(model_, frame_.frame().model(), views);
   }
 
   const Instance& instance_;

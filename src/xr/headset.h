@@ -2,6 +2,7 @@
 // A model in a headset, until its user has seen enough.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -26,9 +27,11 @@ struct Beside {
   std::function<bool()> step;
   /// Shows the left eye's picture. May be empty.
   Projection::DrawnLeft show;
-  /// Of a model with levels of detail: changes the model, a little for each frame, to what these views need.
-  /// May be empty.
-  std::function<ModelParts::Changes(Model& model, std::span<const shared::View> views)> levels;
+  /// Of a model with levels of detail: changes the model, on the GPU as well, a little for each frame, to
+  /// what these views need. May be empty.
+  std::function<void(Model& model, const std::shared_ptr<render::GpuModel>& gpu_model,
+                     std::span<const shared::View> views)>
+      levels;
 };
 
 /// Where OpenXR's space lies at first: its origin at the start camera, 1.6 m lower where it lies on the

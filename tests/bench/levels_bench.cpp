@@ -20,7 +20,7 @@
 #include "formats/cameras_file.h"
 #include "formats/level_stream.h"
 #include "formats/model_file.h"
-#include "render/frame.h"
+#include "render/sight.h"
 #include "stereo/rig.h"
 #include "study/squared_error.h"
 
@@ -61,7 +61,7 @@ std::vector<Views> path_of(const Plan& plan) {
   return path;
 }
 
-// The pictures of the finest levels at the frames that are judged.
+// The pictures of the finest levels at the frames that are judged, and at the last.
 std::deque<study::SquaredError> judge(gl::Context& context, const Plan& plan,
                                       const std::vector<Views>& path) {
   std::deque<study::SquaredError> pictures;
@@ -72,6 +72,8 @@ std::deque<study::SquaredError> judge(gl::Context& context, const Plan& plan,
     frame.draw(path[path.size() * static_cast<std::size_t>(k) / static_cast<std::size_t>(plan.judged)]);
     pictures.emplace_back(context, frame.read_pictures());
   }
+  frame.draw(path.back());
+  pictures.emplace_back(context, frame.read_pictures());
   return pictures;
 }
 
@@ -82,7 +84,8 @@ void wake(render::Frame& frame, const Views& views) {
 }
 
 struct Numbers {
-  std::vector<double> gaussians, read_gaussians, frame_ms, all_ms, finest_db, late_s;
+  std::vector<double> gaussians, read_gaussians, look_ms, take_ms, frame_ms, all_ms, finest_db, late_s;
+  double rest_db = 0.0;
 };
 
 DetailNeed need_of(const std::string& detail) {
@@ -105,9 +108,20 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
   Model model = levels.coarsest(need);
   const auto gpu_model = std::make_shared<render::GpuModel>(context, model);
   render::Frame frame(gpu_model);
-  levels.want(path[0]);
+  render::Sight sight(gpu_model);
+  const auto want = [&](const Views& views) {
+    levels.want(views, [&](const ModelParts& parts) {
+      const auto begin = Clock::now();
+      auto seen = sight.look(views, plan.settings, parts);
+      numbers.look_ms.push_back(ms_since(begin));
+      return seen;
+    });
+  };
   const auto start = Clock::now();
-  while (!levels.settled()) gpu_model->reload(levels.take(model, plan.gaussians_a_frame));
+  do {
+    want(path[0]);
+    gpu_model->reload(levels.take(model, plan.gaussians_a_frame));
+  } while (!levels.settled());
   numbers.late_s.push_back(1e-3 * ms_since(start));
   wake(frame, path[0]);
   auto due = Clock::now();
@@ -116,9 +130,11 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
   for (std::size_t n = 0; n < path.size(); ++n) {
     std::this_thread::sleep_until(due);
     const auto begin = Clock::now();
-    levels.want(path[n]);
+    want(path[n]);
+    const auto taking = Clock::now();
     const ModelParts::Changes changes = levels.take(model, plan.gaussians_a_frame);
     gpu_model->reload(changes);
+    numbers.take_ms.push_back(ms_since(taking));
     numbers.frame_ms.push_back(frame.draw(path[n], plan.settings).total_ms);
     numbers.all_ms.push_back(ms_since(begin));
     numbers.gaussians.push_back(static_cast<double>(levels.gaussians()));
@@ -132,12 +148,23 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
       numbers.late_s.push_back(1e-3 * ms_since(*unsettled));
     }
     due = std::max(due + std::chrono::duration_cast<Clock::duration>(period), begin);
-    for (std::size_t k = 0; k < finest.size(); ++k) {
-      if (n != path.size() * k / finest.size()) continue;
+    for (std::size_t k = 0; k + 1 < finest.size(); ++k) {
+      if (n != path.size() * k / (finest.size() - 1)) continue;
       numbers.finest_db.push_back(finest[k].psnr(frame.colours()));
       due = Clock::now();
     }
   }
+  // Once all is there, and whether that is what a GPU gets which gets it whole.
+  do {
+    want(path.back());
+    gpu_model->reload(levels.take(model, plan.gaussians_a_frame));
+  } while (!levels.settled());
+  frame.draw(path.back(), plan.settings);
+  if (!finest.empty()) numbers.rest_db = finest.back().psnr(frame.colours());
+  study::SquaredError drawn(context, frame.read_pictures());
+  render::Frame whole(context, model);
+  whole.draw(path.back(), plan.settings);
+  if (drawn.mean(whole.colours()) != 0.0) fail("the model on the GPU is not the one that was read");
   return numbers;
 }
 
@@ -153,6 +180,10 @@ Json row_of(const std::string& detail, const Numbers& n) {
           {"new_median", at(n.read_gaussians, 0.5)},
           {"new_most", at(n.read_gaussians, 1.0)},
           {"behind_most_s", at({n.late_s.begin() + 1, n.late_s.end()}, 1.0)},
+          {"look_median_ms", at(n.look_ms, 0.5)},
+          {"look_max_ms", at(n.look_ms, 1.0)},
+          {"take_p99_ms", at(n.take_ms, 0.99)},
+          {"take_max_ms", at(n.take_ms, 1.0)},
           {"gpu_median_ms", at(n.frame_ms, 0.5)},
           {"gpu_p99_ms", at(n.frame_ms, 0.99)},
           {"gpu_max_ms", at(n.frame_ms, 1.0)},
@@ -160,7 +191,8 @@ Json row_of(const std::string& detail, const Numbers& n) {
           {"all_p99_ms", at(n.all_ms, 0.99)},
           {"all_max_ms", at(n.all_ms, 1.0)},
           {"finest_median_db", at(n.finest_db, 0.5)},
-          {"finest_worst_db", at(n.finest_db, 0.0)}};
+          {"finest_worst_db", at(n.finest_db, 0.0)},
+          {"rest_db", n.rest_db}};
 }
 
 void print_row(const Json& row) {
@@ -184,9 +216,9 @@ void run_all(const Plan& plan) {
              path[0][0].height, plan.scene);
   fmt::print(
       "| detail | Gaussians | at most | start s | frames with new ones | of these | at most | behind s, at "
-      "most | "
-      "GPU ms | p99 | max | with upload and CPU ms | p99 | max | dB to the finest | worst |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "most | look ms | max | take ms, p99 | max | "
+      "GPU ms | p99 | max | with upload and CPU ms | p99 | max | dB to the finest | worst | at rest |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   std::deque<study::SquaredError> finest = judge(*context, plan, path);
   for (const std::string& detail : plan.details) {
     const Json row = row_of(detail, run(*context, plan, path, detail, finest));

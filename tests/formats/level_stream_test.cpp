@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <random>
+#include <set>
 
 #include "formats/model_file.h"
 #include "support/broken.h"
@@ -12,6 +15,8 @@
 
 namespace binosplat {
 namespace {
+
+namespace fs = std::filesystem;
 
 shared::View at(const glm::dvec3& eye) {
   shared::View view{};
@@ -24,7 +29,7 @@ DetailNeed coarse_to_30_px(const StreamedSog&, std::span<const shared::View>) { 
 
 /// Takes what comes for a view, so many Gaussians at a time; how many there were after each that came.
 std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dvec3& eye, std::size_t most) {
-  stream.want(std::vector{at(eye)});
+  stream.want(std::vector{at(eye)}, {});
   std::vector<std::size_t> counts;
   const auto start = std::chrono::steady_clock::now();
   while (!stream.settled()) {
@@ -63,13 +68,52 @@ TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
   EXPECT_EQ(same, 248u);
 }
 
+// However often it changes its mind, and whatever was taken by then.
+TEST(LevelStream, EndsWithWhatWasWantedLast) {
+  REQUIRE_FIXTURES(folder);
+  const fs::path path = folder / "sog/st-lod";
+  const std::vector<glm::dvec3> places = {far_away, beside_first, beside_last, {-8, 0, 4}, {0, 0, 12}};
+  const auto sorted = [](const Model& model) {
+    std::vector<float> found;
+    for (std::size_t i = 0; i < model.count(); ++i) {
+      if (model.opacity[i] > 0.0f) found.push_back(model.position[i].x);
+    }
+    std::ranges::sort(found);
+    return found;
+  };
+  std::vector<std::vector<float>> alone;
+  for (const glm::dvec3& place : places) {
+    LevelStream stream(path, coarse_to_30_px);
+    Model model = stream.coarsest();
+    follow(stream, model, place, 1);
+    alone.push_back(sorted(model));
+  }
+  std::mt19937 random(5);
+  LevelStream stream(path, coarse_to_30_px);
+  Model model = stream.coarsest();
+  std::set<std::vector<float>> met;
+  for (int n = 0; n < 400; ++n) {
+    const std::size_t place = random() % places.size();
+    stream.want(std::vector{at(places[place])}, {});
+    for (std::size_t k = random() % 4; k > 0; --k) {
+      std::this_thread::sleep_for(std::chrono::microseconds(random() % 2000));
+      stream.take(model, 1);
+    }
+    if (n % 5 != 0) continue;
+    follow(stream, model, places[place], 1);
+    ASSERT_EQ(sorted(model), alone[place]) << n;
+    met.insert(sorted(model));
+  }
+  EXPECT_GE(met.size(), 3u);
+}
+
 TEST(LevelStream, EndsInTheMidstOfIt) {
   REQUIRE_FIXTURES(folder);
   for (int n = 0; n < 20; ++n) {
     LevelStream stream(folder / "sog/st-lod", coarse_to_30_px);
     Model model = stream.coarsest();
     for (int k = 0; k < n; ++k) {
-      stream.want(std::vector{at(k % 2 == 0 ? beside_first : beside_last)});
+      stream.want(std::vector{at(k % 2 == 0 ? beside_first : beside_last)}, {});
       stream.take(model, 300);
     }
   }

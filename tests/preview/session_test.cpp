@@ -87,8 +87,8 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   session->choices.split = 0.0;
   session->change_show();
   EXPECT_EQ(apart(picture(*session), before), 0.0);
-  levels.want(session->views());
-  while (!levels.settled()) session->follow(levels);
+  do session->follow(levels);
+  while (!levels.settled());
   EXPECT_EQ(apart(picture(*session), of_finest), 0.0);
   session->choices.show = SHOW_PICTURE;
   session->change_show();

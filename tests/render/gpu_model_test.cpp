@@ -98,5 +98,28 @@ TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
   }
 }
 
+// Growing by a few blocks, within room that was made at once and beyond it, with a frame in between.
+TEST(ModelOfParts, GrowsUnderFrames) {
+  const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
+  Model model;
+  model.room = 60000;
+  ModelParts parts(20);
+  parts.replace(model, 0, test::random_model(120, 3000, 0));
+  parts.take_changes();
+  const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
+  Frame frame(gpu_model);
+  frame.draw(views);
+  const auto room = [&] { return gpu_model->in(PRECISION_FULL)->pages[0].gaussians->bytes(); };
+  const std::int64_t at_first = room();
+  for (std::size_t p = 1; p < parts.size(); ++p) {
+    parts.replace(model, p, test::random_model(120 + static_cast<std::uint32_t>(p), 4000, 0));
+    gpu_model->reload(parts.take_changes());
+    frame.draw(views);
+    ASSERT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, views)[0])) << p;
+    EXPECT_EQ(room() == at_first, model.count() <= 60000) << p;
+  }
+  EXPECT_GT(model.count(), 70000u);
+}
+
 }  // namespace
 }  // namespace binosplat

@@ -199,50 +199,6 @@ TEST(LinearBlends, KnowWhatChangesWithoutOne) {
   EXPECT_GT(differing(), 10u);
 }
 
-// And how much of the view shows each; what a pixel tells of it in the place of its depth is the same.
-TEST(LinearBlends, KnowHowMuchIsSeen) {
-  const Model model = test::random_model(95, 4000, 0);
-  const shared::View view = front();
-  const auto splats = reference::project_all(model, view);
-  const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
-  const std::vector<double> expected = reference::measure_seen(splats, lists, view);
-  const auto differing = [&] {
-    LinearBlend blend(test::gl_context(), model);
-    blend.set_view(view);
-    const std::vector<double> found = blend.seen();
-    EXPECT_EQ(blend.seen(), found) << "the same bits again";
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < found.size(); ++k) {
-      const double should = expected[blend.drawn()[k].index];
-      count += std::abs(found[k] - should) > 5e-4 + 1e-3 * should ? 1 : 0;
-    }
-    return count;
-  };
-  EXPECT_LE(differing(), model.count() / 500);
-  const auto in_pixels = [&](const FrameSettings& settings) {
-    render::Frame frame(test::gl_context(), model);
-    frame.draw({&view, 1}, settings);
-    const Picture picture = frame.read_pictures().front();
-    return std::accumulate(picture.z_sum.begin(), picture.z_sum.end(), 0.0);
-  };
-  const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
-  for (const int projection : {PROJECTION_AFFINE, PROJECTION_TANGENT}) {
-    FrameSettings settings{.projection = projection, .depth = Depth::seen};
-    const double bound = projection == PROJECTION_AFFINE ? 1e-4 : 0.2;  // another one shows a little else
-    EXPECT_NEAR(in_pixels(settings), all, bound * all);
-    settings.tile_size = 8;
-    EXPECT_NEAR(in_pixels(settings), all, bound * all);
-  }
-  {
-    const test::FaultyShaders faulty("blending.glsl", "weight * transmittance[p] * float(SEEN_SCALE)",
-                                     "weight * float(SEEN_SCALE)");
-    EXPECT_GT(differing(), model.count() / 10);
-  }
-  const test::FaultyShaders faulty("blending.glsl", "z_sum[p] += weight * transmittance[p]",
-                                   "z_sum[p] += weight");
-  EXPECT_GT(std::abs(in_pixels({.depth = Depth::seen}) - all), 0.1 * all);
-}
-
 // Tiles whose lists are long have a launch of their own, whatever is asked first and how often.
 TEST(LinearBlends, OfLongListsAreWhole) {
   Model model;

@@ -90,10 +90,15 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   tell_first_signal();
   xr::Beside beside = {
       .step = [&] { return (!mirror || mirror->step()) && signalled == 0; }, .show = {}, .levels = {}};
+  std::optional<render::Sight> sight;
   if (loaded.levels) {
-    beside.levels = [&levels = *loaded.levels](Model& drawn, std::span<const shared::View> views) {
-      levels.want(views);
-      return levels.take(drawn, gaussians_a_frame);
+    beside.levels = [&](Model& drawn, const std::shared_ptr<render::GpuModel>& gpu_model,
+                        std::span<const shared::View> views) {
+      loaded.levels->want(views, [&](const ModelParts& parts) {
+        if (!sight) sight.emplace(gpu_model);
+        return sight->look(views, settings.frame, parts);
+      });
+      gpu_model->reload(loaded.levels->take(drawn, gaussians_a_frame));
     };
   }
   if (mirror)

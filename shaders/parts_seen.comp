@@ -1,0 +1,47 @@
+// What views show of the parts of a model: sums over the Gaussians of each part of what the blend summed up of them
+// (SUMS_SEEN). One invocation a slot of an order group, of those whose Gaussians lie in the page.
+#include "shared/axes.h"
+#include "shared/limits.h"
+#include "shared/types.h"
+#include "shared/grid.glsl"
+#include "slots.glsl"
+#include "gaussians.glsl"  // binding 1
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Views { View views[]; };
+layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments arguments[]; };
+layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
+layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };         // by splat, four of 64 bits, low first
+layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // part by block of Gaussians
+layout(std430, binding = 6) buffer OfParts { uint of_parts[]; };            // (view, part), two of 64 bits
+uniform uint part_count;
+uniform uint block_size;  // Gaussians
+uniform uint view_begin;
+uniform uint view_end;
+
+void add(uint at, uvec2 number) {
+  uint before = atomicAdd(of_parts[at], number.x);
+  uint high = number.y + (before + number.x < before ? 1u : 0u);
+  if (high != 0u) atomicAdd(of_parts[at + 1u], high);
+}
+
+void main() {
+  uint slot = thread_index();
+  if (slot >= arguments[0].count) return;
+  uint i = indices[slot] - page_first;
+  if (i >= page_count) return;
+  uint part = owners[indices[slot] / block_size];
+  for (uint v = view_begin; v < view_end; ++v) {
+    uint from = 4u * splat_of(slot, v);
+    uvec2 area = sums[from];
+    if (area == uvec2(0)) continue;
+    sums[from] = uvec2(0);  // for the next look
+    uint at = 4u * (v * part_count + part);
+    add(at, area);
+    float away = distance(GAUSSIAN(i).position.xyz, views[v].anchor.xyz + views[v].eye.xyz);
+    float weighted = (float(area.x) + 4294967296.0 * float(area.y)) * clamp(log2(away) + 32.0, 0.0, 64.0);
+    float high = floor(weighted / 4294967296.0);
+    add(at + 2u, uvec2(uint(weighted - 4294967296.0 * high), uint(high)));
+  }
+}

@@ -1,0 +1,106 @@
+#include "render/sight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "render/stages.h"
+
+namespace binosplat::render {
+
+namespace {
+
+constexpr std::uint32_t small_enough = 256;  // px
+
+/// The same view in a picture of fewer pixels.
+shared::View shrunk(const shared::View& view, int by) {
+  shared::View small = view;
+  for (int k = 0; k < 2; ++k) {
+    const std::uint32_t size = k == 0 ? view.width : view.height;
+    const std::uint32_t pixels = std::max<std::uint32_t>(
+        1, (size + static_cast<std::uint32_t>(by) / 2) / static_cast<std::uint32_t>(by));
+    const float scale = static_cast<float>(pixels) / static_cast<float>(size);
+    (k == 0 ? small.width : small.height) = pixels;
+    small.lens[k] *= scale;
+    small.lens[k + 2] *= scale;
+  }
+  return small;
+}
+
+}  // namespace
+
+Sight::Sight(std::shared_ptr<GpuModel> model)
+    : frame_(model),
+      dispatcher_(model->context()),
+      sums_(model->context(), "how much is seen by splat"),
+      owners_(model->context(), "parts by block"),
+      of_parts_(model->context(), "how much is seen by part") {}
+
+std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
+                                               const FrameSettings& settings, const ModelParts& parts,
+                                               int shrink_most) {
+  FrameSettings exact = exact_of(settings);
+  exact.precision = settings.precision;
+  std::vector<shared::View> small(views.begin(), views.end());
+  std::vector<double> pixel_areas;  // of the views' pixels
+  for (shared::View& view : small) {
+    const auto shrink = static_cast<int>(std::min(view.width, view.height) / small_enough);
+    const glm::dvec2 size(view.width, view.height);
+    view = shrunk(view, std::clamp(shrink, 1, shrink_most));
+    pixel_areas.push_back(size.x / view.width * size.y / view.height);
+    exact.parts.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
+  }
+  frame_.draw_until(Stage::ranges, small, exact);
+  const FrameShape& shape = frame_.shape();
+  FrameBuffers& buffers = frame_.buffers();
+  const std::int64_t of_views = static_cast<std::int64_t>(views.size());
+  // Zeros again after each look, since clearing takes as long as all of the rest.
+  const std::int64_t sum_bytes = std::int64_t{shape.slots} * of_views * 4 * 8;
+  if (sums_.bytes() < sum_bytes) sums_.reserve_zeros(sum_bytes);
+  of_parts_.reserve_zeros(static_cast<std::int64_t>(parts.size()) * of_views * 16);
+  owners_.upload(parts.owners());
+  dispatcher_.begin_frame();
+  dispatcher_.begin_stage("blend");
+  find_long_lists(dispatcher_, shape, buffers);
+  blend_seen(dispatcher_, shape, buffers, sums_);
+  const auto model_buffers = frame_.model()->in(exact.precision);
+  const gl::Program& program = dispatcher_.context().program(
+      "parts_seen.comp", {{"OFFSETS", "0"}, {"HALF", exact.precision == PRECISION_HALF ? "1" : "0"}});
+  for (std::size_t group = 0; group < shape.groups.size(); ++group) {
+    for (const ModelBuffers::Page& page : model_buffers->pages) {
+      const DrawnBuffers& drawn = *buffers.drawn[group];
+      dispatcher_.run(program,
+                      gl::Work::indirect(drawn.arguments, offsetof(shared::DispatchArguments, threads_x)),
+                      {{"Frame", buffers.parameters},
+                       {"Views", buffers.views},
+                       {"Gaussians", *page.gaussians},
+                       {"Arguments", drawn.arguments},
+                       {"Indices", drawn.indices},
+                       {"Sums", sums_},
+                       {"Owners", owners_},
+                       {"OfParts", of_parts_}},
+                      {{"page_first", page.first},
+                       {"page_count", page.count},
+                       {"part_count", static_cast<std::uint32_t>(parts.size())},
+                       {"block_size", static_cast<std::uint32_t>(ModelParts::block)},
+                       {"view_begin", shape.groups[group].begin},
+                       {"view_end", shape.groups[group].end}});
+    }
+  }
+  dispatcher_.end_frame();
+  dispatcher_.wait_and_time();
+  refuse_cut(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
+  const auto found = of_parts_.read<std::int64_t>(2 * parts.size() * views.size());
+  std::vector<std::vector<SeenPart>> seen(views.size(), std::vector<SeenPart>(parts.size()));
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const std::int64_t* const of = &found[2 * (v * parts.size() + p)];
+      if (of[0] == 0) continue;
+      const double area = static_cast<double>(of[0]);
+      seen[v][p] = {area / SEEN_SCALE * pixel_areas[v], std::exp2(static_cast<double>(of[1]) / area - 32.0)};
+    }
+  }
+  return seen;
+}
+
+}  // namespace binosplat::render

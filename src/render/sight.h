@@ -1,0 +1,34 @@
+#pragma once
+// What views show of the parts of a model: by it levels of detail are chosen (formats/detail.h).
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "render/frame.h"
+#include "scene/model_parts.h"
+
+namespace binosplat::render {
+
+class Sight {
+ public:
+  /// Of a model that others draw, too; its context must be current in every call. Not of Scaffold-GS.
+  explicit Sight(std::shared_ptr<GpuModel> model);
+
+  /// For each of the views what it shows of each part, which are the model's. Draws the views, smaller where
+  /// they are large: by up to `shrink_most` along each axis, to pictures of at least 256 px. Of the settings
+  /// count those of exact_of(), and the precision. Distances are means of the logarithm, over at most 2^32
+  /// world units. The same bits each time. Throws as Frame::draw() does.
+  std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
+                                          const ModelParts& parts, int shrink_most = 4);
+
+ private:
+  Frame frame_;
+  gl::Dispatcher dispatcher_;
+  gl::Buffer sums_;    // ivec2 by splat and four channels: 64 bits, low first; the first is alpha T^2
+  gl::Buffer owners_;  // uint by block
+  gl::Buffer
+      of_parts_;  // (view, part): 64 bits of alpha T^2, and of that times the logarithm of the distance
+};
+
+}  // namespace binosplat::render
