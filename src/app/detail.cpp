@@ -17,7 +17,7 @@ std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& li
 
 /// Bytes that a frame starts with, the model's included.
 std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians) {
-  shape.gaussian_count = gaussians;
+  shape.gaussian_count = shape.gaussian_room = gaussians;
   shape.slots = render::starting_slots(gaussians);
   const render::MemoryNeeds needs = render::memory_needs(shape);
   return needs.model + needs.frame;
