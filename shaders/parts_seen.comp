@@ -20,6 +20,9 @@ uniform uint block_size;  // Gaussians
 uniform uint view_begin;
 uniform uint view_end;
 
+// What counts of a splat that is hidden, which is not one that is beside the picture: a 65,536th of a pixel.
+const uint hidden = uint(SEEN_SCALE) / 65536u;
+
 void add(uint at, uvec2 number) {
   uint before = atomicAdd(of_parts[at], number.x);
   uint high = number.y + (before + number.x < before ? 1u : 0u);
@@ -35,8 +38,8 @@ void main() {
   for (uint v = view_begin; v < view_end; ++v) {
     uint from = 4u * splat_of(slot, v);
     uvec2 area = sums[from];
-    if (area == uvec2(0)) continue;
-    sums[from] = uvec2(0);  // for the next look
+    if (area != uvec2(0)) sums[from] = uvec2(0);  // for the next look
+    if (area.y == 0u) area.x = max(area.x, hidden);
     uint at = 4u * (v * part_count + part);
     add(at, area);
     float away = distance(GAUSSIAN(i).position.xyz, views[v].anchor.xyz + views[v].eye.xyz);

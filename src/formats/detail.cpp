@@ -120,7 +120,8 @@ class Sights {
   Sights(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
          std::span<const std::vector<SeenPart>> found, std::span<const std::size_t> before, bool heads_turn)
       : parts_(parts),
-        before_(found.empty() ? std::span<const std::size_t>() : before),
+        before_(before),
+        found_(!found.empty()),
         seen_(views.size() + 1, std::vector<SeenPart>(parts.size())) {
     double shown = 0.0, all = 0.0;  // px
     std::vector<std::uint8_t> is_seen(parts.size(), 0);
@@ -174,15 +175,19 @@ class Sights {
   double area(std::size_t view, std::size_t p, std::size_t level) const {
     const SeenPart& seen = seen_[view][p];
     const DetailPart& part = parts_[p];
-    if (before_.empty() || level <= before_[p]) return seen.area;
-    const double apart = glm::distance(part.low, part.high) /
-                         std::sqrt(static_cast<double>(std::max<std::size_t>(part.levels[level].count, 1)));
+    if (!found_) return seen.area;
+    const std::size_t drawn = before_.empty() ? part.levels.size() - 1 : before_[p];
+    if (level <= drawn && seen.area > 0.0) return seen.area;
+    const std::size_t count = part.levels[std::max(level, drawn)].count;
+    const double apart =
+        glm::distance(part.low, part.high) / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
     const double side = std::sqrt(seen.area) + reach * apart * focal_[view] / seen.distance;
     return side * side;
   }
 
   const std::vector<DetailPart>& parts_;
   std::span<const std::size_t> before_;
+  bool found_;
   std::vector<double> focal_;
   std::vector<glm::dvec3> eye_;
   std::vector<std::vector<SeenPart>> seen_;

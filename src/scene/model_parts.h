@@ -60,7 +60,7 @@ class ModelParts {
 
 /// What a view shows of a part: alpha T^2, summed over its Gaussians and the view's pixels, and how far away
 /// that is, world units. T once for the light that comes from it, and once since an error behind others is
-/// seen less.
+/// seen less. A little where all of it is hidden; 0 only where none of its Gaussians is in the picture.
 struct SeenPart {
   double area = 0.0;  // px
   double distance = 0.0;

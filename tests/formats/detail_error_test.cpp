@@ -204,7 +204,8 @@ TEST(DetailErrors, GoByWhatIsSeen) {
     return choose_levels_within(parts, {view}, 1e-4, any, by_view, drawn);
   };
   EXPECT_NEAR(by(seen, Levels()).error, blind.error, 1e-12) << "nothing hides anything";
-  for (std::size_t p = 1; p < parts.size(); ++p) seen[p].area = 0.0;
+  constexpr double hidden = 1e-9;  // px
+  for (std::size_t p = 1; p < parts.size(); ++p) seen[p].area = hidden;
   const DetailChoice first_only = by(seen, coarsest);
   EXPECT_EQ(first_only.levels[0], blind.levels[0]);
   for (std::size_t p = 1; p < parts.size(); ++p) EXPECT_EQ(first_only.levels[p], 3u) << p;
@@ -213,10 +214,22 @@ TEST(DetailErrors, GoByWhatIsSeen) {
   for (SeenPart& part : seen) part.area *= 0.5;
   EXPECT_NEAR(by(seen, coarsest).error, 0.5 * loss({parts[0]}, {by(seen, coarsest).levels[0]}, view), 1e-12);
   // Coarser levels than those that were drawn may show what these do not.
-  seen.assign(parts.size(), SeenPart{});
-  const DetailChoice from_finest = by(seen, Levels(parts.size(), 0));
-  EXPECT_EQ(by(seen, coarsest).error, 0.0);
-  EXPECT_GT(from_finest.error, 0.0);
+  for (SeenPart& part : seen) part.area = hidden;
+  EXPECT_LT(by(seen, coarsest).error, 1e-9);
+  EXPECT_EQ(by(seen, coarsest).levels, coarsest);
+  EXPECT_GT(by(seen, Levels(parts.size(), 0)).error, 1e-6);
+  // And finer ones, where none of these lies in the picture but the part may.
+  const std::vector<SeenPart> nothing(parts.size());
+  const DetailView ahead = along_x(6.5);
+  const auto ahead_by = [&](const std::vector<SeenPart>& found, double error) {
+    const std::vector<std::vector<SeenPart>> by_view = {found};
+    return choose_levels_within(parts, {ahead}, error, any, by_view, coarsest, false);
+  };
+  EXPECT_GT(ahead_by(nothing, 1.0).error, 1e-6);
+  EXPECT_LT(ahead_by(seen, 1.0).error, 1e-9) << "hidden is not beside the picture";
+  const Levels finer = ahead_by(nothing, 1e-6).levels;
+  EXPECT_LT(finer.back(), 3u);
+  EXPECT_EQ(finer.front(), 3u) << "behind the eye";
 }
 
 TEST(DetailErrors, KeepToWhatWasChosenBefore) {

@@ -77,6 +77,21 @@ TEST(Sight, IsLessOfWhatIsBehindOthers) {
   for (const std::size_t none : {3u, 4u}) EXPECT_EQ(parts[none].area, 0.0);
 }
 
+TEST(Sight, TellsWhatIsHiddenFromWhatIsBeside) {
+  Model model;
+  test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.9f);
+  for (const float z : {1.9f, 2.0f, 2.1f}) test::add(model, {0, 0, z}, glm::vec3(3.0f, 3.0f, 0.01f), 1.0f);
+  test::add(model, {9, 0, 3}, glm::vec3(0.1f), 0.9f);
+  const Parted parted(model, each(model.count()));
+  const auto parts = parted.look({front()}).at(0);
+  EXPECT_GT(parts[0].area, 0.0);
+  EXPECT_LT(parts[0].area, 1e-3);
+  EXPECT_NEAR(parts[0].distance, 3.0, 0.2);
+  EXPECT_EQ(parts[4].area, 0.0);
+  const test::FaultyShaders faulty("parts_seen.comp", "max(area.x, hidden)", "area.x");
+  EXPECT_EQ(parted.look({front()}).at(0)[0].area, 0.0);
+}
+
 TEST(Sight, IsSumsAndMeans) {
   const auto alone = Parted(wall(), each(4)).look({front()}).at(0);
   const auto both = Parted(wall(), {{0}, {2, 3}, {1}}).look({front()}).at(0);
