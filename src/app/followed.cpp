@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "formats/model_file.h"
 #include "measure/metrics.h"
+#include "scene/camera.h"
 
 namespace binosplat::app {
 
@@ -27,8 +28,13 @@ std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> v
 DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
                        const StreamedSog& scene, std::span<const shared::View> views) {
   DetailNeed need = options.detail.value_or(DetailNeed{});
-  if (options.gpu_memory)
-    need.most = gaussians_that_fit(*options.gpu_memory, settings, views, scene.like().degree);
+  if (options.gpu_memory) {
+    const std::vector<shared::View> pair(
+        2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720)));
+    need.most =
+        gaussians_that_fit(*options.gpu_memory, settings, views.empty() ? pair : views, scene.like().degree);
+    need.most -= std::min(need.most, scene.parts() * ModelParts::block);  // which may be nearly empty
+  }
   return need;
 }
 
@@ -53,6 +59,10 @@ template <typename Changing>
 bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel>& gpu_model,
                             std::span<const shared::View> views, const render::FrameSettings& settings,
                             const Changing& changing) {
+  if (options_.gpu_memory) {
+    const std::size_t most = detail_need(options_, settings_, scene_, views).most;
+    model.room = std::min(most, scene_.finest()) + scene_.parts() * ModelParts::block;
+  }
   std::optional<render::Sight> sight;  // not longer than this: it takes the memory of a small frame
   if (goes_by_db()) sight.emplace(gpu_model);
   bool switched = false;
@@ -95,8 +105,8 @@ void FollowedLevels::forget(Model& model) {
 
 bool FollowedLevels::choose(render::Sight* sight, std::span<const shared::View> views,
                             const render::FrameSettings& settings) {
-  std::vector<std::vector<SeenPart>> seen;
-  if (sight != nullptr) seen = sight->look(views, settings, parts_);
+  DetailSeen seen;
+  if (sight != nullptr) seen = {sight->look(views, settings, parts_), scene_.chosen()};
   DetailNeed need = detail_need(options_, settings_, scene_, views);
   need.heads_turn = heads_turn_;
   return scene_.choose(views, need, seen);

@@ -118,11 +118,9 @@ SeenPart unhidden(const DetailPart& part, const DetailView& view) {
 class Sights {
  public:
   Sights(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
-         std::span<const std::vector<SeenPart>> found, std::span<const std::size_t> before, bool heads_turn)
-      : parts_(parts),
-        before_(before),
-        found_(!found.empty()),
-        seen_(views.size() + 1, std::vector<SeenPart>(parts.size())) {
+         const DetailSeen& looked_at, bool heads_turn)
+      : parts_(parts), drawn_(looked_at.drawn), seen_(views.size() + 1, std::vector<SeenPart>(parts.size())) {
+    const auto& found = looked_at.by_view;
     double shown = 0.0, all = 0.0;  // px
     std::vector<std::uint8_t> is_seen(parts.size(), 0);
     for (std::size_t v = 0; v < views.size(); ++v) {
@@ -175,10 +173,8 @@ class Sights {
   double area(std::size_t view, std::size_t p, std::size_t level) const {
     const SeenPart& seen = seen_[view][p];
     const DetailPart& part = parts_[p];
-    if (!found_) return seen.area;
-    const std::size_t drawn = before_.empty() ? part.levels.size() - 1 : before_[p];
-    if (level <= drawn && seen.area > 0.0) return seen.area;
-    const std::size_t count = part.levels[std::max(level, drawn)].count;
+    if (drawn_.empty() || (level <= drawn_[p] && seen.area > 0.0)) return seen.area;
+    const std::size_t count = part.levels[std::max(level, drawn_[p])].count;
     const double apart =
         glm::distance(part.low, part.high) / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
     const double side = std::sqrt(seen.area) + reach * apart * focal_[view] / seen.distance;
@@ -186,8 +182,7 @@ class Sights {
   }
 
   const std::vector<DetailPart>& parts_;
-  std::span<const std::size_t> before_;
-  bool found_;
+  std::span<const std::size_t> drawn_;
   std::vector<double> focal_;
   std::vector<glm::dvec3> eye_;
   std::vector<std::vector<SeenPart>> seen_;
@@ -364,9 +359,9 @@ double relative_error(const DetailPart& part, std::size_t level, double width, c
 }
 
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
-                                  double error, std::size_t most, std::span<const std::vector<SeenPart>> seen,
+                                  double error, std::size_t most, const DetailSeen& seen,
                                   std::span<const std::size_t> before, bool heads_turn) {
-  ErrorChooser chooser(parts, views, Sights(parts, views, seen, before, heads_turn), error, most, before);
+  ErrorChooser chooser(parts, views, Sights(parts, views, seen, heads_turn), error, most, before);
   DetailChoice result{chooser.choose()};
   for (std::size_t v = 0; v < views.size(); ++v)
     result.error = std::max(result.error, chooser.lost(v) / views[v].pixels);

@@ -72,6 +72,12 @@ std::vector<DetailView> detail_views(std::span<const shared::View> views);
 /// known. Narrower ones lose as much as detail does that grows finer and finer, wider ones as at the end.
 double relative_error(const DetailPart& part, std::size_t level, double width, const glm::dvec3& along);
 
+/// What views were found to show of parts, maybe a moment ago. Empty where nobody looked.
+struct DetailSeen {
+  std::vector<std::vector<SeenPart>> by_view;
+  std::vector<std::size_t> drawn;  // the places of the levels that were looked at, by part
+};
+
 struct DetailChoice {
   std::vector<std::size_t> levels;  // as choose_levels says them
   double error = 0.0;               // squared, meaned over pixels and channels of the view that loses most
@@ -79,16 +85,14 @@ struct DetailChoice {
 
 /// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All
 /// parts begin with their coarsest level; then, as long as a view loses more, that part gets that finer level
-/// which saves the most error per Gaussian. The choice is one for all views. `seen` says what each view was
-/// found to show of each part, maybe a moment ago; what it does not know (empty, for all views) is taken to
-/// be hidden by nothing. A part that no view sees takes part in this as if it were seen, and as hidden as
+/// which saves the most error per Gaussian. The choice is one for all views. What nobody looked at is taken
+/// to be hidden by nothing. A part that no view sees takes part in this as if it were seen, and as hidden as
 /// others are on the whole, and goes on until all such parts lose no more than `error` of the pixels of a
 /// whole sphere; unless `heads_turn` is false: then it keeps its coarsest. A part of unknown errors gets its
 /// finest level. More than `most`, and more error, only where they leave no choice. `before` is kept to: its
 /// levels go on until a tenth less is lost, finer ones end at a tenth more.
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
-                                  double error, std::size_t most,
-                                  std::span<const std::vector<SeenPart>> seen = {},
+                                  double error, std::size_t most, const DetailSeen& seen = {},
                                   std::span<const std::size_t> before = {}, bool heads_turn = true);
 
 }  // namespace binosplat

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 
 namespace binosplat {
@@ -22,7 +21,8 @@ constexpr int looks_most = 3;  // at the same views; then a choice hardly change
 LevelStream::LevelStream(const std::filesystem::path& path, Need need)
     : scene_(path), need_(std::move(need)), parts_(scene_.parts()) {}
 
-Model LevelStream::coarsest(const DetailNeed& need) {
+Model LevelStream::coarsest(std::span<const shared::View> views) {
+  const DetailNeed need = need_(scene_, views);
   by_db_ = need.db.has_value();
   scene_.choose({}, need);
   Model model = scene_.like();
@@ -32,6 +32,7 @@ Model LevelStream::coarsest(const DetailNeed& need) {
   model.reserve(model.room);
   scene_.read([&](const StreamedSog::Piece& piece) { parts_.replace(model, piece.part, piece.model); });
   parts_.take_changes();
+  drawn_ = scene_.chosen();
   return model;
 }
 
@@ -40,17 +41,22 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   if (!std::ranges::equal(std::as_bytes(views), std::as_bytes(std::span(wanted_)))) {
     wanted_.assign(views.begin(), views.end());
     looks_ = 0;
-    look_is_due_ = true;
+    is_due_ = true;
   }
-  if (!look_is_due_ || (by_db_ && looked_at_ && ms_since(*looked_at_) < between_looks_ms)) return;
-  look_is_due_ = false;
+  if (looks_again()) {
+    const std::lock_guard lock(mutex_);
+    is_due_ = is_due_ || is_idle();
+  }
+  if (!is_due_ || (by_db_ && looked_at_ && ms_since(*looked_at_) < between_looks_ms)) return;
+  is_due_ = false;
   Wish wish{wanted_, {}};
   if (by_db_) {
-    wish.seen = look(parts_);
+    wish.seen = {look(parts_), drawn_};
     looked_at_ = Clock::now();
+    changed_since_look_ = false;
+    ++looks_;
   }
   const std::lock_guard lock(mutex_);
-  looks_ += !works_ && pieces_.empty() ? 1 : 0;
   if (trouble_) return;
   wish_ = std::move(wish);
   if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
@@ -59,7 +65,7 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
 
 void LevelStream::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (changed_.wait(lock, stop, [&] { return wish_.has_value(); })) {
+  while (changed_.wait(lock, stop, [&] { return wish_.has_value(); }) && !stop.stop_requested()) {
     const Wish wish = *std::exchange(wish_, std::nullopt);
     works_ = true;
     lock.unlock();
@@ -82,7 +88,7 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
   drop_unwanted();
   const auto take = [&](StreamedSog::Piece piece) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, stop, [&] { return gaussians_read_ < read_ahead; });
+    changed_.wait(lock, stop, [&] { return gaussians_read_ < read_ahead || wish_; });
     gaussians_read_ += piece.model.count();
     pieces_.push_back(std::move(piece));
   };
@@ -95,19 +101,12 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
 // What was read for views that are gone.
 void LevelStream::drop_unwanted() {
   const std::lock_guard lock(mutex_);
-  for (auto piece = pieces_.end(); piece != pieces_.begin();) {
-    --piece;
-    if (scene_.wants(*piece)) continue;
-    const auto later = std::find_if(std::next(piece), pieces_.end(),
-                                    [&](const auto& other) { return other.part == piece->part; });
-    if (later == pieces_.end()) {
-      scene_.put_back(*piece);
-    } else {
-      later->before = piece->before;
-    }
-    gaussians_read_ -= piece->model.count();
-    piece = pieces_.erase(piece);
-  }
+  std::erase_if(pieces_, [&](const StreamedSog::Piece& piece) {
+    if (scene_.wants(piece)) return false;
+    scene_.put_back(piece);  // no other of this part has been read since, or this one would be gone
+    gaussians_read_ -= piece.model.count();
+    return true;
+  });
 }
 
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
@@ -126,14 +125,20 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   }
   if (taken.empty()) return {};
   changed_.notify_all();
-  for (const StreamedSog::Piece& piece : taken) parts_.replace(model, piece.part, piece.model);
-  look_is_due_ = look_is_due_ || (by_db_ && looks_ < looks_most);  // coarse parts hide what fine ones do not
+  for (const StreamedSog::Piece& piece : taken) {
+    parts_.replace(model, piece.part, piece.model);
+    if (piece.level) drawn_[piece.part] = *piece.level;
+  }
+  changed_since_look_ = true;
   return parts_.take_changes();
 }
 
+// Coarse parts hide what fine ones do not.
+bool LevelStream::looks_again() const { return by_db_ && changed_since_look_ && looks_ < looks_most; }
+
 bool LevelStream::settled() const {
   const std::lock_guard lock(mutex_);
-  return !wish_ && !works_ && pieces_.empty() && !look_is_due_ && !trouble_;
+  return is_idle() && !is_due_ && !looks_again() && !trouble_;
 }
 
 std::optional<double> LevelStream::predicted_psnr() const {

@@ -32,9 +32,10 @@ class LevelStream {
   LevelStream(const LevelStream&) = delete;
   LevelStream& operator=(const LevelStream&) = delete;
 
-  /// The model at its coarsest levels, to begin with; whether it goes by dB is for good. Throws Error where a
-  /// file has become unreadable, or if the file has no errors to go by for such a need.
-  Model coarsest(const DetailNeed& need = {});
+  /// The model at its coarsest levels, to begin with, and with room for what these views may need, or a few
+  /// million Gaussians; whether it goes by dB is for good. Throws Error where a file has become unreadable,
+  /// or if the file has no errors to go by for such a need.
+  Model coarsest(std::span<const shared::View> views = {});
 
   /// Has read what these views need, which are those of one frame in the model's frame, instead of what
   /// others needed. By dB it calls `look` first, which tells what each of them shows of each part as
@@ -57,20 +58,24 @@ class LevelStream {
  private:
   struct Wish {
     std::vector<shared::View> views;
-    std::vector<std::vector<SeenPart>> seen;
+    DetailSeen seen;
   };
   void work(const std::stop_token& stop);
   void read(const Wish& wish, const std::stop_token& stop);
   void drop_unwanted();
+  bool is_idle() const { return !wish_ && !works_ && pieces_.empty(); }
+  bool looks_again() const;
 
   StreamedSog scene_;  // the thread's, once there is one
   Need need_;
   ModelParts parts_;
   bool by_db_ = false;
   std::vector<shared::View> wanted_;
+  bool is_due_ = false;             // to be wished
+  std::vector<std::size_t> drawn_;  // places of the parts' levels, in the model
   // By dB:
-  int looks_ = 0;             // at these views, with all that they needed by the look before
-  bool look_is_due_ = false;  // at them, or once more since parts have changed
+  int looks_ = 0;  // at these views
+  bool changed_since_look_ = false;
   std::optional<Clock::time_point> looked_at_;
 
   mutable std::mutex mutex_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -255,7 +256,7 @@ StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source
 StreamedSog::~StreamedSog() = default;
 
 bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& need,
-                         std::span<const std::vector<SeenPart>> seen) {
+                         const DetailSeen& seen) {
   if (need.db &&
       std::none_of(leaves_.begin(), leaves_.end(), [](const auto& l) { return !l.pixels.empty(); })) {
     fail(
@@ -292,9 +293,15 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   return source_->around() > 0 && !environment_read_;
 }
 
-// Leaves that get fewer Gaussians come first: never are there more than before or after.
+// Leaves that get fewer Gaussians come first: never are there more than before or after, if all are taken.
 void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
   check_chosen();
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const auto& levels = leaves_[leaf].levels;
+    if (levels.empty() || read_[leaf] == chosen_[leaf] || levels[chosen_[leaf]].count > 0) continue;
+    const auto before = std::exchange(read_[leaf], chosen_[leaf]);
+    take({.part = leaf, .level = chosen_[leaf], .before = before, .model = like_});
+  }
   for (const bool shrinks : {true, false}) {
     const auto level_of = [&](std::size_t leaf) {
       const auto& levels = leaves_[leaf].levels;

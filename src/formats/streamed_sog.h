@@ -51,9 +51,10 @@ class StreamedSog {
   /// by what each of them loses (choose_levels_within), with the levels of the last choice as those before.
   /// Without views: the coarsest. True if there is something to read. Throws Error for dB where the file has
   /// no errors.
-  /// `seen`: what each view shows of each part, as far as that was found (choose_levels_within).
-  bool choose(std::span<const shared::View> views, const DetailNeed& need,
-              std::span<const std::vector<SeenPart>> seen = {});
+  /// `seen`: as choose_levels_within takes it.
+  bool choose(std::span<const shared::View> views, const DetailNeed& need, const DetailSeen& seen = {});
+  /// The choice: for each leaf the place of its level among those that are there.
+  const std::vector<std::size_t>& chosen() const { return chosen_; }
 
   /// What the views are taken to have against the finest levels, in dB; none where dB were not chosen by.
   std::optional<double> predicted_psnr() const { return predicted_psnr_; }

@@ -29,8 +29,10 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 std::size_t ModelParts::take_block(Model& model) {
   if (free_.empty()) {
     const std::size_t before = owners_.size();
-    owners_.resize(before + std::clamp<std::size_t>(before / 8, 1, blocks_at_once));
-    if (owners_.size() * block > model.room) {
+    const std::size_t more = std::clamp<std::size_t>(before / 8, 1, blocks_at_once);
+    const std::size_t in_room = std::max(model.room / block, before) - before;
+    owners_.resize(before + (in_room > 0 ? std::min(more, in_room) : more));
+    if (in_room == 0) {
       model.room = (owners_.size() + owners_.size() / 8) * block;
       model.reserve(model.room);
     }

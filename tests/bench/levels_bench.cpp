@@ -105,7 +105,7 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
   DetailNeed need = need_of(detail);
   need.most = plan.most;
   LevelStream levels(plan.scene, [&](const StreamedSog&, std::span<const shared::View>) { return need; });
-  Model model = levels.coarsest(need);
+  Model model = levels.coarsest(path[0]);
   const auto gpu_model = std::make_shared<render::GpuModel>(context, model);
   render::Frame frame(gpu_model);
   render::Sight sight(gpu_model);

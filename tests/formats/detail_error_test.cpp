@@ -200,8 +200,7 @@ TEST(DetailErrors, GoByWhatIsSeen) {
   for (const DetailPart& part : parts) seen.push_back(open_sight(part, view));
   const Levels coarsest(parts.size(), 3);
   const auto by = [&](const std::vector<SeenPart>& found, const Levels& drawn) {
-    const std::vector<std::vector<SeenPart>> by_view = {found};
-    return choose_levels_within(parts, {view}, 1e-4, any, by_view, drawn);
+    return choose_levels_within(parts, {view}, 1e-4, any, {{found}, drawn}, drawn);
   };
   EXPECT_NEAR(by(seen, Levels()).error, blind.error, 1e-12) << "nothing hides anything";
   constexpr double hidden = 1e-9;  // px
@@ -222,8 +221,7 @@ TEST(DetailErrors, GoByWhatIsSeen) {
   const std::vector<SeenPart> nothing(parts.size());
   const DetailView ahead = along_x(6.5);
   const auto ahead_by = [&](const std::vector<SeenPart>& found, double error) {
-    const std::vector<std::vector<SeenPart>> by_view = {found};
-    return choose_levels_within(parts, {ahead}, error, any, by_view, coarsest, false);
+    return choose_levels_within(parts, {ahead}, error, any, {{found}, coarsest}, coarsest, false);
   };
   EXPECT_GT(ahead_by(nothing, 1.0).error, 1e-6);
   EXPECT_LT(ahead_by(seen, 1.0).error, 1e-9) << "hidden is not beside the picture";

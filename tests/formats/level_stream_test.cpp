@@ -27,6 +27,8 @@ shared::View at(const glm::dvec3& eye) {
 
 DetailNeed coarse_to_30_px(const StreamedSog&, std::span<const shared::View>) { return {30.0}; }
 
+DetailNeed for_40_db(const StreamedSog&, std::span<const shared::View>) { return {.db = 40.0}; }
+
 /// Takes what comes for a view, so many Gaussians at a time; how many there were after each that came.
 std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dvec3& eye, std::size_t most) {
   stream.want(std::vector{at(eye)}, {});
@@ -107,6 +109,66 @@ TEST(LevelStream, EndsWithWhatWasWantedLast) {
   EXPECT_GE(met.size(), 3u);
 }
 
+TEST(LevelStream, ALevelWithoutGaussiansIsALevel) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    meta["tree"]["children"][1]["children"][1]["lods"]["1"]["count"] = 0;
+  });
+  LevelStream stream(copy.path(), coarse_to_30_px);
+  Model model = stream.coarsest();
+  EXPECT_EQ(stream.gaussians(), 120u + 65);
+  EXPECT_EQ(follow(stream, model, beside_last, 1).back(), 120u + 65 + 248);
+  EXPECT_EQ(follow(stream, model, far_away, 1).back(), 120u + 65);
+}
+
+// By dB it looks when the views change, and again once what they needed is there, but not for ever.
+TEST(LevelStream, LooksAFewTimes) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"}) {
+      nlohmann::json& node = meta["tree"][nlohmann::json::json_pointer(leaf)];
+      const auto from_everywhere = [](double number) {
+        return std::vector(detail_directions, std::vector(1, number));
+      };
+      node["pixels"] = {0.1};
+      node["seen"] = from_everywhere(100.0);
+      node["lods"]["0"]["errors"] = from_everywhere(0.0);
+      node["lods"]["1"]["errors"] = from_everywhere(2.0);
+    }
+  });
+  LevelStream stream(copy.path(), for_40_db);
+  Model model = stream.coarsest();
+  shared::View view = at({0, 0, -30});
+  view.row_z = {0, 0, 1, 0};
+  view.centre.w = 1.0f;
+  view.width = view.height = 100;
+  // What one look shows the next one hides.
+  std::vector<std::size_t> gaussians;
+  const auto rest = [&] {
+    gaussians.clear();
+    const auto look = [&](const ModelParts& parts) {
+      gaussians.push_back(parts.gaussians());
+      const SeenPart seen{gaussians.size() % 2 == 1 ? 2000.0 : 1e-6, 30.0};
+      return std::vector(1, std::vector(parts.size(), seen));
+    };
+    const auto start = std::chrono::steady_clock::now();
+    do {
+      stream.want(std::vector{view}, look);
+      stream.take(model, 1);
+      ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60)) << "it hangs";
+    } while (!stream.settled());
+  };
+  rest();
+  EXPECT_EQ(gaussians, (std::vector<std::size_t>{250, 1000, 250}));
+  EXPECT_EQ(stream.gaussians(), 1000u);
+  EXPECT_TRUE(stream.predicted_psnr());
+  view.anchor.x += 0.1f;
+  rest();
+  EXPECT_EQ(gaussians, std::vector<std::size_t>{1000}) << "nothing had to be read";
+}
+
 TEST(LevelStream, EndsInTheMidstOfIt) {
   REQUIRE_FIXTURES(folder);
   for (int n = 0; n < 20; ++n) {
@@ -124,7 +186,7 @@ TEST(LevelStream, TellsWhatIsWrong) {
   const test::Copy copy(folder / "sog/st-lod");
   LevelStream stream(copy.path(), coarse_to_30_px);
   Model model = stream.coarsest();
-  EXPECT_TRUE(test::fails_saying([&] { LevelStream(copy.path(), coarse_to_30_px).coarsest({.db = 40.0}); },
+  EXPECT_TRUE(test::fails_saying([&] { LevelStream(copy.path(), for_40_db).coarsest(); },
                                  {"--detail 40dB", "has no errors of its levels to go by"}));
   std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
   EXPECT_TRUE(test::fails_saying([&] { follow(stream, model, beside_first, 1); }, {"0_0", "means_l.webp"}));

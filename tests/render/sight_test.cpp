@@ -165,6 +165,32 @@ TEST(Sight, OfSeveralViewsAndOfSmallerPictures) {
   }
 }
 
+// Nothing of a look is left for the next, of other views and another number of them.
+TEST(Sight, ForgetsWhatItSaw) {
+  const Model model = test::random_model(98, 2000, 0);
+  Indices indices(9);
+  for (std::uint32_t i = 0; i < model.count(); ++i) indices[i % 9].push_back(i);
+  const Parted parted(model, indices);
+  Camera beside = test::front_camera(side, side, focal);
+  beside.position.x += 0.2;
+  const std::vector<shared::View> one = {front()}, two = {make_view(beside), front()};
+  const auto same = [&] {
+    Sight sight(parted.gpu_model);
+    bool same = true;
+    for (const auto& views : {two, one, two, one}) {
+      const auto again = sight.look(views, {}, parted.parts), alone = parted.look(views);
+      for (std::size_t v = 0; v < views.size(); ++v) {
+        for (std::size_t p = 0; p < indices.size(); ++p)
+          same = same && again[v][p].area == alone[v][p].area && again[v][p].distance == alone[v][p].distance;
+      }
+    }
+    return same;
+  };
+  EXPECT_TRUE(same());
+  const test::FaultyShaders faulty("parts_seen.comp", "if (area != uvec2(0)) sums[from] = uvec2(0);", "");
+  EXPECT_FALSE(same());
+}
+
 TEST(Sight, InHalfPrecision) {
   const Model model = test::random_model(97, 2000, 1);
   Indices indices(3);

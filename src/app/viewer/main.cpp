@@ -71,7 +71,7 @@ preview::Loaded load(const SceneOptions& scene, const render::FrameSettings& set
     return detail_need(scene, settings, levels, views);
   };
   auto levels = std::make_unique<LevelStream>(scene.name, need);
-  Model model = levels->coarsest(scene.detail.value_or(DetailNeed{}));
+  Model model = levels->coarsest();
   set_as_asked(scene, model);
   return {std::move(model), std::move(levels)};
 }
