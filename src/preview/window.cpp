@@ -169,7 +169,8 @@ void Window::follow_levels() {
     session_->follow(*levels_);
     if (moved && !levels_move()) log_info("{}: levels of {} Gaussians", scene_.name, levels_->gaussians());
   } catch (const Error& error) {
-    if (error.code() == ExitCode::no_gl) throw;
+    // A GPU without room has lost a part of the model by now.
+    if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;
     levels_.reset();
     tell(error.what(), true);
   }
