@@ -10,7 +10,9 @@ namespace binosplat::render {
 
 namespace {
 
-constexpr std::uint32_t small_enough = 256;  // px
+// px. In smaller pictures parts are sampled by so few pixels that those of which little is found by chance,
+// which then stay coarse, cost 1.5 dB (taebak at 915 x 800 px).
+constexpr std::uint32_t small_enough = 512;
 
 /// The same view in a picture of fewer pixels.
 shared::View shrunk(const shared::View& view, int by) {

@@ -16,7 +16,7 @@ class Sight {
   explicit Sight(std::shared_ptr<GpuModel> model);
 
   /// For each of the views what it shows of each part, which are the model's. Draws the views, smaller where
-  /// they are large: by up to `shrink_most` along each axis, to pictures of at least 256 px. Of the settings
+  /// they are large: by up to `shrink_most` along each axis, to pictures of at least 512 px. Of the settings
   /// count those of exact_of(), and the precision. Distances are means of the logarithm, over at most 2^32
   /// world units. The same bits each time. Throws as Frame::draw() does.
   std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
