@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "app/scene.h"
-#include "formats/detail.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
+#include "support/level_errors.h"
 
 namespace binosplat {
 namespace {
@@ -114,22 +114,6 @@ TEST(RenderLevels, FollowAPathAndTellWhatTheyCost) {
   }
 }
 
-/// Writes what level 1 of each leaf of sog/st-lod loses into its lod-meta.json.
-void add_errors(const test::Copy& copy) {
-  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
-    for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"}) {
-      nlohmann::json& node = meta["tree"][nlohmann::json::json_pointer(leaf)];
-      const auto from_everywhere = [](double number) {
-        return std::vector(detail_directions, std::vector(1, number));
-      };
-      node["pixels"] = {0.1};
-      node["seen"] = from_everywhere(100.0);
-      node["lods"]["0"]["errors"] = from_everywhere(0.0);
-      node["lods"]["1"]["errors"] = from_everywhere(2.0);
-    }
-  });
-}
-
 TEST(RenderLevels, ByDecibelsAsAFileTells) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
@@ -139,7 +123,7 @@ TEST(RenderLevels, ByDecibelsAsAFileTells) {
                               "40dB", "--detail-report", "-o", folder / "out", "--json", folder / "j"});
   };
   EXPECT_TRUE(ended(render(), 2, "has no errors of its levels to go by"));
-  add_errors(copy);
+  test::add_level_errors(copy);
   const Outcome told = render();
   ASSERT_TRUE(good(told));
   const auto report = test::load_json(folder / "j");
@@ -161,7 +145,7 @@ TEST(RenderLevels, OfSinglePicturesGoByThemAlone) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const test::Copy copy(fixtures / "sog/st-lod");
-  add_errors(copy);
+  test::add_level_errors(copy);
   const std::string cameras = write_path(folder, {-20, -60, 16});
   const auto levels = [&](const std::vector<std::string>& of) {
     std::vector<std::string> arguments = {"render", copy.path(),    "--detail", "40dB",

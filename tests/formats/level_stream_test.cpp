@@ -12,6 +12,7 @@
 #include "formats/model_file.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
+#include "support/level_errors.h"
 
 namespace binosplat {
 namespace {
@@ -126,18 +127,7 @@ TEST(LevelStream, ALevelWithoutGaussiansIsALevel) {
 TEST(LevelStream, LooksAFewTimes) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
-  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
-    for (const char* leaf : {"/children/0", "/children/1/children/0", "/children/1/children/1"}) {
-      nlohmann::json& node = meta["tree"][nlohmann::json::json_pointer(leaf)];
-      const auto from_everywhere = [](double number) {
-        return std::vector(detail_directions, std::vector(1, number));
-      };
-      node["pixels"] = {0.1};
-      node["seen"] = from_everywhere(100.0);
-      node["lods"]["0"]["errors"] = from_everywhere(0.0);
-      node["lods"]["1"]["errors"] = from_everywhere(2.0);
-    }
-  });
+  test::add_level_errors(copy);
   LevelStream stream(copy.path(), for_40_db);
   Model model = stream.coarsest();
   shared::View view = at({0, 0, -30});
