@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <mutex>
@@ -146,10 +147,8 @@ class Writer {
         work += leaves_[piece.first_leaf + i].count(0);
     }
     Progress progress("writing levels of detail", work);
-    for (const Piece& piece : pieces_) {
-      if (!is_done(piece)) write(piece, progress);
-      tell_errors(piece);
-    }
+    write_pieces(progress);
+    for (const Piece& piece : pieces_) tell_errors(piece);
     std::size_t leaf = 0;
     const ordered_json meta = {
         {"version", 1},
@@ -215,27 +214,55 @@ class Writer {
     }
   }
 
-  void write(const Piece& piece, Progress& progress) {
-    const std::vector<File>& files = piece.files;
-    const bool judged = folder_.has(piece.errors);
-    const int coarsest = judged ? files.back().level : settings_.levels - 1;
-    std::mutex counting;
-    const auto count = [&](std::size_t gaussians) {
-      const std::lock_guard lock(counting);
-      progress.update(done_ += gaussians);
+  /// While one is judged, which one thread does that may leave all cores idle, the next is merged and the one
+  /// before is written.
+  void write_pieces(Progress& progress) {
+    std::vector<const Piece*> left;
+    for (const Piece& piece : pieces_) {
+      if (!is_done(piece)) left.push_back(&piece);
+    }
+    const auto merge = [&](const Piece& piece) {
+      return std::async(std::launch::async, [&] { return merged(piece, progress); });
     };
+    std::future<std::vector<Levels>> merging;
+    std::future<void> writing;
+    for (std::size_t k = 0; k < left.size(); ++k) {
+      std::vector<Levels> levels = k == 0 ? merged(*left[0], progress) : merging.get();
+      if (k + 1 < left.size()) merging = merge(*left[k + 1]);
+      if (!folder_.has(left[k]->errors)) judge(*left[k], levels);
+      if (writing.valid()) writing.get();
+      writing =
+          std::async(std::launch::async, [this, &progress, &piece = *left[k], levels = std::move(levels)] {
+            write(piece, levels, progress);
+          });
+    }
+    if (writing.valid()) writing.get();
+  }
+
+  void count(Progress& progress, std::size_t gaussians) {
+    const std::lock_guard lock(counting_);
+    progress.update(done_ += gaussians);
+  }
+
+  std::vector<Levels> merged(const Piece& piece, Progress& progress) {
+    const int coarsest = folder_.has(piece.errors) ? piece.files.back().level : settings_.levels - 1;
     std::vector<Levels> levels(piece.leaves);
     parallel_for(levels.size(), [&](std::size_t i) {
       const Leaf& leaf = leaves_[piece.first_leaf + i];
       levels[i] = levels_of(model_, leaf, coarsest);
-      count(leaf.count(0));
+      count(progress, leaf.count(0));
     });
-    if (!judged) {
-      const std::string text = json_of(judge_(levels)).dump() + "\n";
-      folder_.write(piece.errors, std::as_bytes(std::span(text)));
-    }
-    parallel_for(files.size(), [&](std::size_t i) {
-      const File& file = files[i];
+    return levels;
+  }
+
+  void judge(const Piece& piece, std::span<const Levels> levels) {
+    const std::string text = json_of(judge_(levels)).dump() + "\n";
+    folder_.write(piece.errors, std::as_bytes(std::span(text)));
+  }
+
+  void write(const Piece& piece, std::span<const Levels> levels, Progress& progress) {
+    parallel_for(piece.files.size(), [&](std::size_t i) {
+      const File& file = piece.files[i];
       Model all = without_gaussians(model_);
       for (std::size_t k = 0; k < file.leaves; ++k) {
         const Levels& of_leaf = levels[file.first_leaf - piece.first_leaf + k];
@@ -245,7 +272,7 @@ class Writer {
       const ZipEntries entries = sog_files(all);
       for (std::size_t k = entries.size(); k-- > 0;)  // meta.json last
         folder_.write(file.folder + "/" + entries[k].first, entries[k].second);
-      count(file.count);
+      count(progress, file.count);
     });
   }
 
@@ -290,6 +317,7 @@ class Writer {
   std::vector<std::string> filenames_;
   std::map<int, int> files_of_level_;
   std::vector<std::size_t> gaussians_;  // by level
+  std::mutex counting_;
   std::size_t done_ = 0;
 };
 

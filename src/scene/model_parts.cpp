@@ -2,23 +2,14 @@
 
 #include <algorithm>
 
+#include "scene/reduce.h"
+
 namespace binosplat {
 
 namespace {
 
-void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t at) {
-  const auto take = [&](const auto& a, auto& b, std::size_t each) {
-    std::copy_n(a.begin() + static_cast<std::ptrdiff_t>(first * each), count * each,
-                b.begin() + static_cast<std::ptrdiff_t>(at * each));
-  };
-  take(from.position, to.position, 1);
-  take(from.scale, to.scale, 1);
-  take(from.rotation, to.rotation, 1);
-  take(from.opacity, to.opacity, 1);
-  take(from.sh, to.sh, 3 * static_cast<std::size_t>(sh_count(from.degree)));
-}
-
-constexpr std::size_t blocks_at_once = 1024;  // which the model grows by: no frame should wait for more
+// Which the model grows by, and whose memory is touched then: more would take a frame's time (1,024: 5 ms).
+constexpr std::size_t blocks_at_once = 128;
 
 void hide(Model& model, std::size_t first, std::size_t count) {
   std::fill_n(model.opacity.begin() + static_cast<std::ptrdiff_t>(first), count, 0.0f);

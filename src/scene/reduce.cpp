@@ -42,6 +42,18 @@ void append(Model& model, const Model& from, std::size_t first, std::size_t coun
   add(model.sh, from.sh, static_cast<std::size_t>(values_of(from.degree)));
 }
 
+void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t at) {
+  const auto take = [&](const auto& a, auto& b, std::size_t each) {
+    std::copy_n(a.begin() + static_cast<std::ptrdiff_t>(first * each), count * each,
+                b.begin() + static_cast<std::ptrdiff_t>(at * each));
+  };
+  take(from.position, to.position, 1);
+  take(from.scale, to.scale, 1);
+  take(from.rotation, to.rotation, 1);
+  take(from.opacity, to.opacity, 1);
+  take(from.sh, to.sh, static_cast<std::size_t>(values_of(from.degree)));
+}
+
 Model with_order(const Model& model, std::span<const std::uint32_t> indices) {
   Model ordered = without_gaussians(model);
   ordered.reserve(indices.size());

@@ -19,6 +19,10 @@ Model without_gaussians(const Model& model);
 /// Appends Gaussians `first` to `first + count` - 1 of a model of the same degree.
 void append(Model& model, const Model& from, std::size_t first, std::size_t count);
 
+/// Puts Gaussians `first` to `first + count` of one model in the place of as many of another of its degree,
+/// from `at` on.
+void copy(const Model& from, std::size_t first, std::size_t count, Model& to, std::size_t at);
+
 /// The Gaussians at these indices, in this order.
 Model with_order(const Model& model, std::span<const std::uint32_t> indices);
 

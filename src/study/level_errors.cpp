@@ -22,10 +22,7 @@ constexpr double wider = 8.0;  // each so many times the one before
 constexpr double narrowest = 0.625;
 // Between parts, px: what the low-pass and Gaussians at the edge reach.
 constexpr int margin = 8;
-// px of a picture. Reading larger ones allocates them anew each time, which took longer than drawing them.
-constexpr int side_most = 1280;
-// By how much what lies behind a part differs from its mean colour, as a deviation.
-constexpr double contrast = 0.15;
+constexpr int side_most = 1280;  // px of a picture
 // How far away the eye is, in sides of a picture: nothing is seen at more than 5 degrees from the axis.
 constexpr double away = 8.0;
 
@@ -53,26 +50,82 @@ struct Part {
   int square;  // px, of its narrowest picture
 };
 
+/// Squares of a picture, row by row.
+struct Grid {
+  std::uint32_t count, side, across;  // squares, px, squares in a row
+  std::uint32_t width() const { return across * side; }
+  std::uint32_t height() const { return (count + across - 1) / across * side; }
+  /// Of the first pixel.
+  glm::uvec2 corner(std::size_t i) const {
+    const auto k = static_cast<std::uint32_t>(i);
+    return side * glm::uvec2(k % across, k / across);
+  }
+};
+
 /// Draws models one after the other, in the same buffers: making new ones takes as long as drawing.
 class Drawer {
  public:
-  explicit Drawer(gl::Context& context) : context_(context) {}
+  explicit Drawer(gl::Context& context)
+      : context_(context),
+        dispatcher_(context),
+        finest_(context, "the finest level"),
+        behind_(context, "colours behind parts"),
+        sums_(context, "errors of parts") {}
 
-  Picture draw(Model model, const shared::View& view, Depth depth) {
-    model_ = std::move(model);
+  /// What is drawn next, whose memory is used again.
+  Model& model() { return model_; }
+
+  /// How much of each square shows the finest level, px, with which draw() compares until the next.
+  std::vector<float> draw_finest(const shared::View& view, const Grid& grid) {
+    draw(view, Depth::seen);
+    finest_.reserve(frame_->colours().bytes());
+    behind_.reserve(std::int64_t{grid.count} * 16);
+    return sums_of(grid, "1");
+  }
+
+  /// What each square differs by from the finest level, over what looks much like its mean colour.
+  std::vector<float> draw(const shared::View& view, const Grid& grid) {
+    draw(view, Depth::none);
+    return sums_of(grid, "0");
+  }
+
+ private:
+  void draw(const shared::View& view, Depth depth) {
     if (frame_) {
       frame_->model()->reload();
     } else {
       frame_.emplace(context_, model_);
     }
     frame_->draw({&view, 1}, {.depth = depth});
-    return std::move(frame_->read_pictures().front());
   }
 
- private:
+  std::vector<float> sums_of(const Grid& grid, const char* finest) {
+    sums_.reserve(std::int64_t{grid.count} * 4);
+    dispatcher_.begin_frame();
+    dispatcher_.begin_stage("level errors");
+    const gl::Program& program = context_.program("level_errors.comp", {{"FINEST", finest}});
+    dispatcher_.run(program, gl::Work::of_groups(grid.count),
+                    {{"Colours", frame_->colours()},
+                     {"Finest", finest_},
+                     {"Behind", behind_},
+                     {"Sums", sums_},
+                     {"ZSums", frame_->z_sums()}},
+                    {{"square_count", grid.count},
+                     {"square_side", grid.side},
+                     {"row_squares", grid.across},
+                     {"row_pixels", grid.width()}});
+    dispatcher_.end_frame();
+    dispatcher_.wait_and_time();
+    return sums_.read<float>(grid.count);
+  }
+
   gl::Context& context_;
+  gl::Dispatcher dispatcher_;
   Model model_;
   std::optional<render::Frame> frame_;
+  gl::Buffer finest_;  // vec4 by pixel
+  gl::Buffer behind_;  // vec4 by square
+  gl::Buffer sums_;    // float by square
 };
 
 /// Parts beside one another, each in a square of its own, seen along `direction`.
@@ -83,11 +136,11 @@ class Sheet {
     double widest = 0.0;
     for (const Part& part : parts)
       widest = std::max(widest, glm::distance(part.box.low, part.box.high) / pixel(part));
-    square_ = static_cast<int>(std::ceil(widest)) + 2 * margin;
-    across_ = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(parts.size()))));
-    const int down = (static_cast<int>(parts.size()) + across_ - 1) / across_;
-    camera_.width = across_ * square_;
-    camera_.height = down * square_;
+    grid_ = {static_cast<std::uint32_t>(parts.size()),
+             static_cast<std::uint32_t>(std::ceil(widest)) + 2 * margin,
+             static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(parts.size()))))};
+    camera_.width = static_cast<int>(grid_.width());
+    camera_.height = static_cast<int>(grid_.height());
     camera_.fx = camera_.fy = away * std::max(camera_.width, camera_.height);
     camera_.cx = 0.5 * camera_.width;
     camera_.cy = 0.5 * camera_.height;
@@ -95,75 +148,42 @@ class Sheet {
     camera_.rotation = glm::dmat3(right, glm::cross(direction, right), direction);
   }
 
-  Picture draw(Drawer& drawer, std::size_t level) const {
-    return drawer.draw(model(level), make_view(camera_), level == 0 ? Depth::seen : Depth::none);
+  std::vector<float> draw_finest(Drawer& drawer) const {
+    fill(drawer.model(), 0);
+    return drawer.draw_finest(make_view(camera_), grid_);
   }
-
-  /// How much of a picture of the finest levels shows a part, px.
-  double seen(const Picture& finest, std::size_t i) const {
-    double sum = 0.0;
-    each_pixel(i, [&](std::size_t k) { sum += double{finest.z_sum[k]}; });
-    return sum;
-  }
-
-  /// What a part's square differs by, over what looks much like the mean colour of the part.
-  double difference(const Picture& a, const Picture& b, std::size_t i) const {
-    glm::dvec4 sum(0.0);
-    each_pixel(
-        i, [&](std::size_t k) { sum += glm::dvec4(glm::dvec3(b.colour[k]), 1.0 - double{b.colour[k].a}); });
-    const glm::vec3 behind = sum.a > 0.0 ? glm::vec3(glm::dvec3(sum) / sum.a) : glm::vec3(0.0f);
-    double error = 0.0;
-    const auto shown = [&](const glm::vec4& c) {
-      return glm::dvec3(glm::clamp(glm::vec3(c) + c.a * behind, 0.0f, 1.0f));
-    };
-    each_pixel(i, [&](std::size_t k) {
-      const glm::dvec3 apart = shown(a.colour[k]) - shown(b.colour[k]);
-      const double covers = double{a.colour[k].a} - double{b.colour[k].a};
-      error += glm::dot(apart, apart) / 3.0 + contrast * contrast * covers * covers;
-    });
-    return error;
+  std::vector<float> draw(Drawer& drawer, std::size_t level) const {
+    fill(drawer.model(), level);
+    return drawer.draw(make_view(camera_), grid_);
   }
 
  private:
-  template <typename See>
-  void each_pixel(std::size_t i, const See& see) const {
-    const glm::ivec2 first = corner(i);
-    for (int y = first.y; y < first.y + square_; ++y) {
-      for (int x = first.x; x < first.x + square_; ++x)
-        see(static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width) +
-            static_cast<std::size_t>(x));
-    }
-  }
-
   /// One level of all parts, in their places.
-  Model model(std::size_t level) const {
-    Model all = without_gaussians(parts_.front().levels[level]);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
+  void fill(Model& all, std::size_t level) const {
+    if (all.count() == 0) all = without_gaussians(parts_.front().levels[level]);
+    std::vector<std::size_t> first{0};
+    for (const Part& part : parts_) first.push_back(first.back() + part.levels[level].count());
+    all.resize(first.back());
+    parallel_for(parts_.size(), [&](std::size_t i) {
       const Part& part = parts_[i];
-      const Model& of_part = part.levels[level];
-      const std::size_t first = all.count();
-      append(all, of_part, 0, of_part.count());
+      copy(part.levels[level], 0, part.levels[level].count(), all, first[i]);
       // As far away as the focal length has pixels a world unit is one of them.
-      const glm::dvec2 centre = glm::dvec2(corner(i)) + 0.5 * square_ - glm::dvec2(camera_.cx, camera_.cy);
+      const glm::dvec2 centre =
+          glm::dvec2(grid_.corner(i)) + 0.5 * grid_.side - glm::dvec2(camera_.cx, camera_.cy);
       const glm::dvec3 at(centre, camera_.fx);
       const glm::dvec3 to = camera_.rotation * at, middle = 0.5 * (part.box.low + part.box.high);
-      for (std::size_t k = first; k < all.count(); ++k) {
+      for (std::size_t k = first[i]; k < first[i + 1]; ++k) {
         all.position[k] = glm::vec3((glm::dvec3(all.position[k]) - middle) / pixel(part) + to);
         all.scale[k] = glm::vec3(glm::dvec3(all.scale[k]) / pixel(part));
       }
-    }
-    return all;
+    });
   }
 
-  glm::ivec2 corner(std::size_t i) const {  // of a part's square
-    const int k = static_cast<int>(i);
-    return square_ * glm::ivec2(k % across_, k / across_);
-  }
   double pixel(const Part& part) const { return part.errors->pixels[width_]; }
 
   std::span<const Part> parts_;
   std::size_t width_;
-  int square_ = 0, across_ = 0;  // px; squares in a row
+  Grid grid_{};
   Camera camera_;
 };
 
@@ -197,14 +217,12 @@ void judge(Drawer& drawer, std::span<const Part> parts) {
     for (std::size_t width = 0; width < widths; ++width) {
       if (!is_drawn(d, width)) continue;
       const Sheet sheet(parts, width, detail_direction(d));
-      const Picture finest = sheet.draw(drawer, 0);
-      parallel_for(parts.size(),
-                   [&](std::size_t i) { parts[i].errors->seen[d][width] = sheet.seen(finest, i); });
+      const std::vector<float> seen = sheet.draw_finest(drawer);
+      for (std::size_t i = 0; i < parts.size(); ++i) parts[i].errors->seen[d][width] = double{seen[i]};
       for (std::size_t level = 1; level < (width == 0 ? std::min(levels, fine_levels) : levels); ++level) {
-        const Picture drawn = sheet.draw(drawer, level);
-        parallel_for(parts.size(), [&](std::size_t i) {
-          parts[i].errors->of_level[level][d][width] = sheet.difference(drawn, finest, i);
-        });
+        const std::vector<float> lost = sheet.draw(drawer, level);
+        for (std::size_t i = 0; i < parts.size(); ++i)
+          parts[i].errors->of_level[level][d][width] = double{lost[i]};
       }
     }
   }

@@ -1,0 +1,70 @@
+// What a level of detail loses of each part, as pictures show it: parts lie side by side in a picture, each in a square of its
+// own. With FINEST, of the finest level: keeps the picture, and finds the mean colour of each part and how much is seen of it;
+// else by how much the drawn level differs from it, over what looks much like that mean colour. One work group a square; sums
+// are the same each time.
+#include "shared/limits.h"
+#include "shared/grid.glsl"
+
+layout(local_size_x = THREADS) in;
+
+layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; by pixel
+layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // likewise
+layout(std430, binding = 2) buffer Behind { vec4 behind[]; };             // mean colour by square
+layout(std430, binding = 3) writeonly buffer Sums { float sums_of_squares[]; };
+#if FINEST
+layout(std430, binding = 4) readonly buffer ZSums { float z_sums[]; };  // how much of each pixel is seen
+#endif
+uniform uint square_count;
+uniform uint square_side;  // px
+uniform uint row_squares;
+uniform uint row_pixels;
+
+// By how much what lies behind a part differs from its mean colour, as a deviation.
+const float contrast = 0.15;
+
+shared vec4 sums[THREADS];
+
+vec4 sum_of_all(vec4 of_this) {
+  uint self = gl_LocalInvocationIndex;
+  sums[self] = of_this;
+  barrier();
+  for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) {
+    if (self < half_way) sums[self] += sums[self + half_way];
+    barrier();
+  }
+  vec4 sum = sums[0];
+  barrier();
+  return sum;
+}
+
+vec3 shown(vec4 colour, vec3 over) { return clamp(colour.rgb + colour.a * over, 0.0, 1.0); }
+
+void main() {
+  uint square = group_index();
+  if (square >= square_count) return;
+  uint corner = (square / row_squares * row_pixels + square % row_squares) * square_side;
+  vec3 over = vec3(0.0);
+#if !FINEST
+  over = behind[square].rgb;
+#endif
+  vec4 colour = vec4(0.0);
+  float sum = 0.0;
+  for (uint k = gl_LocalInvocationIndex; k < square_side * square_side; k += THREADS) {
+    uint pixel = corner + k / square_side * row_pixels + k % square_side;
+#if FINEST
+    finest[pixel] = colours[pixel];
+    colour += vec4(colours[pixel].rgb, 1.0 - colours[pixel].a);
+    sum += z_sums[pixel];
+#else
+    vec3 apart = shown(colours[pixel], over) - shown(finest[pixel], over);
+    float covers = colours[pixel].a - finest[pixel].a;
+    sum += dot(apart, apart) / 3.0 + contrast * contrast * covers * covers;
+#endif
+  }
+#if FINEST
+  vec4 all = sum_of_all(colour);
+  if (gl_LocalInvocationIndex == 0u) behind[square] = all.a > 0.0 ? all / all.a : vec4(0.0);
+#endif
+  sum = sum_of_all(vec4(sum)).x;
+  if (gl_LocalInvocationIndex == 0u) sums_of_squares[square] = sum;
+}
