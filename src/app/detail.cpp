@@ -1,6 +1,10 @@
 #include "app/detail.h"
 
+#include <algorithm>
+
+#include "render/halves.h"
 #include "render/memory.h"
+#include "render/scatter.h"
 #include "scene/axes.h"
 
 namespace binosplat::app {
@@ -15,26 +19,31 @@ std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& li
                     list.listed ? list : eye_camera(camera, list.known), near_plane, axes);
 }
 
-/// Bytes that a frame starts with, the model's included.
-std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians) {
+/// Bytes that a frame starts with, those of the model included, and of uploads of so many Gaussians at once.
+std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians, std::size_t at_once) {
   shape.gaussian_count = shape.gaussian_room = gaussians;
   shape.slots = render::starting_slots(gaussians);
   const render::MemoryNeeds needs = render::memory_needs(shape);
-  return needs.model + needs.frame;
+  const int precision = shape.settings.precision;
+  const std::int64_t bytes_of_one =
+      render::gaussian_bytes(precision) + render::harmonic_bytes(shape.degree, precision) + 4;
+  const auto uploads = static_cast<std::int64_t>(std::min<std::size_t>(gaussians, at_once));
+  return needs.model + needs.frame + uploads * bytes_of_one;
 }
 
 }  // namespace
 
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
-                               std::span<const shared::View> views, int degree) {
+                               std::span<const shared::View> views, int degree, bool in_parts) {
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
   const auto bytes = static_cast<std::int64_t>(1e6 * megabytes);
   Model model;
   model.degree = degree;
   const render::FrameShape shape = render::make_shape(views, settings, model);
+  const std::size_t at_once = in_parts ? render::Scatter::records_at_once : 0;
   std::uint32_t fits = 0;
   for (std::uint32_t step = 1u << 30; step > 0; step /= 2) {
-    if (bytes_for(shape, fits + step) <= bytes) fits += step;
+    if (bytes_for(shape, fits + step, at_once) <= bytes) fits += step;
   }
   return fits;
 }
@@ -59,7 +68,9 @@ DetailBudget detail_budget(const RenderOptions& options, const CameraList& list)
     widest.assign(options.rig.one_picture() ? 1 : 2, make_view(sized(options.camera.lens, camera)));
   }
   budget.gaussians = [megabytes = *options.scene.gpu_memory, settings = settings_of(options.drawing),
-                      widest](int degree) { return gaussians_that_fit(megabytes, settings, widest, degree); };
+                      widest](int degree) {
+    return gaussians_that_fit(megabytes, settings, widest, degree, false);
+  };
   return budget;
 }
 

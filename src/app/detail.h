@@ -9,9 +9,10 @@
 
 namespace binosplat::app {
 
-/// How many Gaussians of a degree fit in so many MB beside what a frame of these views takes.
+/// How many Gaussians of a degree fit in so many MB beside what a frame of these views takes, and what their
+/// uploads do where they come `in_parts`.
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
-                               std::span<const shared::View> views, int degree);
+                               std::span<const shared::View> views, int degree, bool in_parts);
 
 /// How many Gaussians fit in --gpu-memory beside what a frame of the views takes, and from where the
 /// views see the model, both eyes: known before it is read, unless its own place decides (--orbit, no

@@ -31,8 +31,8 @@ DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings&
   if (options.gpu_memory) {
     const std::vector<shared::View> pair(
         2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720)));
-    need.most =
-        gaussians_that_fit(*options.gpu_memory, settings, views.empty() ? pair : views, scene.like().degree);
+    need.most = gaussians_that_fit(*options.gpu_memory, settings, views.empty() ? pair : views,
+                                   scene.like().degree, true);
     need.most -= std::min(need.most, scene.parts() * ModelParts::block);  // which may be nearly empty
   }
   return need;

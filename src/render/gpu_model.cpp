@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
+#include <functional>
 #include <span>
 
+#include "base/parallel.h"
 #include "render/halves.h"
 
 namespace binosplat::render {
@@ -16,60 +19,61 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
 
 using Range = ModelParts::Range;
 
-// Fills `stride` numbers of each of some Gaussians of the model in a page's buffer, which pack(Gaussian,
-// room) makes; in pieces: switches of levels must not wait for memory that is touched once. The room is zero
-// where it leaves it alone.
-template <typename T, typename Pack>
-void upload_in_pieces(const Range& range, const ModelBuffers::Page& page, std::size_t stride,
-                      gl::Buffer& buffer, const Pack& pack_one) {
-  constexpr std::size_t piece = 1 << 15;
-  std::vector<T> packed(std::min(piece, range.count) * stride);
-  for (std::size_t at = 0; at < range.count; at += piece) {
-    const std::size_t first = range.first + at, count = std::min(piece, range.count - at);
-    for (std::size_t k = 0; k < count; ++k)
-      pack_one(first + k, std::span(packed).subspan(k * stride, stride));
-    buffer.upload_part<T>(std::span(packed).first(count * stride), (first - page.first) * stride);
-  }
-}
+// How one kind of a Gaussian's numbers lies on the GPU: pack(i, room) puts those of Gaussian i of the model
+// into room for `words`, which is zero where it leaves it alone.
+struct Packing {
+  std::size_t words;
+  std::function<void(std::size_t i, std::span<std::uint32_t> room)> pack;
+};
 
-void upload_gaussians(const Model& model, int precision, const ModelBuffers::Page& page, const Range& range) {
+Packing packing_of_gaussians(const Model& model, int precision) {
+  const auto words = static_cast<std::size_t>(gaussian_bytes(precision)) / sizeof(std::uint32_t);
   if (precision == PRECISION_HALF) {
-    upload_in_pieces<Halves>(range, page, 1, *page.gaussians, [&](std::size_t i, std::span<Halves> room) {
-      room[0] = pack(gaussian_of(model, i));
-    });
-  } else {
-    upload_in_pieces<shared::Gaussian>(
-        range, page, 1, *page.gaussians,
-        [&](std::size_t i, std::span<shared::Gaussian> room) { room[0] = gaussian_of(model, i); });
+    return {words, [&model](std::size_t i, std::span<std::uint32_t> room) {
+              std::ranges::copy(pack(gaussian_of(model, i)), room.begin());
+            }};
   }
+  return {words, [&model](std::size_t i, std::span<std::uint32_t> room) {
+            const shared::Gaussian gaussian = gaussian_of(model, i);
+            std::memcpy(room.data(), &gaussian, sizeof(gaussian));
+          }};
 }
 
-void upload_harmonics(const Model& model, int precision, const ModelBuffers::Page& page, const Range& range) {
+Packing packing_of_harmonics(const Model& model, int precision) {
   const std::size_t floats = 3 * static_cast<std::size_t>(sh_count(model.degree));
-  const std::size_t stride =
-      static_cast<std::size_t>(harmonic_bytes(model.degree, precision)) / sizeof(float);
+  const auto words =
+      static_cast<std::size_t>(harmonic_bytes(model.degree, precision)) / sizeof(std::uint32_t);
   if (precision == PRECISION_HALF) {
-    upload_in_pieces<std::uint32_t>(range, page, stride, *page.harmonics,
-                                    [&](std::size_t i, std::span<std::uint32_t> room) {
-                                      pack(std::span(model.sh).subspan(i * floats, floats), room);
-                                    });
-  } else if (stride == floats) {
-    page.harmonics->upload_part(std::span(model.sh).subspan(range.first * floats, range.count * floats),
-                                (range.first - page.first) * floats);
-  } else {
-    upload_in_pieces<float>(range, page, stride, *page.harmonics, [&](std::size_t i, std::span<float> room) {
-      std::copy_n(&model.sh[i * floats], floats, room.begin());
-    });
+    return {words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
+              pack(std::span(model.sh).subspan(i * floats, floats), room);
+            }};
+  }
+  return {words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
+            std::memcpy(room.data(), &model.sh[i * floats], floats * sizeof(float));
+          }};
+}
+
+// Some of a page's Gaussians into a buffer of the page; in pieces: memory that is touched once takes long.
+void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buffer& buffer) {
+  constexpr std::size_t piece = 1 << 16;
+  std::vector<std::uint32_t> packed(std::min<std::size_t>(piece, page.count) * packing.words);
+  for (std::size_t at = 0; at < page.count; at += piece) {
+    const std::size_t count = std::min(piece, page.count - at);
+    const auto pack_one = [&](std::size_t k) {
+      packing.pack(page.first + at + k, std::span(packed).subspan(k * packing.words, packing.words));
+    };
+    parallel_for(count, pack_one, 1 << 12);
+    buffer.upload_part<std::uint32_t>(std::span(packed).first(count * packing.words), at * packing.words);
   }
 }
 
-// What of the ranges lies in the page.
-template <typename Upload>
-void each_in(const ModelBuffers::Page& page, std::span<const Range> ranges, const Upload& upload) {
+// Gaussians of the page that lie in the ranges.
+void add_places(const ModelBuffers::Page& page, std::span<const Range> ranges,
+                std::vector<std::uint32_t>& places) {
   for (const Range& range : ranges) {
     const std::size_t first = std::max<std::size_t>(range.first, page.first);
     const std::size_t end = std::min<std::size_t>(range.first + range.count, page.first + page.count);
-    if (first < end) upload(Range{first, end - first});
+    for (std::size_t i = first; i < end; ++i) places.push_back(static_cast<std::uint32_t>(i - page.first));
   }
 }
 
@@ -77,7 +81,7 @@ void each_in(const ModelBuffers::Page& page, std::span<const Range> ranges, cons
 
 ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, int in_precision,
                            std::uint32_t page_gaussians)
-    : precision(in_precision), networks(context), page_gaussians_(page_gaussians) {
+    : precision(in_precision), networks(context), page_gaussians_(page_gaussians), scatter_(context) {
   upload(context, model);
 }
 
@@ -100,8 +104,8 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
     page.gaussians->reserve(room_in(page, model) * gaussian_bytes(precision));
     page.harmonics->reserve(room_in(page, model) * harmonic_bytes(model.degree, precision));
     hide(page, page.count);
-    upload_gaussians(model, precision, page, {page.first, page.count});
-    upload_harmonics(model, precision, page, {page.first, page.count});
+    upload_page(packing_of_gaussians(model, precision), page, *page.gaussians);
+    upload_page(packing_of_harmonics(model, precision), page, *page.harmonics);
   }
   if (model.count() > 0) box = all_bounds(model);
 }
@@ -114,12 +118,18 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelP
     page.gaussians->grow(room_in(page, model) * each);
     page.harmonics->grow(room_in(page, model) * harmonic_bytes(model.degree, precision));
     hide(page, before);
-    each_in(page, changes.filled, [&](const Range& range) {
-      upload_gaussians(model, precision, page, range);
-      upload_harmonics(model, precision, page, range);
-    });
-    each_in(page, changes.emptied,
-            [&](const Range& range) { upload_gaussians(model, precision, page, range); });
+    std::vector<std::uint32_t> places;
+    add_places(page, changes.filled, places);
+    const std::size_t filled = places.size();
+    add_places(page, changes.emptied, places);
+    const auto upload = [&](const Packing& packing, gl::Buffer& buffer, std::size_t count) {
+      scatter_.upload(buffer, std::span(places).first(count), packing.words,
+                      [&](std::uint32_t place, std::span<std::uint32_t> room) {
+                        packing.pack(page.first + place, room);
+                      });
+    };
+    upload(packing_of_gaussians(model, precision), *page.gaussians, places.size());
+    upload(packing_of_harmonics(model, precision), *page.harmonics, filled);
   }
   for (const Range& range : changes.filled) {
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {

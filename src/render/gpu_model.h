@@ -9,6 +9,7 @@
 
 #include "gl/buffer.h"
 #include "render/anchors.h"
+#include "render/scatter.h"
 #include "render/shape.h"
 #include "scene/model_parts.h"
 
@@ -53,6 +54,7 @@ struct ModelBuffers {
 
   std::uint32_t page_gaussians_;
   std::size_t page_step_ = 0;  // Gaussians
+  Scatter scatter_;
 };
 
 class GpuModel {

@@ -1,0 +1,33 @@
+#pragma once
+// Uploads to places here and there of a buffer.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "gl/buffer.h"
+#include "gl/dispatch.h"
+
+namespace binosplat::render {
+
+/// Records go to the GPU side by side, from where a shader moves each to its place: an upload to each place
+/// takes a driver 10 us, whatever its size.
+class Scatter {
+ public:
+  static constexpr std::size_t records_at_once = 1 << 14;  // for which there is room on the GPU
+
+  explicit Scatter(gl::Context& context);
+
+  /// Fills records of `words` of 4 bytes of the buffer, which fill(place, room) makes; the room is zero where
+  /// it leaves it alone.
+  void upload(const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
+              const std::function<void(std::uint32_t place, std::span<std::uint32_t> room)>& fill);
+
+ private:
+  gl::Dispatcher dispatcher_;
+  gl::Buffer places_;   // uint by record
+  gl::Buffer records_;  // uint by record and word
+};
+
+}  // namespace binosplat::render
