@@ -2,6 +2,9 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 
 namespace binosplat {
 
@@ -9,6 +12,11 @@ void parallel_chunks(std::size_t count, std::size_t chunk,
                      const std::function<void(std::size_t begin, std::size_t end)>& body) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, chunk),
                     [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+void on_half_of_the_cores(const std::function<void()>& body) {
+  tbb::task_arena arena(std::max(1, tbb::this_task_arena::max_concurrency() / 2));
+  arena.execute(body);
 }
 
 }  // namespace binosplat

@@ -80,7 +80,17 @@ struct DetailSeen {
 
 struct DetailChoice {
   std::vector<std::size_t> levels;  // as choose_levels says them
-  double error = 0.0;               // squared, meaned over pixels and channels of the view that loses most
+  std::vector<double> pixels;       // of the views
+  /// By part: squared error by view, of each of its levels, summed over pixels; at the end that of the sphere
+  /// around the views.
+  std::vector<std::vector<double>> errors;
+
+  /// What the view that loses most does with any levels of the parts: squared, meaned over pixels and
+  /// channels.
+  double error_of(std::span<const std::size_t> any_levels) const;
+  double error() const { return error_of(levels); }
+  /// In dB.
+  double psnr_of(std::span<const std::size_t> any_levels) const;
 };
 
 /// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All

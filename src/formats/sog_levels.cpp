@@ -46,21 +46,41 @@ std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
   return numbers;
 }
 
+// Calls see(node) for every node of the tree that has Gaussians, always in one order.
+void walk(const JsonValue& root, const std::function<void(const JsonValue&)>& see) {
+  std::vector<JsonValue> nodes{root.at("tree")};
+  while (!nodes.empty()) {
+    const JsonValue node = nodes.back();
+    nodes.pop_back();
+    if (node.has("lods")) see(node);
+    if (!node.has("children")) continue;
+    const JsonValue children = node.at("children");
+    for (std::size_t i = children.size(); i-- > 0;) nodes.push_back(children.at(i));
+  }
+}
+
 }  // namespace
 
-SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json)
-    : folder_(path.parent_path()), root_(path.string(), json) {
-  count_ = static_cast<int>(root_.at("lodLevels").whole(most_levels));
-  if (count_ == 0) root_.at("lodLevels").fail_here("expected one level at least");
-  for (int level = 0; level < count_; ++level) keys_.push_back(std::to_string(level));
-  const JsonValue names = root_.at("filenames");
+SogLevels::SogLevels(const fs::path& path, const nlohmann::json& json) : path_(path) {
+  const JsonValue root(path.string(), json);
+  count_ = static_cast<int>(root.at("lodLevels").whole(most_levels));
+  if (count_ == 0) root.at("lodLevels").fail_here("expected one level at least");
+  const JsonValue names = root.at("filenames");
   std::set<fs::path> named;  // twice, a file could be taken any number of times
   for (std::size_t i = 0; i < names.size(); ++i) {
     files_.push_back(file(names.at(i)));
     if (!named.insert(files_.back().lexically_normal()).second)
       names.at(i).fail_here("this file is named twice");
   }
-  if (root_.has("environment")) environment_ = file(root_.at("environment"));
+  if (root.has("environment")) environment_ = file(root.at("environment"));
+  walk(root, [&](const JsonValue& node) {
+    const JsonValue lods = node.at("lods");
+    std::vector<Place>& places = leaves_.emplace_back();
+    for (int level = 0; level < count_; ++level) {
+      const std::string key = std::to_string(level);
+      if (lods.has(key)) places.push_back(place(level, lods.at(key)));
+    }
+  });
 }
 
 bool SogLevels::there(std::size_t file) const {
@@ -71,15 +91,12 @@ bool SogLevels::there(std::size_t file) const {
 std::vector<std::vector<SogLevels::Taken>> SogLevels::taken(
     const std::function<int(std::size_t leaf)>& level_of) const {
   std::vector<std::vector<Taken>> result(files_.size());
-  std::size_t number = 0;
-  walk([&](const JsonValue& node) {
-    const JsonValue lods = node.at("lods");
-    const std::size_t leaf = number++;
-    const std::string key = std::to_string(level_of(leaf));
-    if (!lods.has(key)) return;
-    const auto [index, range] = part(lods.at(key));
-    if (range.count > 0) result[index].push_back({leaf, range});
-  });
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const int level = level_of(leaf);
+    for (const Place& place : leaves_[leaf]) {
+      if (place.level == level && place.range.count > 0) result[place.file].push_back({leaf, place.range});
+    }
+  }
   for (std::size_t i = 0; i < result.size(); ++i) sort(result[i], i);
   return result;
 }
@@ -94,24 +111,23 @@ std::vector<bool> SogLevels::found() const {
   return found;
 }
 
-std::vector<DetailPart> SogLevels::leaves() const {
+std::vector<DetailPart> SogLevels::leaves(const nlohmann::json& json) const {
   const std::vector<bool> is_there = found();
   std::vector<DetailPart> result;
-  walk([&](const JsonValue& node) {
-    const JsonValue bound = node.at("bound"), lods = node.at("lods");
+  walk(JsonValue(path_.string(), json), [&](const JsonValue& node) {
+    const JsonValue bound = node.at("bound");
     DetailPart leaf{corner(bound.at("min")), corner(bound.at("max")), {}};
     if (node.has("pixels")) {
       leaf.pixels = widths_of(node.at("pixels"));
       leaf.seen = by_direction(node.at("seen"), leaf.pixels.size());
     }
-    for (int level = 0; level < count_; ++level) {
-      const std::string& key = keys_[static_cast<std::size_t>(level)];
-      if (!lods.has(key)) continue;
-      const JsonValue lod = lods.at(key);
-      const auto [index, range] = part(lod);
-      DetailPart::Level of_leaf{level, range.count};
-      if (!leaf.pixels.empty()) of_leaf.errors = by_direction(lod.at("errors"), leaf.pixels.size());
-      if (is_there[index]) leaf.levels.push_back(std::move(of_leaf));
+    for (const Place& place : leaves_[result.size()]) {
+      DetailPart::Level level{place.level, place.range.count};
+      if (!leaf.pixels.empty()) {
+        const JsonValue lod = node.at("lods").at(std::to_string(place.level));
+        level.errors = by_direction(lod.at("errors"), leaf.pixels.size());
+      }
+      if (is_there[place.file]) leaf.levels.push_back(std::move(level));
     }
     result.push_back(std::move(leaf));
   });
@@ -120,17 +136,15 @@ std::vector<DetailPart> SogLevels::leaves() const {
 
 std::vector<std::optional<fs::path>> SogLevels::missing() const {
   const std::vector<bool> is_there = found();
-  std::vector<std::size_t> first(keys_.size(), files_.size());
-  walk([&](const JsonValue& node) {
-    const JsonValue lods = node.at("lods");
-    for (std::size_t level = 0; level < keys_.size(); ++level) {
-      if (!lods.has(keys_[level])) continue;
-      const auto [index, range] = part(lods.at(keys_[level]));
-      if (range.count > 0 && !is_there[index]) first[level] = std::min(first[level], index);
+  std::vector<std::size_t> first(static_cast<std::size_t>(count_), files_.size());
+  for (const std::vector<Place>& places : leaves_) {
+    for (const Place& place : places) {
+      std::size_t& of_level = first[static_cast<std::size_t>(place.level)];
+      if (place.range.count > 0 && !is_there[place.file]) of_level = std::min(of_level, place.file);
     }
-  });
-  std::vector<std::optional<fs::path>> result(keys_.size());
-  for (std::size_t level = 0; level < keys_.size(); ++level)
+  }
+  std::vector<std::optional<fs::path>> result(first.size());
+  for (std::size_t level = 0; level < result.size(); ++level)
     if (first[level] < files_.size()) result[level] = files_[first[level]];
   return result;
 }
@@ -139,29 +153,16 @@ fs::path SogLevels::file(const JsonValue& value) const {
   const std::string name = value.text();
   if (!stays_below(name))
     value.fail_here("a file must lie below lod-meta.json's folder; it is named '{}'", name);
-  return folder_ / name;
-}
-
-// Calls see(node) for every node of the tree that has Gaussians, always in one order.
-void SogLevels::walk(const std::function<void(const JsonValue&)>& see) const {
-  std::vector<JsonValue> nodes{root_.at("tree")};
-  while (!nodes.empty()) {
-    const JsonValue node = nodes.back();
-    nodes.pop_back();
-    if (node.has("lods")) see(node);
-    if (!node.has("children")) continue;
-    const JsonValue children = node.at("children");
-    for (std::size_t i = children.size(); i-- > 0;) nodes.push_back(children.at(i));
-  }
+  return path_.parent_path() / name;
 }
 
 // Which file a leaf's level lies in, and where.
-std::pair<std::size_t, SogSource::Range> SogLevels::part(const JsonValue& lod) const {
+SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
   const std::uint64_t index = lod.at("file").whole(most_gaussians);
   if (index >= files_.size()) {
     lod.at("file").fail_here("there is no file {}: 'filenames' has {}, counted from 0", index, files_.size());
   }
-  return {index, {lod.at("offset").whole(most_gaussians), lod.at("count").whole(most_gaussians), 0}};
+  return {level, index, {lod.at("offset").whole(most_gaussians), lod.at("count").whole(most_gaussians), 0}};
 }
 
 void SogLevels::sort(std::vector<Taken>& taken, std::size_t index) const {
@@ -170,7 +171,7 @@ void SogLevels::sort(std::vector<Taken>& taken, std::size_t index) const {
   for (std::size_t i = 1; i < taken.size(); ++i) {
     const SogSource::Range &before = taken[i - 1].range, &now = taken[i].range;
     if (now.first < before.first + before.count) {
-      fail("{}: two leaves of the tree share Gaussian {} of {}; the file is damaged", root_.source(),
+      fail("{}: two leaves of the tree share Gaussian {} of {}; the file is damaged", path_.string(),
            now.first, files_[index].string());
     }
   }

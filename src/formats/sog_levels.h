@@ -22,8 +22,8 @@ class SogLevels {
     SogSource::Range range;
   };
 
-  /// `json`, the parsed lod-meta.json at `path`, must outlive this. Throws Error, here as in all that
-  /// follows, naming the key that is wrong.
+  /// Of the parsed lod-meta.json at `path`. Throws Error, here as in all that follows, naming the key that is
+  /// wrong.
   SogLevels(const std::filesystem::path& path, const nlohmann::json& json);
 
   int count() const { return count_; }
@@ -37,25 +37,31 @@ class SogLevels {
   std::vector<std::vector<Taken>> taken(const std::function<int(std::size_t leaf)>& level_of) const;
   std::vector<std::vector<Taken>> taken(int level) const;
 
-  /// The tree's leaves, with the levels whose files are there, and their errors where those are told.
-  std::vector<DetailPart> leaves() const;
+  /// The tree's leaves, with the levels whose files are there, and their errors where those are told; from
+  /// the same lod-meta.json.
+  std::vector<DetailPart> leaves(const nlohmann::json& json) const;
 
   /// For each level the first file that it needs and that is not there.
   std::vector<std::optional<std::filesystem::path>> missing() const;
 
  private:
+  /// Where a leaf's Gaussians of a level lie.
+  struct Place {
+    int level = 0;
+    std::size_t file = 0;
+    SogSource::Range range;
+  };
+
   std::filesystem::path file(const JsonValue& value) const;
   std::vector<bool> found() const;
-  void walk(const std::function<void(const JsonValue&)>& see) const;
-  std::pair<std::size_t, SogSource::Range> part(const JsonValue& lod) const;
+  Place place(int level, const JsonValue& lod) const;
   void sort(std::vector<Taken>& taken, std::size_t index) const;
 
-  std::filesystem::path folder_;
-  JsonValue root_;
+  std::filesystem::path path_;
   int count_ = 0;
-  std::vector<std::string> keys_;  // of levels: "0", "1" ...
   std::vector<std::filesystem::path> files_;
   std::optional<std::filesystem::path> environment_;
+  std::vector<std::vector<Place>> leaves_;
 };
 
 /// Throws Error unless what is taken of a file, which is something, is in it.

@@ -90,8 +90,9 @@ void check_leaves(const fs::path& path, const std::vector<DetailPart>& leaves) {
 }
 
 /// A level for each leaf, so that they fit.
-Selection choose(const fs::path& path, const SogLevels& levels, const DetailBudget& budget) {
-  const std::vector<DetailPart> leaves = levels.leaves();
+Selection choose(const fs::path& path, const SogLevels& levels, const nlohmann::json& root,
+                 const DetailBudget& budget) {
+  const std::vector<DetailPart> leaves = levels.leaves(root);
   check_leaves(path, leaves);
   std::size_t file = 0;
   while (!levels.there(file)) ++file;
@@ -180,7 +181,8 @@ bool is_streamed_sog(const fs::path& path) { return parse_lod_meta(lod_meta_of(p
 Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod,
                         const std::optional<DetailBudget>& budget) {
   const SogLevels levels(lod_meta, root);
-  const Selection choice = budget ? choose(lod_meta, levels, *budget) : choose_one(lod_meta, levels, lod);
+  const Selection choice =
+      budget ? choose(lod_meta, levels, root, *budget) : choose_one(lod_meta, levels, lod);
   std::vector<Part> parts = open_parts(lod_meta, levels, choice.taken);
   Model model;
   model.name = lod_meta.filename().string();
@@ -215,20 +217,24 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
   return model;
 }
 
-/// lod-meta.json and the SOGs that are there; none of another file.
+/// What lod-meta.json says, and the SOGs that are there; none of another file.
 struct StreamedSog::Source {
   fs::path path;
-  nlohmann::json json;
   SogLevels levels;
+  std::vector<DetailPart> leaves;
   std::vector<std::optional<SogSource>> files;  // the environment last, where there is one
+  std::uint64_t bytes = 0;                      // of them (SogSource::bytes)
 
-  explicit Source(const fs::path& asked)
-      : path(lod_meta_of(asked)), json(levels_json(path, asked)), levels(path, json) {
+  explicit Source(const fs::path& asked) : Source(asked, levels_json(lod_meta_of(asked), asked)) {}
+
+  Source(const fs::path& asked, const nlohmann::json& json)
+      : path(lod_meta_of(asked)), levels(path, json), leaves(levels.leaves(json)) {
     files.resize(levels.files().size());
     parallel_for(files.size(), [&](std::size_t i) {
       if (levels.there(i)) files[i] = open_part(levels.files()[i]);
     });
     if (levels.environment()) files.emplace_back(open_part(*levels.environment()));
+    for (const auto& file : files) bytes += file ? file->bytes() : 0;
   }
 
   /// Gaussians of the environment.
@@ -240,7 +246,7 @@ struct StreamedSog::Source {
 };
 
 StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source>(path)) {
-  leaves_ = source_->levels.leaves();
+  leaves_ = std::move(source_->leaves);
   check_leaves(source_->path, leaves_);
   read_.resize(leaves_.size());
   like_.name = source_->path.filename().string();
@@ -267,12 +273,11 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   const std::size_t most = need.most - std::min(need.most, source_->around());
   const std::span<const std::size_t> before = by_views_ ? std::span(chosen_) : std::span<std::size_t>();
   const std::vector<DetailView> detail = detail_views(views);
-  predicted_psnr_.reset();
+  choice_.reset();
   if (need.db && !views.empty()) {
-    DetailChoice choice = choose_levels_within(leaves_, detail, std::pow(10.0, -0.1 * *need.db), most, seen,
-                                               before, need.heads_turn);
-    chosen_ = std::move(choice.levels);
-    predicted_psnr_ = -10.0 * std::log10(choice.error);
+    choice_ = std::make_shared<const DetailChoice>(choose_levels_within(
+        leaves_, detail, std::pow(10.0, -0.1 * *need.db), most, seen, before, need.heads_turn));
+    chosen_ = choice_->levels;
   } else {
     std::vector<glm::dvec3> eyes;
     double focal = 0.0;
@@ -287,9 +292,8 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   const std::size_t total = chosen_count();
   if (total > need.most && !told_no_room_) tell_no_room(source_->path, total, need.most);
   told_no_room_ = total > need.most;
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
     if (!leaves_[leaf].levels.empty() && read_[leaf] != chosen_[leaf]) return true;
-  }
   return source_->around() > 0 && !environment_read_;
 }
 
@@ -313,9 +317,8 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
     if (source_->around() > 0 && !environment_read_ && !shrinks)
       taken.emplace_back().push_back({leaves_.size(), {0, source_->around(), 0}});
     std::vector<std::size_t> files;
-    for (std::size_t i = 0; i < taken.size(); ++i) {
+    for (std::size_t i = 0; i < taken.size(); ++i)
       if (!taken[i].empty()) files.push_back(i);
-    }
     // Few Gaussians that mend much come before many that mend little.
     std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) {
       const std::size_t leaf = taken[i].front().leaf;
@@ -360,9 +363,7 @@ void StreamedSog::check_chosen() const {
   }
   const std::size_t total = chosen_count();
   if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), like_.format);
-  std::uint64_t bytes = 0;
-  for (const auto& file : source_->files) bytes += file ? file->bytes() : 0;
-  check_total(source_->path, total, bytes);
+  check_total(source_->path, total, source_->bytes);
 }
 
 std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, Taken taken) const {

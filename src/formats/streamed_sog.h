@@ -56,8 +56,12 @@ class StreamedSog {
   /// The choice: for each leaf the place of its level among those that are there.
   const std::vector<std::size_t>& chosen() const { return chosen_; }
 
-  /// What the views are taken to have against the finest levels, in dB; none where dB were not chosen by.
-  std::optional<double> predicted_psnr() const { return predicted_psnr_; }
+  /// What the views of the last choice lose, at whatever levels; none where dB were not chosen by.
+  const std::shared_ptr<const DetailChoice>& choice() const { return choice_; }
+  /// What those views are taken to have against the finest levels, in dB, with the choice; likewise.
+  std::optional<double> predicted_psnr() const {
+    return choice_ ? std::optional(choice_->psnr_of(chosen_)) : std::nullopt;
+  }
 
   /// The Gaussians of a part at the level chosen.
   struct Piece {
@@ -95,7 +99,7 @@ class StreamedSog {
   std::vector<DetailPart> leaves_;
   std::vector<std::size_t> chosen_;  // places in a leaf's `levels`
   bool by_views_ = false;            // chosen
-  std::optional<double> predicted_psnr_;
+  std::shared_ptr<const DetailChoice> choice_;
   std::vector<std::optional<std::size_t>> read_;  // of the leaves
   bool environment_read_ = false;
   bool told_no_room_ = false;

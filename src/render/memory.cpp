@@ -16,8 +16,10 @@ std::uint32_t starting_slots(std::uint32_t gaussians) {
 
 std::int64_t starting_pairs(const FrameShape& shape) {
   constexpr std::int64_t pairs_per_splat = 16;
+  // A model that grows is one that somebody moves through: making more room takes 100 ms.
+  const int most_bits = shape.gaussian_room > shape.gaussian_count ? 25 : 24;
   return std::clamp(shape.slots * std::int64_t{shape.view_count()} * pairs_per_splat, std::int64_t{1} << 16,
-                    std::int64_t{1} << 24);
+                    std::int64_t{1} << most_bits);
 }
 
 MemoryNeeds memory_needs(const FrameShape& shape) {

@@ -11,8 +11,8 @@ namespace binosplat::fuzz {
 
 namespace {
 
-void check(const SogLevels& levels) {
-  std::vector<DetailPart> leaves = levels.leaves();
+void check(const SogLevels& levels, const nlohmann::json& json) {
+  std::vector<DetailPart> leaves = levels.leaves(json);
   for (int level = 0; level < std::min(levels.count(), 3); ++level) {
     const auto taken = levels.taken(level);
     demand(taken.size() == levels.files().size(), "a file without a list");
@@ -47,13 +47,9 @@ void check(const SogLevels& levels) {
     return choose_levels(leaves, {{x, 0, 0}}, most, 0.01, before);
   });
   follow([&](double x, const auto& before) {
-    const std::vector<std::vector<SeenPart>> seen = {std::vector<SeenPart>(leaves.size(), {x, x + 1.0})};
-    const bool was_seen = !before.empty();
-    return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most,
-                                was_seen ? std::span<const std::vector<SeenPart>>(seen)
-                                         : std::span<const std::vector<SeenPart>>(),
-                                before)
-        .levels;
+    DetailSeen seen;
+    if (!before.empty()) seen = {{std::vector<SeenPart>(leaves.size(), {x, x + 1.0})}, before};
+    return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most, seen, before).levels;
   });
 }
 
@@ -62,7 +58,7 @@ void check(const SogLevels& levels) {
 void target(std::span<const std::byte> bytes) {
   feed(bytes, [&](const std::filesystem::path& path) {
     const nlohmann::json json = parse_json(path.string(), as_text(bytes));
-    check(SogLevels(path, json));
+    check(SogLevels(path, json), json);
   });
 }
 
