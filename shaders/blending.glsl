@@ -51,15 +51,17 @@ layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat, 
 #define MEASURED uint
 shared uint batch_measured[BATCH];
 #elif SUMS != SUMS_NONE
-layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat and channel, 64 bits, low first
+layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat and channel (seen: one), 64 bits, low first
 #if SUMS == SUMS_TRANSPOSED
 uniform uint scale;  // bits of a float
 #endif
+#if SUMS == SUMS_SEEN
+#define MEASURED int
+#else
 #define MEASURED ivec4
-shared ivec4 batch_measured[BATCH];
-#if SUMS != SUMS_SEEN
 vec4 picture[COLUMN];  // transposed: scaled
 #endif
+shared MEASURED batch_measured[BATCH];
 #endif
 #if SHOW != SHOW_PICTURE
 layout(std430, binding = 8) writeonly buffer Shown { float shown[]; };  // below 0: nothing to tell
@@ -100,13 +102,11 @@ float least[COLUMN];          // and this -T; until then the T that the blend st
 // the buffer, cost little beside the blend. Or sums over all pixels, in whole numbers, so that the order of the additions does
 // not matter. The transposed blend: the picture, by what the splat counts for. Changes: without the splat alone, what lies
 // behind it, of which it leaves the share 1 - alpha, is in its place. Seen: what an error of its colour would count for,
-// alpha T, times the T that an error of its alpha would.
+// alpha T, times the T that an error of its alpha would (blend()).
 void measure(uint at, uint p, float weight) {
-#if SUMS != SUMS_NONE
+#if SUMS == SUMS_TRANSPOSED || SUMS == SUMS_CHANGES
 #if SUMS == SUMS_TRANSPOSED
   ivec4 steps = ivec4(floor(weight * picture[p] + 0.5));
-#elif SUMS == SUMS_SEEN
-  ivec4 steps = ivec4(floor(weight * transmittance[p] * float(SEEN_SCALE) + 0.5), 0, 0, 0);
 #else
   vec3 own = batch_colour[at].rgb;
   vec3 behind = (picture[p].rgb - colour[p] - weight * own) / (transmittance[p] - weight);
@@ -133,15 +133,21 @@ float median_depth(uint at[AHEAD], float weights[AHEAD], float light) {
 
 // What a tile measured of a splat, to the buffer.
 #if SUMS != SUMS_NONE
-void pass_on(uint splat, ivec4 sums) {
-  for (uint c = 0u; c < 4u; ++c) {
-    if (sums[c] == 0) continue;
-    uint at = 2u * (4u * splat + c), sum = uint(sums[c]);
-    uint before = atomicAdd(measured[at], sum);
-    uint above = (sums[c] < 0 ? 0xffffffffu : 0u) + (before + sum < before ? 1u : 0u);
-    if (above != 0u) atomicAdd(measured[at + 1u], above);
-  }
+void add_to(uint place, int sum) {
+  if (sum == 0) return;
+  uint at = 2u * place;
+  uint before = atomicAdd(measured[at], uint(sum));
+  uint above = (sum < 0 ? 0xffffffffu : 0u) + (before + uint(sum) < before ? 1u : 0u);
+  if (above != 0u) atomicAdd(measured[at + 1u], above);
 }
+
+#if SUMS == SUMS_SEEN
+void pass_on(uint splat, int sum) { add_to(splat, sum); }
+#else
+void pass_on(uint splat, ivec4 sums) {
+  for (uint c = 0u; c < 4u; ++c) add_to(4u * splat + c, sums[c]);
+}
+#endif
 #elif RECORDS
 void pass_on(uint splat, uint most) {
   if (most != 0u) atomicMax(measured[splat], most);
@@ -264,12 +270,18 @@ void blend(uint at[AHEAD]) {
   }
   for (uint k = 0u; k < AHEAD; ++k) {
     vec4 c = batch_colour[at[k]];
+#if SUMS == SUMS_SEEN
+    int seen = 0;
+#endif
     for (uint p = 0u; p < COLUMN; ++p) {
       float weight = weights[p][k];
 #if DEPTH == DEPTH_SEEN
       z_sum[p] += weight * transmittance[p];
 #endif
-#if RECORDS || SUMS != SUMS_NONE
+#if SUMS == SUMS_SEEN
+      seen += int(floor(weight * transmittance[p] * float(SEEN_SCALE) + 0.5));
+      transmittance[p] -= weight;
+#elif RECORDS || SUMS != SUMS_NONE
       if (IS_MET(p, k)) measure(at[k], p, weight);
       transmittance[p] -= weight;
 #elif DEPTH == DEPTH_SEEN
@@ -292,6 +304,9 @@ void blend(uint at[AHEAD]) {
 #endif
       colour[p] = vec3(r, g, b);
     }
+#if SUMS == SUMS_SEEN
+    if (seen != 0) atomicAdd(batch_measured[at[k]], seen);
+#endif
   }
   for (uint p = 0u; p < COLUMN; ++p) transmittance[p] = left[p];
 }

@@ -12,7 +12,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
-layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };         // by splat, four of 64 bits, low first
+layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat, 64 bits, low first
 layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // part by block of Gaussians
 layout(std430, binding = 6) buffer OfParts { uint of_parts[]; };            // (view, part), two of 64 bits
 uniform uint part_count;
@@ -36,7 +36,7 @@ void main() {
   if (i >= page_count) return;
   uint part = owners[indices[slot] / block_size];
   for (uint v = view_begin; v < view_end; ++v) {
-    uint from = 4u * splat_of(slot, v);
+    uint from = splat_of(slot, v);
     uvec2 area = sums[from];
     if (area != uvec2(0)) sums[from] = uvec2(0);  // for the next look
     if (area.y == 0u) area.x = max(area.x, hidden);

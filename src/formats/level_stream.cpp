@@ -1,8 +1,11 @@
 #include "formats/level_stream.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
+
+#include "base/parallel.h"
 
 namespace binosplat {
 
@@ -14,7 +17,26 @@ constexpr std::size_t read_ahead = 1 << 20;
 // their harmonics.
 constexpr std::size_t room_most = 1 << 22;
 constexpr double between_looks_ms = 100.0;
-constexpr int looks_most = 3;  // at the same views; then a choice hardly changes any more
+constexpr double glance_ms = 3.0;   // that a frame may take for a look
+constexpr double bands_most = 8.0;  // of a view: each costs all that does not depend on pixels, too
+constexpr int looks_most = 3;       // at the same views; then a choice hardly changes any more
+
+bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
+  return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
+}
+
+// What is seen in another band, too.
+void add(const std::vector<SeenPart>& more, std::vector<SeenPart>& seen) {
+  for (std::size_t p = 0; p < seen.size(); ++p) {
+    const double area = seen[p].area + more[p].area;
+    if (more[p].area == 0.0) continue;
+    const double share = more[p].area / area;
+    seen[p].distance = seen[p].area == 0.0
+                           ? more[p].distance
+                           : std::pow(seen[p].distance, 1.0 - share) * std::pow(more[p].distance, share);
+    seen[p].area = area;
+  }
+}
 
 }  // namespace
 
@@ -38,7 +60,11 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
 
 void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   if (views.empty()) return;
-  if (!std::ranges::equal(std::as_bytes(views), std::as_bytes(std::span(wanted_)))) {
+  if (!same(views, wanted_)) {
+    if (views.size() != wanted_.size()) {
+      looked_.clear();
+      band_.index = 0;
+    }
     wanted_.assign(views.begin(), views.end());
     looks_ = 0;
     is_due_ = true;
@@ -47,20 +73,43 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
     const std::lock_guard lock(mutex_);
     is_due_ = is_due_ || is_idle();
   }
-  if (!is_due_ || (by_db_ && looked_at_ && ms_since(*looked_at_) < between_looks_ms)) return;
-  is_due_ = false;
+  if (!is_due_) return;
   Wish wish{wanted_, {}};
   if (by_db_) {
-    wish.seen = {look(parts_), drawn_};
-    looked_at_ = Clock::now();
-    changed_since_look_ = false;
+    if (!looks(look)) return;
+    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}};
     ++looks_;
   }
+  is_due_ = !same(wish.views, wanted_);
   const std::lock_guard lock(mutex_);
   if (trouble_) return;
   wish_ = std::move(wish);
   if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
   changed_.notify_all();
+}
+
+// At the next band or view; whether all have been looked at.
+bool LevelStream::looks(const Look& look) {
+  if (looked_.empty()) {
+    if (looked_at_ && ms_since(*looked_at_) < between_looks_ms) return false;
+    looked_at_ = Clock::now();
+    changed_since_look_ = false;
+    look_ms_ = 0.0;
+    seen_.clear();
+  }
+  if (band_.index == 0) {
+    looked_.push_back(wanted_[looked_.size()]);
+    seen_.emplace_back(parts_.size());
+  }
+  const auto start = Clock::now();
+  add(look(looked_.back(), band_, parts_), seen_.back());
+  look_ms_ += ms_since(start);
+  if (++band_.index < band_.count) return false;
+  band_.index = 0;
+  if (looked_.size() < wanted_.size()) return false;
+  const double of_view_ms = look_ms_ / static_cast<double>(wanted_.size());
+  band_.count = static_cast<int>(std::clamp(std::ceil(of_view_ms / glance_ms), 1.0, bands_most));
+  return true;
 }
 
 void LevelStream::work(const std::stop_token& stop) {
@@ -71,20 +120,25 @@ void LevelStream::work(const std::stop_token& stop) {
     lock.unlock();
     std::exception_ptr trouble;
     try {
-      read(wish, stop);
+      // Drawing must not wait for a core, nor for memory that all others are clearing.
+      on_half_of_the_cores([&] { read(wish, stop); });
     } catch (...) {
       trouble = std::current_exception();
     }
     lock.lock();
     works_ = false;
-    predicted_psnr_ = scene_.predicted_psnr();
     trouble_ = trouble;
     if (trouble_) return;
   }
 }
 
 void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
-  if (!scene_.choose(wish.views, need_(scene_, wish.views), wish.seen)) return;
+  const bool reads = scene_.choose(wish.views, need_(scene_, wish.views), wish.seen);
+  {
+    const std::lock_guard lock(mutex_);
+    choice_ = scene_.choice();
+  }
+  if (!reads) return;
   drop_unwanted();
   const auto take = [&](StreamedSog::Piece piece) {
     std::unique_lock lock(mutex_);
@@ -142,8 +196,12 @@ bool LevelStream::settled() const {
 }
 
 std::optional<double> LevelStream::predicted_psnr() const {
-  const std::lock_guard lock(mutex_);
-  return predicted_psnr_;
+  std::shared_ptr<const DetailChoice> choice;
+  {
+    const std::lock_guard lock(mutex_);
+    choice = choice_;
+  }
+  return choice ? std::optional(choice->psnr_of(drawn_)) : std::nullopt;
 }
 
 }  // namespace binosplat

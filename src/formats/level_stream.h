@@ -38,9 +38,11 @@ class LevelStream {
   Model coarsest(std::span<const shared::View> views = {});
 
   /// Has read what these views need, which are those of one frame in the model's frame, instead of what
-  /// others needed. By dB it calls `look` first, which tells what each of them shows of each part as
-  /// StreamedSog::choose takes it; no more than ten times a second, and until then what was wanted stays.
-  using Look = std::function<std::vector<std::vector<SeenPart>>(const ModelParts& parts)>;
+  /// others needed. By dB it calls `look` first, which tells what one of them shows of each part: for one
+  /// view in each call, since a frame has little time, or for a band of one, where that took longer than 3 ms
+  /// the last time. For all of them no more than ten times a second; until then what was wanted stays.
+  using Look =
+      std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);
 
   /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, but one
@@ -52,7 +54,8 @@ class LevelStream {
   /// Gaussians of the model.
   std::size_t gaussians() const { return parts_.gaussians(); }
   const ModelParts& parts() const { return parts_; }
-  /// Of the views that were wanted last, once that is settled (StreamedSog::predicted_psnr).
+  /// What the views that were looked at last are taken to have against the finest levels, in dB, with the
+  /// levels that the model has now; none where dB are not gone by, or nothing was looked at yet.
   std::optional<double> predicted_psnr() const;
 
  private:
@@ -60,6 +63,7 @@ class LevelStream {
     std::vector<shared::View> views;
     DetailSeen seen;
   };
+  bool looks(const Look& look);
   void work(const std::stop_token& stop);
   void read(const Wish& wish, const std::stop_token& stop);
   void drop_unwanted();
@@ -74,7 +78,11 @@ class LevelStream {
   bool is_due_ = false;             // to be wished
   std::vector<std::size_t> drawn_;  // places of the parts' levels, in the model
   // By dB:
-  int looks_ = 0;  // at these views
+  int looks_ = 0;                            // at these views, all of them
+  std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
+  std::vector<std::vector<SeenPart>> seen_;  // and what it showed
+  Band band_;                                // of the last of them, that comes next
+  double look_ms_ = 0.0;                     // of the looks at them
   bool changed_since_look_ = false;
   std::optional<Clock::time_point> looked_at_;
 
@@ -84,7 +92,7 @@ class LevelStream {
   bool works_ = false;
   std::deque<StreamedSog::Piece> pieces_;
   std::size_t gaussians_read_ = 0;  // of these
-  std::optional<double> predicted_psnr_;
+  std::shared_ptr<const DetailChoice> choice_;
   std::exception_ptr trouble_;
   std::jthread thread_;  // last: it ends first
 };

@@ -159,10 +159,9 @@ void Session::make_shown(std::span<const shared::View> views) {
 }
 
 void Session::follow(LevelStream& levels) {
-  const std::vector<shared::View> asked = views();
-  levels.want(asked, [&](const ModelParts& parts) {
+  levels.want(views(), [&](const shared::View& view, Band band, const ModelParts& parts) {
     if (!sight_) sight_.emplace(frame_.model());
-    return sight_->look(asked, choices.settings, parts);
+    return sight_->look({&view, 1}, choices.settings, parts, render::Sight::shrink_usual, band).front();
   });
   const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
   if (changes.empty()) return;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/parallel.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -29,6 +30,22 @@ shared::View shrunk(const shared::View& view, int by) {
   return small;
 }
 
+/// Rows of a picture, which end between cells, as windows do (ViewPart); none where there are more bands.
+struct Rows {
+  std::uint32_t top, bottom;
+};
+
+Rows rows_of(const Band& band, const shared::View& view) {
+  constexpr std::uint32_t cell = BLEND_CELL;
+  const std::uint32_t cells = (view.height + cell - 1) / cell;
+  const auto row = [&](int index) {
+    const std::uint64_t before = std::uint64_t{cells} * static_cast<std::uint32_t>(index);
+    return std::min(static_cast<std::uint32_t>(before / static_cast<std::uint32_t>(band.count)) * cell,
+                    view.height);
+  };
+  return {row(band.index), row(band.index + 1)};
+}
+
 }  // namespace
 
 Sight::Sight(std::shared_ptr<GpuModel> model)
@@ -40,24 +57,31 @@ Sight::Sight(std::shared_ptr<GpuModel> model)
 
 std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
                                                const FrameSettings& settings, const ModelParts& parts,
-                                               int shrink_most) {
+                                               int shrink_most, Band band) {
   FrameSettings exact = exact_of(settings);
   exact.precision = settings.precision;
   std::vector<shared::View> small(views.begin(), views.end());
   std::vector<double> pixel_areas;  // of the views' pixels
+  std::vector<std::vector<SeenPart>> seen(views.size(), std::vector<SeenPart>(parts.size()));
   for (shared::View& view : small) {
     const auto shrink = static_cast<int>(std::min(view.width, view.height) / small_enough);
     const glm::dvec2 size(view.width, view.height);
     view = shrunk(view, std::clamp(shrink, 1, shrink_most));
     pixel_areas.push_back(size.x / view.width * size.y / view.height);
+    const Rows rows = rows_of(band, view);
+    if (rows.top == rows.bottom) return seen;
     exact.parts.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
+    if (band.count > 1) {
+      exact.parts.back().corner = {0, rows.top};
+      exact.parts.back().size = {view.width, rows.bottom - rows.top};
+    }
   }
   frame_.draw_until(Stage::ranges, small, exact);
   const FrameShape& shape = frame_.shape();
   FrameBuffers& buffers = frame_.buffers();
   const std::int64_t of_views = static_cast<std::int64_t>(views.size());
   // Zeros again after each look, since clearing takes as long as all of the rest.
-  const std::int64_t sum_bytes = std::int64_t{shape.slots} * of_views * 4 * 8;
+  const std::int64_t sum_bytes = std::int64_t{shape.slots} * of_views * 8;
   if (sums_.bytes() < sum_bytes) sums_.reserve_zeros(sum_bytes);
   of_parts_.reserve_zeros(static_cast<std::int64_t>(parts.size()) * of_views * 16);
   owners_.upload(parts.owners());
@@ -93,14 +117,14 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
   dispatcher_.wait_and_time();
   refuse_cut(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
   const auto found = of_parts_.read<std::int64_t>(2 * parts.size() * views.size());
-  std::vector<std::vector<SeenPart>> seen(views.size(), std::vector<SeenPart>(parts.size()));
   for (std::size_t v = 0; v < views.size(); ++v) {
-    for (std::size_t p = 0; p < parts.size(); ++p) {
+    const auto convert = [&](std::size_t p) {
       const std::int64_t* const of = &found[2 * (v * parts.size() + p)];
-      if (of[0] == 0) continue;
+      if (of[0] == 0) return;
       const double area = static_cast<double>(of[0]);
       seen[v][p] = {area / SEEN_SCALE * pixel_areas[v], std::exp2(static_cast<double>(of[1]) / area - 32.0)};
-    }
+    };
+    parallel_for(parts.size(), convert, 4096);
   }
   return seen;
 }

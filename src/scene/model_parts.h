@@ -66,4 +66,9 @@ struct SeenPart {
   double distance = 0.0;
 };
 
+/// One of so many bands of a picture, side by side from its top.
+struct Band {
+  int index = 0, count = 1;
+};
+
 }  // namespace binosplat

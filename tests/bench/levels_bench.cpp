@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 using Views = std::array<shared::View, 2>;
 
 struct Plan {
-  std::string scene, keys, json;
+  std::string scene, keys, json, timeline;
   std::vector<std::string> details = {"2", "8", "40dB"};
   int frames = 480;    // along the path
   double rate = 90.0;  // a second
@@ -77,14 +77,16 @@ std::deque<study::SquaredError> judge(gl::Context& context, const Plan& plan,
   return pictures;
 }
 
-// Draws for a while: a GPU's clock falls while a model is read.
+// Draws for a while: a GPU's clock falls while a model is read, and takes its time to rise again (an H200
+// less than half a second).
 void wake(render::Frame& frame, const Views& views) {
   const auto start = Clock::now();
-  while (ms_since(start) < 150) frame.draw(views);
+  while (ms_since(start) < 1000) frame.draw(views);
 }
 
 struct Numbers {
-  std::vector<double> gaussians, read_gaussians, look_ms, take_ms, frame_ms, all_ms, finest_db, late_s;
+  std::vector<double> gaussians, read_gaussians, look_ms, take_ms, frame_ms, all_ms, finest_db, late_s,
+      quiet_ms, told_db, off_db, gpu_bytes;
   double rest_db = 0.0;
 };
 
@@ -106,13 +108,14 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
   need.most = plan.most;
   LevelStream levels(plan.scene, [&](const StreamedSog&, std::span<const shared::View>) { return need; });
   Model model = levels.coarsest(path[0]);
+  const std::int64_t others = context.allocated_bytes();
   const auto gpu_model = std::make_shared<render::GpuModel>(context, model);
   render::Frame frame(gpu_model);
   render::Sight sight(gpu_model);
   const auto want = [&](const Views& views) {
-    levels.want(views, [&](const ModelParts& parts) {
+    levels.want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
       const auto begin = Clock::now();
-      auto seen = sight.look(views, plan.settings, parts);
+      auto seen = sight.look({&view, 1}, plan.settings, parts, render::Sight::shrink_usual, band).front();
       numbers.look_ms.push_back(ms_since(begin));
       return seen;
     });
@@ -127,19 +130,29 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
   auto due = Clock::now();
   const std::chrono::duration<double> period(1.0 / plan.rate);
   std::optional<Clock::time_point> unsettled;
+  Json timeline = Json::array();
   for (std::size_t n = 0; n < path.size(); ++n) {
     std::this_thread::sleep_until(due);
     const auto begin = Clock::now();
+    const std::size_t looks = numbers.look_ms.size();
     want(path[n]);
     const auto taking = Clock::now();
     const ModelParts::Changes changes = levels.take(model, plan.gaussians_a_frame);
     gpu_model->reload(changes);
     numbers.take_ms.push_back(ms_since(taking));
-    numbers.frame_ms.push_back(frame.draw(path[n], plan.settings).total_ms);
+    const double drawn_ms = frame.draw(path[n], plan.settings).total_ms;
+    numbers.frame_ms.push_back(drawn_ms);
+    if (changes.empty() && looks == numbers.look_ms.size()) numbers.quiet_ms.push_back(drawn_ms);
     numbers.all_ms.push_back(ms_since(begin));
+    numbers.gpu_bytes.push_back(static_cast<double>(context.allocated_bytes() - others));
     numbers.gaussians.push_back(static_cast<double>(levels.gaussians()));
     std::size_t filled = 0;
     for (const ModelParts::Range& range : changes.filled) filled += range.count;
+    timeline.push_back({{"look_ms", looks == numbers.look_ms.size() ? 0.0 : numbers.look_ms.back()},
+                        {"take_ms", numbers.take_ms.back()},
+                        {"new", filled},
+                        {"gpu_ms", drawn_ms},
+                        {"all_ms", numbers.all_ms.back()}});
     if (filled > 0) numbers.read_gaussians.push_back(static_cast<double>(filled));
     if (levels.settled()) {
       unsettled.reset();
@@ -150,10 +163,16 @@ Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& pa
     due = std::max(due + std::chrono::duration_cast<Clock::duration>(period), begin);
     for (std::size_t k = 0; k + 1 < finest.size(); ++k) {
       if (n != path.size() * k / (finest.size() - 1)) continue;
-      numbers.finest_db.push_back(finest[k].psnr(frame.colours()));
+      const double true_db = finest[k].psnr(frame.colours());
+      numbers.finest_db.push_back(true_db);
+      if (const auto told = levels.predicted_psnr()) {
+        numbers.told_db.push_back(*told);
+        numbers.off_db.push_back(*told - true_db);
+      }
       due = Clock::now();
     }
   }
+  if (!plan.timeline.empty()) std::ofstream(plan.timeline, std::ios::app) << timeline.dump() << "\n";
   // Once all is there, and whether that is what a GPU gets which gets it whole.
   do {
     want(path.back());
@@ -190,6 +209,12 @@ Json row_of(const std::string& detail, const Numbers& n) {
           {"all_median_ms", at(n.all_ms, 0.5)},
           {"all_p99_ms", at(n.all_ms, 0.99)},
           {"all_max_ms", at(n.all_ms, 1.0)},
+          {"gpu_most_mb", 1e-6 * quantile(n.gpu_bytes, 1.0)},
+          {"quiet_p99_ms", at(n.quiet_ms, 0.99)},
+          {"told_median_db", at(n.told_db, 0.5)},
+          {"told_worst_db", at(n.told_db, 0.0)},
+          {"told_too_good_db", at(n.off_db, 1.0)},
+          {"told_too_bad_db", at(n.off_db, 0.0)},
           {"finest_median_db", at(n.finest_db, 0.5)},
           {"finest_worst_db", at(n.finest_db, 0.0)},
           {"rest_db", n.rest_db}};
@@ -218,7 +243,8 @@ void run_all(const Plan& plan) {
       "| detail | Gaussians | at most | start s | frames with new ones | of these | at most | behind s, at "
       "most | look ms | max | take ms, p99 | max | "
       "GPU ms | p99 | max | with upload and CPU ms | p99 | max | dB to the finest | worst | at rest |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+      "\n");
   std::deque<study::SquaredError> finest = judge(*context, plan, path);
   for (const std::string& detail : plan.details) {
     const Json row = row_of(detail, run(*context, plan, path, detail, finest));
@@ -246,6 +272,8 @@ int main(int argc, char** argv) {
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");
+  app.add_option("--timeline", plan.timeline,
+                 "Append what each frame took to this file, a line for each --detail");
   app.add_option("--shrink", plan.shrink, "Pictures so many times smaller: tries it where there is no GPU");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -138,10 +138,11 @@ TEST(LevelStream, LooksAFewTimes) {
   std::vector<std::size_t> gaussians;
   const auto rest = [&] {
     gaussians.clear();
-    const auto look = [&](const ModelParts& parts) {
+    const auto look = [&](const shared::View& seen_by, Band, const ModelParts& parts) {
+      EXPECT_EQ(seen_by.anchor.x, view.anchor.x);
       gaussians.push_back(parts.gaussians());
       const SeenPart seen{gaussians.size() % 2 == 1 ? 2000.0 : 1e-6, 30.0};
-      return std::vector(1, std::vector(parts.size(), seen));
+      return std::vector(parts.size(), seen);
     };
     const auto start = std::chrono::steady_clock::now();
     do {
@@ -157,6 +158,49 @@ TEST(LevelStream, LooksAFewTimes) {
   view.anchor.x += 0.1f;
   rest();
   EXPECT_EQ(gaussians, std::vector<std::size_t>{1000}) << "nothing had to be read";
+}
+
+// Where a look takes long, the next one is at bands: both times the same is seen, and the same is chosen.
+TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  test::add_level_errors(copy);
+  shared::View view = at({0, 0, -30});
+  view.row_z = {0, 0, 1, 0};
+  view.centre.w = 1.0f;
+  view.width = view.height = 100;
+  for (const int slow_ms : {0, 10}) {
+    LevelStream stream(copy.path(), for_40_db);
+    Model model = stream.coarsest();
+    std::vector<std::pair<float, int>> looks;  // where the eye was, and of how many bands
+    const auto look = [&](const shared::View& seen_by, Band band, const ModelParts& parts) {
+      looks.emplace_back(seen_by.anchor.x, band.count);
+      std::this_thread::sleep_for(std::chrono::milliseconds(slow_ms));
+      return std::vector(parts.size(), SeenPart{2000.0 / band.count, 30.0});
+    };
+    for (const float x : {0.0f, 1.0f}) {
+      view.anchor.x = x;
+      shared::View other = view;
+      other.anchor.x += 0.5f;
+      const auto start = std::chrono::steady_clock::now();
+      do {
+        const std::size_t before = looks.size();
+        stream.want(std::vector{view, other}, look);
+        EXPECT_LE(looks.size(), before + 1) << "one look a frame";
+        stream.take(model, 1);
+        ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60)) << "it hangs";
+      } while (!stream.settled());
+      EXPECT_EQ(stream.gaussians(), 1000u);
+    }
+    ASSERT_GE(looks.size(), 4u);
+    EXPECT_EQ(looks[0], std::pair(0.0f, 1));
+    EXPECT_EQ(looks[1], std::pair(0.5f, 1));
+    if (slow_ms == 0) continue;
+    const int bands = looks[2].second;
+    EXPECT_GE(bands, 4) << "10 ms in glances of 3";
+    for (std::size_t k = 2; k < 2 + 2 * static_cast<std::size_t>(bands); ++k)
+      EXPECT_EQ(looks.at(k), std::pair(k < 2 + static_cast<std::size_t>(bands) ? 0.0f : 0.5f, bands)) << k;
+  }
 }
 
 TEST(LevelStream, EndsInTheMidstOfIt) {

@@ -91,8 +91,8 @@ TEST(LinearBlends, LargeSumsCarry) {
     return true;
   };
   EXPECT_TRUE(right());
-  for (const auto& [sought, fault] : {std::pair{"0u) + (before + sum < before ?", "0u) + (false ?"},
-                                      std::pair{"sums[c] < 0 ? 0xffffffffu", "false ? 0xffffffffu"}}) {
+  for (const auto& [sought, fault] : {std::pair{"0u) + (before + uint(sum) < before ?", "0u) + (false ?"},
+                                      std::pair{"sum < 0 ? 0xffffffffu", "false ? 0xffffffffu"}}) {
     const test::FaultyShaders faulty("blending.glsl", sought, fault);
     EXPECT_FALSE(right()) << fault;
   }

@@ -166,6 +166,31 @@ TEST(Sight, OfSeveralViewsAndOfSmallerPictures) {
 }
 
 // Nothing of a look is left for the next, of other views and another number of them.
+// Whatever the height: bands end between cells.
+TEST(Sight, OfBandsAddsUp) {
+  const Model model = test::random_model(64, 3000, 0);
+  Indices indices(7);
+  for (std::uint32_t i = 0; i < 3000; ++i) indices[i % 7].push_back(i);
+  const Parted parted(model, indices);
+  Sight sight(parted.gpu_model);
+  for (const int height : {200, static_cast<int>(2 * BLEND_CELL + 1)}) {
+    const std::vector<shared::View> views = {make_view(test::front_camera(90, height, focal))};
+    const auto all = sight.look(views, {}, parted.parts).at(0);
+    for (const int count : {2, 3, 30}) {  // more than there are cells, too
+      std::vector<double> areas(7, 0.0);
+      std::size_t bands_with_any = 0;
+      for (int k = 0; k < count; ++k) {
+        const auto band = sight.look(views, {}, parted.parts, 1, {k, count}).at(0);
+        for (std::size_t p = 0; p < 7; ++p) areas[p] += band[p].area;
+        bands_with_any += band[3].area > 0.0 ? 1 : 0;
+        EXPECT_LT(band[3].area, 0.99 * all[3].area) << "planted: the whole picture for a band";
+      }
+      EXPECT_GT(bands_with_any, 1u);
+      for (std::size_t p = 0; p < 7; ++p) EXPECT_NEAR(areas[p], all[p].area, 0.01 + 1e-6 * all[p].area);
+    }
+  }
+}
+
 TEST(Sight, ForgetsWhatItSaw) {
   const Model model = test::random_model(98, 2000, 0);
   Indices indices(9);

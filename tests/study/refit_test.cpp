@@ -66,7 +66,7 @@ TEST(Refit, FindsTheColoursThatThePicturesAreOf) {
   EXPECT_EQ(judge_of(right)(after), best);
   EXPECT_EQ(found.sh, fitted(start, right, settings).sh) << "not the same bits twice";
 
-  const test::FaultyShaders faulty("blending.glsl", "sums[c] < 0 ? 0xffffffffu", "false ? 0xffffffffu");
+  const test::FaultyShaders faulty("blending.glsl", "sum < 0 ? 0xffffffffu", "false ? 0xffffffffu");
   const Refitted wrong = fitted(start, right, settings);
   EXPECT_GT(wrong.judged[static_cast<std::size_t>(wrong.best_round)], found.judged[0] - 5.0);
 }

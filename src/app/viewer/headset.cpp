@@ -94,9 +94,9 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   if (loaded.levels) {
     beside.levels = [&](Model& drawn, const std::shared_ptr<render::GpuModel>& gpu_model,
                         std::span<const shared::View> views) {
-      loaded.levels->want(views, [&](const ModelParts& parts) {
+      loaded.levels->want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
         if (!sight) sight.emplace(gpu_model);
-        return sight->look(views, settings.frame, parts);
+        return sight->look({&view, 1}, settings.frame, parts, render::Sight::shrink_usual, band).front();
       });
       gpu_model->reload(loaded.levels->take(drawn, gaussians_a_frame));
     };
