@@ -213,7 +213,8 @@ TEST(DetailErrors, GoByWhatIsSeen) {
   EXPECT_LT(first_only.error(), blind.error());
   // A little of a part that is seen loses so much less.
   for (SeenPart& part : seen) part.area *= 0.5;
-  EXPECT_NEAR(by(seen, coarsest).error(), 0.5 * loss({parts[0]}, {by(seen, coarsest).levels[0]}, view), 1e-12);
+  EXPECT_NEAR(by(seen, coarsest).error(), 0.5 * loss({parts[0]}, {by(seen, coarsest).levels[0]}, view),
+              1e-12);
   // Coarser levels than those that were drawn may show what these do not.
   for (SeenPart& part : seen) part.area = hidden;
   EXPECT_LT(by(seen, coarsest).error(), 1e-9);
