@@ -17,9 +17,10 @@ constexpr std::size_t read_ahead = 1 << 20;
 // their harmonics.
 constexpr std::size_t room_most = 1 << 22;
 constexpr double between_looks_ms = 100.0;
-constexpr double glance_ms = 3.0;   // that a frame may take for a look
-constexpr double bands_most = 8.0;  // of a view: each costs all that does not depend on pixels, too
-constexpr int looks_most = 3;       // at the same views; then a choice hardly changes any more
+constexpr double glance_ms = 3.0;       // that a frame may take for a look
+constexpr double bands_most = 8.0;      // of a view: each costs all that does not depend on pixels, too
+constexpr double look_most_ms = 250.0;  // at all bands of all views: slow frames have fewer bands
+constexpr int looks_most = 3;           // at the same views; then a choice hardly changes any more
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
   return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
@@ -107,8 +108,10 @@ bool LevelStream::looks(const Look& look) {
   if (++band_.index < band_.count) return false;
   band_.index = 0;
   if (looked_.size() < wanted_.size()) return false;
-  const double of_view_ms = look_ms_ / static_cast<double>(wanted_.size());
-  band_.count = static_cast<int>(std::clamp(std::ceil(of_view_ms / glance_ms), 1.0, bands_most));
+  const auto views = static_cast<double>(wanted_.size());
+  const double frame_ms = ms_since(*looked_at_) / (views * band_.count);
+  const double most = std::clamp(look_most_ms / (views * frame_ms), 1.0, bands_most);
+  band_.count = static_cast<int>(std::clamp(std::ceil(look_ms_ / views / glance_ms), 1.0, most));
   return true;
 }
 

@@ -40,7 +40,8 @@ class LevelStream {
   /// Has read what these views need, which are those of one frame in the model's frame, instead of what
   /// others needed. By dB it calls `look` first, which tells what one of them shows of each part: for one
   /// view in each call, since a frame has little time, or for a band of one, where that took longer than 3 ms
-  /// the last time. For all of them no more than ten times a second; until then what was wanted stays.
+  /// the last time and frames come fast. For all of them no more than ten times a second; until then what was
+  /// wanted stays.
   using Look =
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);

@@ -101,91 +101,135 @@ DetailNeed need_of(const std::string& detail) {
 // Along the path in real time, as a headset would: a frame begins when it is due, draws with the levels that
 // have come by then, and nothing waits for those that have not. Judging takes time of its own: then the clock
 // stands still, but for what is read meanwhile.
-Numbers run(gl::Context& context, const Plan& plan, const std::vector<Views>& path, const std::string& detail,
-            std::deque<study::SquaredError>& finest) {
-  Numbers numbers;
-  DetailNeed need = need_of(detail);
-  need.most = plan.most;
-  LevelStream levels(plan.scene, [&](const StreamedSog&, std::span<const shared::View>) { return need; });
-  Model model = levels.coarsest(path[0]);
-  const std::int64_t others = context.allocated_bytes();
-  const auto gpu_model = std::make_shared<render::GpuModel>(context, model);
-  render::Frame frame(gpu_model);
-  render::Sight sight(gpu_model);
-  const auto want = [&](const Views& views) {
-    levels.want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
+class Flight {
+ public:
+  Flight(gl::Context& context, const Plan& plan, const std::vector<Views>& path, const std::string& detail)
+      : context_(context),
+        plan_(plan),
+        path_(path),
+        levels_(plan.scene,
+                [need = need_of(detail), most = plan.most](const StreamedSog&,
+                                                           std::span<const shared::View>) mutable {
+                  need.most = most;
+                  return need;
+                }),
+        model_(levels_.coarsest(path[0])),
+        others_(context.allocated_bytes()),
+        gpu_model_(std::make_shared<render::GpuModel>(context, model_)),
+        frame_(gpu_model_),
+        sight_(gpu_model_) {}
+
+  Numbers run(std::deque<study::SquaredError>& finest) {
+    const auto start = Clock::now();
+    settle(path_.front());
+    numbers_.late_s.push_back(1e-3 * ms_since(start));
+    wake(frame_, path_.front());
+    auto due = Clock::now();
+    const auto period =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / plan_.rate));
+    for (std::size_t n = 0; n < path_.size(); ++n) {
+      std::this_thread::sleep_until(due);
       const auto begin = Clock::now();
-      auto seen = sight.look({&view, 1}, plan.settings, parts, render::Sight::shrink_usual, band).front();
-      numbers.look_ms.push_back(ms_since(begin));
+      draw(path_[n]);
+      note_whether_late(begin);
+      due = judge(n, finest) ? Clock::now() : std::max(due + period, begin);
+    }
+    if (!plan_.timeline.empty()) std::ofstream(plan_.timeline, std::ios::app) << timeline_.dump() << "\n";
+    end(finest);
+    return std::move(numbers_);
+  }
+
+ private:
+  void want(const Views& views) {
+    levels_.want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
+      const auto begin = Clock::now();
+      auto seen = sight_.look({&view, 1}, plan_.settings, parts, render::Sight::shrink_usual, band).front();
+      numbers_.look_ms.push_back(ms_since(begin));
       return seen;
     });
-  };
-  const auto start = Clock::now();
-  do {
-    want(path[0]);
-    gpu_model->reload(levels.take(model, plan.gaussians_a_frame));
-  } while (!levels.settled());
-  numbers.late_s.push_back(1e-3 * ms_since(start));
-  wake(frame, path[0]);
-  auto due = Clock::now();
-  const std::chrono::duration<double> period(1.0 / plan.rate);
-  std::optional<Clock::time_point> unsettled;
-  Json timeline = Json::array();
-  for (std::size_t n = 0; n < path.size(); ++n) {
-    std::this_thread::sleep_until(due);
+  }
+
+  void settle(const Views& views) {
+    do {
+      want(views);
+      gpu_model_->reload(levels_.take(model_, plan_.gaussians_a_frame));
+    } while (!levels_.settled());
+  }
+
+  void draw(const Views& views) {
     const auto begin = Clock::now();
-    const std::size_t looks = numbers.look_ms.size();
-    want(path[n]);
+    const std::size_t looks = numbers_.look_ms.size();
+    want(views);
+    const bool looked = looks < numbers_.look_ms.size();
     const auto taking = Clock::now();
-    const ModelParts::Changes changes = levels.take(model, plan.gaussians_a_frame);
-    gpu_model->reload(changes);
-    numbers.take_ms.push_back(ms_since(taking));
-    const double drawn_ms = frame.draw(path[n], plan.settings).total_ms;
-    numbers.frame_ms.push_back(drawn_ms);
-    if (changes.empty() && looks == numbers.look_ms.size()) numbers.quiet_ms.push_back(drawn_ms);
-    numbers.all_ms.push_back(ms_since(begin));
-    numbers.gpu_bytes.push_back(static_cast<double>(context.allocated_bytes() - others));
-    numbers.gaussians.push_back(static_cast<double>(levels.gaussians()));
+    const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
+    gpu_model_->reload(changes);
+    numbers_.take_ms.push_back(ms_since(taking));
+    const double drawn_ms = frame_.draw(views, plan_.settings).total_ms;
+    numbers_.frame_ms.push_back(drawn_ms);
+    if (changes.empty() && !looked) numbers_.quiet_ms.push_back(drawn_ms);
+    numbers_.all_ms.push_back(ms_since(begin));
+    numbers_.gpu_bytes.push_back(static_cast<double>(context_.allocated_bytes() - others_));
+    numbers_.gaussians.push_back(static_cast<double>(levels_.gaussians()));
     std::size_t filled = 0;
     for (const ModelParts::Range& range : changes.filled) filled += range.count;
-    timeline.push_back({{"look_ms", looks == numbers.look_ms.size() ? 0.0 : numbers.look_ms.back()},
-                        {"take_ms", numbers.take_ms.back()},
-                        {"new", filled},
-                        {"gpu_ms", drawn_ms},
-                        {"all_ms", numbers.all_ms.back()}});
-    if (filled > 0) numbers.read_gaussians.push_back(static_cast<double>(filled));
-    if (levels.settled()) {
-      unsettled.reset();
+    if (filled > 0) numbers_.read_gaussians.push_back(static_cast<double>(filled));
+    timeline_.push_back({{"look_ms", looked ? numbers_.look_ms.back() : 0.0},
+                         {"take_ms", numbers_.take_ms.back()},
+                         {"new", filled},
+                         {"gpu_ms", drawn_ms},
+                         {"all_ms", numbers_.all_ms.back()}});
+  }
+
+  void note_whether_late(Clock::time_point now) {
+    if (levels_.settled()) {
+      unsettled_.reset();
     } else {
-      if (!unsettled) unsettled = begin;
-      numbers.late_s.push_back(1e-3 * ms_since(*unsettled));
-    }
-    due = std::max(due + std::chrono::duration_cast<Clock::duration>(period), begin);
-    for (std::size_t k = 0; k + 1 < finest.size(); ++k) {
-      if (n != path.size() * k / (finest.size() - 1)) continue;
-      const double true_db = finest[k].psnr(frame.colours());
-      numbers.finest_db.push_back(true_db);
-      if (const auto told = levels.predicted_psnr()) {
-        numbers.told_db.push_back(*told);
-        numbers.off_db.push_back(*told - true_db);
-      }
-      due = Clock::now();
+      if (!unsettled_) unsettled_ = now;
+      numbers_.late_s.push_back(1e-3 * ms_since(*unsettled_));
     }
   }
-  if (!plan.timeline.empty()) std::ofstream(plan.timeline, std::ios::app) << timeline.dump() << "\n";
+
+  // Whether this frame is one that is compared with the finest levels.
+  bool judge(std::size_t n, std::deque<study::SquaredError>& finest) {
+    bool judged = false;
+    for (std::size_t k = 0; k + 1 < finest.size(); ++k) {
+      if (n != path_.size() * k / (finest.size() - 1)) continue;
+      judged = true;
+      const double true_db = finest[k].psnr(frame_.colours());
+      numbers_.finest_db.push_back(true_db);
+      if (const auto told = levels_.predicted_psnr()) {
+        numbers_.told_db.push_back(*told);
+        numbers_.off_db.push_back(*told - true_db);
+      }
+    }
+    return judged;
+  }
+
   // Once all is there, and whether that is what a GPU gets which gets it whole.
-  do {
-    want(path.back());
-    gpu_model->reload(levels.take(model, plan.gaussians_a_frame));
-  } while (!levels.settled());
-  frame.draw(path.back(), plan.settings);
-  if (!finest.empty()) numbers.rest_db = finest.back().psnr(frame.colours());
-  study::SquaredError drawn(context, frame.read_pictures());
-  render::Frame whole(context, model);
-  whole.draw(path.back(), plan.settings);
-  if (drawn.mean(whole.colours()) != 0.0) fail("the model on the GPU is not the one that was read");
-  return numbers;
-}
+  void end(std::deque<study::SquaredError>& finest) {
+    settle(path_.back());
+    frame_.draw(path_.back(), plan_.settings);
+    if (!finest.empty()) numbers_.rest_db = finest.back().psnr(frame_.colours());
+    study::SquaredError drawn(context_, frame_.read_pictures());
+    render::Frame whole(context_, model_);
+    whole.draw(path_.back(), plan_.settings);
+    if (drawn.mean(whole.colours()) != 0.0) fail("the model on the GPU is not the one that was read");
+  }
+
+  gl::Context& context_;
+  const Plan& plan_;
+  const std::vector<Views>& path_;
+  LevelStream levels_;
+  Model model_;
+  std::int64_t others_;  // bytes on the GPU, of what judges
+  std::shared_ptr<render::GpuModel> gpu_model_;
+  render::Frame frame_;
+  render::Sight sight_;
+  Numbers numbers_;
+  Json timeline_ = Json::array();
+  std::optional<Clock::time_point> unsettled_;
+};
 
 Json row_of(const std::string& detail, const Numbers& n) {
   const auto at = [](const std::vector<double>& values, double share) {
@@ -247,7 +291,7 @@ void run_all(const Plan& plan) {
       "\n");
   std::deque<study::SquaredError> finest = judge(*context, plan, path);
   for (const std::string& detail : plan.details) {
-    const Json row = row_of(detail, run(*context, plan, path, detail, finest));
+    const Json row = row_of(detail, Flight(*context, plan, path, detail).run(finest));
     print_row(row);
     if (!plan.json.empty()) std::ofstream(plan.json, std::ios::app) << row.dump() << "\n";
   }
