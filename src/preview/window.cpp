@@ -113,7 +113,7 @@ void Window::wait() {
   std::optional<double> seconds = messages_.next_change(glfwGetTime());
   const auto at_most = [&](double most) { seconds = std::min(seconds.value_or(most), most); };
   if (loading_.valid()) at_most(0.05);
-  if (levels_move()) at_most(0.02);
+  if (levels_moved_ || levels_move()) at_most(0.02);
   if (session_ && session_->moving()) at_most(seconds_to_rest);
   if (!settings_.shader_folder.empty()) at_most(0.5);
   if (!seconds) return glfwWaitEvents();
@@ -142,6 +142,8 @@ void Window::take_loaded() {
     }
     session_.reset();  // its memory first
     levels_ = std::move(loaded.levels);
+    levels_moved_ = false;
+    levels_told_ = levels_ ? levels_->gaussians() : 0;
     log_info("{}: {} Gaussians", next_.name, levels_ ? levels_->gaussians() : loaded.model.count());
     scene_ = std::move(next_);
     session_ = std::make_unique<Session>(*context_, std::move(loaded.model), std::move(start.cameras),
@@ -164,10 +166,17 @@ bool Window::levels_move() const { return levels_ && !levels_->settled(); }
 // levels as they are.
 void Window::follow_levels() {
   if (!levels_) return;
-  const bool moved = levels_move();
+  // They may come to rest between two calls, in the thread that reads.
+  const bool moved = levels_moved_ || levels_move();
   try {
     session_->follow(*levels_);
-    if (moved && !levels_move()) log_info("{}: levels of {} Gaussians", scene_.name, levels_->gaussians());
+    levels_moved_ = levels_move();
+    if (moved && !levels_moved_ && levels_->gaussians() != levels_told_) {
+      levels_told_ = levels_->gaussians();
+      const auto psnr = levels_->predicted_psnr();
+      log_info("{}: levels of {} Gaussians{}", scene_.name, levels_told_,
+               psnr ? fmt::format(", {:.1f} dB predicted", *psnr) : "");
+    }
   } catch (const Error& error) {
     // A GPU without room has lost a part of the model by now.
     if (error.code() == ExitCode::no_gl || error.code() == ExitCode::out_of_memory) throw;

@@ -10,8 +10,10 @@
 #include "app/scene.h"
 #include "formats/image_file.h"
 #include "measure/metrics.h"
+#include "support/broken.h"
 #include "support/display.h"
 #include "support/fixtures.h"
+#include "support/level_errors.h"
 
 namespace binosplat {
 namespace {
@@ -349,6 +351,13 @@ TEST_F(ViewOnADisplay, FinerLevelsComeWhileOneLooks) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.err.find("levels of"), std::string::npos) << outcome.err;
   EXPECT_TRUE(same(load_image(folder / "far/preview_001.png"), drawn("1")));
+
+  const test::Copy told(scene);
+  test::add_level_errors(told);
+  Program by_db({"view", told.path(), "-o", folder / "db", "--detail", "60dB", "--size", "600x400"},
+                {.variables = {{"DISPLAY", display}}});
+  ASSERT_TRUE(says(by_db, " dB predicted"));
+  EXPECT_EQ(leave(by_db).code, 0);
 }
 
 TEST_F(ViewOnADisplay, NobodyWaitsForABigModel) {
