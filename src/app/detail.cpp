@@ -19,15 +19,19 @@ std::vector<Shot> known_shots(const RenderOptions& options, const CameraList& li
                     list.listed ? list : eye_camera(camera, list.known), near_plane, axes);
 }
 
-/// Bytes that a frame starts with, those of the model included, and of uploads of so many Gaussians at once.
-std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians, std::size_t at_once) {
-  shape.gaussian_count = shape.gaussian_room = gaussians;
+/// Bytes that a frame starts with, those of the model included; of one whose parts come later, which has room
+/// for so many, those of their uploads, too.
+std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians, bool in_parts) {
+  shape.gaussian_count = in_parts ? 0 : gaussians;
+  shape.gaussian_room = gaussians;
   shape.slots = render::starting_slots(gaussians);
   const render::MemoryNeeds needs = render::memory_needs(shape);
+  if (!in_parts) return needs.model + needs.frame;
   const int precision = shape.settings.precision;
   const std::int64_t bytes_of_one =
       render::gaussian_bytes(precision) + render::harmonic_bytes(shape.degree, precision) + 4;
-  const auto uploads = static_cast<std::int64_t>(std::min<std::size_t>(gaussians, at_once));
+  const auto uploads =
+      static_cast<std::int64_t>(std::min<std::size_t>(gaussians, render::Scatter::records_at_once));
   return needs.model + needs.frame + uploads * bytes_of_one;
 }
 
@@ -40,10 +44,9 @@ std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
   Model model;
   model.degree = degree;
   const render::FrameShape shape = render::make_shape(views, settings, model);
-  const std::size_t at_once = in_parts ? render::Scatter::records_at_once : 0;
   std::uint32_t fits = 0;
   for (std::uint32_t step = 1u << 30; step > 0; step /= 2) {
-    if (bytes_for(shape, fits + step, at_once) <= bytes) fits += step;
+    if (bytes_for(shape, fits + step, in_parts) <= bytes) fits += step;
   }
   return fits;
 }

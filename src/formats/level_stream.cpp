@@ -75,9 +75,11 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
     is_due_ = is_due_ || is_idle();
   }
   if (!is_due_) return;
-  Wish wish{wanted_, {}};
-  if (by_db_) {
-    if (!looks(look)) return;
+  Wish wish;
+  if (!by_db_) {
+    wish.views = wanted_;
+  } else {
+    if (!look_on(look)) return;
     wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}};
     ++looks_;
   }
@@ -90,7 +92,7 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
 }
 
 // At the next band or view; whether all have been looked at.
-bool LevelStream::looks(const Look& look) {
+bool LevelStream::look_on(const Look& look) {
   if (looked_.empty()) {
     if (looked_at_ && ms_since(*looked_at_) < between_looks_ms) return false;
     looked_at_ = Clock::now();

@@ -64,7 +64,7 @@ class LevelStream {
     std::vector<shared::View> views;
     DetailSeen seen;
   };
-  bool looks(const Look& look);
+  bool look_on(const Look& look);
   void work(const std::stop_token& stop);
   void read(const Wish& wish, const std::stop_token& stop);
   void drop_unwanted();

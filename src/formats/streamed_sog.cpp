@@ -221,14 +221,10 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
 struct StreamedSog::Source {
   fs::path path;
   SogLevels levels;
-  std::vector<DetailPart> leaves;
   std::vector<std::optional<SogSource>> files;  // the environment last, where there is one
   std::uint64_t bytes = 0;                      // of them (SogSource::bytes)
 
-  explicit Source(const fs::path& asked) : Source(asked, levels_json(lod_meta_of(asked), asked)) {}
-
-  Source(const fs::path& asked, const nlohmann::json& json)
-      : path(lod_meta_of(asked)), levels(path, json), leaves(levels.leaves(json)) {
+  Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());
     parallel_for(files.size(), [&](std::size_t i) {
       if (levels.there(i)) files[i] = open_part(levels.files()[i]);
@@ -245,8 +241,11 @@ struct StreamedSog::Source {
   }
 };
 
-StreamedSog::StreamedSog(const fs::path& path) : source_(std::make_unique<Source>(path)) {
-  leaves_ = std::move(source_->leaves);
+StreamedSog::StreamedSog(const fs::path& path) {
+  const fs::path lod_meta = lod_meta_of(path);
+  const nlohmann::json json = levels_json(lod_meta, path);
+  source_ = std::make_unique<Source>(lod_meta, json);
+  leaves_ = source_->levels.leaves(json);
   check_leaves(source_->path, leaves_);
   read_.resize(leaves_.size());
   like_.name = source_->path.filename().string();

@@ -161,7 +161,7 @@ void Session::make_shown(std::span<const shared::View> views) {
 void Session::follow(LevelStream& levels) {
   levels.want(views(), [&](const shared::View& view, Band band, const ModelParts& parts) {
     if (!sight_) sight_.emplace(frame_.model());
-    return sight_->look({&view, 1}, choices.settings, parts, render::Sight::shrink_usual, band).front();
+    return sight_->look(view, band, choices.settings, parts);
   });
   const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
   if (changes.empty()) return;

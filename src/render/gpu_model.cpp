@@ -53,7 +53,7 @@ Packing packing_of_harmonics(const Model& model, int precision) {
           }};
 }
 
-// Some of a page's Gaussians into a buffer of the page; in pieces: memory that is touched once takes long.
+// All of a page's Gaussians into a buffer of the page; in pieces: memory that is touched once takes long.
 void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buffer& buffer) {
   constexpr std::size_t piece = 1 << 16;
   std::vector<std::uint32_t> packed(std::min<std::size_t>(piece, page.count) * packing.words);

@@ -57,6 +57,17 @@ Sight::Sight(std::shared_ptr<GpuModel> model)
 
 std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
                                                const FrameSettings& settings, const ModelParts& parts,
+                                               int shrink_most) {
+  return look(views, settings, parts, shrink_most, {});
+}
+
+std::vector<SeenPart> Sight::look(const shared::View& view, Band band, const FrameSettings& settings,
+                                  const ModelParts& parts) {
+  return std::move(look({&view, 1}, settings, parts, shrink_usual, band).front());
+}
+
+std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
+                                               const FrameSettings& settings, const ModelParts& parts,
                                                int shrink_most, Band band) {
   FrameSettings exact = exact_of(settings);
   exact.precision = settings.precision;

@@ -12,22 +12,26 @@ namespace binosplat::render {
 
 class Sight {
  public:
-  static constexpr int shrink_usual = 4;
-
   /// Of a model that others draw, too; its context must be current in every call. Not of Scaffold-GS.
   explicit Sight(std::shared_ptr<GpuModel> model);
 
   /// For each of the views what it shows of each part, which are the model's. Draws the views, smaller where
   /// they are large: by up to `shrink_most` along each axis, to pictures of at least 512 px. Of the settings
   /// count those of exact_of(), and the precision. Distances are means of the logarithm, over at most 2^32
-  /// world units. The same bits each time. Of each picture only what is in a band, if asked: areas of all
-  /// bands add up to those of the picture, but for what is hidden, which counts in each; views are of one
-  /// height then. Throws as Frame::draw() does.
+  /// world units. The same bits each time. Throws as Frame::draw() does.
   std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
-                                          const ModelParts& parts, int shrink_most = shrink_usual,
-                                          Band band = {});
+                                          const ModelParts& parts, int shrink_most = shrink_usual);
+
+  /// The same of one view, and of its picture only what is in a band: areas of all bands add up to those of
+  /// the picture, but for what is hidden, which counts in each.
+  std::vector<SeenPart> look(const shared::View& view, Band band, const FrameSettings& settings,
+                             const ModelParts& parts);
 
  private:
+  static constexpr int shrink_usual = 4;
+  std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
+                                          const ModelParts& parts, int shrink_most, Band band);
+
   Frame frame_;
   gl::Dispatcher dispatcher_;
   gl::Buffer sums_;    // by splat, 64 bits of alpha T^2, low first

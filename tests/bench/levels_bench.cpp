@@ -143,7 +143,7 @@ class Flight {
   void want(const Views& views) {
     levels_.want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
       const auto begin = Clock::now();
-      auto seen = sight_.look({&view, 1}, plan_.settings, parts, render::Sight::shrink_usual, band).front();
+      auto seen = sight_.look(view, band, plan_.settings, parts);
       numbers_.look_ms.push_back(ms_since(begin));
       return seen;
     });

@@ -96,7 +96,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
                         std::span<const shared::View> views) {
       loaded.levels->want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
         if (!sight) sight.emplace(gpu_model);
-        return sight->look({&view, 1}, settings.frame, parts, render::Sight::shrink_usual, band).front();
+        return sight->look(view, band, settings.frame, parts);
       });
       gpu_model->reload(loaded.levels->take(drawn, gaussians_a_frame));
     };

@@ -1,0 +1,31 @@
+// --gpu-memory for models whose parts come later.
+#include "app/detail.h"
+
+#include <gtest/gtest.h>
+
+#include "render/memory.h"
+#include "scene/camera.h"
+
+namespace binosplat {
+namespace {
+
+// With room for all that fits, most of which is not there yet: as frames count it.
+TEST(GaussiansThatFit, LeaveRoomForAModelThatGrows) {
+  const std::vector<shared::View> views(2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 64, 64)));
+  const auto megabytes = [&](bool in_parts, double asked) {
+    Model model;
+    model.room = app::gaussians_that_fit(asked, {}, views, 0, in_parts);
+    render::FrameSettings settings;
+    settings.depth_table = {1.0f, {1.0f}};
+    const render::MemoryNeeds needs = render::memory_needs(render::make_shape(views, settings, model));
+    return 1e-6 * static_cast<double>(needs.model + needs.frame);
+  };
+  for (const double asked : {50.0, 400.0, 900.0, 4000.0}) {
+    EXPECT_LE(megabytes(true, asked), asked);
+    EXPECT_GT(megabytes(true, asked), 0.9 * asked);
+  }
+  EXPECT_GT(megabytes(false, 900.0), 1000.0) << "planted: as if all of it were there";
+}
+
+}  // namespace
+}  // namespace binosplat
