@@ -52,6 +52,8 @@ class FollowedLevels {
   Model coarsest();
   /// Of the model that there is.
   std::size_t gaussians() const { return parts_.gaussians(); }
+  /// Of the finest levels.
+  std::size_t finest() const { return scene_.finest(); }
 
   /// Brings the model to the levels that the views need, before there is a frame of it.
   void bring(gl::Context& context, Model& model, std::span<const shared::View> views);

@@ -11,9 +11,6 @@
 
 namespace binosplat::app {
 
-namespace {
-
-/// "5", px, or "40dB".
 DetailNeed parse_detail(const std::string& text) {
   std::string_view rest = text;
   const std::optional<double> number = take_real(rest);
@@ -23,8 +20,6 @@ DetailNeed parse_detail(const std::string& text) {
   if (number && unit == "db" && *number >= 20.0 && *number <= 80.0) return {.db = *number};
   fail("--detail {}: expected pixels as in 5, or decibels from 20 to 80 as in 40dB", text);
 }
-
-}  // namespace
 
 void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.add_option(

@@ -1,5 +1,4 @@
-// binosplat study: the paper's analyses; where thresholds fail; and what a memory of the last frame is worth
-// along a path.
+// binosplat study: which one the options ask for, and what a memory of the last frame is worth along a path.
 
 #include <fmt/ranges.h>
 
@@ -136,45 +135,49 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
 }
 
 /// Which study the options ask for, beside the analyses.
-enum class Kind { analyses, stability, rules, motion, turn, path };
+enum class Kind { analyses, stability, rules, motion, turn, levels, path };
 
 Kind kind_of(const StudyOptions& o) {
   const bool path = !o.camera.path.empty() && !o.motion.chosen;  // --motion goes along one, too
-  if (int{o.stability} + int{o.rules} + int{o.motion.chosen} + int{o.turn} + int{path} > 1)
-    fail("study: --stability, --rules, --motion, --turn and --path FILE are studies of their own");
+  if (int{o.stability} + int{o.rules} + int{o.motion.chosen} + int{o.turn} + int{o.levels} + int{path} > 1)
+    fail("study: --stability, --rules, --motion, --turn, --levels and --path FILE are studies of their own");
   return o.stability       ? Kind::stability
          : o.rules         ? Kind::rules
          : o.motion.chosen ? Kind::motion
          : o.turn          ? Kind::turn
+         : o.levels        ? Kind::levels
          : path            ? Kind::path
                            : Kind::analyses;
 }
 
 void check(const StudyOptions& options, Kind kind) {
-  const bool of_page = kind == Kind::stability || kind == Kind::motion || kind == Kind::turn;
+  const bool of_page =
+      kind == Kind::stability || kind == Kind::motion || kind == Kind::turn || kind == Kind::levels;
   if (!options.test.empty() || (!options.photos.empty() && kind != Kind::turn))
     fail(
         "study: --test and --photos are for the analyses, and --photos for --turn, without --stability, "
-        "--rules, --motion and --path");
-  if (options.frames && kind != Kind::rules && kind != Kind::motion)
-    fail("--frames goes with --rules and --motion, or with the analyses");
+        "--rules, --motion, --levels and --path");
+  if (options.frames && kind != Kind::rules && kind != Kind::motion && kind != Kind::levels)
+    fail("--frames goes with --rules, --motion and --levels, or with the analyses");
   if (options.rays && kind != Kind::turn) fail("--rays goes with --turn");
   if (options.rays && std::int64_t{options.rays->x} * options.rays->y > 1'000'000)
     fail("--rays {}x{}: at most a million", options.rays->x, options.rays->y);
-  if (options.camera.views.size() > 1) fail("--view: this study is of one view");
+  if (options.camera.views.size() > 1 && kind != Kind::levels) fail("--view: this study is of one view");
   if (kind == Kind::motion && !options.camera.views.empty())
     fail("--view: --motion goes through all cameras");
   if (!options.output.empty() && !of_page)
     fail(
-        "study: -o is for the analyses, --stability, --motion and --turn: --json keeps the numbers of the "
-        "others");
+        "study: -o is for the analyses, --stability, --motion, --turn and --levels: --json keeps the numbers "
+        "of the others");
 }
 
 ExitCode study_scene(const StudyOptions& options) {
   const Kind kind = kind_of(options);
+  if (options.scenes.size() > 1 && kind != Kind::levels)
+    fail("study {}: expected one scene; only --levels takes more", fmt::join(options.scenes, " "));
   if (kind == Kind::analyses) {
     if (!options.not_for_analyses.empty())
-      fail("study: {} {} with --stability, --rules, --motion, --turn or --path FILE",
+      fail("study: {} {} with --stability, --rules, --motion, --turn, --levels or --path FILE",
            fmt::join(options.not_for_analyses, ", "), options.not_for_analyses.size() > 1 ? "go" : "goes");
     return analyse_scene(options, options.test, options.frames.value_or(24),
                          options.output.empty() ? "out/study" : options.output);
@@ -182,8 +185,9 @@ ExitCode study_scene(const StudyOptions& options) {
   check(options, kind);
   if (!options.output.empty()) check_output(std::filesystem::path(options.output) / "study.json");
   if (!options.json.empty()) check_output(options.json);
-  if (kind == Kind::motion) {
-    study_motion(options);
+  if (kind == Kind::motion || kind == Kind::levels) {  // which open their scenes themselves
+    if (kind == Kind::motion) study_motion(options);
+    if (kind == Kind::levels) study_levels(options);
     return ExitCode::done;
   }
   const Studied studied = open(options);
@@ -199,24 +203,25 @@ ExitCode study_scene(const StudyOptions& options) {
 void add_studied_options(CLI::App& sub, StudyOptions& o) {
   sub.add_option("--cameras", o.camera.file, "cameras.json; default: the one beside the model")
       ->type_name("FILE");
-  sub.add_option(
-         "--view", o.camera.views,
-         "The camera to study from; default: the first. Without --stability, --rules, --motion,\n"
-         "--turn and --path: those to calibrate on; default: 16 others than the test's, evenly spread")
+  sub.add_option("--view", o.camera.views,
+                 "The camera to study from; default: the first. With --levels: those to draw;\n"
+                 "default: 8, evenly spread. Without --stability, --rules, --motion, --turn,\n"
+                 "--levels and --path: those to calibrate on; default: 16 others than the\n"
+                 "test's, evenly spread")
       ->type_name("NAME...");
   sub.add_option("--test", o.test, "Views to test on; default: 8, evenly spread")->type_name("NAME...");
   add_photos_option(sub, o.photos,
                     "DIR/NAME.jpg or .png of the views: tolerances for 0.1 to 0.5 dB;\nwith --turn what each "
                     "order and projection loses");
-  sub.add_option(
-         "-o,--output", o.output,
-         "Folder for report.html and study.json (out/study);\nwith --stability, --motion and --turn, too")
+  sub.add_option("-o,--output", o.output,
+                 "Folder for report.html and study.json (out/study);\nwith --stability, --motion, --turn and "
+                 "--levels, too")
       ->type_name("DIR");
   add_size_option(sub, o.camera.lens, "Of an eye's picture");
   add_preset_option(sub, o.camera.lens,
                     "preview: 1280 x 720 an eye; headset: 3660 x 3200 an eye, 100 degrees");
   sub.add_flag("--mono", o.rig.mono,
-               "With --path, --rules, --motion and --turn: the cameras themselves, no rig");
+               "With --path, --rules, --motion, --turn and --levels: the cameras themselves, no rig");
   add_measured_options(sub, o);
   sub.add_option("--ipd", o.rig.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
   sub.add_option("--units-per-metre", o.rig.units_per_metre,
@@ -252,10 +257,12 @@ void save(const StudyOptions& options, const ordered_json& numbers, const study:
 }
 
 void add_study(CLI::App& program, Command& command) {
-  CLI::App* sub = program.add_subcommand("study", "What thresholds gain on a scene, and where they fail");
+  CLI::App* sub = program.add_subcommand(
+      "study", "What thresholds gain on a scene, where they fail, and what levels of detail lose");
   const auto options = std::make_shared<StudyOptions>();
   StudyOptions& o = *options;
-  sub->add_option("SCENE", o.scene.name, "A model, or demo:room or demo:city")->required();
+  sub->add_option("SCENE", o.scenes, "A model, or demo:room or demo:city; with --levels one or more")
+      ->required();
   sub->add_flag("--stability", o.stability, "Every rule and source on every failure case");
   auto* rules =
       sub->add_flag("--rules", o.rules, "Every rule and source at one error on a still pair, timed");
@@ -271,13 +278,14 @@ void add_study(CLI::App& program, Command& command) {
          "With --turn: rays across and down (48x36; where the CPU draws 16x12)")
       ->type_name("NxN");
   CLI::Option* motion = add_motion_options(*sub, o.motion);
+  CLI::Option* levels = add_levels_options(*sub, o);
   sub->add_option(
          "--frames", o.frames,
          "Timed of each setting in each of three rounds (24; --rules 96);\nwith --motion: that move, of a "
          "segment (60)")
       ->type_name("N")
       ->check(range(1, 10000));
-  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules, motion);
+  sub->add_option("--case", o.cases, "Only these cases")->type_name("NAME")->excludes(rules, motion, levels);
   sub->add_option(
          "--path", o.camera.path,
          "Carry one rule along the cameras of this file instead, through keys\n90 frames a second; with "
@@ -285,21 +293,21 @@ void add_study(CLI::App& program, Command& command) {
       ->type_name("FILE");
   sub->add_option("--target", o.target,
                   "dB that tolerances are chosen for (40);\nwith --motion: at which rules are compared")
-      ->excludes(sub->get_option("--no-equal"))
+      ->excludes(sub->get_option("--no-equal"), levels)
       ->type_name("DB")
       ->check(above_zero);
   sub->add_option("--tolerance,--loss", o.tolerance, "Of the rule carried, instead")
-      ->excludes(rules, motion)
+      ->excludes(rules, motion, levels)
       ->type_name("X")
       ->check(not_negative);
   sub->add_option("--quality", o.quality,
                   "Steer the rule carried to so many dB;\nwith --motion: every rule (40)")
-      ->excludes(rules)
+      ->excludes(rules, levels)
       ->type_name("DB")
       ->check(above_zero);
   const auto of_rule = [&](const char* name, int& into, std::span<const Choice> choices) {
     choose(*sub, name, into, fmt::format("Of the rule carried ({})", choices[into].name), words_of(choices))
-        ->excludes(rules, motion);
+        ->excludes(rules, motion, levels);
   };
   of_rule("--th", o.th, th_choices);
   of_rule("--transmittance", o.transmittance, transmittance_choices);
@@ -311,12 +319,14 @@ void add_study(CLI::App& program, Command& command) {
       "  binosplat study garden.ply --rules --preset headset\n"
       "  binosplat study garden.ply --motion --rule squared,one --rule squared,last --size 1280x1120\n"
       "  binosplat study garden.ply --turn --preset headset\n"
+      "  binosplat study garden-levels --levels --cameras cameras.json --preset headset -o out/levels\n"
       "  binosplat study garden.ply --stability --size 320x320");
   sub->callback([options, sub, &command] {
     for (const char* name : {"--case", "--target", "--tolerance", "--quality", "--th", "--transmittance",
                              "--mono", "--json", "--rays"}) {
       if (sub->count(name) > 0) options->not_for_analyses.emplace_back(name);
     }
+    options->scene.name = options->scenes.front();
     options->motion.lengths.moving = static_cast<std::size_t>(options->frames.value_or(60));
     command = [options] { return study_scene(*options); };
   });

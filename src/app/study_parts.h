@@ -32,13 +32,17 @@ struct MotionOptions {
 };
 
 struct StudyOptions : MeasuredOptions {
+  std::vector<std::string> scenes;  // `scene` is the first; more of --levels only
   RigOptions rig;
   bool stability = false;
   bool rules = false;
   bool turn = false;
+  bool levels = false;
   std::optional<glm::ivec2> rays;  // of --turn, across and down; none: as many as the device is quick with
   MotionOptions motion;
-  std::optional<int> frames;  // timed of each rule in each round
+  std::vector<DetailNeed> details = {
+      {.db = 30}, {.db = 35}, {.db = 40}, {.db = 45}};  // of --levels, in order
+  std::optional<int> frames;                            // timed of each rule in each round
   std::vector<std::string> test;
   std::string output;
   std::vector<std::string> cases;
@@ -75,5 +79,11 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options);
 
 /// --motion: prints the tables, and saves.
 void study_motion(const StudyOptions& options);
+
+/// Adds --levels, which it returns, and the option that no other study takes.
+CLI::Option* add_levels_options(CLI::App& sub, StudyOptions& options);
+
+/// --levels: prints the tables, and saves.
+void study_levels(const StudyOptions& options);
 
 }  // namespace binosplat::app

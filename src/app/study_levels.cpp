@@ -1,0 +1,178 @@
+// binosplat study --levels.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <list>
+#include <nlohmann/json.hpp>
+
+#include "app/command.h"
+#include "app/followed.h"
+#include "app/load_scene.h"
+#include "app/study_parts.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/progress.h"
+#include "study/bench.h"  // spread_evenly
+#include "study/levels.h"
+#include "study/levels_page.h"
+#include "study/turns.h"
+
+namespace binosplat::app {
+
+namespace {
+
+constexpr std::size_t shots_wanted = 8;
+constexpr int frames_wanted = 24;
+
+double number_of(const DetailNeed& detail) { return detail.db.value_or(detail.apart_px); }
+
+/// From the fewest dB or px on.
+std::vector<DetailNeed> parse_details(const std::vector<std::string>& texts) {
+  std::vector<DetailNeed> details;
+  for (const std::string& text : texts) {
+    details.push_back(parse_detail(text));
+    if (details.back().db.has_value() != details.front().db.has_value())
+      fail("--detail {}: expected all of them in pixels, or all in decibels", fmt::join(texts, ","));
+  }
+  std::ranges::sort(details, {}, number_of);
+  const auto same = [](const DetailNeed& a, const DetailNeed& b) { return number_of(a) == number_of(b); };
+  details.erase(std::unique(details.begin(), details.end(), same), details.end());
+  return details;
+}
+
+/// A scene, and the cameras that it is seen from.
+struct Listed {
+  SceneOptions scene;
+  CameraList list;
+};
+
+/// Throws Error for all that can be known to be wrong before anything is drawn.
+Listed listed(const StudyOptions& options, const std::string& name) {
+  Listed found{.scene = options.scene};
+  found.scene.name = name;
+  check(found.scene);
+  if (!is_streamed_sog(name))
+    fail(
+        "--levels: {} is no folder with levels of detail (a lod-meta.json): `binosplat levels MODEL -o DIR` "
+        "makes one",
+        name);
+  StreamedSog levels(name);
+  for (const DetailNeed& detail : options.details) levels.choose({}, detail);
+  found.list = listed_cameras(found.scene, options.camera, options.rig);
+  if (!found.list.listed) fail("--levels: no cameras beside {}; name their file with --cameras", name);
+  check_views(options.camera.views, options.rig.mono, found.list);
+  return found;
+}
+
+/// A model whose levels follow one detail.
+struct Following {
+  Following(gl::Context& context, const SceneOptions& scene)
+      : detail(*scene.detail),
+        levels(scene, {}, false, glm::vec3(0.0f), false),
+        model(levels.coarsest()),
+        gpu_model(std::make_shared<render::GpuModel>(context, model)),
+        show(gpu_model) {}
+
+  DetailNeed detail;
+  FollowedLevels levels;
+  Model model;
+  std::shared_ptr<render::GpuModel> gpu_model;
+  stereo::Show show;
+};
+
+study::FollowingModel following_model(Following& following) {
+  return {number_of(following.detail), following.gpu_model,
+          [&following](render::Frame& frame, std::span<const shared::View> views) {
+            const ShotLevels levels =
+                following.levels.follow(following.model, frame, following.show, views, {});
+            return study::LevelsBrought{levels.gaussians, levels.predicted_psnr};
+          }};
+}
+
+std::vector<study::LevelsShot> shots_of(const StudyOptions& options, const Listed& listed,
+                                        const std::string& axes) {
+  const CameraOptions& camera = options.camera;
+  const std::vector<Shot> all = make_shots(views_or_all(camera.views), camera.lens, options.rig, listed.list,
+                                           near_plane_of(camera, listed.list), axes);
+  const std::size_t wanted = camera.views.empty() ? shots_wanted : all.size();
+  std::vector<study::LevelsShot> shots;
+  for (const std::size_t k : study::spread_evenly(all.size(), wanted))
+    shots.push_back({all[k].name, views_of(all[k])});
+  return shots;
+}
+
+study::LevelsScene measured(gl::Context& context, const StudyOptions& options, const Listed& listed,
+                            int frames) {
+  std::list<Following> all;  // which stay where they are
+  std::vector<study::FollowingModel> models;
+  for (const DetailNeed& detail : options.details) {
+    SceneOptions scene = listed.scene;
+    scene.detail = detail;
+    models.push_back(following_model(all.emplace_back(context, scene)));
+  }
+  const std::vector<study::LevelsShot> shots = shots_of(options, listed, all.front().model.axes);
+  study::LevelsScene scene{.name = listed.scene.name, .finest = all.front().levels.finest()};
+  Progress progress("measuring " + scene.name, shots.size());
+  std::size_t done = 0;
+  study::measure_levels(
+      scene, context, shots, models, [&] { return load_scene(listed.scene); }, frames,
+      [&] { progress.update(++done); });
+  return scene;
+}
+
+void print(const study::LevelsStudy& study) {
+  fmt::print("{}; times: the median of {} frame{} of a view, in the mean of {} rounds in turns\n",
+             study.device, study.frames, study.frames == 1 ? "" : "s", study::turn_rounds);
+  for (const study::LevelsScene& scene : study.scenes) {
+    fmt::print("{}: {} Gaussians at the finest levels, {} view{} of {} x {} x {} px\n", scene.name,
+               scene.finest, scene.shots.size(), scene.shots.size() == 1 ? "" : "s", scene.eyes, scene.width,
+               scene.height);
+  }
+  for (const std::string& problem : study::problems_of(study)) fmt::print("{}\n", problem);
+  fmt::print("\n");
+  print_table(study::levels_table(study));
+  fmt::print(
+      "\nMeans over the views, dB by the mean of squared errors. Predicted: of the eye that loses more. "
+      "True: "
+      "of both\neyes' pictures against those of the finest levels.\n");
+  const study::Table growth = study::growth_table(study);
+  if (growth.rows.empty()) return;
+  fmt::print("\nFrame times, and how they grow from the smallest scene:\n\n");
+  print_table(growth);
+}
+
+}  // namespace
+
+CLI::Option* add_levels_options(CLI::App& sub, StudyOptions& options) {
+  CLI::Option* levels = sub.add_flag("--levels", options.levels,
+                                     "What levels of detail lose against the finest, and the time that "
+                                     "they\ntake; of several scenes how that "
+                                     "grows with them");
+  sub.add_option_function<std::vector<std::string>>(
+         "--detail",
+         [&options](const std::vector<std::string>& texts) { options.details = parse_details(texts); },
+         "With --levels: as `render --detail` takes them (30dB,35dB,40dB,45dB)")
+      ->needs(levels)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("PX|DB,...");
+  return levels;
+}
+
+void study_levels(const StudyOptions& options) {
+  std::vector<Listed> scenes;
+  for (const std::string& name : options.scenes) scenes.push_back(listed(options, name));
+  const auto context = open_context_for_all("study", false, options.context);
+  study::LevelsStudy study{.device = study::device_text(*context),
+                           .in_db = options.details.front().db.has_value(),
+                           .frames = options.frames.value_or(frames_wanted)};
+  for (const Listed& scene : scenes) study.scenes.push_back(measured(*context, options, scene, study.frames));
+  print(study);
+  save(options, study::to_json(study), study::levels_page(study));
+}
+
+}  // namespace binosplat::app
