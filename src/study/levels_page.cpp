@@ -197,9 +197,10 @@ Table growth_table(const LevelsStudy& study) {
 std::vector<std::string> problems_of(const LevelsStudy& study) {
   std::vector<std::string> all;
   for (const LevelsScene& scene : study.scenes) {
-    if (!scene.problem.empty())
-      all.push_back(fmt::format("{}: {} Gaussians, its finest levels, were not drawn in all views: {}.",
-                                scene.name, scene.finest, scene.problem));
+    if (scene.problem.empty()) continue;
+    all.push_back(fmt::format("{}: its finest levels, {} Gaussians, were not drawn in all views: {}",
+                              scene.name, scene.finest, scene.problem));
+    if (!all.back().ends_with('.')) all.back() += '.';
   }
   return all;
 }

@@ -115,7 +115,7 @@ TEST_F(LevelsStudyTest, GoesOnWhereTheFinestHaveNoRoom) {
   }
   const LevelsStudy study{.device = "some", .frames = 1, .scenes = {scene}};
   const Page page = levels_page(study);
-  EXPECT_NE(page.sections[0].sentence.find("no room for so many Gaussians"), std::string::npos)
+  EXPECT_NE(page.sections[0].sentence.find("in all views: no room for so many Gaussians."), std::string::npos)
       << page.sections[0].sentence;
   EXPECT_EQ(page.sections[1].problem, "This was not measured.");
   EXPECT_NE(html(page, to_json(study)).find("no room for so many"), std::string::npos);
