@@ -184,10 +184,12 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   }
   if (taken.empty()) return {};
   changed_.notify_all();
+  std::vector<ModelParts::Replacement> replacements;
   for (const StreamedSog::Piece& piece : taken) {
-    parts_.replace(model, piece.part, piece.model);
+    replacements.push_back({piece.part, &piece.model});
     if (piece.level) drawn_[piece.part] = *piece.level;
   }
+  parts_.replace(model, replacements);
   changed_since_look_ = true;
   return parts_.take_changes();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/parallel.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {
@@ -16,7 +17,8 @@ void Scatter::upload(const gl::Buffer& buffer, std::span<const std::uint32_t> pl
   while (!places.empty()) {
     const auto now = places.first(std::min(places.size(), records_at_once));
     records.assign(now.size() * words, 0);
-    for (std::size_t k = 0; k < now.size(); ++k) fill(now[k], std::span(records).subspan(k * words, words));
+    const auto fill_one = [&](std::size_t k) { fill(now[k], std::span(records).subspan(k * words, words)); };
+    parallel_for(now.size(), fill_one, 1 << 11);
     places_.upload(now);
     records_.upload(records);
     dispatcher_.begin_frame();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
 #include "scene/reduce.h"
 
 namespace binosplat {
@@ -17,7 +18,8 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 
 }  // namespace
 
-std::size_t ModelParts::take_block(Model& model) {
+// Places that are made for later, too, lie where something is, which makes no box larger.
+std::size_t ModelParts::take_block(Model& model, const glm::vec3& where) {
   if (free_.empty()) {
     const std::size_t before = owners_.size();
     const std::size_t more = std::clamp<std::size_t>(before / 8, 1, blocks_at_once);
@@ -32,8 +34,7 @@ std::size_t ModelParts::take_block(Model& model) {
     hide(model, before * block, (owners_.size() - before) * block);
     const auto at = static_cast<std::ptrdiff_t>(before * block);
     std::fill(model.rotation.begin() + at, model.rotation.end(), glm::vec4(1, 0, 0, 0));
-    std::fill(model.position.begin() + at, model.position.end(),
-              model.position.front());  // makes no box larger
+    std::fill(model.position.begin() + at, model.position.end(), where);
   }
   const std::size_t found = free_.top();
   free_.pop();
@@ -41,18 +42,39 @@ std::size_t ModelParts::take_block(Model& model) {
 }
 
 void ModelParts::replace(Model& model, std::size_t part, const Model& by) {
+  const Replacement one{part, &by};
+  replace(model, {&one, 1});
+}
+
+void ModelParts::replace(Model& model, std::span<const Replacement> all) {
+  for (const Replacement& each : all) give_back(model, each.part);
+  for (const auto& [part, by] : all) take_place(model, part, *by);
+  const auto fill = [&](std::size_t k) {
+    const auto& [part, by] = all[k];
+    for (std::size_t n = 0; n < blocks_[part].size(); ++n) {
+      const std::size_t first = n * block, count = std::min(block, by->count() - first);
+      const std::size_t at = blocks_[part][n] * block;
+      copy(*by, first, count, model, at);
+      hide(model, at + count, block - count);
+      std::fill_n(model.position.begin() + static_cast<std::ptrdiff_t>(at + count), block - count,
+                  by->position[first]);
+    }
+  };
+  parallel_for(all.size(), fill);
+}
+
+void ModelParts::give_back(Model& model, std::size_t part) {
   for (const std::size_t b : blocks_[part]) {
     hide(model, b * block, block);
     changed_[b] = false;
     free_.push(b);
   }
   blocks_[part].clear();
+}
+
+void ModelParts::take_place(Model& model, std::size_t part, const Model& by) {
   for (std::size_t first = 0; first < by.count(); first += block) {
-    const std::size_t b = take_block(model), count = std::min(block, by.count() - first);
-    copy(by, first, count, model, b * block);
-    hide(model, b * block + count, block - count);
-    std::fill_n(model.position.begin() + static_cast<std::ptrdiff_t>(b * block + count), block - count,
-                by.position[first]);
+    const std::size_t b = take_block(model, by.position.front());
     owners_[b] = static_cast<std::uint32_t>(part);
     changed_[b] = true;
     blocks_[part].push_back(b);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <queue>
+#include <span>
 #include <vector>
 
 #include "scene/model.h"
@@ -35,6 +36,12 @@ class ModelParts {
   /// Puts `by`, of the model's degree, in the place of a part. The model, which is the same in every call,
   /// grows where there is no place left, and its `room` by an eighth where that is full.
   void replace(Model& model, std::size_t part, const Model& by);
+  /// The same for several, each another part, side by side.
+  struct Replacement {
+    std::size_t part = 0;
+    const Model* by = nullptr;
+  };
+  void replace(Model& model, std::span<const Replacement> all);
 
   struct Range {
     std::size_t first = 0, count = 0;  // Gaussians of the model
@@ -48,7 +55,9 @@ class ModelParts {
   Changes take_changes();
 
  private:
-  std::size_t take_block(Model& model);
+  void give_back(Model& model, std::size_t part);
+  void take_place(Model& model, std::size_t part, const Model& by);
+  std::size_t take_block(Model& model, const glm::vec3& where);
 
   std::vector<std::vector<std::size_t>> blocks_;  // by part
   std::vector<std::size_t> counts_;               // by part

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <set>
 
 #include "scene/reduce.h"
@@ -55,18 +56,32 @@ struct Parts : testing::Test {
     wanted[part] = test::random_model(seed++, count, 1);
     parts.replace(model, part, wanted[part]);
   }
+  // What is wanted of some parts at once.
+  void replace_some(const std::vector<std::size_t>& some, const std::function<int()>& count) {
+    std::vector<ModelParts::Replacement> all;
+    for (const std::size_t part : some) {
+      wanted[part] = test::random_model(seed++, count(), 1);
+      all.push_back({part, &wanted[part]});
+    }
+    parts.replace(model, all);
+  }
 };
 
 TEST_F(Parts, ComeAndGo) {
   test::Uniform random(7);
   std::size_t most = 0;
-  for (int n = 0; n < 300; ++n) {
-    const auto size = static_cast<std::size_t>(std::exp(random(0.0, 8.0)));
-    replace(static_cast<std::size_t>(random(0.0, 5.0)), static_cast<int>(n % 11 == 0 ? 0 : size));
-    ASSERT_TRUE(holds(model, parts, wanted)) << n;
+  const auto check = [&] {
+    ASSERT_TRUE(holds(model, parts, wanted));
     std::size_t blocks = 0;
     for (std::size_t p = 0; p < 5; ++p) blocks += parts.blocks(p).size();
     most = std::max(most, blocks);
+  };
+  for (int n = 0; n < 300; ++n) {
+    const auto size = static_cast<std::size_t>(std::exp(random(0.0, 8.0)));
+    replace(static_cast<std::size_t>(random(0.0, 5.0)), static_cast<int>(n % 11 == 0 ? 0 : size));
+    check();
+    if (n % 7 == 0) replace_some({4, 0, 2}, [&] { return static_cast<int>(random(0.0, 300.0)); });
+    check();
   }
   EXPECT_LE(model.count(), (most + most / 8 + 1) * block) << "room that is free is used first";
   for (float& opacity : model.opacity) opacity *= 0.9f;  // planted
@@ -81,8 +96,7 @@ TEST_F(Parts, TellWhatHasChangedAndNothingElse) {
   for (int n = 0; n < 100; ++n) {
     const Model before = model;
     const std::size_t part = static_cast<std::size_t>(random(0.0, 5.0));
-    replace(part, static_cast<int>(random(0.0, 1400.0)));
-    replace((part + 1) % 5, static_cast<int>(random(0.0, 1400.0)));
+    replace_some({part, (part + 1) % 5}, [&] { return static_cast<int>(random(0.0, 1400.0)); });
     const ModelParts::Changes changes = parts.take_changes();
     std::set<std::size_t> told, empty;
     for (const auto& [first, count] : changes.filled) {
@@ -108,8 +122,10 @@ TEST_F(Parts, MakeNoBoxLarger) {
   for (std::size_t p = 0; p < 5; ++p) {
     wanted[p] = test::random_model(seed++, 1000, 1);
     for (glm::vec3& position : wanted[p].position) position += 100.0f;
-    parts.replace(model, p, wanted[p]);
   }
+  const std::vector<ModelParts::Replacement> replacements{
+      {0, &wanted[0]}, {1, &wanted[1]}, {2, &wanted[2]}, {3, &wanted[3]}, {4, &wanted[4]}};
+  parts.replace(model, replacements);
   Model all = like;
   for (const Model& part : wanted) append(all, part, 0, part.count());
   EXPECT_GT(model.count(), all.count());
