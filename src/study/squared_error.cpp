@@ -21,6 +21,16 @@ SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted
   sums_.reserve(static_cast<std::int64_t>(pixels_ / THREADS + 1) * 4);
 }
 
+SquaredError::SquaredError(gl::Context& context) : SquaredError(context, {}) {}
+
+void SquaredError::add(const gl::Buffer& colours, std::uint32_t pixels) {
+  constexpr std::int64_t each = sizeof(glm::vec4);
+  wanted_.grow((std::int64_t{pixels_} + pixels) * each);
+  wanted_.copy(colours, pixels * each, pixels_ * each);
+  pixels_ += pixels;
+  sums_.reserve(static_cast<std::int64_t>(pixels_ / THREADS + 1) * 4);
+}
+
 double SquaredError::mean(const gl::Buffer& colours) {
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("squared error");

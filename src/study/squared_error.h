@@ -17,6 +17,12 @@ class SquaredError {
   /// bits would keep them.
   SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels = 0);
 
+  /// The same of what add() adds.
+  explicit SquaredError(gl::Context& context);
+
+  /// As many more pixels that should be drawn, as a frame has just drawn them: they stay on the GPU.
+  void add(const gl::Buffer& colours, std::uint32_t pixels);
+
   /// The mean over pixels and channels of all pictures together, over black and clamped to [0, 1]. `colours`
   /// as render::Frame has them.
   double mean(const gl::Buffer& colours);

@@ -1,0 +1,33 @@
+// Pictures compared where they were drawn.
+#include "study/squared_error.h"
+
+#include <gtest/gtest.h>
+
+#include "render/frame.h"
+#include "scene/camera.h"
+#include "support/gl.h"
+#include "support/models.h"
+
+namespace binosplat::study {
+namespace {
+
+TEST(SquaredError, OfWhatStaysOnTheGpuIsThatOfPicturesReadBack) {
+  const std::vector<shared::View> views(2, make_view(look_at({0, 0, -4}, {0, 0, 0}, {0, -1, 0}, 60, 80, 48)));
+  const Model model = test::random_model(1, 300, 1), other = test::random_model(2, 300, 1);
+  render::Frame frame(test::gl_context(), model), other_frame(test::gl_context(), other);
+  frame.draw(views);
+  SquaredError read(test::gl_context(), frame.read_pictures());
+  SquaredError kept(test::gl_context()), half(test::gl_context());
+  for (const shared::View& view : views) {
+    frame.draw({&view, 1});
+    kept.add(frame.colours(), 80 * 48);
+    half.add(frame.colours(), 80 * 24);
+  }
+  other_frame.draw(views);
+  EXPECT_GT(read.mean(other_frame.colours()), 1e-4);
+  EXPECT_EQ(kept.mean(other_frame.colours()), read.mean(other_frame.colours()));
+  EXPECT_NE(half.mean(other_frame.colours()), read.mean(other_frame.colours())) << "planted: half of each";
+}
+
+}  // namespace
+}  // namespace binosplat::study
