@@ -85,12 +85,12 @@ struct DetailChoice {
   /// around the views.
   std::vector<std::vector<double>> errors;
 
-  /// What the view that loses most does with any levels of the parts: squared, meaned over pixels and
-  /// channels.
-  double error_of(std::span<const std::size_t> any_levels) const;
-  double error() const { return error_of(levels); }
+  /// What that of the first so many views which loses most does with any levels of the parts: squared, meaned
+  /// over pixels and channels.
+  double error_of(std::span<const std::size_t> any_levels, std::size_t views) const;
+  double error() const { return error_of(levels, pixels.size()); }
   /// In dB.
-  double psnr_of(std::span<const std::size_t> any_levels) const;
+  double psnr_of(std::span<const std::size_t> any_levels, std::size_t views) const;
 };
 
 /// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All

@@ -17,9 +17,12 @@ constexpr std::size_t read_ahead = 1 << 20;
 // their harmonics.
 constexpr std::size_t room_most = 1 << 22;
 constexpr double between_looks_ms = 100.0;
+// That a choice is read for, at least, whatever is wished for meanwhile: choosing may take as long as looks.
+constexpr double reading_ms = 100.0;
 constexpr double glance_ms = 3.0;       // that a frame may take for a look
 constexpr double bands_most = 8.0;      // of a view: each costs all that does not depend on pixels, too
 constexpr double look_most_ms = 250.0;  // at all bands of all views: slow frames have fewer bands
+constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
 constexpr int looks_most = 3;           // at the same views; then a choice hardly changes any more
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
@@ -61,6 +64,7 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
 
 void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   if (views.empty()) return;
+  motion_.note(views);
   if (!same(views, wanted_)) {
     if (views.size() != wanted_.size()) {
       looked_.clear();
@@ -80,7 +84,7 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
     wish.views = wanted_;
   } else {
     if (!look_on(look)) return;
-    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}};
+    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}, here()};
     ++looks_;
   }
   is_due_ = !same(wish.views, wanted_);
@@ -91,17 +95,22 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   changed_.notify_all();
 }
 
+std::size_t LevelStream::here() const { return moves_ ? (to_look_at_ + 1) / 2 : to_look_at_; }
+
 // At the next band or view; whether all have been looked at.
 bool LevelStream::look_on(const Look& look) {
   if (looked_.empty()) {
     if (looked_at_ && ms_since(*looked_at_) < between_looks_ms) return false;
     looked_at_ = Clock::now();
+    moves_ = !same(motion_.ahead(lead_s), wanted_);
+    to_look_at_ = moves_ ? std::max<std::size_t>(wanted_.size(), 2) : wanted_.size();
     changed_since_look_ = false;
     look_ms_ = 0.0;
     seen_.clear();
   }
   if (band_.index == 0) {
-    looked_.push_back(wanted_[looked_.size()]);
+    const std::size_t k = looked_.size();
+    looked_.push_back(k < here() ? wanted_[k] : motion_.ahead(lead_s)[k % wanted_.size()]);
     seen_.emplace_back(parts_.size());
   }
   const auto start = Clock::now();
@@ -109,8 +118,8 @@ bool LevelStream::look_on(const Look& look) {
   look_ms_ += ms_since(start);
   if (++band_.index < band_.count) return false;
   band_.index = 0;
-  if (looked_.size() < wanted_.size()) return false;
-  const auto views = static_cast<double>(wanted_.size());
+  if (looked_.size() < to_look_at_) return false;
+  const auto views = static_cast<double>(to_look_at_);
   const double frame_ms = ms_since(*looked_at_) / (views * band_.count);
   const double most = std::clamp(look_most_ms / (views * frame_ms), 1.0, bands_most);
   band_.count = static_cast<int>(std::clamp(std::ceil(look_ms_ / views / glance_ms), 1.0, most));
@@ -142,6 +151,7 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
   {
     const std::lock_guard lock(mutex_);
     choice_ = scene_.choice();
+    here_ = wish.here;
   }
   if (!reads) return;
   drop_unwanted();
@@ -151,9 +161,10 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
     gaussians_read_ += piece.model.count();
     pieces_.push_back(std::move(piece));
   };
+  const auto start = Clock::now();
   scene_.read(take, [&] {
     const std::lock_guard lock(mutex_);
-    return !stop.stop_requested() && !wish_;
+    return !stop.stop_requested() && (!wish_ || ms_since(start) < reading_ms);
   });
 }
 
@@ -204,11 +215,13 @@ bool LevelStream::settled() const {
 
 std::optional<double> LevelStream::predicted_psnr() const {
   std::shared_ptr<const DetailChoice> choice;
+  std::size_t here = 0;
   {
     const std::lock_guard lock(mutex_);
     choice = choice_;
+    here = here_;
   }
-  return choice ? std::optional(choice->psnr_of(drawn_)) : std::nullopt;
+  return choice ? std::optional(choice->psnr_of(drawn_, here)) : std::nullopt;
 }
 
 }  // namespace binosplat

@@ -14,6 +14,7 @@
 
 #include "base/clock.h"
 #include "formats/streamed_sog.h"
+#include "scene/head_motion.h"
 #include "scene/model_parts.h"
 
 namespace binosplat {
@@ -42,6 +43,8 @@ class LevelStream {
   /// view in each call, since a frame has little time, or for a band of one, where that took longer than 3 ms
   /// the last time and frames come fast. For all of them no more than ten times a second; until then what was
   /// wanted stays.
+  /// While the views move, the second half of them is looked at where they will be by the time that levels
+  /// are there, a single view both here and there: levels come for all.
   using Look =
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);
@@ -55,16 +58,18 @@ class LevelStream {
   /// Gaussians of the model.
   std::size_t gaussians() const { return parts_.gaussians(); }
   const ModelParts& parts() const { return parts_; }
-  /// What the views that were looked at last are taken to have against the finest levels, in dB, with the
-  /// levels that the model has now; none where dB are not gone by, or nothing was looked at yet.
+  /// What the views that were looked at last where they were are taken to have against the finest levels, in
+  /// dB, with the levels that the model has now; none where dB are not gone by, or nothing was looked at yet.
   std::optional<double> predicted_psnr() const;
 
  private:
   struct Wish {
     std::vector<shared::View> views;
     DetailSeen seen;
+    std::size_t here = 0;  // of the views: they come first, and others lie ahead
   };
   bool look_on(const Look& look);
+  std::size_t here() const;
   void work(const std::stop_token& stop);
   void read(const Wish& wish, const std::stop_token& stop);
   void drop_unwanted();
@@ -76,12 +81,15 @@ class LevelStream {
   ModelParts parts_;
   bool by_db_ = false;
   std::vector<shared::View> wanted_;
+  HeadMotion motion_;
   bool is_due_ = false;             // to be wished
   std::vector<std::size_t> drawn_;  // places of the parts' levels, in the model
   // By dB:
   int looks_ = 0;                            // at these views, all of them
   std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
   std::vector<std::vector<SeenPart>> seen_;  // and what it showed
+  bool moves_ = false;                       // while these are looked at
+  std::size_t to_look_at_ = 0;               // so many views
   Band band_;                                // of the last of them, that comes next
   double look_ms_ = 0.0;                     // of the looks at them
   bool changed_since_look_ = false;
@@ -94,6 +102,7 @@ class LevelStream {
   std::deque<StreamedSog::Piece> pieces_;
   std::size_t gaussians_read_ = 0;  // of these
   std::shared_ptr<const DetailChoice> choice_;
+  std::size_t here_ = 0;  // of its views (Wish)
   std::exception_ptr trouble_;
   std::jthread thread_;  // last: it ends first
 };

@@ -160,6 +160,52 @@ TEST(LevelStream, LooksAFewTimes) {
   EXPECT_EQ(gaussians, std::vector<std::size_t>{1000}) << "nothing had to be read";
 }
 
+// One eye where it is, and the other where it will be.
+TEST(LevelStream, LooksAheadOfAHeadThatMoves) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  test::add_level_errors(copy);
+  LevelStream stream(copy.path(), for_40_db);
+  Model model = stream.coarsest();
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const double speed = 2.0, stops_at = 1.0;  // world units a second, s
+  float now = 0.0f;                          // where the head is
+  std::vector<float> here, ahead, at_rest;   // of the looks: where, or how far from the head
+  const auto look = [&](const shared::View& seen_by, Band, const ModelParts& parts) {
+    const float from_head = seen_by.anchor.x + seen_by.eye.x - now;
+    const bool is_left = seen_by.centre.y == 0.0f;
+    if (seconds() > stops_at) {
+      at_rest.push_back(from_head);
+    } else if (seconds() > 0.5 && seconds() < stops_at) {
+      (is_left ? here : ahead).push_back(from_head);
+    }
+    return std::vector(parts.size(), SeenPart{2000.0, 30.0});
+  };
+  do {
+    now = static_cast<float>(speed * std::min(seconds(), stops_at));
+    shared::View left = at({now, 0, -30});
+    left.row_z = {0, 0, 1, 0};
+    left.centre.w = 1.0f;
+    left.width = left.height = 100;
+    shared::View right = left;
+    right.centre.y = 1.0f;  // tells it from the other
+    stream.want(std::vector{left, right}, look);
+    stream.take(model, 1);
+    ASSERT_LT(seconds(), 60.0) << "it hangs";
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  } while (!stream.settled() || seconds() < stops_at);
+  ASSERT_GE(here.size(), 2u);
+  ASSERT_GE(ahead.size(), 2u);
+  for (const float x : here) EXPECT_EQ(x, 0.0f);
+  for (const float x : ahead) EXPECT_NEAR(x, 1.0f, 0.2f);  // half a second
+  ASSERT_GE(at_rest.size(), 2u);
+  EXPECT_EQ(at_rest.end()[-2], 0.0f) << "planted: a head that has stopped";
+  EXPECT_EQ(at_rest.back(), 0.0f);
+}
+
 // Where a look takes long, the next one is at bands: both times the same is seen, and the same is chosen.
 TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
   REQUIRE_FIXTURES(folder);
