@@ -27,7 +27,7 @@ std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> v
 
 DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
                        const StreamedSog& scene, std::span<const shared::View> views) {
-  DetailNeed need = options.detail.value_or(DetailNeed{});
+  DetailNeed need = options.detail.value_or(DetailNeed{.shares = true});
   if (options.gpu_memory) {
     const std::vector<shared::View> pair(
         2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720)));
@@ -60,7 +60,7 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
                             std::span<const shared::View> views, const render::FrameSettings& settings,
                             const Changing& changing) {
   if (options_.gpu_memory) {
-    const std::size_t most = detail_need(options_, settings_, scene_, views).most;
+    const std::size_t most = need(views).most;
     model.room = std::min(most, scene_.finest()) + scene_.parts() * ModelParts::block;
   }
   std::optional<render::Sight> sight;  // not longer than this: it takes the memory of a small frame
@@ -107,9 +107,9 @@ bool FollowedLevels::choose(render::Sight* sight, std::span<const shared::View> 
                             const render::FrameSettings& settings) {
   DetailSeen seen;
   if (sight != nullptr) seen = {sight->look(views, settings, parts_), scene_.chosen()};
-  DetailNeed need = detail_need(options_, settings_, scene_, views);
-  need.heads_turn = heads_turn_;
-  return scene_.choose(views, need, seen);
+  DetailNeed needed = need(views);
+  needed.heads_turn = heads_turn_;
+  return scene_.choose(views, needed, seen);
 }
 
 ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Show& show,
@@ -127,6 +127,9 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
   if (!before.empty()) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
   levels.gaussians = parts_.gaussians();
   levels.predicted_psnr = scene_.predicted_psnr();
+  levels.left = settings.quality;
+  if (settings.quality > 0.0f && levels.predicted_psnr)
+    levels.left = left_of(settings.quality, *need(views).db, *levels.predicted_psnr);
   levels.read_ms = std::exchange(read_ms_, 0.0);
   levels.upload_ms = std::exchange(upload_ms_, 0.0);
   return levels;

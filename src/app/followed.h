@@ -26,16 +26,18 @@ struct ShotLevels {
       switch_psnr;  // dB, between the shot with the levels before and with these, both exact
   std::optional<double> finest_psnr;     // dB, against the exact picture of the finest levels
   std::optional<double> predicted_psnr;  // the same by the errors of the levels, of the worse eye
+  double left = 0.0;                     // dB of settings.quality, for what the frame leaves out of them
 };
 
-/// What views of a run need (formats/streamed_sog.h): --detail, or the finest, and --gpu-memory for the model
-/// and their frame.
+/// What views of a run need (formats/streamed_sog.h): --detail, or the finest, or what --quality leaves to
+/// levels, and --gpu-memory for the model and their frame.
 DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
                        const StreamedSog& scene, std::span<const shared::View> views);
 
 class FollowedLevels {
  public:
-  /// Opens the scene, for frames of such settings. With `report` it says what a switch changes, in pictures
+  /// Opens the scene, for frames of such settings: levels share their quality where no --detail is asked for.
+  /// With `report` it says what a switch changes, in pictures
   /// before `background`. Shots are those of a head that turns, or single pictures, which do not depend on
   /// those before them. Throws Error where it is no streamed SOG.
   FollowedLevels(const SceneOptions& options, const render::FrameSettings& settings, bool report,
@@ -52,6 +54,8 @@ class FollowedLevels {
   Model coarsest();
   /// Of the model that there is.
   std::size_t gaussians() const { return parts_.gaussians(); }
+  /// Whether they know what they lose.
+  bool has_errors() const { return scene_.has_errors(); }
   /// Of the finest levels.
   std::size_t finest() const { return scene_.finest(); }
 
@@ -68,7 +72,10 @@ class FollowedLevels {
                         std::span<const Picture> pictures, const render::FrameSettings& settings);
 
  private:
-  bool goes_by_db() const { return options_.detail && options_.detail->db; }
+  DetailNeed need(std::span<const shared::View> views) const {
+    return scene_.sharing(detail_need(options_, settings_, scene_, views), settings_.quality);
+  }
+  bool goes_by_db() const { return need({}).db.has_value(); }
   /// Brings the model, and what there is of it on the GPU (by dB it must be there), to what the views need;
   /// whether that was other levels. `changing` is called before the first of them is read.
   template <typename Changing>

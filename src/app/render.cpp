@@ -178,7 +178,10 @@ void draw_all(gl::Context& context, Work& work, Model& model, RenderReport& repo
     const std::vector<shared::View> views = views_of(drawn.shot);
     render::FrameSettings of_shot = work.calibrated.of(drawn.shot, settings);
     of_shot.depth = output.exr_depth;
-    if (work.followed) drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
+    if (work.followed) {
+      drawn.levels = work.followed->follow(model, frame, show, views, of_shot);
+      of_shot.quality = static_cast<float>(drawn.levels->left);
+    }
     for (int n = 0; n < drawing.frames; ++n) {
       drawn.report = panorama   ? draw(*panorama, drawn.shot, report.model.axes, report.near_plane)
                      : foveated ? foveated->draw(views, *foveate, of_shot, workings)
@@ -267,13 +270,16 @@ ExitCode render(const RenderOptions& o) {
   check_photo_sizes(o, work);
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
-  if (o.scene.detail) {
+  if (o.scene.detail || may_share(o)) {
     const bool heads_turn =
         work.list.path || work.plan.vr180;  // such a picture shows what lies beside the view
     work.followed.emplace(o.scene, settings, o.output.detail_report, o.output.backdrop(), heads_turn);
-  } else if (o.scene.gpu_memory) {
-    budget = detail_budget(o, work.list);
+    if (!o.scene.detail && !work.followed->has_errors()) work.followed.reset();
   }
+  if (!work.followed && o.output.detail_report)
+    fail("--detail-report: {} does not say what its levels lose, to share --quality with: give --detail PX",
+         o.scene.name);
+  if (!work.followed && o.scene.gpu_memory) budget = detail_budget(o, work.list);
   Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget);
   log_model(o.scene.name, o.drawing.decode, model,
             work.followed ? work.followed->gaussians() : model.count());

@@ -8,6 +8,7 @@
 #include "app/tour.h"
 #include "app/vr180.h"
 #include "base/error.h"
+#include "formats/streamed_sog.h"
 #include "preview/keys.h"
 
 namespace binosplat::app {
@@ -57,7 +58,7 @@ void check_eyes(const RigOptions& rig, const DrawingOptions& drawing, const Outp
 void check_parts(const RenderOptions& o) {
   if (o.shard.all() && !o.resume) return;
   const char* const part = o.resume ? "--resume" : "--shard";
-  if (o.scene.detail) {
+  if (o.scene.detail && (o.camera.along_path() || o.camera.lens.vr180())) {
     fail("{} with --detail: a view's levels go by those of the view before it; take --lod or --gpu-memory",
          part);
   }
@@ -140,10 +141,22 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   });
 }
 
+bool may_share(const RenderOptions& o) {
+  return o.drawing.quality && !o.scene.lod && !o.scene.repeat && !is_built_in(o.scene.name) &&
+         is_streamed_sog(o.scene.name);
+}
+
 void check(const RenderOptions& o) {
   check(o.scene);
-  if (o.output.detail_report && !o.scene.detail)
+  if (o.output.detail_report && !o.scene.detail && !may_share(o))
     fail("--detail-report tells what --detail costs, which is missing");
+  if (o.scene.detail && o.scene.detail->db && o.drawing.quality &&
+      *o.scene.detail->db <= *o.drawing.quality) {
+    fail(
+        "--detail {}dB with --quality {} leaves nothing for what a frame leaves out: leave --detail out, and "
+        "levels get half of what may be lost",
+        *o.scene.detail->db, *o.drawing.quality);
+  }
   check_cameras(o.camera, o.output, o.drawing.frames > 1);
   check(o.drawing);
   check(o.rig);

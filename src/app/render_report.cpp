@@ -99,6 +99,13 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
       better.ipd ? fmt::format(" --ipd {:.3g}", *better.ipd) : "");
 }
 
+/// Of what a frame says of itself: with what its levels lose, where they share --quality.
+double told_psnr(const Drawn& drawn) {
+  const bool shares = drawn.levels && drawn.levels->predicted_psnr;
+  const double frame = drawn.report.quality;
+  return shares ? psnr_of_both(frame, *drawn.levels->predicted_psnr) : frame;
+}
+
 std::string levels_text(const ShotLevels& levels) {
   std::string text = fmt::format("  levels of {} Gaussians", levels.gaussians);
   if (levels.predicted_psnr) text += fmt::format(", {:.2f} dB predicted", *levels.predicted_psnr);
@@ -163,8 +170,8 @@ ordered_json view_json(const Drawn& drawn, const RenderOptions& options,
   FieldWriter{json}("visible", r.visible, "pairs", r.pairs, "gpu_ms", r.stages.empty() ? NAN : r.total_ms,
                     "tile", r.tile_size, "depth_orders", r.order_groups, "drawn_again", r.redrawn,
                     "tolerance", given(drawing.quality || !drawing.calibration.empty(), r.tolerance),
-                    "probed_psnr_db", given(drawing.quality.has_value(), r.quality), "photo_psnr_db",
-                    drawn.photo_psnr);
+                    "probed_psnr_db", given(drawing.quality.has_value(), r.quality), "told_psnr_db",
+                    given(drawing.quality.has_value(), told_psnr(drawn)), "photo_psnr_db", drawn.photo_psnr);
   if (drawn.levels) json["levels_of_detail"] = levels_json(*drawn.levels);
   for (const stereo::FoveatedEye& eye : drawn.foveated) json["foveated"].push_back(foveated_json(eye));
   if (drawn.comfort) json["disparity"] = comfort_json(*drawn.comfort);
@@ -277,8 +284,7 @@ void print(const RenderReport& report) {
                 ? "  (by the float64 reference, on the CPU"
                 : fmt::format("  ({} pairs, {:.3f} ms", drawn.report.pairs, drawn.report.total_ms);
     if (report.options.drawing.quality)
-      line +=
-          fmt::format(", tolerance {:.4g} for about {:.1f} dB", drawn.report.tolerance, drawn.report.quality);
+      line += fmt::format(", tolerance {:.4g} for about {:.1f} dB", drawn.report.tolerance, told_psnr(drawn));
     if (drawn.photo_psnr) line += fmt::format(", {:.4f} dB against the photo", *drawn.photo_psnr);
     fmt::print("{})\n", line);
     if (drawn.most_shown)

@@ -26,7 +26,20 @@ struct DetailNeed {
   std::size_t most = std::numeric_limits<std::size_t>::max();  // Gaussians of the model
   std::optional<double> db = {};  // instead of apart_px: each view's PSNR against the finest levels
   bool heads_turn = true;         // by dB: what is out of sight may be seen a moment later
+  double stays_s = 0.0;           // by dB: for so long finer levels stay than are needed, where there is room
+  bool shares = false;            // nothing was asked for: levels may lose a part of what frames may
 };
+
+// Levels and what a frame leaves out of them (FrameSettings::quality) share a budget where their squared
+// errors are known, which add up: so many dB together.
+
+/// The levels' part of it, dB: half of the squared error.
+double levels_share(double together_db);
+/// What is left for a frame, dB, with levels that are taken to have `now_db`. While they have less than the
+/// `asked_db` they were chosen for, others are under way, and a frame need not make up for it.
+double left_of(double together_db, double asked_db, double now_db);
+/// Of two PSNR in dB that of both errors together.
+double psnr_of_both(double a_db, double b_db);
 
 /// Directions in which what levels lose is known: along x, against it, along y and so on.
 constexpr std::size_t detail_directions = 6;
@@ -81,6 +94,7 @@ struct DetailSeen {
 struct DetailChoice {
   std::vector<std::size_t> levels;  // as choose_levels says them
   std::vector<double> pixels;       // of the views
+  double sphere_pixels = 0.0;       // of the sphere around them
   /// By part: squared error by view, of each of its levels, summed over pixels; at the end that of the sphere
   /// around the views.
   std::vector<std::vector<double>> errors;
@@ -91,6 +105,9 @@ struct DetailChoice {
   double error() const { return error_of(levels, pixels.size()); }
   /// In dB.
   double psnr_of(std::span<const std::size_t> any_levels, std::size_t views) const;
+  /// By how much less the view that gains most of it, or the sphere, loses with a part at a level instead of
+  /// another: squared, meaned over pixels and channels.
+  double saved(std::size_t part, std::size_t from, std::size_t to) const;
 };
 
 /// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All

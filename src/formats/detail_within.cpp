@@ -182,9 +182,14 @@ class ErrorChooser {
  public:
   ErrorChooser(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
                const Sights& sights, double error, std::size_t most, std::span<const std::size_t> before)
-      : parts_(parts), most_(most), before_(before), chosen_(parts.size(), 0), finest_(parts.size(), 0) {
+      : parts_(parts),
+        most_(most),
+        before_(before),
+        sphere_pixels_(4.0 * std::numbers::pi * sights.longest_focal() * sights.longest_focal()),
+        chosen_(parts.size(), 0),
+        finest_(parts.size(), 0) {
     for (const DetailView& view : views) allowed_.push_back(error * view.pixels);
-    allowed_.push_back(error * 4.0 * std::numbers::pi * sights.longest_focal() * sights.longest_focal());
+    allowed_.push_back(error * sphere_pixels_);
     lost_.resize(allowed_.size());
     errors_.resize(parts.size());
     const auto find_errors = [&](std::size_t p) {
@@ -228,6 +233,7 @@ class ErrorChooser {
     return chosen_;
   }
 
+  double sphere_pixels() const { return sphere_pixels_; }
   /// By part: by view, the sphere's last, of each level.
   std::vector<std::vector<double>> take_errors() { return std::move(errors_); }
 
@@ -283,6 +289,7 @@ class ErrorChooser {
   const std::vector<DetailPart>& parts_;
   std::size_t most_;
   std::span<const std::size_t> before_;
+  double sphere_pixels_;
   std::vector<double> allowed_, lost_;        // squared error, by view, the sphere's last
   std::vector<std::vector<double>> errors_;   // by part: by view, of each level
   std::vector<std::size_t> chosen_, finest_;  // the finest that may be taken
@@ -299,7 +306,7 @@ DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const st
                                   double error, std::size_t most, const DetailSeen& seen,
                                   std::span<const std::size_t> before, bool heads_turn) {
   ErrorChooser chooser(parts, views, Sights(parts, views, seen, heads_turn), error, most, before);
-  DetailChoice choice{chooser.choose(), {}, {}};
+  DetailChoice choice{chooser.choose(), {}, chooser.sphere_pixels(), {}};
   for (const DetailView& view : views) choice.pixels.push_back(view.pixels);
   choice.errors = chooser.take_errors();
   return choice;
@@ -317,6 +324,17 @@ double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size
 
 double DetailChoice::psnr_of(std::span<const std::size_t> any_levels, std::size_t views) const {
   return -10.0 * std::log10(error_of(any_levels, views));
+}
+
+double DetailChoice::saved(std::size_t part, std::size_t from, std::size_t to) const {
+  const std::vector<double>& of_part = errors[part];
+  const std::size_t levels_of_part = of_part.size() / (pixels.size() + 1);
+  double most = 0.0;
+  for (std::size_t v = 0; v <= pixels.size(); ++v) {
+    const double* const of_view = &of_part[v * levels_of_part];
+    most = std::max(most, (of_view[from] - of_view[to]) / (v < pixels.size() ? pixels[v] : sphere_pixels));
+  }
+  return most;
 }
 
 }  // namespace binosplat

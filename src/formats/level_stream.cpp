@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 #include "base/parallel.h"
@@ -22,6 +23,7 @@ constexpr double reading_ms = 100.0;
 constexpr double glance_ms = 3.0;       // that a frame may take for a look
 constexpr double bands_most = 8.0;      // of a view: each costs all that does not depend on pixels, too
 constexpr double look_most_ms = 250.0;  // at all bands of all views: slow frames have fewer bands
+constexpr double stays_s = 1.0;         // a level that nothing needs any more
 constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
 constexpr int looks_most = 3;           // at the same views; then a choice hardly changes any more
 
@@ -49,7 +51,9 @@ LevelStream::LevelStream(const std::filesystem::path& path, Need need)
 
 Model LevelStream::coarsest(std::span<const shared::View> views) {
   const DetailNeed need = need_(scene_, views);
-  by_db_ = need.db.has_value();
+  asked_by_db_ = need.db.has_value();
+  shares_ = need.shares && scene_.has_errors();
+  by_db_ = asked_by_db_ || (shares_ && together_db_ > 0.0);
   scene_.choose({}, need);
   Model model = scene_.like();
   // Half empty blocks included.
@@ -60,6 +64,22 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
   parts_.take_changes();
   drawn_ = scene_.chosen();
   return model;
+}
+
+void LevelStream::share(double together_db) {
+  if (std::exchange(together_db_, together_db) == together_db || !shares_) return;
+  by_db_ = asked_by_db_ || together_db_ > 0.0;
+  looked_.clear();
+  band_.index = 0;
+  looks_ = 0;
+  is_due_ = !wanted_.empty();
+}
+
+double LevelStream::left() const {
+  const auto now = together_db_ > 0.0 ? predicted_psnr() : std::nullopt;
+  if (!now) return together_db_;
+  const std::lock_guard lock(mutex_);
+  return left_of(together_db_, asked_db_, *now);
 }
 
 void LevelStream::want(std::span<const shared::View> views, const Look& look) {
@@ -82,9 +102,10 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   Wish wish;
   if (!by_db_) {
     wish.views = wanted_;
+    wish.together_db = together_db_;
   } else {
     if (!look_on(look)) return;
-    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}, here()};
+    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}, here(), together_db_};
     ++looks_;
   }
   is_due_ = !same(wish.views, wanted_);
@@ -128,8 +149,16 @@ bool LevelStream::look_on(const Look& look) {
 
 void LevelStream::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (changed_.wait(lock, stop, [&] { return wish_.has_value(); }) && !stop.stop_requested()) {
-    const Wish wish = *std::exchange(wish_, std::nullopt);
+  Wish wish;
+  while (!stop.stop_requested()) {
+    const auto is_wished = [&] { return wish_.has_value(); };
+    if (!scene_.lingers()) {
+      changed_.wait(lock, stop, is_wished);
+    } else {  // what was wished last is chosen again then, without what stayed beyond it
+      changed_.wait_for(lock, stop, std::chrono::duration<double>(stays_s), is_wished);
+    }
+    if (stop.stop_requested()) return;
+    if (wish_) wish = *std::exchange(wish_, std::nullopt);
     works_ = true;
     lock.unlock();
     std::exception_ptr trouble;
@@ -147,14 +176,17 @@ void LevelStream::work(const std::stop_token& stop) {
 }
 
 void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
-  const bool reads = scene_.choose(wish.views, need_(scene_, wish.views), wish.seen);
+  DetailNeed need = scene_.sharing(need_(scene_, wish.views), wish.together_db);
+  need.stays_s = stays_s;
+  const bool reads = scene_.choose(wish.views, need, wish.seen);
   {
     const std::lock_guard lock(mutex_);
     choice_ = scene_.choice();
     here_ = wish.here;
+    asked_db_ = need.db.value_or(0.0);
   }
   if (!reads) return;
-  drop_unwanted();
+  sort_pieces();
   const auto take = [&](StreamedSog::Piece piece) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, stop, [&] { return gaussians_read_ < read_ahead || wish_; });
@@ -168,8 +200,8 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
   });
 }
 
-// What was read for views that are gone.
-void LevelStream::drop_unwanted() {
+// Drops what was read for views that are gone; what saves most comes first.
+void LevelStream::sort_pieces() {
   const std::lock_guard lock(mutex_);
   std::erase_if(pieces_, [&](const StreamedSog::Piece& piece) {
     if (scene_.wants(piece)) return false;
@@ -177,6 +209,8 @@ void LevelStream::drop_unwanted() {
     gaussians_read_ -= piece.model.count();
     return true;
   });
+  std::ranges::stable_sort(pieces_, std::greater<>(),
+                           [&](const StreamedSog::Piece& piece) { return scene_.worth(piece); });
 }
 
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
@@ -202,6 +236,8 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   }
   parts_.replace(model, replacements);
   changed_since_look_ = true;
+  told_by_.reset();
+  told_.reset();
   return parts_.take_changes();
 }
 
@@ -221,7 +257,9 @@ std::optional<double> LevelStream::predicted_psnr() const {
     choice = choice_;
     here = here_;
   }
-  return choice ? std::optional(choice->psnr_of(drawn_, here)) : std::nullopt;
+  if (choice != told_by_) told_ = choice ? std::optional(choice->psnr_of(drawn_, here)) : std::nullopt;
+  told_by_ = std::move(choice);
+  return told_;
 }
 
 }  // namespace binosplat

@@ -34,17 +34,26 @@ class LevelStream {
   LevelStream& operator=(const LevelStream&) = delete;
 
   /// The model at its coarsest levels, to begin with, and with room for what these views may need, or a few
-  /// million Gaussians; whether it goes by dB is for good. Throws Error where a file has become unreadable,
-  /// or if the file has no errors to go by for such a need.
+  /// million Gaussians; whether it goes by dB is for good, unless it shares them. Throws Error where a file
+  /// has become unreadable, or if the file has no errors to go by for such a need.
   Model coarsest(std::span<const shared::View> views = {});
+
+  /// How many dB frames may lose together with levels (FrameSettings::quality), where the need shares that;
+  /// 0: nothing. May change at any time.
+  void share(double together_db);
+  /// What of it is left for a frame with the levels that the model has now: all, where levels are not gone
+  /// by.
+  double left() const;
 
   /// Has read what these views need, which are those of one frame in the model's frame, instead of what
   /// others needed. By dB it calls `look` first, which tells what one of them shows of each part: for one
   /// view in each call, since a frame has little time, or for a band of one, where that took longer than 3 ms
   /// the last time and frames come fast. For all of them no more than ten times a second; until then what was
   /// wanted stays.
+  ///
   /// While the views move, the second half of them is looked at where they will be by the time that levels
-  /// are there, a single view both here and there: levels come for all.
+  /// are there, a single view both here and there: levels come for all. Levels that are needed no more stay
+  /// for a second, if there is room: much that a moving head's eyes lose behind something comes back.
   using Look =
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);
@@ -67,23 +76,28 @@ class LevelStream {
     std::vector<shared::View> views;
     DetailSeen seen;
     std::size_t here = 0;  // of the views: they come first, and others lie ahead
+    double together_db = 0.0;
   };
   bool look_on(const Look& look);
   std::size_t here() const;
   void work(const std::stop_token& stop);
   void read(const Wish& wish, const std::stop_token& stop);
-  void drop_unwanted();
+  void sort_pieces();
   bool is_idle() const { return !wish_ && !works_ && pieces_.empty(); }
   bool looks_again() const;
 
   StreamedSog scene_;  // the thread's, once there is one
   Need need_;
   ModelParts parts_;
+  bool asked_by_db_ = false, shares_ = false;  // as the need says
+  double together_db_ = 0.0;
   bool by_db_ = false;
   std::vector<shared::View> wanted_;
   HeadMotion motion_;
-  bool is_due_ = false;             // to be wished
-  std::vector<std::size_t> drawn_;  // places of the parts' levels, in the model
+  bool is_due_ = false;                                  // to be wished
+  std::vector<std::size_t> drawn_;                       // places of the parts' levels, in the model
+  mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, as it was last
+  mutable std::optional<double> told_;
   // By dB:
   int looks_ = 0;                            // at these views, all of them
   std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
@@ -102,7 +116,8 @@ class LevelStream {
   std::deque<StreamedSog::Piece> pieces_;
   std::size_t gaussians_read_ = 0;  // of these
   std::shared_ptr<const DetailChoice> choice_;
-  std::size_t here_ = 0;  // of its views (Wish)
+  std::size_t here_ = 0;   // of its views (Wish)
+  double asked_db_ = 0.0;  // that it is for
   std::exception_ptr trouble_;
   std::jthread thread_;  // last: it ends first
 };

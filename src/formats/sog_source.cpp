@@ -53,10 +53,11 @@ std::string file_name(const JsonValue& value) {
 
 }  // namespace
 
-/// All pictures of a SOG, four bytes a texel.
-struct SogSource::Textures {
-  std::array<std::vector<std::uint8_t>, texture_count> data;
-};
+std::size_t SogSource::Textures::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& texels : data) sum += texels.size();
+  return sum;
+}
 
 SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile read)
     : source_(std::move(source)), read_(std::move(read)) {
@@ -165,13 +166,13 @@ std::vector<std::uint8_t> SogSource::texels(const std::string& file) const {
   return webp_texels(named(file), bytes);
 }
 
-SogSource::Textures SogSource::read_textures() const {
+std::shared_ptr<const SogSource::Textures> SogSource::textures() const {
   std::array<std::string, texture_count> names;
   std::copy(files_.begin(), files_.end(), names.begin());
   names[labels] = labels_file_;
-  Textures textures;
+  const auto textures = std::make_shared<Textures>();
   parallel_for(std::size_t{texture_count}, [&](std::size_t i) {
-    if (!names[i].empty()) textures.data[i] = texels(names[i]);
+    if (!names[i].empty()) textures->data[i] = texels(names[i]);
   });
   return textures;
 }
@@ -215,8 +216,8 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
   return place(model, slot, position, scale, rotation, opacity_[texel(sh0)[3]], sh.data());
 }
 
-void SogSource::decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const {
-  const Textures textures = read_textures();
+void SogSource::decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,
+                       const Textures& textures) const {
   for (const Range& range : ranges) {
     const auto decode_at = [&](std::size_t i) {
       kept[range.slot + i] = decode_one(textures, range.first + i, model, range.slot + i) ? 1 : 0;

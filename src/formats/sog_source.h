@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -39,13 +40,24 @@ class SogSource {
   bool antialiased() const { return antialiased_; }
   const Perspective& perspective() const { return perspective_; }
 
+  /// All of its pictures, decoded, four bytes a texel: most of what reading takes, however little is taken.
+  struct Textures {
+    std::array<std::vector<std::uint8_t>, 6> data;
+    std::size_t bytes() const;
+  };
+  std::shared_ptr<const Textures> textures() const;
+
   /// Decodes ranges, which must lie below count(), into a model of this degree or a higher one; kept[i] says
   /// whether slot i may stay. May be called for disjoint slots by several threads.
-  void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const;
+  void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept) const {
+    decode(model, ranges, kept, *textures());
+  }
+  /// The same by pictures that are there already.
+  void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,
+              const Textures& textures) const;
 
  private:
   using Table = std::array<float, 256>;  // what a byte stands for
-  struct Textures;
 
   void read_tables(const JsonValue& meta);
   void read_tables_v1(const JsonValue& meta);
@@ -53,7 +65,6 @@ class SogSource {
   void read_harmonics(const JsonValue& sh);
   std::string named(const std::string& file) const;
   std::vector<std::uint8_t> texels(const std::string& file) const;
-  Textures read_textures() const;
   bool decode_one(const Textures& textures, std::size_t i, Model& model, std::size_t slot) const;
 
   std::string source_;

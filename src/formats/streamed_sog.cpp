@@ -15,6 +15,7 @@
 #include "base/progress.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
+#include "formats/sog_cache.h"
 #include "formats/sog_levels.h"
 #include "formats/sog_source.h"
 #include "scene/reduce.h"
@@ -28,6 +29,13 @@ using Taken = std::vector<SogLevels::Taken>;
 
 constexpr int no_level = -1;
 constexpr std::size_t files_at_a_time = 8;  // each by several threads, and whole in memory meanwhile
+// Bytes of decoded files that are kept: of some 20 million Gaussians, without which a head that moves through
+// four million has files of 131,072 decoded again and again for a few leaves each, eight cores long.
+constexpr std::size_t cached_most = std::size_t{512} << 20;
+// Decoding so many of a file takes as long as one takes to reach the GPU.
+constexpr std::size_t decoded_for_one = 8;
+// Of what is needed, that levels which are no longer needed may make a model larger by.
+constexpr double stays_most = 0.5;
 
 /// A SOG and what is taken of it.
 struct Part {
@@ -223,6 +231,7 @@ struct StreamedSog::Source {
   SogLevels levels;
   std::vector<std::optional<SogSource>> files;  // the environment last, where there is one
   std::uint64_t bytes = 0;                      // of them (SogSource::bytes)
+  SogCache cache{cached_most};                  // by the number of the file
 
   Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());
@@ -262,8 +271,7 @@ StreamedSog::~StreamedSog() = default;
 
 bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& need,
                          const DetailSeen& seen) {
-  if (need.db &&
-      std::none_of(leaves_.begin(), leaves_.end(), [](const auto& l) { return !l.pixels.empty(); })) {
+  if (need.db && !has_errors()) {
     fail(
         "--detail {}dB: {} has no errors of its levels to go by; `binosplat levels` writes them; or use "
         "--detail PX",
@@ -272,6 +280,7 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   const std::size_t most = need.most - std::min(need.most, source_->around());
   const std::span<const std::size_t> before = by_views_ ? std::span(chosen_) : std::span<std::size_t>();
   const std::vector<DetailView> detail = detail_views(views);
+  before_ = chosen_;
   choice_.reset();
   if (need.db && !views.empty()) {
     choice_ = std::make_shared<const DetailChoice>(choose_levels_within(
@@ -288,12 +297,41 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
     chosen_ = choose_levels(leaves_, eyes, most, enough, before);
   }
   by_views_ = !views.empty();
-  const std::size_t total = chosen_count();
+  stay(need.db ? need.stays_s : 0.0, need.most);
+  const std::size_t total = count(chosen_);
   if (total > need.most && !told_no_room_) tell_no_room(source_->path, total, need.most);
   told_no_room_ = total > need.most;
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
     if (!leaves_[leaf].levels.empty() && read_[leaf] != chosen_[leaf]) return true;
   return source_->around() > 0 && !environment_read_;
+}
+
+// Finer levels of the choice before stay in this one until they were not needed for some seconds, those that
+// were needed last first: as long as there is room.
+void StreamedSog::stay(double seconds, std::size_t most) {
+  const auto now = Clock::now();
+  needed_.resize(leaves_.size());
+  std::vector<std::size_t> staying;
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const bool is_finer = before_.size() == leaves_.size() && before_[leaf] < chosen_[leaf];
+    if (is_finer && ms_since(needed_[leaf]) < 1e3 * seconds) {
+      staying.push_back(leaf);
+    } else {
+      needed_[leaf] = now;
+    }
+  }
+  lingers_ = !staying.empty();
+  std::ranges::stable_sort(staying, std::greater<>(), [&](std::size_t leaf) { return needed_[leaf]; });
+  const std::size_t needed = count(chosen_);
+  std::size_t room = std::min(static_cast<std::size_t>(stays_most * static_cast<double>(needed)),
+                              most - std::min(most, needed));
+  for (const std::size_t leaf : staying) {
+    const auto& levels = leaves_[leaf].levels;
+    const std::size_t finer = levels[before_[leaf]].count, coarser = levels[chosen_[leaf]].count;
+    if (finer > coarser + room) break;
+    room -= finer - std::min(finer, coarser);
+    chosen_[leaf] = before_[leaf];
+  }
 }
 
 // Leaves that get fewer Gaussians come first: never are there more than before or after, if all are taken.
@@ -319,10 +357,9 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
     for (std::size_t i = 0; i < taken.size(); ++i)
       if (!taken[i].empty()) files.push_back(i);
     // Few Gaussians that mend much come before many that mend little.
-    std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) {
-      const std::size_t leaf = taken[i].front().leaf;
-      return leaf < leaves_.size() ? level_of(leaf) : std::numeric_limits<int>::max();
-    });
+    std::vector<double> first(taken.size());
+    for (const std::size_t i : files) first[i] = worth(i, taken[i]);
+    std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) { return first[i]; });
     for (std::size_t at = 0; at < files.size(); at += files_at_a_time) {
       std::vector<std::vector<Piece>> pieces(std::min(files_at_a_time, files.size() - at));
       parallel_for(pieces.size(),
@@ -345,11 +382,33 @@ std::size_t StreamedSog::finest() const {
   return total;
 }
 
-std::size_t StreamedSog::chosen_count() const {
+std::size_t StreamedSog::count(std::span<const std::size_t> levels) const {
   std::size_t total = source_->around();
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
-    total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[chosen_[leaf]].count;
+    total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[levels[leaf]].count;
   return total;
+}
+
+double StreamedSog::saved(std::size_t leaf, std::optional<std::size_t> before) const {
+  return before ? choice_->saved(leaf, *before, chosen_[leaf]) : INFINITY;
+}
+
+double StreamedSog::worth(const Piece& piece) const {
+  if (!choice_ || piece.part >= leaves_.size() || !piece.before || *piece.before < *piece.level)
+    return INFINITY;
+  return saved(piece.part, piece.before) / static_cast<double>(std::max<std::size_t>(piece.model.count(), 1));
+}
+
+double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> taken) const {
+  if (taken.front().leaf >= leaves_.size()) return INFINITY;
+  if (!choice_) return leaves_[taken.front().leaf].levels[chosen_[taken.front().leaf]].number;
+  double sum = 0.0;
+  std::size_t count = source_->cache.has(file) ? 0 : source_->files[file]->count() / decoded_for_one;
+  for (const SogLevels::Taken& of_leaf : taken) {
+    sum += saved(of_leaf.leaf, read_[of_leaf.leaf]);
+    count += of_leaf.range.count;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
 void StreamedSog::check_chosen() const {
@@ -360,7 +419,7 @@ void StreamedSog::check_chosen() const {
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (!taken[i].empty()) check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
   }
-  const std::size_t total = chosen_count();
+  const std::size_t total = count(chosen_);
   if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), like_.format);
   check_total(source_->path, total, source_->bytes);
 }
@@ -377,7 +436,7 @@ std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, Taken t
   Model model = like_;
   model.resize(total);
   std::vector<std::uint8_t> kept(total);
-  source.decode(model, ranges, kept);
+  source.decode(model, ranges, kept, *source_->cache.textures(file, source));
   keep_only(model, kept);
   std::vector<Piece> pieces;
   std::size_t at = 0;

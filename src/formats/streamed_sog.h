@@ -2,6 +2,7 @@
 // Streamed SOG: several SOGs and a lod-meta.json, which says which of their Gaussians are which part of the
 // model at which level of detail. Frame: the trainer's (RDF).
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "base/clock.h"
 #include "formats/detail.h"
 #include "formats/sog_levels.h"
 #include "scene/model.h"
@@ -46,6 +48,16 @@ class StreamedSog {
   /// Gaussians at the finest levels.
   std::size_t finest() const;
 
+  /// Whether it says what its levels lose, so that they can be chosen by dB.
+  bool has_errors() const {
+    return std::ranges::any_of(leaves_, [](const DetailPart& leaf) { return !leaf.pixels.empty(); });
+  }
+  /// A need for frames that may lose so much together with levels, dB; 0: nothing.
+  DetailNeed sharing(DetailNeed need, double together_db) const {
+    if (need.shares && together_db > 0.0 && has_errors()) need.db = levels_share(together_db);
+    return need;
+  }
+
   /// Chooses a level for each leaf: the same for all views, which are those of one frame in the model's
   /// frame; by the nearest eye and the longest focal length of them, wherever they look (choose_levels), or
   /// by what each of them loses (choose_levels_within), with the levels of the last choice as those before.
@@ -55,6 +67,8 @@ class StreamedSog {
   bool choose(std::span<const shared::View> views, const DetailNeed& need, const DetailSeen& seen = {});
   /// The choice: for each leaf the place of its level among those that are there.
   const std::vector<std::size_t>& chosen() const { return chosen_; }
+  /// Whether some levels are finer than needed, and stay for a while (DetailNeed::stays_s).
+  bool lingers() const { return lingers_; }
 
   /// What the views of the last choice lose, at whatever levels; none where dB were not chosen by.
   const std::shared_ptr<const DetailChoice>& choice() const { return choice_; }
@@ -72,7 +86,8 @@ class StreamedSog {
   using Take = std::function<void(Piece piece)>;
 
   /// Reads the leaves whose level is another one than when they were read last, and hands them to `take`, in
-  /// the same thread; those that get fewer Gaussians first, then coarse levels before fine ones. Asks
+  /// the same thread; those that get fewer Gaussians first, then by dB those files that save the most error
+  /// per Gaussian, else coarse levels before fine ones. Asks
   /// `goes_on` in between, where it is not empty, and leaves out the rest if it does not. Throws Error where
   /// a file has become unreadable.
   void read(const Take& take, const std::function<bool()>& goes_on = {});
@@ -80,6 +95,9 @@ class StreamedSog {
   bool wants(const Piece& piece) const {
     return piece.part == leaves_.size() || piece.level == chosen_[piece.part];
   }
+  /// The squared error that a piece saves by the choice for each of its Gaussians (DetailChoice::saved);
+  /// infinite where it has fewer than the one before, or where nothing is known.
+  double worth(const Piece& piece) const;
   /// The last piece that was read of a part counts as not read.
   void put_back(const Piece& piece) { read_[piece.part] = piece.before; }
   /// Nothing counts as read any more.
@@ -90,15 +108,21 @@ class StreamedSog {
 
  private:
   struct Source;
-  std::size_t chosen_count() const;
+  std::size_t count(std::span<const std::size_t> levels) const;
+  void stay(double seconds, std::size_t most);
+  double saved(std::size_t leaf, std::optional<std::size_t> before) const;
+  double worth(std::size_t file, std::span<const SogLevels::Taken> taken) const;
   void check_chosen() const;
   std::vector<Piece> read_file(std::size_t file, std::vector<SogLevels::Taken> taken) const;
 
   std::unique_ptr<Source> source_;
   Model like_;
   std::vector<DetailPart> leaves_;
-  std::vector<std::size_t> chosen_;  // places in a leaf's `levels`
-  bool by_views_ = false;            // chosen
+  std::vector<std::size_t> chosen_;        // places in a leaf's `levels`
+  std::vector<std::size_t> before_;        // the choice before
+  bool by_views_ = false;                  // chosen
+  std::vector<Clock::time_point> needed_;  // when the chosen levels of the leaves were last
+  bool lingers_ = false;
   std::shared_ptr<const DetailChoice> choice_;
   std::vector<std::optional<std::size_t>> read_;  // of the leaves
   bool environment_read_ = false;

@@ -150,20 +150,28 @@ void Session::make_shown(std::span<const shared::View> views) {
     show_.release();
     return;
   }
-  shown_ = show_.make(choices.show, frame_, views, frame_.read_pictures(), choices.settings,
-                      choices.background, choices.split);
+  shown_ = show_.make(choices.show, frame_, views, frame_.read_pictures(), settings(), choices.background,
+                      choices.split);
   std::vector<glm::vec4> colours;
   for (const Picture& picture : shown_.pictures)
     colours.insert(colours.end(), picture.colour.begin(), picture.colour.end());
   shown_colours_.upload(colours);
 }
 
+render::FrameSettings Session::settings() const {
+  render::FrameSettings of_frame = choices.settings;
+  if (of_frame.quality > 0.0f && left_) of_frame.quality = static_cast<float>(*left_);
+  return of_frame;
+}
+
 void Session::follow(LevelStream& levels) {
+  levels.share(choices.settings.quality);
   levels.want(views(), [&](const shared::View& view, Band band, const ModelParts& parts) {
     if (!sight_) sight_.emplace(frame_.model());
     return sight_->look(view, band, choices.settings, parts);
   });
   const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
+  left_ = levels.left();
   if (changes.empty()) return;
   show_.release();
   frame_.model()->reload(changes);
@@ -193,7 +201,7 @@ bool Session::draw() {
     const std::vector<shared::View> asked = views_of(camera);
     eyes_ = stereo::make_rig(camera, choices.rig).cameras;
     divisor_ = divisor;
-    reports_.push_back(frame_.draw(asked, choices.settings));
+    reports_.push_back(frame_.draw(asked, settings()));
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
     make_shown(asked);

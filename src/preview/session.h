@@ -65,7 +65,8 @@ class Session {
   Choices choices;
 
   /// Has levels of detail read that the next frame needs, and takes some that were read of the model; all
-  /// else stays. Throws what reading them threw.
+  /// else stays. Levels that share the quality which is chosen leave the rest of it to frames. Throws what
+  /// reading them threw.
   void follow(LevelStream& levels);
 
   /// What is seen next is drawn anew; with thresholds that go by what frames measure, until those have
@@ -129,6 +130,7 @@ class Session {
   Camera head_camera(int divisor = 1) const;
   std::vector<shared::View> views_of(const Camera& camera);
   void draw_at_rest();
+  render::FrameSettings settings() const;
   void find_screen();
   void make_shown(std::span<const shared::View> views);
 
@@ -142,6 +144,7 @@ class Session {
   stereo::Presenter presenter_;
   stereo::Show show_;
   std::optional<render::Sight> sight_;  // where levels go by dB
+  std::optional<double> left_;          // of the chosen quality for frames, where there are levels
   stereo::Shown shown_;                 // in place of the frame's own pictures; none: those
   gl::Buffer shown_colours_;            // as the frame's colours
   glm::ivec2 framebuffer_{0};

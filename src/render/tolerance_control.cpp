@@ -33,6 +33,10 @@ constexpr double step_up = 1.2, step_down = 2.0, step_searching = 30.0;
 constexpr double slope_min = 1.0, slope_max = 24.0, slope_up_min = 3.0;
 constexpr double tolerance_min = 1e-9, tolerance_max = 1e9;
 
+// dB: a quality that changes by no more is followed from frame to frame, as what is left of one that levels
+// of detail share is; another one is searched for. Tightened by more than the second it needs a probe.
+constexpr double followed = 3.5, unnoticed = 0.25;
+
 // In smaller pictures than the careful tolerance is for Gaussians are smaller, too, and fox asked for 0.027
 // (squared, last) at 160 px: less than in proportion.
 double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
@@ -40,7 +44,7 @@ double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
 }
 
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
-  return a.quality == b.quality && a.th == b.th && a.transmittance == b.transmittance;
+  return std::abs(a.quality - b.quality) <= followed && a.th == b.th && a.transmittance == b.transmittance;
 }
 
 }  // namespace
@@ -53,7 +57,8 @@ void ToleranceControl::forget() {
 bool ToleranceControl::knows(const FrameSettings& settings) const {
   const bool saw_all =
       std::all_of(views_.begin(), views_.end(), [](const Estimate& v) { return v.weight > 0.0; });
-  return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_);
+  return saw_all && !fresh_ && holds_ && !exact_ && same_rule(settings, settings_) &&
+         settings.quality <= settings_.quality + unnoticed;
 }
 
 void ToleranceControl::begin(const FrameSettings& settings, double focal) {
@@ -71,6 +76,7 @@ Probe ToleranceControl::next_probe(std::span<const shared::View> views, const Fr
     fresh_ = cut_ = true;
   }
   if (!same_rule(settings, settings_)) begin(settings, views.front().lens.y);
+  settings_.quality = settings.quality;
   const auto count = static_cast<std::uint32_t>(views.size());
   if (holds_) found_ = 0;
   probe_ = {.view = static_cast<std::uint32_t>(next_ + found_) % count};

@@ -22,6 +22,8 @@ class SquaredError {
 
   /// As many more pixels that should be drawn, as a frame has just drawn them: they stay on the GPU.
   void add(const gl::Buffer& colours, std::uint32_t pixels);
+  /// Nothing should be drawn any more, until more is added.
+  void clear() { pixels_ = 0; }
 
   /// The mean over pixels and channels of all pictures together, over black and clamped to [0, 1]. `colours`
   /// as render::Frame has them.

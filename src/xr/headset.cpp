@@ -93,12 +93,12 @@ class Viewer {
     }
     if (session.take_masks_changed()) projection->take_masks();
     follow(session, hands, views, time);
-    follow_levels();
+    const float left = follow_levels();
     if (settings_.budget_ms && !budget_) {
       const double period_ms = 1e-6 * static_cast<double>(time.period);
       budget_.emplace(*settings_.budget_ms > 0.0 ? *settings_.budget_ms : own_share * period_ms);
     }
-    const Effort effort = budget_ ? budget_->effort() : Effort{settings_.frame.quality, 1.0};
+    const Effort effort = budget_ ? budget_->effort() : Effort{left, 1.0};
     render::FrameSettings settings = settings_.frame;
     settings.quality = effort.quality;
     if (budget_ && effort.quality > 0.0f) settings.th = TH_SQUARED;
@@ -133,11 +133,12 @@ class Viewer {
   }
 
   /// By what the last frame's views need.
-  void follow_levels() {
+  /// What is left of the quality that a frame is to have.
+  float follow_levels() {
     const render::Frame& frame = frame_.frame();
-    if (!beside_.levels || frame.views().empty()) return;
+    if (!beside_.levels || frame.views().empty()) return settings_.frame.quality;
     const auto views = std::span(frame.views()).first(frame.shape().asked);
-    beside_.levels(model_, frame_.frame().model(), views);
+    return beside_.levels(model_, frame_.frame().model(), views);
   }
 
   const Instance& instance_;

@@ -166,6 +166,38 @@ TEST(RenderLevels, OfSinglePicturesGoByThemAlone) {
   EXPECT_GT(levels({"--path", cameras}).back(), 250u) << "planted: heads turn";
 }
 
+// --quality is for both: levels get half of what may be lost, and a frame what they leave.
+TEST(RenderLevels, ShareAQuality) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  const test::Copy copy(fixtures / "sog/st-lod");
+  const std::string cameras = write_path(folder, {-60});
+  const auto render = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render", copy.path(), "--cameras",    cameras,  "--quality",
+                                          "40",     "-o",        folder / "out", "--json", folder / "j"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::run_program(arguments);
+  };
+  EXPECT_TRUE(ended(render({"--detail-report"}), 2, "does not say what its levels lose"));
+  ASSERT_TRUE(good(render({})));
+  EXPECT_FALSE(test::load_json(folder / "j")["views"][0].contains("levels_of_detail")) << "the finest";
+  test::add_level_errors(copy);
+  ASSERT_TRUE(good(render({"--detail-report"})));
+  const auto view = test::load_json(folder / "j")["views"][0];
+  const auto levels = view["levels_of_detail"];
+  const auto error = [](const nlohmann::json& db) { return std::pow(10.0, -0.1 * db.get<double>()); };
+  EXPECT_LT(levels["gaussians"], 1000);
+  EXPECT_GE(levels["predicted_psnr_db"], 43.0);
+  EXPECT_NEAR(error(view["told_psnr_db"]), error(levels["predicted_psnr_db"]) + error(view["probed_psnr_db"]),
+              1e-9);
+  EXPECT_GE(view["told_psnr_db"], 39.5);
+  EXPECT_GT(view["probed_psnr_db"], view["told_psnr_db"]) << "planted: the frame's alone";
+  // What was asked for levels is theirs.
+  EXPECT_TRUE(ended(render({"--detail", "40dB"}), 2, "leaves nothing for what a frame leaves out"));
+  ASSERT_TRUE(good(render({"--detail", "60dB"})));
+  EXPECT_GT(test::load_json(folder / "j")["views"][0]["levels_of_detail"]["gaussians"], levels["gaussians"]);
+}
+
 using LevelErrors = test::SceneTest;
 
 TEST_F(LevelErrors, SayWhatToDo) {

@@ -111,7 +111,8 @@ DetailNeed need_of(const std::string& detail) {
   const double number = std::strtod(detail.c_str(), &end);
   if (end != detail.c_str() && std::string_view(end) == "dB") return {.db = number};
   if (end != detail.c_str() && *end == '\0') return {number};
-  fail("--detail {}: expected px, or dB as in 40dB", detail);
+  if (detail == "shared") return {.shares = true};
+  fail("--detail {}: expected px, or dB as in 40dB, or shared", detail);
 }
 
 // Along the path in real time, as a headset would: a frame begins when it is due, draws with the levels that
@@ -129,11 +130,12 @@ class Flight {
                   need.most = most;
                   return need;
                 }),
-        model_(levels_.coarsest(path[0])),
+        model_(coarsest()),
         others_(context.allocated_bytes()),
         gpu_model_(std::make_shared<render::GpuModel>(context, model_)),
         frame_(gpu_model_),
-        sight_(gpu_model_) {}
+        sight_(gpu_model_),
+        before_(context) {}
 
   Numbers run(std::deque<study::SquaredError>& finest) {
     const auto start = Clock::now();
@@ -156,6 +158,17 @@ class Flight {
   }
 
  private:
+  Model coarsest() {
+    levels_.share(plan_.settings.quality);
+    return levels_.coarsest(path_[0]);
+  }
+
+  render::FrameSettings settings() const {
+    render::FrameSettings of_frame = plan_.settings;
+    of_frame.quality = static_cast<float>(levels_.left());
+    return of_frame;
+  }
+
   void want(const Views& views) {
     levels_.want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
       const auto begin = Clock::now();
@@ -181,7 +194,8 @@ class Flight {
     const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
     gpu_model_->reload(changes);
     numbers_.take_ms.push_back(ms_since(taking));
-    const double drawn_ms = frame_.draw(views, plan_.settings).total_ms;
+    report_ = frame_.draw(views, settings());
+    const double drawn_ms = report_.total_ms;
     numbers_.frame_ms.push_back(drawn_ms);
     if (changes.empty() && !looked) numbers_.quiet_ms.push_back(drawn_ms);
     numbers_.all_ms.push_back(ms_since(begin));
@@ -214,35 +228,48 @@ class Flight {
       judged = true;
       const double true_db = finest[k].psnr(frame_.colours());
       numbers_.finest_db.push_back(true_db);
-      if (const auto told = levels_.predicted_psnr()) {
+      if (const auto told = told_db()) {
         numbers_.told_db.push_back(*told);
         numbers_.off_db.push_back(*told - true_db);
+        timeline_.back()["told_db"] = *told;
       }
+      timeline_.back()["true_db"] = true_db;
       jump(path_[n]);
+      frame_.draw(path_[n], settings());  // the next one finds the GPU as if nobody had judged
     }
     return judged;
   }
 
+  // Of the last frame: of its levels, and of what it left out of them.
+  std::optional<double> told_db() const {
+    const std::optional<double> of_levels = levels_.predicted_psnr();
+    if (plan_.settings.quality == 0.0f) return of_levels;
+    return of_levels ? psnr_of_both(*of_levels, report_.quality) : report_.quality;
+  }
+
   // By how much the picture of the same views changes where levels do, from one frame to the next.
   void jump(const Views& views) {
-    study::SquaredError before(context_);
-    before.add(frame_.colours(), pixels_of(views));
+    const std::int64_t bytes = context_.allocated_bytes();
+    before_.clear();
+    before_.add(frame_.colours(), pixels_of(views));
+    others_ += context_.allocated_bytes() - bytes;
     const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
     if (changes.empty()) return;
     gpu_model_->reload(changes);
-    frame_.draw(views, plan_.settings);
-    numbers_.jump_db.push_back(before.psnr(frame_.colours()));
+    frame_.draw(views, settings());
+    numbers_.jump_db.push_back(before_.psnr(frame_.colours()));
   }
 
   // Once all is there, and whether that is what a GPU gets which gets it whole.
   void end(std::deque<study::SquaredError>& finest) {
     settle(path_.back());
-    frame_.draw(path_.back(), plan_.settings);
+    frame_.draw(path_.back(), settings());
     if (!finest.empty()) numbers_.rest_db = finest.back().psnr(frame_.colours());
+    frame_.draw(path_.back());
     study::SquaredError drawn(context_);
     drawn.add(frame_.colours(), pixels_of(path_.back()));
     render::Frame whole(context_, model_);
-    whole.draw(path_.back(), plan_.settings);
+    whole.draw(path_.back());
     if (drawn.mean(whole.colours()) != 0.0) fail("the model on the GPU is not the one that was read");
   }
 
@@ -254,7 +281,9 @@ class Flight {
   std::int64_t others_;  // bytes on the GPU, of what judges
   std::shared_ptr<render::GpuModel> gpu_model_;
   render::Frame frame_;
+  render::FrameReport report_;  // of the last frame along the path
   render::Sight sight_;
+  study::SquaredError before_;
   Numbers numbers_;
   Json timeline_ = Json::array();
   std::optional<Clock::time_point> unsettled_;
@@ -340,7 +369,8 @@ int main(int argc, char** argv) {
   app.add_option("scene", plan.scene, "A streamed SOG")->required();
   app.add_option("keys", plan.keys, "cameras.json: heads that the path joins, its directions and ups")
       ->required();
-  app.add_option("--detail", plan.details, "px, or dB as in 40dB; one row each (2 8 40dB)");
+  app.add_option("--detail", plan.details,
+                 "px, or dB as in 40dB, or shared: what --quality leaves to levels; one row each (2 8 40dB)");
   app.add_option("--frames", plan.frames, "Frames of the path (480)")->check(CLI::Range(2, 100000));
   app.add_option("--judged", plan.judged, "Frames that are compared with the finest levels (8)")
       ->check(CLI::Range(0, 1000));
@@ -353,6 +383,7 @@ int main(int argc, char** argv) {
                  "Append what each frame took to this file, a line for each --detail");
   app.add_option("--shrink", plan.shrink, "Pictures so many times smaller: tries it where there is no GPU");
   CLI11_PARSE(app, argc, argv);
+  if (plan.settings.quality > 0.0f) plan.settings.th = TH_SQUARED;
   try {
     run_all(plan);
   } catch (const std::exception& error) {

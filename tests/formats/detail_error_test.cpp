@@ -252,6 +252,22 @@ TEST(DetailErrors, KeepToWhatWasChosenBefore) {
   EXPECT_NE(choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any, {}, far).levels, far);
 }
 
+TEST(DetailErrors, TellWhatAnotherLevelSaves) {
+  const std::vector<DetailPart> parts = row(4);
+  const DetailView near = along_x(-1.0), far = along_x(-9.0), away = along_x(-1.0, -1.0);
+  const DetailChoice choice = choose_levels_within(parts, {near, far}, 1e-3, any);
+  const DetailChoice unseen = choose_levels_within(parts, {away}, 1e-3, any);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    Levels coarse(parts.size(), 3), finer = coarse;
+    finer[p] = 1;
+    EXPECT_NEAR(choice.saved(p, 3, 1), loss(parts, coarse, near) - loss(parts, finer, near), 1e-12) << p;
+    EXPECT_LT(loss(parts, coarse, far) - loss(parts, finer, far), 0.9 * choice.saved(p, 3, 1))
+        << "planted: of the view that gains less";
+    EXPECT_EQ(choice.saved(p, 1, 3), 0.0);
+    EXPECT_GT(unseen.saved(p, 3, 1), 0.0) << "of the sphere";
+  }
+}
+
 TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
   std::vector<DetailPart> parts = row(6);
   for (std::size_t most = 300; most < 2500; most += 50) {

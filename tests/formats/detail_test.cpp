@@ -104,5 +104,17 @@ TEST(Detail, PartsThatLackLevels) {
   EXPECT_TRUE(choose_levels({}, {}, 10).empty());
 }
 
+TEST(Detail, LevelsAndFramesShareABudget) {
+  const auto error = [](double db) { return std::pow(10.0, -0.1 * db); };
+  const double half = levels_share(40.0);
+  EXPECT_NEAR(error(half), 0.5e-4, 1e-9);
+  EXPECT_NEAR(left_of(40.0, half, half), half, 1e-9);
+  EXPECT_NEAR(psnr_of_both(half, left_of(40.0, half, half)), 40.0, 1e-9);
+  EXPECT_NEAR(psnr_of_both(46.0, left_of(40.0, half, 46.0)), 40.0, 1e-9) << "what levels do not need";
+  EXPECT_NEAR(left_of(40.0, half, 30.0), half, 1e-9) << "finer ones are under way";
+  EXPECT_NEAR(left_of(40.0, 40.0, 40.0), 50.0, 1e-9) << "a tenth at least";
+  EXPECT_NEAR(left_of(40.0, half, INFINITY), 40.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace binosplat

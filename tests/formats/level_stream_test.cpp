@@ -160,6 +160,86 @@ TEST(LevelStream, LooksAFewTimes) {
   EXPECT_EQ(gaussians, std::vector<std::size_t>{1000}) << "nothing had to be read";
 }
 
+// What nothing needs any more stays for a second, and then goes though nobody asks.
+TEST(LevelStream, FinerLevelsStayForAWhile) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  test::add_level_errors(copy);
+  LevelStream stream(copy.path(), for_40_db);
+  Model model = stream.coarsest();
+  shared::View view = at({0, 0, -30});
+  view.row_z = {0, 0, 1, 0};
+  view.centre.w = 1.0f;
+  view.width = view.height = 100;
+  double of_last = 2000.0;  // px that are seen of the last part
+  const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+    std::vector<SeenPart> seen(parts.size(), {2000.0, 30.0});
+    seen[2].area = of_last;
+    return seen;
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const auto waits = [&](std::size_t gaussians) {
+    while (!stream.settled() || stream.gaussians() != gaussians) {
+      stream.want(std::vector{view}, look);
+      stream.take(model, 1);
+      if (std::chrono::steady_clock::now() - start > std::chrono::seconds(60)) return false;
+      std::this_thread::yield();
+    }
+    return true;
+  };
+  ASSERT_TRUE(waits(1000));
+  of_last = 1e-9;
+  view.anchor.x += 0.1f;
+  const auto hidden = std::chrono::steady_clock::now();
+  ASSERT_TRUE(waits(1000)) << "at once";
+  EXPECT_LT(std::chrono::steady_clock::now() - hidden, std::chrono::milliseconds(700));
+  ASSERT_TRUE(waits(817)) << "in the end";
+  EXPECT_GT(std::chrono::steady_clock::now() - hidden, std::chrono::milliseconds(800));
+}
+
+// By what is asked of frames, which may change.
+TEST(LevelStream, SharesAQuality) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  test::add_level_errors(copy);
+  LevelStream stream(copy.path(), [](const StreamedSog&, std::span<const shared::View>) {
+    return DetailNeed{.shares = true};
+  });
+  Model model = stream.coarsest();
+  EXPECT_EQ(stream.left(), 0.0);
+  shared::View view = at({0, 0, -30});
+  view.row_z = {0, 0, 1, 0};
+  view.centre.w = 1.0f;
+  view.width = view.height = 100;
+  int looks = 0;
+  const auto rest = [&] {
+    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+      ++looks;
+      return std::vector(parts.size(), SeenPart{20.0, 30.0});
+    };
+    const auto start = std::chrono::steady_clock::now();
+    do {
+      stream.want(std::vector{view}, look);
+      stream.take(model, 1);
+      ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60)) << "it hangs";
+    } while (!stream.settled());
+  };
+  rest();
+  EXPECT_EQ(looks, 0);
+  EXPECT_EQ(stream.gaussians(), 1000u) << "nothing may be lost";
+  stream.share(20.0);
+  rest();
+  EXPECT_GT(looks, 0);
+  ASSERT_TRUE(stream.predicted_psnr());
+  EXPECT_NEAR(psnr_of_both(stream.left(), *stream.predicted_psnr()), 20.0, 1e-6);
+  const double told = *stream.predicted_psnr();
+  stream.share(60.0);
+  rest();
+  EXPECT_EQ(stream.gaussians(), 1000u);
+  EXPECT_GT(*stream.predicted_psnr(), told) << "planted: as it was told before";
+  EXPECT_GE(*stream.predicted_psnr(), 60.0);
+}
+
 // One eye where it is, and the other where it will be.
 TEST(LevelStream, LooksAheadOfAHeadThatMoves) {
   REQUIRE_FIXTURES(folder);

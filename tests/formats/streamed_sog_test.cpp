@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <set>
+#include <thread>
 
 #include "formats/model_file.h"
 #include "scene/model_parts.h"
@@ -229,6 +232,72 @@ TEST(StreamedSog, ByErrorsThatItsFileTells) {
   EXPECT_TRUE(behind.scene.choose({}, {.db = 40.0}));
   EXPECT_FALSE(behind.scene.predicted_psnr()) << "the coarsest, unless somebody looks";
   EXPECT_EQ(behind.read().count(), 250u);
+}
+
+/// What the view shows of each part: so many px, a thousand at most, and 21 units away.
+DetailSeen showing(const StreamedSog& scene, const std::vector<double>& areas) {
+  DetailSeen seen{{std::vector<SeenPart>(scene.parts())}, scene.chosen()};
+  for (std::size_t p = 0; p < areas.size(); ++p) seen.by_view[0][p] = {areas[p], 21.0};
+  return seen;
+}
+
+TEST(StreamedSog, FinerLevelsStayWhereThereIsRoom) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", teach);
+  const std::vector<shared::View> views = {ahead({0, 0, -20})};
+  const auto count = [&](const DetailNeed& need, int after_ms) {
+    Followed scene(copy.path());
+    scene.scene.choose({}, {});
+    const std::vector<double> all = {1000, 1000, 1000}, first_two = {1000, 1000, 1e-9};
+    scene.scene.choose(views, need, showing(scene.scene, all));
+    EXPECT_EQ(scene.read().count(), need.most == 999 ? 615u : 1000u);
+    scene.scene.choose(views, need, showing(scene.scene, first_two));
+    EXPECT_EQ(scene.scene.lingers(), need.stays_s > 0.0);
+    scene.read();
+    std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+    scene.scene.choose(views, need, showing(scene.scene, first_two));
+    return scene.read().count();
+  };
+  EXPECT_EQ(count({.db = 42.0}, 0), 817u) << "none stays";
+  EXPECT_EQ(count({.db = 42.0, .stays_s = 100.0}, 0), 1000u);
+  EXPECT_EQ(count({.most = 999, .db = 42.0, .stays_s = 100.0}, 0), 817u) << "no room";
+  EXPECT_EQ(count({.db = 42.0, .stays_s = 0.05}, 100), 817u) << "not for ever";
+}
+
+TEST(StreamedSog, WhatSavesMostIsReadFirst) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  fs::copy(copy.path() / "0_0", copy.path() / "0_1", fs::copy_options::recursive);
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    teach(meta);
+    meta["filenames"].push_back("0_1/meta.json");
+    meta["tree"]["children"][1]["children"][1]["lods"]["0"]["file"] = 2;
+  });
+  const std::vector<shared::View> views = {ahead({0, 0, -20})};
+  for (const bool last_is_first : {false, true}) {
+    Followed scene(copy.path());
+    scene.scene.choose({}, {});
+    scene.read();
+    const double much = 1000.0, little = 100.0;
+    scene.scene.choose(
+        views, {.db = 80.0},
+        showing(scene.scene, {last_is_first ? little : much, little, last_is_first ? much : little}));
+    std::vector<std::size_t> order;
+    std::vector<double> worth;
+    scene.scene.read([&](const StreamedSog::Piece& piece) {
+      order.push_back(piece.part);
+      worth.push_back(scene.scene.worth(piece));
+    });
+    ASSERT_EQ(order.size(), 3u);
+    EXPECT_EQ(order[last_is_first ? 0 : 2], 2u);
+    EXPECT_GT(worth[last_is_first ? 0 : 1], 0.0);
+    EXPECT_EQ(std::ranges::max_element(worth) - worth.begin(), 0);
+    scene.scene.choose({}, {});
+    scene.scene.read([&](const StreamedSog::Piece& piece) {
+      EXPECT_TRUE(std::isinf(scene.scene.worth(piece))) << "what shrinks comes before all";
+    });
+  }
 }
 
 TEST(StreamedSog, SaysWhatIsWrongWithErrors) {

@@ -250,6 +250,42 @@ TEST(ToleranceControl, ACutSearchesAnewFromTheLastTolerance) {
   EXPECT_TRUE(keeps(draw_frame(control, other, true, better), 49.99, 51.31, 0.01));
 }
 
+// As what is left of one that levels of detail share does.
+TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
+  for (const double power : {1.3, 2.0, 6.0}) {
+    const SimulatedScene scene = scene_for(power, 0.05, {1.0, 0.9});
+    ToleranceControl control;
+    FrameSettings settings = squared;
+    Course course;  // dB above what is asked for
+    float first = 0.0f;
+    const auto draw = [&] {
+      Drawn drawn = draw_frame(control, scene, true, settings);
+      if (first == 0.0f) first = drawn.tolerance;
+      drawn.true_db -= settings.quality;
+      drawn.told_db -= settings.quality;
+      add(drawn, course);
+    };
+    for (int n = 0; n < 90; ++n) {
+      settings.quality = 41.5f - 1.5f * std::cos(0.07f * static_cast<float>(n));
+      draw();
+    }
+    EXPECT_GT(course.least, -0.75) << power;
+    EXPECT_LT(course.most, 1.4) << power;
+    EXPECT_NEAR(course.mean, 0.3, 0.3) << power;
+    EXPECT_LT(course.told_off, 0.4) << power;
+    EXPECT_LT(course.attempts, 95) << power;
+    settings.quality += 0.2f;
+    EXPECT_TRUE(control.knows(settings));
+    settings.quality += 0.2f;
+    EXPECT_FALSE(control.knows(settings)) << "of a frame that must be better";
+    settings.quality = 43.0f;  // at once
+    course = {};
+    draw();
+    EXPECT_GT(course.least, -0.75) << power;
+    EXPECT_LT(scene.worse_db(first), 42.25) << "planted: the first tolerance for all";
+  }
+}
+
 TEST(ToleranceControl, ProbesEveryTileOfEveryViewInTurn) {
   for (const int probe_tiles : {10, 64, 300}) {
     FrameSettings settings = squared;

@@ -71,6 +71,7 @@ preview::Loaded load(const SceneOptions& scene, const render::FrameSettings& set
     return detail_need(scene, settings, levels, views);
   };
   auto levels = std::make_unique<LevelStream>(scene.name, need);
+  levels->share(settings.quality);
   Model model = levels->coarsest();
   set_as_asked(scene, model);
   return {std::move(model), std::move(levels)};
