@@ -9,7 +9,7 @@ layout(local_size_x = THREADS) in;
 
 layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, and T left; by pixel
 layout(std430, binding = 1) buffer Finest { vec4 finest[]; };             // likewise
-layout(std430, binding = 2) buffer Behind { vec4 behind[]; };             // mean colour by square
+layout(std430, binding = 2) buffer Behind { vec4 behind[]; };             // by square: mean colour, and contrast squared
 layout(std430, binding = 3) writeonly buffer Sums { float sums_of_squares[]; };
 #if FINEST
 layout(std430, binding = 4) readonly buffer ZSums { float z_sums[]; };  // how much of each pixel is seen
@@ -19,8 +19,8 @@ uniform uint square_side;  // px
 uniform uint row_squares;
 uniform uint row_pixels;
 
-// By how much what lies behind a part differs from its mean colour, as a deviation.
-const float contrast = 0.15;
+// What lies behind a part differs from its mean colour by so many times what its own pixels do.
+const float CONTRAST2 = 1.0;
 
 shared vec4 sums[THREADS];
 
@@ -43,28 +43,39 @@ void main() {
   uint square = group_index();
   if (square >= square_count) return;
   uint corner = (square / row_squares * row_pixels + square % row_squares) * square_side;
-  vec3 over = vec3(0.0);
-#if !FINEST
-  over = behind[square].rgb;
-#endif
+#if FINEST
   vec4 colour = vec4(0.0);
+  float squares = 0.0;
+#else
+  vec3 over = behind[square].rgb;
+  float contrast_squared = behind[square].a;
+#endif
   float sum = 0.0;
   for (uint k = gl_LocalInvocationIndex; k < square_side * square_side; k += THREADS) {
     uint pixel = corner + k / square_side * row_pixels + k % square_side;
 #if FINEST
     finest[pixel] = colours[pixel];
-    colour += vec4(colours[pixel].rgb, 1.0 - colours[pixel].a);
+    vec4 covers = vec4(colours[pixel].rgb, 1.0 - colours[pixel].a);
+    colour += covers;
+    squares += dot(covers.rgb, covers.rgb) / max(3.0 * covers.a, 1e-6);
     sum += z_sums[pixel];
 #else
     vec3 apart = shown(colours[pixel], over) - shown(finest[pixel], over);
     float covers = colours[pixel].a - finest[pixel].a;
-    sum += dot(apart, apart) / 3.0 + contrast * contrast * covers * covers;
+    sum += dot(apart, apart) / 3.0 + contrast_squared * covers * covers;
 #endif
   }
 #if FINEST
   vec4 all = sum_of_all(colour);
-  if (gl_LocalInvocationIndex == 0u) behind[square] = all.a > 0.0 ? all / all.a : vec4(0.0);
-#endif
+  vec2 sums_of_square = sum_of_all(vec4(sum, squares, 0.0, 0.0)).xy;
+  sum = sums_of_square.x;
+  if (gl_LocalInvocationIndex == 0u) {
+    vec3 mean = all.a > 0.0 ? all.rgb / all.a : vec3(0.0);
+    float deviation_squared = all.a > 0.0 ? max(sums_of_square.y / all.a - dot(mean, mean) / 3.0, 0.0) : 0.0;
+    behind[square] = vec4(mean, CONTRAST2 * deviation_squared);
+  }
+#else
   sum = sum_of_all(vec4(sum)).x;
+#endif
   if (gl_LocalInvocationIndex == 0u) sums_of_squares[square] = sum;
 }

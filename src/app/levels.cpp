@@ -50,7 +50,7 @@ LevelFolder folder_at(const fs::path& folder) {
 /// What tells a run from others.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   nlohmann::ordered_json run =
-      study::object("format", "binosplat levels", "version", 2, "program", BINOSPLAT_VERSION, "leaf",
+      study::object("format", "binosplat levels", "version", 3, "program", BINOSPLAT_VERSION, "leaf",
                     o.settings.leaf, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
   if (o.scene.seed) run["seed"] = *o.scene.seed;
   if (o.scene.count) run["count"] = *o.scene.count;

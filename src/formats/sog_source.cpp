@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
+#include "scene/reduce.h"
 
 namespace binosplat {
 
@@ -224,6 +226,27 @@ void SogSource::decode(Model& model, std::span<const Range> ranges, std::vector<
     };
     parallel_for(range.count, decode_at, 2048);
   }
+}
+
+std::vector<Model> SogSource::decode_each(const Model& like, std::span<const Range> ranges,
+                                          const Textures& textures) const {
+  std::vector<Range> together(ranges.begin(), ranges.end());
+  std::size_t total = 0;
+  for (Range& range : together) range.slot = std::exchange(total, total + range.count);
+  Model all = without_gaussians(like);
+  all.resize(total);
+  std::vector<std::uint8_t> kept(total);
+  decode(all, together, kept, textures);
+  keep_only(all, kept);
+  std::vector<Model> each;
+  std::size_t at = 0;
+  for (const Range& range : together) {
+    const auto of = std::span(kept).subspan(range.slot, range.count);
+    const auto count = static_cast<std::size_t>(std::ranges::count(of, 1));
+    append(each.emplace_back(without_gaussians(like)), all, at, count);
+    at += count;
+  }
+  return each;
 }
 
 }  // namespace binosplat

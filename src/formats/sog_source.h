@@ -55,6 +55,10 @@ class SogSource {
   /// The same by pictures that are there already.
   void decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,
               const Textures& textures) const;
+  /// The Gaussians of each range that may stay, as a model by itself, which is else like `like`; slots do not
+  /// count.
+  std::vector<Model> decode_each(const Model& like, std::span<const Range> ranges,
+                                 const Textures& textures) const;
 
  private:
   using Table = std::array<float, 256>;  // what a byte stands for

@@ -424,32 +424,17 @@ void StreamedSog::check_chosen() const {
   check_total(source_->path, total, source_->bytes);
 }
 
-std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, Taken taken) const {
+std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, const Taken& taken) const {
   const SogSource& source = *source_->files[file];
-  std::vector<SogSource::Range> ranges;
-  std::size_t total = 0;
-  for (SogLevels::Taken& of_leaf : taken) {
-    of_leaf.range.slot = total;
-    total += of_leaf.range.count;
-    ranges.push_back(of_leaf.range);
-  }
-  Model model = like_;
-  model.resize(total);
-  std::vector<std::uint8_t> kept(total);
-  source.decode(model, ranges, kept, *source_->cache.textures(file, source));
-  keep_only(model, kept);
+  std::vector<Model> models =
+      source.decode_each(like_, ranges_of(taken), *source_->cache.textures(file, source));
   std::vector<Piece> pieces;
-  std::size_t at = 0;
-  for (const SogLevels::Taken& of_leaf : taken) {
-    const auto of = std::span(kept).subspan(of_leaf.range.slot, of_leaf.range.count);
-    const auto count = static_cast<std::size_t>(std::ranges::count(of, 1));
-    pieces.push_back({.part = of_leaf.leaf, .model = like_});
-    if (of_leaf.leaf < leaves_.size()) {
-      pieces.back().level = chosen_[of_leaf.leaf];
-      pieces.back().before = read_[of_leaf.leaf];
-    }
-    append(pieces.back().model, model, at, count);
-    at += count;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    const std::size_t leaf = taken[i].leaf;
+    pieces.push_back({.part = leaf, .model = std::move(models[i])});
+    if (leaf == leaves_.size()) continue;
+    pieces.back().level = chosen_[leaf];
+    pieces.back().before = read_[leaf];
   }
   return pieces;
 }

@@ -113,7 +113,7 @@ class StreamedSog {
   double saved(std::size_t leaf, std::optional<std::size_t> before) const;
   double worth(std::size_t file, std::span<const SogLevels::Taken> taken) const;
   void check_chosen() const;
-  std::vector<Piece> read_file(std::size_t file, std::vector<SogLevels::Taken> taken) const;
+  std::vector<Piece> read_file(std::size_t file, const std::vector<SogLevels::Taken>& taken) const;
 
   std::unique_ptr<Source> source_;
   Model like_;

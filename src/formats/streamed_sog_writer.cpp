@@ -15,6 +15,7 @@
 #include "formats/json_file.h"
 #include "formats/model_writers.h"
 #include "formats/morton.h"
+#include "formats/sog_source.h"
 #include "scene/merge.h"
 #include "scene/reduce.h"
 #include "scene/space_tree.h"
@@ -61,6 +62,7 @@ struct File {
   int level = 0;
   std::size_t first_leaf = 0, leaves = 0;
   std::size_t count = 0;
+  bool is_there = false;
 };
 
 /// Leaves that are worked on together, and the files in which all their levels lie.
@@ -140,10 +142,11 @@ class Writer {
     LevelsWritten written{gaussians_, filenames_.size(), 0, sog_losses(model_)};
     std::size_t work = 0;
     for (Piece& piece : pieces_) {
-      written.kept +=
-          std::erase_if(piece.files, [&](const File& file) { return folder_.has(file.folder + meta_name); });
-      for (const File& file : piece.files) work += file.count;
-      for (std::size_t i = 0; i < piece.leaves && !is_done(piece); ++i)
+      for (File& file : piece.files) {
+        file.is_there = folder_.has(file.folder + meta_name);
+        (file.is_there ? written.kept : work) += file.is_there ? 1 : file.count;
+      }
+      for (std::size_t i = 0; i < piece.leaves && !is_written(piece); ++i)
         work += leaves_[piece.first_leaf + i].count(0);
     }
     Progress progress("writing levels of detail", work);
@@ -165,7 +168,7 @@ class Writer {
   }
 
  private:
-  bool is_done(const Piece& piece) const { return piece.files.empty() && folder_.has(piece.errors); }
+  static bool is_written(const Piece& piece) { return std::ranges::all_of(piece.files, &File::is_there); }
 
   /// Which leaves are a piece, and what of it goes where. Nodes that follow one another share a piece, since
   /// what lies far out is a node of a few.
@@ -202,7 +205,7 @@ class Writer {
       Leaf& leaf = leaves_[i];
       const std::size_t count = leaf.count(level);
       if (i == piece.first_leaf || piece.files.back().count + count > settings_.file) {
-        piece.files.push_back({fmt::format("{}_{}", level, files_of_level_[level]++), level, i, 0, 0});
+        piece.files.push_back({fmt::format("{}_{}", level, files_of_level_[level]++), level, i});
         filenames_.push_back(piece.files.back().folder + meta_name);
       }
       File& file = piece.files.back();
@@ -214,29 +217,29 @@ class Writer {
     }
   }
 
-  /// While one is judged, which one thread does that may leave all cores idle, the next is merged and the one
-  /// before is written.
+  /// While one is judged, which one thread does that may leave all cores idle, the next is written and the
+  /// one after it is merged.
   void write_pieces(Progress& progress) {
     std::vector<const Piece*> left;
     for (const Piece& piece : pieces_) {
-      if (!is_done(piece)) left.push_back(&piece);
+      if (!is_written(piece) || !folder_.has(piece.errors)) left.push_back(&piece);
     }
     const auto merge = [&](const Piece& piece) {
       return std::async(std::launch::async, [&] { return merged(piece, progress); });
     };
     std::future<std::vector<Levels>> merging;
+    if (!left.empty()) merging = merge(*left[0]);
     std::future<void> writing;
-    for (std::size_t k = 0; k < left.size(); ++k) {
-      std::vector<Levels> levels = k == 0 ? merged(*left[0], progress) : merging.get();
-      if (k + 1 < left.size()) merging = merge(*left[k + 1]);
-      if (!folder_.has(left[k]->errors)) judge(*left[k], levels);
+    for (std::size_t k = 0; k <= left.size(); ++k) {
       if (writing.valid()) writing.get();
-      writing =
-          std::async(std::launch::async, [this, &progress, &piece = *left[k], levels = std::move(levels)] {
-            write(piece, levels, progress);
-          });
+      if (k < left.size()) {
+        writing = std::async(
+            std::launch::async,
+            [this, &progress, &piece = *left[k], levels = merging.get()] { write(piece, levels, progress); });
+      }
+      if (k + 1 < left.size()) merging = merge(*left[k + 1]);
+      if (k > 0 && !folder_.has(left[k - 1]->errors)) judge(*left[k - 1]);
     }
-    if (writing.valid()) writing.get();
   }
 
   void count(Progress& progress, std::size_t gaussians) {
@@ -244,9 +247,13 @@ class Writer {
     progress.update(done_ += gaussians);
   }
 
+  /// None where nothing is left to write.
   std::vector<Levels> merged(const Piece& piece, Progress& progress) {
-    const int coarsest = folder_.has(piece.errors) ? piece.files.back().level : settings_.levels - 1;
-    std::vector<Levels> levels(piece.leaves);
+    int coarsest = -1;
+    for (const File& file : piece.files) {
+      if (!file.is_there) coarsest = std::max(coarsest, file.level);
+    }
+    std::vector<Levels> levels(coarsest < 0 ? 0 : piece.leaves);
     parallel_for(levels.size(), [&](std::size_t i) {
       const Leaf& leaf = leaves_[piece.first_leaf + i];
       levels[i] = levels_of(model_, leaf, coarsest);
@@ -255,14 +262,40 @@ class Writer {
     return levels;
   }
 
-  void judge(const Piece& piece, std::span<const Levels> levels) {
-    const std::string text = json_of(judge_(levels)).dump() + "\n";
+  /// By what was written: rounded colours, scales and rotations cost as much as a level may.
+  void judge(const Piece& piece) {
+    const std::string text = json_of(judge_(written(piece))).dump() + "\n";
     folder_.write(piece.errors, std::as_bytes(std::span(text)));
+  }
+
+  std::vector<Levels> written(const Piece& piece) const {
+    std::vector<Levels> levels(piece.leaves, Levels(gaussians_.size()));
+    parallel_for(piece.files.size(), [&](std::size_t i) {
+      const File& file = piece.files[i];
+      const auto level = static_cast<std::size_t>(file.level);
+      const std::string meta = file.folder + meta_name;
+      const SogSource sog(meta, parse_json(meta, folder_.read(meta)), [&](const std::string& name) {
+        const std::string text = folder_.read(file.folder + "/" + name);
+        const auto bytes = std::as_bytes(std::span(text));
+        return std::vector(bytes.begin(), bytes.end());
+      });
+      std::vector<SogSource::Range> ranges;
+      std::size_t at = 0;
+      for (std::size_t k = 0; k < file.leaves; ++k) {
+        const std::size_t of_leaf = leaves_[file.first_leaf + k].count(file.level);
+        ranges.push_back({std::exchange(at, at + of_leaf), of_leaf, 0});
+      }
+      std::vector<Model> models = sog.decode_each(model_, ranges, *sog.textures());
+      for (std::size_t k = 0; k < file.leaves; ++k)
+        levels[file.first_leaf - piece.first_leaf + k][level] = std::move(models[k]);
+    });
+    return levels;
   }
 
   void write(const Piece& piece, std::span<const Levels> levels, Progress& progress) {
     parallel_for(piece.files.size(), [&](std::size_t i) {
       const File& file = piece.files[i];
+      if (file.is_there) return;
       Model all = without_gaussians(model_);
       for (std::size_t k = 0; k < file.leaves; ++k) {
         const Levels& of_leaf = levels[file.first_leaf - piece.first_leaf + k];

@@ -26,7 +26,7 @@ struct LeafErrors {
   std::vector<std::vector<std::vector<double>>> of_level;  // by level and direction, px times squared colour
 };
 
-/// Finds them for leaves, given their levels from the finest.
+/// Finds them for leaves, given their levels from the finest, as the files have them.
 using JudgeLevels = std::function<std::vector<LeafErrors>(std::span<const std::vector<Model>> leaves)>;
 
 /// The folder that a streamed SOG is written to; names are relative to it. Files may be written by several

@@ -12,6 +12,7 @@
 
 #include "formats/content.h"
 #include "formats/streamed_sog.h"
+#include "scene/reduce.h"
 #include "support/models.h"
 #include "support/program.h"
 
@@ -36,7 +37,13 @@ struct StreamedSogWriter : testing::Test {
                                  EXPECT_FALSE(files.contains(name)) << name << " is written twice";
                                  files[name] = as_text(bytes);
                                }},
-                              errors_of);
+                              [&](std::span<const std::vector<Model>> leaves) {
+                                for (const std::vector<Model>& levels : leaves) {
+                                  for (std::size_t k = 0; k < levels.size(); ++k)
+                                    append(judged[k], levels[k], 0, levels[k].count());
+                                }
+                                return errors_of(leaves);
+                              });
   }
 
   /// By what can be told apart in lod-meta.json.
@@ -63,6 +70,7 @@ struct StreamedSogWriter : testing::Test {
   }
 
   Model model = test::random_model(1, 3000, 1);
+  mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));  // by level, all that was
   LevelSettings settings{.leaf = 200, .levels = 4};
 };
 
@@ -70,6 +78,19 @@ struct StreamedSogWriter : testing::Test {
 void for_leaves(const json& node, const std::function<void(const json&)>& see) {
   if (node.contains("lods")) see(node);
   for (const json& child : node.value("children", json::array())) for_leaves(child, see);
+}
+
+TEST_F(StreamedSogWriter, JudgesWhatTheFilesHave) {
+  Files files;
+  write(files);
+  for (int lod = 0; lod < 4; ++lod) {
+    const Model drawn = read(files, lod);
+    const Model& seen = judged[static_cast<std::size_t>(lod)];
+    EXPECT_EQ(seen.position, drawn.position) << lod;
+    EXPECT_EQ(seen.scale, drawn.scale) << lod;
+    EXPECT_EQ(seen.sh, drawn.sh) << lod;
+  }
+  EXPECT_NE(judged[0].sh, model.sh) << "planted: what was to be written";
 }
 
 bool within(const json& bound, const glm::vec3& p, double slack) {
