@@ -81,18 +81,20 @@ namespace {
 
 double squared_error(double db) { return std::pow(10.0, -0.1 * db); }
 
-double psnr(double squared_error) { return -10.0 * std::log10(squared_error); }
-
 }  // namespace
 
-double levels_share(double together_db) { return psnr(0.5 * squared_error(together_db)); }
+double psnr_of_error(double squared) { return -10.0 * std::log10(squared); }
+
+double levels_share(double together_db) { return psnr_of_error(0.5 * squared_error(together_db)); }
 
 double left_of(double together_db, double asked_db, double now_db) {
   constexpr double least = 0.1;  // of all, whatever was asked for
   const double all = squared_error(together_db);
-  return psnr(std::max(all - std::min(squared_error(now_db), squared_error(asked_db)), least * all));
+  return psnr_of_error(std::max(all - std::min(squared_error(now_db), squared_error(asked_db)), least * all));
 }
 
-double psnr_of_both(double a_db, double b_db) { return psnr(squared_error(a_db) + squared_error(b_db)); }
+double psnr_of_both(double a_db, double b_db) {
+  return psnr_of_error(squared_error(a_db) + squared_error(b_db));
+}
 
 }  // namespace binosplat

@@ -40,6 +40,8 @@ double levels_share(double together_db);
 double left_of(double together_db, double asked_db, double now_db);
 /// Of two PSNR in dB that of both errors together.
 double psnr_of_both(double a_db, double b_db);
+/// In dB what a squared error is, of colours up to 1.
+double psnr_of_error(double squared);
 
 /// Directions in which what levels lose is known: along x, against it, along y and so on.
 constexpr std::size_t detail_directions = 6;
@@ -99,12 +101,13 @@ struct DetailChoice {
   /// around the views.
   std::vector<std::vector<double>> errors;
 
-  /// What that of the first so many views which loses most does with any levels of the parts: squared, meaned
-  /// over pixels and channels.
-  double error_of(std::span<const std::size_t> any_levels, std::size_t views) const;
-  double error() const { return error_of(levels, pixels.size()); }
-  /// In dB.
-  double psnr_of(std::span<const std::size_t> any_levels, std::size_t views) const;
+  /// What that of some views, from `begin` to before `end`, which loses most does with any levels of the
+  /// parts: squared, meaned over pixels and channels.
+  double error_of(std::span<const std::size_t> any_levels, std::size_t begin, std::size_t end) const;
+  double error_of(std::span<const std::size_t> any_levels) const {
+    return error_of(any_levels, 0, pixels.size());
+  }
+  double error() const { return error_of(levels); }
   /// By how much less the view that gains most of it, or the sphere, loses with a part at a level instead of
   /// another: squared, meaned over pixels and channels.
   double saved(std::size_t part, std::size_t from, std::size_t to) const;

@@ -312,18 +312,15 @@ DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const st
   return choice;
 }
 
-double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size_t views) const {
-  std::vector<double> lost(views, 0.0);
+double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size_t begin,
+                              std::size_t end) const {
+  std::vector<double> lost(end - begin, 0.0);
   for (std::size_t p = 0; p < errors.size(); ++p) {
     const std::size_t levels_of_part = errors[p].size() / (pixels.size() + 1);
-    for (std::size_t v = 0; levels_of_part > 0 && v < lost.size(); ++v)
-      lost[v] += errors[p][v * levels_of_part + any_levels[p]] / pixels[v];
+    for (std::size_t v = begin; levels_of_part > 0 && v < end; ++v)
+      lost[v - begin] += errors[p][v * levels_of_part + any_levels[p]] / pixels[v];
   }
   return lost.empty() ? 0.0 : *std::ranges::max_element(lost);
-}
-
-double DetailChoice::psnr_of(std::span<const std::size_t> any_levels, std::size_t views) const {
-  return -10.0 * std::log10(error_of(any_levels, views));
 }
 
 double DetailChoice::saved(std::size_t part, std::size_t from, std::size_t to) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "base/parallel.h"
@@ -22,7 +23,7 @@ constexpr double between_looks_ms = 100.0;
 constexpr double reading_ms = 100.0;
 constexpr double glance_ms = 3.0;       // that a frame may take for a look
 constexpr double bands_most = 8.0;      // of a view: each costs all that does not depend on pixels, too
-constexpr double look_most_ms = 250.0;  // at all bands of all views: slow frames have fewer bands
+constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
 constexpr double stays_s = 1.0;         // a level that nothing needs any more
 constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
 constexpr int looks_most = 3;           // at the same views; then a choice hardly changes any more
@@ -59,7 +60,9 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
   // Half empty blocks included.
   model.room = std::min(scene_.finest(), need.most < scene_.finest() ? need.most : room_most) +
                scene_.parts() * ModelParts::block;
-  model.reserve(model.room);
+  // Touched now: the system gives memory a page at a time, and slowly while others decode (10 ms a frame).
+  model.resize(model.room);
+  model.resize(0);
   scene_.read([&](const StreamedSog::Piece& piece) { parts_.replace(model, piece.part, piece.model); });
   parts_.take_changes();
   drawn_ = scene_.chosen();
@@ -104,8 +107,8 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
     wish.views = wanted_;
     wish.together_db = together_db_;
   } else {
-    if (!look_on(look)) return;
-    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}, here(), together_db_};
+    if (take_is_due_ || !look_on(look)) return;
+    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}, here(), *looked_at_, together_db_};
     ++looks_;
   }
   is_due_ = !same(wish.views, wanted_);
@@ -126,7 +129,7 @@ bool LevelStream::look_on(const Look& look) {
     moves_ = !same(motion_.ahead(lead_s), wanted_);
     to_look_at_ = moves_ ? std::max<std::size_t>(wanted_.size(), 2) : wanted_.size();
     changed_since_look_ = false;
-    look_ms_ = 0.0;
+    longest_look_ms_ = 0.0;
     seen_.clear();
   }
   if (band_.index == 0) {
@@ -136,14 +139,16 @@ bool LevelStream::look_on(const Look& look) {
   }
   const auto start = Clock::now();
   add(look(looked_.back(), band_, parts_), seen_.back());
-  look_ms_ += ms_since(start);
+  longest_look_ms_ = std::max(longest_look_ms_, ms_since(start));
+  looked_now_ = true;
   if (++band_.index < band_.count) return false;
   band_.index = 0;
   if (looked_.size() < to_look_at_) return false;
   const auto views = static_cast<double>(to_look_at_);
   const double frame_ms = ms_since(*looked_at_) / (views * band_.count);
   const double most = std::clamp(look_most_ms / (views * frame_ms), 1.0, bands_most);
-  band_.count = static_cast<int>(std::clamp(std::ceil(look_ms_ / views / glance_ms), 1.0, most));
+  band_.count =
+      static_cast<int>(std::clamp(std::ceil(longest_look_ms_ * band_.count / glance_ms), 1.0, most));
   return true;
 }
 
@@ -151,14 +156,20 @@ void LevelStream::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   Wish wish;
   while (!stop.stop_requested()) {
-    const auto is_wished = [&] { return wish_.has_value(); };
+    const auto is_there = [&] { return wish_.has_value() || !used_.empty(); };
     if (!scene_.lingers()) {
-      changed_.wait(lock, stop, is_wished);
-    } else {  // what was wished last is chosen again then, without what stayed beyond it
-      changed_.wait_for(lock, stop, std::chrono::duration<double>(stays_s), is_wished);
+      changed_.wait(lock, stop, is_there);
+    } else if (!changed_.wait_for(lock, stop, std::chrono::duration<double>(stays_s), is_there)) {
+      wish_ = wish;  // chosen again, without what stayed beyond it
     }
     if (stop.stop_requested()) return;
-    if (wish_) wish = *std::exchange(wish_, std::nullopt);
+    if (!used_.empty()) {
+      lock.unlock();
+      free_used();
+      lock.lock();
+    }
+    if (!wish_) continue;
+    wish = *std::exchange(wish_, std::nullopt);
     works_ = true;
     lock.unlock();
     std::exception_ptr trouble;
@@ -183,11 +194,13 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
     const std::lock_guard lock(mutex_);
     choice_ = scene_.choice();
     here_ = wish.here;
+    at_ = wish.at;
     asked_db_ = need.db.value_or(0.0);
   }
   if (!reads) return;
   sort_pieces();
   const auto take = [&](StreamedSog::Piece piece) {
+    free_used();
     std::unique_lock lock(mutex_);
     changed_.wait(lock, stop, [&] { return gaussians_read_ < read_ahead || wish_; });
     gaussians_read_ += piece.model.count();
@@ -198,6 +211,12 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
     const std::lock_guard lock(mutex_);
     return !stop.stop_requested() && (!wish_ || ms_since(start) < reading_ms);
   });
+}
+
+void LevelStream::free_used() {
+  std::vector<StreamedSog::Piece> used;
+  const std::lock_guard lock(mutex_);
+  used.swap(used_);
 }
 
 // Drops what was read for views that are gone; what saves most comes first.
@@ -218,6 +237,9 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   {
     const std::lock_guard lock(mutex_);
     if (trouble_) std::rethrow_exception(trouble_);
+    const bool looked = std::exchange(looked_now_, false);
+    take_is_due_ = looked && !pieces_.empty();
+    if (take_is_due_) return {};
     std::size_t gaussians = 0;
     while (!pieces_.empty()) {
       gaussians += pieces_.front().model.count();
@@ -228,7 +250,6 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
     }
   }
   if (taken.empty()) return {};
-  changed_.notify_all();
   std::vector<ModelParts::Replacement> replacements;
   for (const StreamedSog::Piece& piece : taken) {
     replacements.push_back({piece.part, &piece.model});
@@ -237,7 +258,11 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   parts_.replace(model, replacements);
   changed_since_look_ = true;
   told_by_.reset();
-  told_.reset();
+  {
+    const std::lock_guard lock(mutex_);
+    std::ranges::move(taken, std::back_inserter(used_));
+  }
+  changed_.notify_all();
   return parts_.take_changes();
 }
 
@@ -252,14 +277,21 @@ bool LevelStream::settled() const {
 std::optional<double> LevelStream::predicted_psnr() const {
   std::shared_ptr<const DetailChoice> choice;
   std::size_t here = 0;
+  Clock::time_point at;
   {
     const std::lock_guard lock(mutex_);
     choice = choice_;
     here = here_;
+    at = at_;
   }
-  if (choice != told_by_) told_ = choice ? std::optional(choice->psnr_of(drawn_, here)) : std::nullopt;
-  told_by_ = std::move(choice);
-  return told_;
+  if (!choice) return std::nullopt;
+  if (choice != told_by_) {
+    const std::size_t all = choice->pixels.size();
+    told_here_ = choice->error_of(drawn_, 0, here);
+    told_ahead_ = here < all ? choice->error_of(drawn_, here, all) : told_here_;
+    told_by_ = std::move(choice);
+  }
+  return psnr_of_error(std::lerp(told_here_, told_ahead_, std::min(1e-3 * ms_since(at) / lead_s, 1.0)));
 }
 
 }  // namespace binosplat

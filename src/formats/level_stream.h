@@ -59,7 +59,8 @@ class LevelStream {
   void want(std::span<const shared::View> views, const Look& look);
 
   /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, but one
-  /// part at least. Throws what reading it threw; then nothing more is read.
+  /// part at least. Where a look was made for this frame what was read waits for the next, which makes none
+  /// then. Throws what reading it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
 
   /// Whether the model has all that was wanted, and nothing is to be looked at again.
@@ -67,8 +68,9 @@ class LevelStream {
   /// Gaussians of the model.
   std::size_t gaussians() const { return parts_.gaussians(); }
   const ModelParts& parts() const { return parts_; }
-  /// What the views that were looked at last where they were are taken to have against the finest levels, in
-  /// dB, with the levels that the model has now; none where dB are not gone by, or nothing was looked at yet.
+  /// What the views are taken to have now against the finest levels, in dB, with the levels that the model
+  /// has now: of those that were looked at last, where they were and ahead of that, by how long ago it was.
+  /// None where dB are not gone by, or nothing was looked at yet.
   std::optional<double> predicted_psnr() const;
 
  private:
@@ -76,6 +78,7 @@ class LevelStream {
     std::vector<shared::View> views;
     DetailSeen seen;
     std::size_t here = 0;  // of the views: they come first, and others lie ahead
+    Clock::time_point at;
     double together_db = 0.0;
   };
   bool look_on(const Look& look);
@@ -83,6 +86,7 @@ class LevelStream {
   void work(const std::stop_token& stop);
   void read(const Wish& wish, const std::stop_token& stop);
   void sort_pieces();
+  void free_used();
   bool is_idle() const { return !wish_ && !works_ && pieces_.empty(); }
   bool looks_again() const;
 
@@ -96,8 +100,10 @@ class LevelStream {
   HeadMotion motion_;
   bool is_due_ = false;                                  // to be wished
   std::vector<std::size_t> drawn_;                       // places of the parts' levels, in the model
-  mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, as it was last
-  mutable std::optional<double> told_;
+  mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, the last time,
+  mutable double told_here_ = 0.0, told_ahead_ = 0.0;    // squared errors
+  bool looked_now_ = false;   // since the last take(): a frame does one of both, in turns,
+  bool take_is_due_ = false;  // where there is much of both
   // By dB:
   int looks_ = 0;                            // at these views, all of them
   std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
@@ -105,7 +111,7 @@ class LevelStream {
   bool moves_ = false;                       // while these are looked at
   std::size_t to_look_at_ = 0;               // so many views
   Band band_;                                // of the last of them, that comes next
-  double look_ms_ = 0.0;                     // of the looks at them
+  double longest_look_ms_ = 0.0;             // of a band
   bool changed_since_look_ = false;
   std::optional<Clock::time_point> looked_at_;
 
@@ -114,9 +120,11 @@ class LevelStream {
   std::optional<Wish> wish_;
   bool works_ = false;
   std::deque<StreamedSog::Piece> pieces_;
-  std::size_t gaussians_read_ = 0;  // of these
+  std::vector<StreamedSog::Piece> used_;  // freed by the thread, since frames must not wait for that
+  std::size_t gaussians_read_ = 0;        // of these
   std::shared_ptr<const DetailChoice> choice_;
-  std::size_t here_ = 0;   // of its views (Wish)
+  std::size_t here_ = 0;  // of its views (Wish)
+  Clock::time_point at_;
   double asked_db_ = 0.0;  // that it is for
   std::exception_ptr trouble_;
   std::jthread thread_;  // last: it ends first

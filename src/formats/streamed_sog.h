@@ -74,7 +74,7 @@ class StreamedSog {
   const std::shared_ptr<const DetailChoice>& choice() const { return choice_; }
   /// What those views are taken to have against the finest levels, in dB, with the choice; likewise.
   std::optional<double> predicted_psnr() const {
-    return choice_ ? std::optional(choice_->psnr_of(chosen_, choice_->pixels.size())) : std::nullopt;
+    return choice_ ? std::optional(psnr_of_error(choice_->error_of(chosen_))) : std::nullopt;
   }
 
   /// The Gaussians of a part at the level chosen.

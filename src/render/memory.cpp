@@ -11,7 +11,9 @@ namespace binosplat::render {
 
 std::uint32_t starting_slots(std::uint32_t gaussians) {
   constexpr std::uint32_t slots_start = 1u << 20;
-  return std::max(gaussians / 2, std::min(gaussians, slots_start));
+  // Their splats are what a shader reaches of one buffer on some GPUs, of two eyes; windows show fewer.
+  constexpr std::uint32_t slots_start_most = 1u << 24;
+  return std::max(std::min(gaussians / 2, slots_start_most), std::min(gaussians, slots_start));
 }
 
 std::int64_t starting_pairs(const FrameShape& shape) {

@@ -126,7 +126,7 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
       EXPECT_LE(loss(parts, choice.levels, near), error);
       EXPECT_NEAR(choice.error(), loss(parts, choice.levels, near), 1e-12);
       const Levels others(parts.size(), 2);
-      EXPECT_NEAR(choice.error_of(others, 1), loss(parts, others, near), 1e-9 * choice.error_of(others, 1));
+      EXPECT_NEAR(choice.error_of(others), loss(parts, others, near), 1e-9 * choice.error_of(others));
       worst = std::max(worst, static_cast<double>(total(parts, choice.levels)) /
                                   static_cast<double>(fewest(parts, near, error)));
       // Planted faults: levels for another place, and for a bound that is ignored.

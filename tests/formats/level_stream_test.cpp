@@ -286,6 +286,46 @@ TEST(LevelStream, LooksAheadOfAHeadThatMoves) {
   EXPECT_EQ(at_rest.back(), 0.0f);
 }
 
+// What is told goes on from what was seen where the head was to what was seen ahead of it.
+TEST(LevelStream, TellsOfAHeadThatMoves) {
+  REQUIRE_FIXTURES(folder);
+  const test::Copy copy(folder / "sog/st-lod");
+  test::add_level_errors(copy);
+  LevelStream stream(
+      copy.path(), [](const StreamedSog&, std::span<const shared::View>) { return DetailNeed{.db = 20.0}; });
+  Model model = stream.coarsest();
+  float now = 0.0f;  // where the head is
+  bool saw_ahead = false;
+  const auto look = [&](const shared::View& seen_by, Band, const ModelParts& parts) {
+    const bool is_ahead = seen_by.anchor.x + seen_by.eye.x - now > 0.5f;
+    saw_ahead = saw_ahead || is_ahead;
+    return std::vector(parts.size(), SeenPart{is_ahead ? 100.0 : 1000.0, 30.0});
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  while (!saw_ahead || seconds() < 0.5) {
+    now = static_cast<float>(2.0 * seconds());
+    shared::View view = at({now, 0, -30});
+    view.row_z = {0, 0, 1, 0};
+    view.centre.w = 1.0f;
+    view.width = view.height = 100;
+    stream.want(std::vector{view, view}, look);
+    stream.take(model, 1);
+    ASSERT_LT(seconds(), 60.0) << "it looks nowhere ahead";
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const double here = -10.0 * std::log10(3 * 1000.0 * 0.02 / 1e4), ahead = here + 10.0;
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(stream.predicted_psnr());
+  const double told = *stream.predicted_psnr();
+  EXPECT_GT(told, here) << "planted: of where it was";
+  EXPECT_LT(told, ahead);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_NEAR(*stream.predicted_psnr(), ahead, 0.01);
+}
+
 // Where a look takes long, the next one is at bands: both times the same is seen, and the same is chosen.
 TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
   REQUIRE_FIXTURES(folder);
@@ -313,7 +353,8 @@ TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
         const std::size_t before = looks.size();
         stream.want(std::vector{view, other}, look);
         EXPECT_LE(looks.size(), before + 1) << "one look a frame";
-        stream.take(model, 1);
+        const bool took = !stream.take(model, 1).empty();
+        EXPECT_FALSE(took && looks.size() > before) << "a look, or levels";
         ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60)) << "it hangs";
       } while (!stream.settled());
       EXPECT_EQ(stream.gaussians(), 1000u);
