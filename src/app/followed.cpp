@@ -129,7 +129,7 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
   levels.predicted_psnr = scene_.predicted_psnr();
   levels.left = settings.quality;
   if (settings.quality > 0.0f && levels.predicted_psnr)
-    levels.left = left_of(settings.quality, *need(views).db, *levels.predicted_psnr);
+    levels.left = left_of(settings.quality, *levels.predicted_psnr, *levels.predicted_psnr);
   levels.read_ms = std::exchange(read_ms_, 0.0);
   levels.upload_ms = std::exchange(upload_ms_, 0.0);
   return levels;

@@ -75,7 +75,9 @@ class FollowedLevels {
   DetailNeed need(std::span<const shared::View> views) const {
     return scene_.sharing(detail_need(options_, settings_, scene_, views), settings_.quality);
   }
-  bool goes_by_db() const { return need({}).db.has_value(); }
+  bool goes_by_db() const {
+    return options_.detail ? options_.detail->db.has_value() : settings_.quality > 0.0f && has_errors();
+  }
   /// Brings the model, and what there is of it on the GPU (by dB it must be there), to what the views need;
   /// whether that was other levels. `changing` is called before the first of them is read.
   template <typename Changing>

@@ -297,10 +297,12 @@ ExitCode render(const RenderOptions& o) {
         std::find_if(work.shots.begin(), work.shots.end(), [](const Shot& shot) { return !shot.given_eyes; });
     if (head != work.shots.end()) work.screen = *head;
   }
+  const std::vector<shared::View> first =
+      views_of(work.shots[0]);  // whichever part of the views is drawn here
   take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
   context = open_context(o.context);
-  if (work.followed) work.followed->bring(*context, model, views_of(work.shots[0]));
+  if (work.followed) work.followed->bring(*context, model, first);
   const auto vr180_near = work.plan.vr180 ? std::optional(near_plane) : std::nullopt;
   RenderReport report{o,
                       model,

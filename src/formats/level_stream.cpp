@@ -61,7 +61,8 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
   model.room = std::min(scene_.finest(), need.most < scene_.finest() ? need.most : room_most) +
                scene_.parts() * ModelParts::block;
   // Touched now: the system gives memory a page at a time, and slowly while others decode (10 ms a frame).
-  model.resize(model.room);
+  model.reserve(model.room);
+  model.resize(std::min(model.room, room_most));
   model.resize(0);
   scene_.read([&](const StreamedSog::Piece& piece) { parts_.replace(model, piece.part, piece.model); });
   parts_.take_changes();
@@ -82,7 +83,8 @@ double LevelStream::left() const {
   const auto now = together_db_ > 0.0 ? predicted_psnr() : std::nullopt;
   if (!now) return together_db_;
   const std::lock_guard lock(mutex_);
-  return left_of(together_db_, asked_db_, *now);
+  const bool is_chosen = asked_by_db_ || asked_of_ == together_db_;  // for what is shared now
+  return left_of(together_db_, is_chosen ? asked_db_ : levels_share(together_db_), *now);
 }
 
 void LevelStream::want(std::span<const shared::View> views, const Look& look) {
@@ -194,7 +196,9 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
     const std::lock_guard lock(mutex_);
     choice_ = scene_.choice();
     here_ = wish.here;
+    lingers_ = scene_.lingers();
     at_ = wish.at;
+    asked_of_ = wish.together_db;
     asked_db_ = need.db.value_or(0.0);
   }
   if (!reads) return;
@@ -221,11 +225,13 @@ void LevelStream::free_used() {
 
 // Drops what was read for views that are gone; what saves most comes first.
 void LevelStream::sort_pieces() {
+  std::vector<StreamedSog::Piece> dropped;  // freed when no frame waits for the lock any more
   const std::lock_guard lock(mutex_);
-  std::erase_if(pieces_, [&](const StreamedSog::Piece& piece) {
+  std::erase_if(pieces_, [&](StreamedSog::Piece& piece) {
     if (scene_.wants(piece)) return false;
     scene_.put_back(piece);  // no other of this part has been read since, or this one would be gone
     gaussians_read_ -= piece.model.count();
+    dropped.push_back(std::move(piece));
     return true;
   });
   std::ranges::stable_sort(pieces_, std::greater<>(),
@@ -271,7 +277,7 @@ bool LevelStream::looks_again() const { return by_db_ && changed_since_look_ && 
 
 bool LevelStream::settled() const {
   const std::lock_guard lock(mutex_);
-  return is_idle() && !is_due_ && !looks_again() && !trouble_;
+  return is_idle() && !is_due_ && !looks_again() && !lingers_ && !trouble_;
 }
 
 std::optional<double> LevelStream::predicted_psnr() const {

@@ -63,7 +63,7 @@ class LevelStream {
   /// then. Throws what reading it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
 
-  /// Whether the model has all that was wanted, and nothing is to be looked at again.
+  /// Whether the model has all that was wanted, and no more, and nothing is to be looked at again.
   bool settled() const;
   /// Gaussians of the model.
   std::size_t gaussians() const { return parts_.gaussians(); }
@@ -125,7 +125,9 @@ class LevelStream {
   std::shared_ptr<const DetailChoice> choice_;
   std::size_t here_ = 0;  // of its views (Wish)
   Clock::time_point at_;
-  double asked_db_ = 0.0;  // that it is for
+  double asked_db_ = 0.0;  // that it is for,
+  double asked_of_ = 0.0;  // of what is shared
+  bool lingers_ = false;   // StreamedSog::lingers
   std::exception_ptr trouble_;
   std::jthread thread_;  // last: it ends first
 };

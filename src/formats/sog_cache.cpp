@@ -5,8 +5,14 @@
 namespace binosplat {
 
 std::shared_ptr<const SogSource::Textures> SogCache::textures(std::size_t number, const SogSource& source) {
-  if (auto found = find(number)) return found;
-  const auto textures = source.textures();
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto it = std::ranges::find(kept_, number, &Kept::number); it != kept_.end()) {
+      kept_.splice(kept_.begin(), kept_, it);
+      return it->textures;
+    }
+  }
+  auto textures = source.textures();
   const std::lock_guard lock(mutex_);
   kept_.push_front({number, textures});
   bytes_ += textures->bytes();
@@ -17,12 +23,9 @@ std::shared_ptr<const SogSource::Textures> SogCache::textures(std::size_t number
   return textures;
 }
 
-std::shared_ptr<const SogSource::Textures> SogCache::find(std::size_t number) {
+bool SogCache::has(std::size_t number) {
   const std::lock_guard lock(mutex_);
-  const auto it = std::ranges::find(kept_, number, &Kept::number);
-  if (it == kept_.end()) return nullptr;
-  kept_.splice(kept_.begin(), kept_, it);
-  return it->textures;
+  return std::ranges::find(kept_, number, &Kept::number) != kept_.end();
 }
 
 }  // namespace binosplat

@@ -18,14 +18,13 @@ class SogCache {
 
   /// The pictures of a SOG, which goes by a number. Throws Error as decoding them does.
   std::shared_ptr<const SogSource::Textures> textures(std::size_t number, const SogSource& source);
-  bool has(std::size_t number) { return find(number) != nullptr; }
+  bool has(std::size_t number);
 
  private:
   struct Kept {
     std::size_t number;
     std::shared_ptr<const SogSource::Textures> textures;
   };
-  std::shared_ptr<const SogSource::Textures> find(std::size_t number);
 
   std::size_t most_;
   std::mutex mutex_;

@@ -358,7 +358,7 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
       if (!taken[i].empty()) files.push_back(i);
     // Few Gaussians that mend much come before many that mend little.
     std::vector<double> first(taken.size());
-    for (const std::size_t i : files) first[i] = worth(i, taken[i]);
+    for (const std::size_t i : files) first[i] = worth(i, taken[i], goes_on != nullptr);
     std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) { return first[i]; });
     for (std::size_t at = 0; at < files.size(); at += files_at_a_time) {
       std::vector<std::vector<Piece>> pieces(std::min(files_at_a_time, files.size() - at));
@@ -399,11 +399,13 @@ double StreamedSog::worth(const Piece& piece) const {
   return saved(piece.part, piece.before) / static_cast<double>(std::max<std::size_t>(piece.model.count(), 1));
 }
 
-double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> taken) const {
+double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const {
   if (taken.front().leaf >= leaves_.size()) return INFINITY;
   if (!choice_) return leaves_[taken.front().leaf].levels[chosen_[taken.front().leaf]].number;
   double sum = 0.0;
-  std::size_t count = source_->cache.has(file) ? 0 : source_->files[file]->count() / decoded_for_one;
+  // In no hurry the order is the same whatever was read before.
+  std::size_t count =
+      by_cache && source_->cache.has(file) ? 0 : source_->files[file]->count() / decoded_for_one;
   for (const SogLevels::Taken& of_leaf : taken) {
     sum += saved(of_leaf.leaf, read_[of_leaf.leaf]);
     count += of_leaf.range.count;

@@ -96,7 +96,7 @@ class StreamedSog {
     return piece.part == leaves_.size() || piece.level == chosen_[piece.part];
   }
   /// The squared error that a piece saves by the choice for each of its Gaussians (DetailChoice::saved);
-  /// infinite where it has fewer than the one before, or where nothing is known.
+  /// infinite where it has fewer than the one before, or where no dB are gone by.
   double worth(const Piece& piece) const;
   /// The last piece that was read of a part counts as not read.
   void put_back(const Piece& piece) { read_[piece.part] = piece.before; }
@@ -111,7 +111,7 @@ class StreamedSog {
   std::size_t count(std::span<const std::size_t> levels) const;
   void stay(double seconds, std::size_t most);
   double saved(std::size_t leaf, std::optional<std::size_t> before) const;
-  double worth(std::size_t file, std::span<const SogLevels::Taken> taken) const;
+  double worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const;
   void check_chosen() const;
   std::vector<Piece> read_file(std::size_t file, const std::vector<SogLevels::Taken>& taken) const;
 

@@ -279,6 +279,10 @@ class Writer {
         const auto bytes = std::as_bytes(std::span(text));
         return std::vector(bytes.begin(), bytes.end());
       });
+      if (sog.count() != file.count) {
+        fail("{}: {} Gaussians, where {} were written: remove its folder, and start again", meta, sog.count(),
+             file.count);
+      }
       std::vector<SogSource::Range> ranges;
       std::size_t at = 0;
       for (std::size_t k = 0; k < file.leaves; ++k) {

@@ -172,6 +172,8 @@ void Session::follow(LevelStream& levels) {
   });
   const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
   left_ = levels.left();
+  constexpr float unnoticed = 0.25f;  // dB
+  if (settings().quality > drawn_quality_ + unnoticed) change();
   if (changes.empty()) return;
   show_.release();
   frame_.model()->reload(changes);
@@ -202,6 +204,7 @@ bool Session::draw() {
     eyes_ = stereo::make_rig(camera, choices.rig).cameras;
     divisor_ = divisor;
     reports_.push_back(frame_.draw(asked, settings()));
+    drawn_quality_ = settings().quality;
     shown_layout_ = choices.layout;
     drawn_ = frame_.views();
     make_shown(asked);

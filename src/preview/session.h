@@ -145,6 +145,7 @@ class Session {
   stereo::Show show_;
   std::optional<render::Sight> sight_;  // where levels go by dB
   std::optional<double> left_;          // of the chosen quality for frames, where there are levels
+  float drawn_quality_ = 0.0f;          // that the last frame was asked for
   stereo::Shown shown_;                 // in place of the frame's own pictures; none: those
   gl::Buffer shown_colours_;            // as the frame's colours
   glm::ivec2 framebuffer_{0};

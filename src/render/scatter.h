@@ -15,7 +15,9 @@ namespace binosplat::render {
 /// takes a driver 10 us, whatever its size.
 class Scatter {
  public:
-  static constexpr std::size_t records_at_once = 1 << 14;  // for which there is room on the GPU
+  /// For which there is room on the GPU. More go there in turns, each of which waits for the one before:
+  /// frames of over 18,000 new Gaussians took 6 to 17 ms for that on an H200, where others took 2.
+  static constexpr std::size_t records_at_once = 1 << 15;
 
   explicit Scatter(gl::Context& context);
 

@@ -44,7 +44,8 @@ double careful_tolerance_at_40_db(const FrameSettings& s, double focal) {
 }
 
 bool same_rule(const FrameSettings& a, const FrameSettings& b) {
-  return std::abs(a.quality - b.quality) <= followed && a.th == b.th && a.transmittance == b.transmittance;
+  return (a.quality > 0.0f) == (b.quality > 0.0f) && std::abs(a.quality - b.quality) <= followed &&
+         a.th == b.th && a.transmittance == b.transmittance;
 }
 
 }  // namespace

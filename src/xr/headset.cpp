@@ -132,8 +132,7 @@ class Viewer {
     last_ = time.display;
   }
 
-  /// By what the last frame's views need.
-  /// What is left of the quality that a frame is to have.
+  /// By what the last frame's views need. Returns what is left of the quality that a frame is to have.
   float follow_levels() {
     const render::Frame& frame = frame_.frame();
     if (!beside_.levels || frame.views().empty()) return settings_.frame.quality;

@@ -184,7 +184,7 @@ TEST(RenderLevels, ShareAQuality) {
   test::add_level_errors(copy);
   ASSERT_TRUE(good(render({"--detail-report"})));
   const auto view = test::load_json(folder / "j")["views"][0];
-  const auto levels = view["levels_of_detail"];
+  const auto& levels = view["levels_of_detail"];
   const auto error = [](const nlohmann::json& db) { return std::pow(10.0, -0.1 * db.get<double>()); };
   EXPECT_LT(levels["gaussians"], 1000);
   EXPECT_GE(levels["predicted_psnr_db"], 43.0);
