@@ -34,8 +34,6 @@ constexpr std::size_t files_at_a_time = 8;  // each by several threads, and whol
 constexpr std::size_t cached_most = std::size_t{512} << 20;
 // Decoding so many of a file takes as long as one takes to reach the GPU.
 constexpr std::size_t decoded_for_one = 8;
-// Of what is needed, that levels which are no longer needed may make a model larger by.
-constexpr double stays_most = 0.5;
 
 /// A SOG and what is taken of it.
 struct Part {
@@ -306,34 +304,6 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   return source_->around() > 0 && !environment_read_;
 }
 
-// Finer levels of the choice before stay in this one until they were not needed for some seconds, those that
-// were needed last first: as long as there is room.
-void StreamedSog::stay(double seconds, std::size_t most) {
-  const auto now = Clock::now();
-  needed_.resize(leaves_.size());
-  std::vector<std::size_t> staying;
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
-    const bool is_finer = before_.size() == leaves_.size() && before_[leaf] < chosen_[leaf];
-    if (is_finer && ms_since(needed_[leaf]) < 1e3 * seconds) {
-      staying.push_back(leaf);
-    } else {
-      needed_[leaf] = now;
-    }
-  }
-  lingers_ = !staying.empty();
-  std::ranges::stable_sort(staying, std::greater<>(), [&](std::size_t leaf) { return needed_[leaf]; });
-  const std::size_t needed = count(chosen_);
-  std::size_t room = std::min(static_cast<std::size_t>(stays_most * static_cast<double>(needed)),
-                              most - std::min(most, needed));
-  for (const std::size_t leaf : staying) {
-    const auto& levels = leaves_[leaf].levels;
-    const std::size_t finer = levels[before_[leaf]].count, coarser = levels[chosen_[leaf]].count;
-    if (finer > coarser + room) break;
-    room -= finer - std::min(finer, coarser);
-    chosen_[leaf] = before_[leaf];
-  }
-}
-
 // Leaves that get fewer Gaussians come first: never are there more than before or after, if all are taken.
 void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
   check_chosen();
@@ -376,27 +346,13 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
   }
 }
 
-std::size_t StreamedSog::finest() const {
-  std::size_t total = source_->around();
-  for (const DetailPart& leaf : leaves_) total += leaf.levels.empty() ? 0 : leaf.levels.front().count;
-  return total;
-}
+std::size_t StreamedSog::finest() const { return count(std::vector<std::size_t>(leaves_.size(), 0)); }
 
 std::size_t StreamedSog::count(std::span<const std::size_t> levels) const {
   std::size_t total = source_->around();
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
     total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[levels[leaf]].count;
   return total;
-}
-
-double StreamedSog::saved(std::size_t leaf, std::optional<std::size_t> before) const {
-  return before ? choice_->saved(leaf, *before, chosen_[leaf]) : INFINITY;
-}
-
-double StreamedSog::worth(const Piece& piece) const {
-  if (!choice_ || piece.part >= leaves_.size() || !piece.before || *piece.before < *piece.level)
-    return INFINITY;
-  return saved(piece.part, piece.before) / static_cast<double>(std::max<std::size_t>(piece.model.count(), 1));
 }
 
 double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const {

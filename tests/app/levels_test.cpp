@@ -93,7 +93,10 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
   }
   fs::remove(out + "/1_0/meta.json");
   fs::remove(out + "/lod-meta.json");
-  for (const std::string& of : {whole, out}) test::write_text(of + "/0_0/means_l.webp", "as it was");
+  for (const std::string& of : {whole, out}) {
+    const std::string meta = of + "/0_0/meta.json";
+    test::write_text(meta, test::read_text(meta) + "  \n");  // which stays as it was
+  }
   const Outcome outcome = levels(out);
   ASSERT_TRUE(good(outcome));
   EXPECT_NE(outcome.err.find("of 3 SOGs were in"), std::string::npos) << outcome.err;

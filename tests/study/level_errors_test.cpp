@@ -61,10 +61,10 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
     for (std::size_t d = 0; d < detail_directions; ++d) {
       EXPECT_EQ(errors[0].of_level[1][d][width], 0.0) << "nothing of its neighbours";
       for (const std::size_t i : {0u, 1u, 2u}) EXPECT_EQ(errors[i].of_level[0][d][width], 0.0);
-      // White over a grey of a half, give or take 0.15, less of it.
+      // White over a grey of a half, give or take as much, since the part is black and white; less of it.
       const auto expected = [&](double scale, double less, const LeafErrors& of) {
         const double deviation = scale / of.pixels[width];
-        return (0.25 + 0.15 * 0.15) * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
+        return (0.25 + 0.25) * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
       };
       const double second = expected(2.0, 0.4, errors[1]), third = expected(200.0, 0.3, errors[2]);
       // Wide pixels sample what is as narrow as they are.
