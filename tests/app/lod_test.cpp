@@ -164,6 +164,14 @@ TEST(RenderLevels, OfSinglePicturesGoByThemAlone) {
   EXPECT_EQ(levels({"--cameras", cameras, "--view", "z-20"}), std::vector(1, all[0]));
   EXPECT_EQ(levels({"--cameras", cameras, "--view", "z-60"}), std::vector(1, all[1]));
   EXPECT_GT(levels({"--path", cameras}).back(), 250u) << "planted: heads turn";
+  // So they may be drawn in parts.
+  const auto draw = [&](const char* to, const char* shard) {
+    return test::run_program({"render", copy.path(), "--detail", "40dB", "--cameras", cameras, "--view",
+                              "all", "--shard", shard, "-o", folder / to});
+  };
+  ASSERT_TRUE(good(draw("whole", "1/1")) && good(draw("parts", "2/2")));
+  EXPECT_EQ(test::read_text(folder / "parts/z-60_left.png"), test::read_text(folder / "whole/z-60_left.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "parts/z-20_left.png"));
 }
 
 // --quality is for both: levels get half of what may be lost, and a frame what they leave.

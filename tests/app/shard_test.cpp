@@ -97,7 +97,7 @@ TEST_F(Shards, RefusesWhatCannotBeParted) {
       {{"--resume", "--tour", "walk", "--quality", "40"}, "--resume with --quality along a path"},
       {{"--shard", "1/2", "--path", path, "--tolerance", "1", "--transmittance", "last"},
        "--shard with --transmittance last along a path"},
-      {{"--shard", "1/2", "--detail", "1"}, "--shard with --detail"},
+      {{"--shard", "1/2", "--path", path, "--detail", "1"}, "--shard with --detail"},
       {{"--resume", "--json", folder / "r.json"}, "--json and --photos tell of all views"},
       {{"--resume", "--mono", "--photos", folder.path()}, "--json and --photos tell of all views"},
       {{"--shard", "1/2"}, "all.png is one file: name a folder", "all.png"},
