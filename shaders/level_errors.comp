@@ -19,9 +19,6 @@ uniform uint square_side;  // px
 uniform uint row_squares;
 uniform uint row_pixels;
 
-// What lies behind a part differs from its mean colour by so many times what its own pixels do.
-const float CONTRAST2 = 1.0;
-
 shared vec4 sums[THREADS];
 
 vec4 sum_of_all(vec4 of_this) {
@@ -72,7 +69,8 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) {
     vec3 mean = all.a > 0.0 ? all.rgb / all.a : vec3(0.0);
     float deviation_squared = all.a > 0.0 ? max(sums_of_square.y / all.a - dot(mean, mean) / 3.0, 0.0) : 0.0;
-    behind[square] = vec4(mean, CONTRAST2 * deviation_squared);
+    // What lies behind a part is taken to differ from its mean colour as its own pixels do.
+    behind[square] = vec4(mean, deviation_squared);
   }
 #else
   sum = sum_of_all(vec4(sum)).x;
