@@ -61,9 +61,9 @@ void Buffer::grow(std::int64_t bytes) {
   context_.count_allocation(-bytes_before);
 }
 
-void Buffer::copy(const Buffer& from, std::int64_t bytes, std::int64_t at) {
+void Buffer::copy(const Buffer& from, std::int64_t first, std::int64_t bytes, std::int64_t at) {
   context_.gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  context_.gl().CopyNamedBufferSubData(from.id_, id_, 0, at, bytes);
+  context_.gl().CopyNamedBufferSubData(from.id_, id_, first, at, bytes);
 }
 
 void Buffer::check_reach(std::int64_t bytes) const {

@@ -43,8 +43,8 @@ class Buffer {
           static_cast<std::int64_t>(first * sizeof(T)));
   }
 
-  /// The first `bytes` of another, at a place within what is reserved; the rest stays.
-  void copy(const Buffer& from, std::int64_t bytes, std::int64_t at);
+  /// `bytes` of another, from its byte `first` on, at a place within what is reserved; the rest stays.
+  void copy(const Buffer& from, std::int64_t first, std::int64_t bytes, std::int64_t at);
 
   /// Room for so many bytes, and zeros everywhere.
   void reserve_zeros(std::int64_t bytes);

@@ -1,5 +1,6 @@
 #include "study/squared_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -24,10 +25,18 @@ SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted
 SquaredError::SquaredError(gl::Context& context) : SquaredError(context, {}) {}
 
 void SquaredError::add(const gl::Buffer& colours, std::uint32_t pixels) {
+  add_window(colours, {pixels, 1}, pixels_, pixels);
+}
+
+void SquaredError::add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first,
+                              std::uint32_t pitch) {
   constexpr std::int64_t each = sizeof(glm::vec4);
-  wanted_.grow((std::int64_t{pixels_} + pixels) * each);
-  wanted_.copy(colours, pixels * each, pixels_ * each);
-  pixels_ += pixels;
+  pixels_ = std::max(pixels_, first + (size.y - 1) * pitch + size.x);
+  wanted_.grow(pixels_ * each);
+  for (std::uint32_t row = 0; row < size.y; ++row) {
+    const std::int64_t from = std::int64_t{row} * size.x, to = first + std::int64_t{row} * pitch;
+    wanted_.copy(colours, from * each, size.x * each, to * each);
+  }
   sums_.reserve(static_cast<std::int64_t>(pixels_ / THREADS + 1) * 4);
 }
 

@@ -3,6 +3,7 @@
 // pictures.
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 
 #include "base/image.h"
@@ -22,6 +23,8 @@ class SquaredError {
 
   /// As many more pixels that should be drawn, as a frame has just drawn them: they stay on the GPU.
   void add(const gl::Buffer& colours, std::uint32_t pixels);
+  /// The same of a window: its first pixel is number `first` of all, its rows are `pitch` pixels apart.
+  void add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first, std::uint32_t pitch);
   /// Nothing should be drawn any more, until more is added.
   void clear() { pixels_ = 0; }
 

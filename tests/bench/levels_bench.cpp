@@ -63,16 +63,20 @@ std::vector<Views> path_of(const Plan& plan) {
 
 std::uint32_t pixels_of(const Views& views) { return 2 * views[0].width * views[0].height; }
 
-// By windows: all splats of a hundred million Gaussians do not fit one buffer.
-void draw_in_windows(render::Frame& frame, const shared::View& view, study::SquaredError& picture) {
-  constexpr std::uint32_t windows = 8;
-  const std::uint32_t rows = (view.height / windows + BLEND_CELL - 1) / BLEND_CELL * BLEND_CELL;
-  for (std::uint32_t top = 0; top < view.height; top += rows) {
-    render::ViewPart window;
-    window.corner = {0, top};
-    window.size = {view.width, std::min(rows, view.height - top)};
-    frame.draw({&view, 1}, {.parts = {window}});
-    picture.add(frame.colours(), window.size.x * window.size.y);
+// By columns, over which what a view shows is spread most evenly: all splats of a hundred million Gaussians
+// do not fit one buffer, and most of them lie at the horizon.
+void draw_in_windows(render::Frame& frame, const Views& views, study::SquaredError& pictures) {
+  constexpr std::uint32_t windows = 16;
+  const std::uint32_t across = views[0].width, height = views[0].height;
+  const std::uint32_t columns = (across / windows + BLEND_CELL - 1) / BLEND_CELL * BLEND_CELL;
+  for (std::uint32_t v = 0; v < views.size(); ++v) {
+    for (std::uint32_t left = 0; left < across; left += columns) {
+      render::ViewPart window;
+      window.corner = {left, 0};
+      window.size = {std::min(columns, across - left), height};
+      frame.draw({&views[v], 1}, {.parts = {window}});
+      pictures.add_window(frame.colours(), window.size, v * across * height + left, across);
+    }
   }
 }
 
@@ -83,13 +87,10 @@ std::deque<study::SquaredError> judge(gl::Context& context, const Plan& plan,
   if (plan.judged == 0) return pictures;
   const Model finest = load_model(plan.scene, {.lod = 0});
   render::Frame frame(context, finest);
-  const auto add = [&](const Views& views) {
-    study::SquaredError& both = pictures.emplace_back(context);
-    for (const shared::View& view : views) draw_in_windows(frame, view, both);
-  };
   const auto count = static_cast<std::size_t>(plan.judged);
-  for (std::size_t k = 0; k < count; ++k) add(path[path.size() * k / count]);
-  add(path.back());
+  for (std::size_t k = 0; k < count; ++k)
+    draw_in_windows(frame, path[path.size() * k / count], pictures.emplace_back(context));
+  draw_in_windows(frame, path.back(), pictures.emplace_back(context));
   return pictures;
 }
 
