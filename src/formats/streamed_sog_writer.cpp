@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
-#include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -32,16 +31,10 @@ constexpr double pixel_share = 0.2;
 // Which pairs are merged is judged once for all levels, as this one sees them.
 constexpr int judged_level = 3;
 
+constexpr int pictures_in_all = 16;  // that tell what levels lose together; one of each piece, at least
+constexpr double more_most = 4.0;    // that they may lose more or less than each by itself
+
 constexpr const char* meta_name = "/meta.json";
-
-struct Box {
-  glm::dvec3 low{INFINITY}, high{-INFINITY};
-
-  void include(const glm::dvec3& lowest, const glm::dvec3& highest) {
-    low = glm::min(low, lowest);
-    high = glm::max(high, highest);
-  }
-};
 
 /// A leaf of the tree.
 struct Leaf {
@@ -73,16 +66,6 @@ struct Piece {
 };
 
 using Levels = std::vector<Model>;  // of a leaf, from the finest
-
-void measure(const Model& model, Leaf& leaf) {
-  for (const std::uint32_t i : leaf.indices) {
-    const glm::vec4& q = model.rotation[i];
-    const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
-    glm::dvec3 reach(0.0);
-    for (int k = 0; k < 3; ++k) reach += glm::abs(turn[k]) * static_cast<double>(model.scale[i][k]);
-    leaf.box.include(glm::dvec3(model.position[i]) - reach, glm::dvec3(model.position[i]) + reach);
-  }
-}
 
 /// In Morton order, whose pictures pack best.
 Model finest(const Model& model, const Leaf& leaf) {
@@ -124,6 +107,13 @@ ordered_json json_of(const LeafErrors& leaf) {
   return {{"pixels", json_of(leaf.pixels)}, {"seen", json_of(leaf.seen)}, {"errors", json_of(leaf.of_level)}};
 }
 
+ordered_json times(const nlohmann::json& numbers, double factor) {
+  if (numbers.is_number()) return rounded(factor * numbers.get<double>());
+  ordered_json json = ordered_json::array();
+  for (const nlohmann::json& number : numbers) json.push_back(times(number, factor));
+  return json;
+}
+
 class Writer {
  public:
   Writer(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
@@ -135,7 +125,8 @@ class Writer {
         tree_(make_space_tree(model.position, settings.leaf)),
         gaussians_(static_cast<std::size_t>(settings.levels)) {
     plan();
-    parallel_for(leaves_.size(), [&](std::size_t i) { measure(model_, leaves_[i]); });
+    const auto measure = [&](Leaf& leaf) { leaf.box = reach_of(model_, leaf.indices); };
+    parallel_for(leaves_.size(), [&](std::size_t i) { measure(leaves_[i]); });
   }
 
   LevelsWritten write() {
@@ -151,7 +142,7 @@ class Writer {
     }
     Progress progress("writing levels of detail", work);
     write_pieces(progress);
-    for (const Piece& piece : pieces_) tell_errors(piece);
+    tell_errors();
     std::size_t leaf = 0;
     const ordered_json meta = {
         {"version", 1},
@@ -264,7 +255,12 @@ class Writer {
 
   /// By what was written: rounded colours, scales and rotations cost as much as a level may.
   void judge(const Piece& piece) {
-    const std::string text = json_of(judge_(written(piece))).dump() + "\n";
+    const int pictures = std::max(1, pictures_in_all / static_cast<int>(pieces_.size()));
+    const JudgedLevels judged = judge_(written(piece), pictures);
+    const ordered_json json = {{"leaves", json_of(judged.leaves)},
+                               {"predicted", judged.together.predicted},
+                               {"found", judged.together.found}};
+    const std::string text = json.dump() + "\n";
     folder_.write(piece.errors, std::as_bytes(std::span(text)));
   }
 
@@ -313,16 +309,30 @@ class Writer {
     });
   }
 
-  void tell_errors(const Piece& piece) {
-    const nlohmann::json told = parse_json(piece.errors, folder_.read(piece.errors));
-    const JsonValue of_leaves = JsonValue(piece.errors, told).list_of(piece.leaves);
+  void tell_errors() {
+    std::vector<nlohmann::json> of_pieces;
+    LossTogether together;
+    for (const Piece& piece : pieces_) {
+      of_pieces.push_back(parse_json(piece.errors, folder_.read(piece.errors)));
+      const JsonValue told(piece.errors, of_pieces.back());
+      together.predicted += told.at("predicted").number();
+      together.found += told.at("found").number();
+    }
+    const bool is_known = together.predicted > 0.0 && together.found > 0.0;
+    const double more =
+        is_known ? std::clamp(together.found / together.predicted, 1.0 / more_most, more_most) : 1.0;
+    for (std::size_t k = 0; k < pieces_.size(); ++k) tell_errors(pieces_[k], of_pieces[k], more);
+  }
+
+  void tell_errors(const Piece& piece, const nlohmann::json& told, double more) {
+    const JsonValue of_leaves = JsonValue(piece.errors, told).at("leaves").list_of(piece.leaves);
     for (std::size_t i = 0; i < piece.leaves; ++i) {
       Leaf& leaf = leaves_[piece.first_leaf + i];
       leaf.pixels = of_leaves.at(i).at("pixels").value();
       leaf.seen = of_leaves.at(i).at("seen").value();
       const JsonValue of_levels = of_leaves.at(i).at("errors").list_of(gaussians_.size());
       for (std::size_t level = 0; level < gaussians_.size(); ++level)
-        leaf.lods[std::to_string(level)]["errors"] = of_levels.at(level).value();
+        leaf.lods[std::to_string(level)]["errors"] = times(of_levels.at(level).value(), more);
     }
   }
 

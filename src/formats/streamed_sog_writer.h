@@ -26,8 +26,20 @@ struct LeafErrors {
   std::vector<std::vector<std::vector<double>>> of_level;  // by level and direction, px times squared colour
 };
 
-/// Finds them for leaves, given their levels from the finest, as the files have them.
-using JudgeLevels = std::function<std::vector<LeafErrors>(std::span<const std::vector<Model>> leaves)>;
+/// The squared errors of some pictures in all, as what leaves lose by themselves predicts them, and as they
+/// are.
+struct LossTogether {
+  double predicted = 0.0, found = 0.0;
+};
+
+struct JudgedLevels {
+  std::vector<LeafErrors> leaves;
+  LossTogether together;
+};
+
+/// Finds them for leaves, given their levels from the finest, as the files have them, and for so many
+/// pictures of all of them.
+using JudgeLevels = std::function<JudgedLevels(std::span<const std::vector<Model>> leaves, int pictures)>;
 
 /// The folder that a streamed SOG is written to; names are relative to it. Files may be written by several
 /// threads at a time.
@@ -49,7 +61,8 @@ struct LevelsWritten {
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
 /// bytes. What levels lose is kept beside the SOGs until then, in errors_0.json and so on, and told in
-/// lod-meta.json: a leaf has "pixels" and "seen", and each of its lods "errors". Progress is shown.
+/// lod-meta.json: a leaf has "pixels" and "seen", and each of its lods "errors", by as much larger or smaller
+/// as pictures of many leaves are found to lose more or less than predicted. Progress is shown.
 LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
                                  const JudgeLevels& judge);
 

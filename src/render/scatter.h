@@ -16,8 +16,8 @@ namespace binosplat::render {
 class Scatter {
  public:
   /// For which there is room on the GPU. More go there in turns, each of which waits for the one before:
-  /// frames of over 18,000 new Gaussians took 6 to 17 ms for that on an H200, where others took 2.
-  static constexpr std::size_t records_at_once = 1 << 15;
+  /// frames that needed two turns took 6 to 17 ms for that on an H200, where others took 2.
+  static constexpr std::size_t records_at_once = 1 << 16;
 
   explicit Scatter(gl::Context& context);
 

@@ -30,20 +30,20 @@ shared::View shrunk(const shared::View& view, int by) {
   return small;
 }
 
-/// Rows of a picture, which end between cells, as windows do (ViewPart); none where there are more bands.
-struct Rows {
-  std::uint32_t top, bottom;
+/// Columns of a picture, which end between cells, as windows do (ViewPart); none where there are more bands.
+struct Columns {
+  std::uint32_t left, right;
 };
 
-Rows rows_of(const Band& band, const shared::View& view) {
+Columns columns_of(const Band& band, const shared::View& view) {
   constexpr std::uint32_t cell = BLEND_CELL;
-  const std::uint32_t cells = (view.height + cell - 1) / cell;
-  const auto row = [&](int index) {
+  const std::uint32_t cells = (view.width + cell - 1) / cell;
+  const auto column = [&](int index) {
     const std::uint64_t before = std::uint64_t{cells} * static_cast<std::uint32_t>(index);
     return std::min(static_cast<std::uint32_t>(before / static_cast<std::uint32_t>(band.count)) * cell,
-                    view.height);
+                    view.width);
   };
-  return {row(band.index), row(band.index + 1)};
+  return {column(band.index), column(band.index + 1)};
 }
 
 }  // namespace
@@ -79,12 +79,12 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
     const glm::dvec2 size(view.width, view.height);
     view = shrunk(view, std::clamp(shrink, 1, shrink_most));
     pixel_areas.push_back(size.x / view.width * size.y / view.height);
-    const Rows rows = rows_of(band, view);
-    if (rows.top == rows.bottom) return seen;
+    const Columns columns = columns_of(band, view);
+    if (columns.left == columns.right) return seen;
     exact.parts.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
     if (band.count > 1) {
-      exact.parts.back().corner = {0, rows.top};
-      exact.parts.back().size = {view.width, rows.bottom - rows.top};
+      exact.parts.back().corner = {columns.left, 0};
+      exact.parts.back().size = {columns.right - columns.left, view.height};
     }
   }
   frame_.draw_until(Stage::ranges, small, exact);

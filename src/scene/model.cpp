@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <numeric>
 
 namespace binosplat {
 
@@ -106,6 +108,24 @@ Bounds all_bounds(const Model& model) {
   Bounds bounds{model.position[0], model.position[0]};
   for (const glm::vec3& p : model.position) bounds = {glm::min(bounds.low, p), glm::max(bounds.high, p)};
   return bounds;
+}
+
+Box reach_of(const Model& model, std::span<const std::uint32_t> indices) {
+  Box box;
+  for (const std::uint32_t i : indices) {
+    const glm::vec4& q = model.rotation[i];
+    const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
+    glm::dvec3 reach(0.0);
+    for (int k = 0; k < 3; ++k) reach += glm::abs(turn[k]) * static_cast<double>(model.scale[i][k]);
+    box.include(glm::dvec3(model.position[i]) - reach, glm::dvec3(model.position[i]) + reach);
+  }
+  return box;
+}
+
+Box reach_of(const Model& model) {
+  std::vector<std::uint32_t> all(model.count());
+  std::iota(all.begin(), all.end(), 0u);
+  return reach_of(model, all);
 }
 
 }  // namespace binosplat

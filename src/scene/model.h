@@ -2,10 +2,12 @@
 // A trained 3D Gaussian Splatting model in memory, decoded (docs/method.md 1).
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -85,5 +87,19 @@ Bounds core_bounds(const Model& model);
 
 /// Box around all positions, far outliers included; the model must not be empty.
 Bounds all_bounds(const Model& model);
+
+/// What includes nothing to begin with.
+struct Box {
+  glm::dvec3 low{INFINITY}, high{-INFINITY};
+
+  void include(const glm::dvec3& lowest, const glm::dvec3& highest) {
+    low = glm::min(low, lowest);
+    high = glm::max(high, highest);
+  }
+};
+
+/// Around the ellipsoids of one standard deviation of all Gaussians, or of some.
+Box reach_of(const Model& model);
+Box reach_of(const Model& model, std::span<const std::uint32_t> indices);
 
 }  // namespace binosplat

@@ -26,18 +26,13 @@ constexpr int side_most = 1280;  // px of a picture
 // How far away the eye is, in sides of a picture: nothing is seen at more than 5 degrees from the axis.
 constexpr double away = 8.0;
 
-struct Box {
-  glm::dvec3 low{INFINITY}, high{-INFINITY};
-};
-
 /// Around spheres of two standard deviations.
 Box box_of(const Model& model) {
   Box box;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const glm::vec3& s = model.scale[i];
     const double reach = 2.0 * std::max({s.x, s.y, s.z});
-    box.low = glm::min(box.low, glm::dvec3(model.position[i]) - reach);
-    box.high = glm::max(box.high, glm::dvec3(model.position[i]) + reach);
+    box.include(glm::dvec3(model.position[i]) - reach, glm::dvec3(model.position[i]) + reach);
   }
   return box;
 }

@@ -37,7 +37,7 @@ struct Plan {
   double rate = 90.0;  // a second
   int judged = 8;      // of the frames, evenly spread, against the finest
   int shrink = 1;
-  std::size_t gaussians_a_frame = 1 << 14;
+  std::size_t gaussians_a_frame = 1 << 15;
   std::size_t most = std::numeric_limits<std::size_t>::max();
   render::FrameSettings settings;
 };
@@ -376,7 +376,7 @@ int main(int argc, char** argv) {
   app.add_option("--judged", plan.judged, "Frames that are compared with the finest levels (8)")
       ->check(CLI::Range(0, 1000));
   app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
-  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (16384)");
+  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (32768)");
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");

@@ -37,12 +37,13 @@ struct StreamedSogWriter : testing::Test {
                                  EXPECT_FALSE(files.contains(name)) << name << " is written twice";
                                  files[name] = as_text(bytes);
                                }},
-                              [&](std::span<const std::vector<Model>> leaves) {
+                              [&](std::span<const std::vector<Model>> leaves, int of_piece) {
+                                pictures.push_back(of_piece);
                                 for (const std::vector<Model>& levels : leaves) {
                                   for (std::size_t k = 0; k < levels.size(); ++k)
                                     append(judged[k], levels[k], 0, levels[k].count());
                                 }
-                                return errors_of(leaves);
+                                return JudgedLevels{errors_of(leaves), together};
                               });
   }
 
@@ -71,6 +72,8 @@ struct StreamedSogWriter : testing::Test {
 
   Model model = test::random_model(1, 3000, 1);
   mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));  // by level, all that was
+  mutable std::vector<int> pictures;  // that were asked for, by piece
+  LossTogether together;              // of each
   LevelSettings settings{.leaf = 200, .levels = 4};
 };
 
@@ -165,6 +168,28 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
   walk(meta["tree"]);
   std::swap((*parts.front())["offset"], (*parts.back())["offset"]);
   EXPECT_GT(outside(meta, read(files, 0), 0), 100);
+}
+
+TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
+  settings.piece = 1000;
+  together = {.predicted = 2e-4, .found = 4e-4};
+  Files files;
+  write(files);
+  EXPECT_GT(pictures.size(), 2u) << "one of each piece";
+  EXPECT_TRUE(std::ranges::all_of(pictures, [](int of_piece) { return of_piece >= 1; }));
+  const auto expect_errors = [&](double expected) {
+    for_leaves(json::parse(files.at("lod-meta.json"))["tree"], [&](const json& leaf) {
+      EXPECT_EQ(leaf["lods"]["2"]["errors"][0][0], expected);
+      EXPECT_EQ(leaf["seen"][1][1], 4.0) << "the finest is as it was";
+    });
+  };
+  expect_errors(0.494);  // twice 0.247
+  for (const LossTogether absurd : {LossTogether{1e-9, 1e-3}, LossTogether{0.0, 0.0}}) {
+    files.clear();
+    together = absurd;
+    write(files);
+    expect_errors(absurd.predicted > 0.0 ? 0.988 : 0.247);
+  }
 }
 
 /// Gaussians by their places, which rounding hardly moves.

@@ -166,15 +166,15 @@ TEST(Sight, OfSeveralViewsAndOfSmallerPictures) {
 }
 
 // Nothing of a look is left for the next, of other views and another number of them.
-// Whatever the height: bands end between cells.
+// Whatever the width: bands end between cells.
 TEST(Sight, OfBandsAddsUp) {
   const Model model = test::random_model(64, 3000, 0);
   Indices indices(7);
   for (std::uint32_t i = 0; i < 3000; ++i) indices[i % 7].push_back(i);
   const Parted parted(model, indices);
   Sight sight(parted.gpu_model);
-  for (const int height : {200, static_cast<int>(2 * BLEND_CELL + 1)}) {
-    const std::vector<shared::View> views = {make_view(test::front_camera(90, height, focal))};
+  for (const int width : {200, static_cast<int>(2 * BLEND_CELL + 1)}) {
+    const std::vector<shared::View> views = {make_view(test::front_camera(width, 90, focal))};
     const auto all = sight.look(views, {}, parted.parts).at(0);
     for (const int count : {2, 3, 30}) {  // more than there are cells, too
       std::vector<double> areas(7, 0.0);

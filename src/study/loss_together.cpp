@@ -1,0 +1,183 @@
+#include "study/loss_together.h"
+
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "formats/detail.h"
+#include "render/frame.h"
+#include "render/sight.h"
+#include "scene/camera.h"
+#include "scene/model_parts.h"
+#include "study/squared_error.h"
+
+namespace binosplat::study {
+
+namespace {
+
+constexpr double asked_db = 40.0;
+constexpr int looks = 3;  // at the levels of a picture; then a choice hardly changes any more
+// Pictures: a headset's field in few pixels, so that each shows many parts.
+constexpr int side = 512;     // px
+constexpr double fov = 95.0;  // degrees
+// Eyes are tried in small pictures of the coarsest levels.
+constexpr int tried_side = 128, tries_for_one = 24;
+constexpr double shows_least = 0.35;  // of a picture, that is not empty,
+constexpr double as_far_least = 0.4;  // on the whole, of how far away what it looks at is
+
+/// As lod-meta.json will tell it.
+DetailPart part_of(std::span<const Model> levels, const LeafErrors& errors) {
+  DetailPart part;
+  const Box box = reach_of(levels.front());
+  part.low = box.low;
+  part.high = box.high;
+  const auto flat = [](const std::vector<std::vector<double>>& by_direction) {
+    std::vector<double> list;
+    for (const auto& of : by_direction) list.insert(list.end(), of.begin(), of.end());
+    return list;
+  };
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    part.levels.push_back({static_cast<int>(level), levels[level].count(), flat(errors.of_level[level])});
+  }
+  part.pixels = errors.pixels;
+  part.seen = flat(errors.seen);
+  return part;
+}
+
+shared::View from(const glm::dvec3& eye, const glm::dvec3& at, int px) {
+  const glm::dvec3 ahead = glm::normalize(at - eye);
+  const glm::dvec3 up = std::abs(ahead.y) < 0.9 ? glm::dvec3(0, -1, 0) : glm::dvec3(1, 0, 0);
+  return make_view(look_at(eye, at, up, fov, px, px));
+}
+
+/// Whether there is room for what draws a picture: without, others have to do.
+bool can_draw(const std::function<void()>& draw) {
+  try {
+    draw();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::out_of_memory) throw;
+    return false;
+  }
+  return true;
+}
+
+/// The leaves as one model, at any levels.
+class Leaves {
+ public:
+  Leaves(gl::Context& context, std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors)
+      : leaves_(leaves), layout_(leaves.size()) {
+    for (std::size_t i = 0; i < leaves.size(); ++i) parts_.push_back(part_of(leaves[i], errors[i]));
+    model_.degree = leaves[0][0].degree;
+    model_.antialiased = leaves[0][0].antialiased;
+    model_.perspective = leaves[0][0].perspective;
+    bring_to(coarsest());
+    gpu_model_ = std::make_shared<render::GpuModel>(context, model_);
+    frame_.emplace(gpu_model_);
+    sight_.emplace(gpu_model_);
+  }
+
+  std::vector<std::size_t> coarsest() const {
+    return std::vector<std::size_t>(leaves_.size(), leaves_[0].size() - 1);
+  }
+  std::vector<std::size_t> finest() const { return std::vector<std::size_t>(leaves_.size(), 0); }
+
+  void bring_to(const std::vector<std::size_t>& levels) {
+    std::vector<ModelParts::Replacement> replacements;
+    for (std::size_t i = 0; i < leaves_.size(); ++i)
+      if (levels_.empty() || levels[i] != levels_[i]) replacements.push_back({i, &leaves_[i][levels[i]]});
+    levels_ = levels;
+    layout_.replace(model_, replacements);
+    const ModelParts::Changes changes = layout_.take_changes();
+    if (gpu_model_) gpu_model_->reload(changes);
+  }
+
+  /// Views from among them, as long as the levels are the coarsest.
+  std::vector<shared::View> find_views(int pictures) {
+    std::vector<shared::View> views;
+    Random random(1);
+    const auto any = [&] {
+      const Model& level = leaves_[random.bits() % leaves_.size()].back();
+      return glm::dvec3(level.position[random.bits() % level.count()]);
+    };
+    for (int k = 0; k < tries_for_one * pictures && std::ssize(views) < pictures; ++k) {
+      const glm::dvec3 at = any(), eye = glm::mix(at, any(), random.uniform(0.3, 1.0));
+      if (eye != at && shows(from(eye, at, tried_side), glm::distance(eye, at)))
+        views.push_back(from(eye, at, side));
+    }
+    return views;
+  }
+
+  void draw(const shared::View& view) { frame_->draw({&view, 1}); }
+  const gl::Buffer& colours() const { return frame_->colours(); }
+
+  /// Brings them to the levels that the view needs, and says what it is predicted to lose.
+  double settle(const shared::View& view) {
+    bring_to(coarsest());
+    DetailChoice choice;
+    for (int look = 0; look < looks; ++look) {
+      const DetailSeen seen{sight_->look({&view, 1}, {}, layout_), levels_};
+      choice = choose_levels_within(parts_, detail_views({&view, 1}), std::pow(10.0, -0.1 * asked_db),
+                                    std::numeric_limits<std::size_t>::max(), seen, {}, false);
+      if (choice.levels == levels_) break;
+      bring_to(choice.levels);
+    }
+    return choice.error();
+  }
+
+ private:
+  /// Whether a view has much to show, and nothing close before what it looks at.
+  bool shows(const shared::View& view, double as_far) {
+    double area = 0.0, logarithms = 0.0;
+    std::vector<SeenPart> of_parts;
+    if (!can_draw([&] { of_parts = sight_->look({&view, 1}, {}, layout_).front(); })) return false;
+    for (const SeenPart& seen : of_parts) {
+      if (seen.area == 0.0) continue;
+      area += seen.area;
+      logarithms += seen.area * std::log(seen.distance);
+    }
+    return area > shows_least * tried_side * tried_side &&
+           std::exp(logarithms / area) > as_far_least * as_far;
+  }
+
+  std::span<const std::vector<Model>> leaves_;
+  std::vector<DetailPart> parts_;
+  ModelParts layout_;
+  std::vector<std::size_t> levels_;
+  Model model_;
+  std::shared_ptr<render::GpuModel> gpu_model_;
+  std::optional<render::Frame> frame_;
+  std::optional<render::Sight> sight_;
+};
+
+}  // namespace
+
+LossTogether loss_together(gl::Context& context, std::span<const std::vector<Model>> of_leaves,
+                           std::span<const LeafErrors> errors, int pictures) {
+  Leaves leaves(context, of_leaves, errors);
+  const std::vector<shared::View> views = leaves.find_views(pictures);
+  std::deque<std::optional<SquaredError>> wanted(views.size());
+  leaves.bring_to(leaves.finest());
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    if (!can_draw([&] { leaves.draw(views[k]); })) continue;
+    wanted[k].emplace(context).add(leaves.colours(), side * side);
+  }
+  LossTogether loss;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    double predicted = 0.0;
+    const auto settle = [&] {
+      predicted = leaves.settle(views[k]);
+      leaves.draw(views[k]);
+    };
+    if (!wanted[k] || !can_draw(settle)) continue;
+    loss.predicted += predicted;
+    loss.found += wanted[k]->mean(leaves.colours());
+  }
+  return loss;
+}
+
+}  // namespace binosplat::study

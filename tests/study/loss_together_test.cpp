@@ -1,0 +1,67 @@
+// What levels lose in pictures of many parts.
+#include "study/loss_together.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/reduce.h"
+#include "study/level_errors.h"
+#include "support/gl.h"
+#include "support/models.h"
+
+namespace binosplat::study {
+namespace {
+
+/// Leaves all around, which hide what is behind them; a level has every other Gaussian of the one before.
+std::vector<std::vector<Model>> leaves_around(int count) {
+  std::vector<std::vector<Model>> leaves;
+  for (int k = 0; k < count; ++k) {
+    std::vector<Model>& levels = leaves.emplace_back();
+    levels.push_back(test::random_model(static_cast<unsigned>(k) + 1, 64, 1));
+    const double height = 2.0 * (k + 0.5) / count - 1.0, turn = 2.4 * k,
+                 away = std::sqrt(1.0 - height * height);
+    const glm::vec3 at(4.0 * away * std::cos(turn), 4.0 * away * std::sin(turn), 4.0 * height);
+    for (glm::vec3& p : levels[0].position) p = 0.2f * (p - glm::vec3(0, 0, 3)) + at;
+    for (glm::vec3& of_one : levels[0].scale) of_one = glm::vec3(0.3f);
+    for (float& opacity : levels[0].opacity) opacity = 0.5f + 0.5f * opacity;
+    for (int level = 1; level < 4; ++level) {
+      std::vector<std::uint32_t> others;
+      for (std::uint32_t i = 0; i < levels.back().count(); i += 2) others.push_back(i);
+      levels.push_back(with_order(levels.back(), others));
+    }
+  }
+  return leaves;
+}
+
+TEST(LossTogether, GoesWithTheErrorsThatAreToldAndWithWhatIsDrawn) {
+  const std::vector<std::vector<Model>> leaves = leaves_around(80);
+  std::vector<LeafErrors> errors = level_errors(test::gl_context(), leaves);
+  const LossTogether loss = loss_together(test::gl_context(), leaves, errors, 3);
+  EXPECT_GT(loss.predicted, 0.0);
+  EXPECT_LE(loss.predicted, 3.01e-4) << "40 dB of three pictures";
+  EXPECT_GT(loss.found, 0.0);
+  const LossTogether again = loss_together(test::gl_context(), leaves, errors, 3);
+  EXPECT_EQ(again.predicted, loss.predicted);
+  EXPECT_EQ(again.found, loss.found);
+
+  // Planted: a hundredth of what levels lose. Pictures that are taken to have 40 dB lose far more.
+  for (LeafErrors& leaf : errors)
+    for (auto& of_level : leaf.of_level)
+      for (auto& of_direction : of_level)
+        for (double& error : of_direction) error *= 0.01;
+  const LossTogether wrong = loss_together(test::gl_context(), leaves, errors, 3);
+  EXPECT_GT(wrong.found / wrong.predicted, 4.0 * loss.found / loss.predicted);
+}
+
+TEST(LossTogether, IsNothingWhereLevelsAreTheSame) {
+  std::vector<std::vector<Model>> leaves = leaves_around(9);
+  for (std::vector<Model>& levels : leaves) levels.assign(levels.size(), levels[0]);
+  const auto errors = level_errors(test::gl_context(), leaves);
+  const LossTogether loss = loss_together(test::gl_context(), leaves, errors, 2);
+  EXPECT_EQ(loss.predicted, 0.0);
+  EXPECT_EQ(loss.found, 0.0);
+}
+
+}  // namespace
+}  // namespace binosplat::study
