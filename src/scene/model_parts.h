@@ -75,8 +75,8 @@ struct SeenPart {
   double distance = 0.0;
 };
 
-/// One of so many bands of a picture, side by side from its left: what lies at the horizon, which is most of a
-/// large scene, is in all of them.
+/// One of so many bands of a picture, side by side from its left: what lies at the horizon, which is most of
+/// a large scene, is in all of them.
 struct Band {
   int index = 0, count = 1;
 };
