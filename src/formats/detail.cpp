@@ -77,24 +77,20 @@ std::vector<DetailView> detail_views(std::span<const shared::View> views) {
   return result;
 }
 
-namespace {
-
-double squared_error(double db) { return std::pow(10.0, -0.1 * db); }
-
-}  // namespace
-
 double psnr_of_error(double squared) { return -10.0 * std::log10(squared); }
 
-double levels_share(double together_db) { return psnr_of_error(0.5 * squared_error(together_db)); }
+double error_of_psnr(double db) { return std::pow(10.0, -0.1 * db); }
+
+double levels_share(double together_db) { return psnr_of_error(0.5 * error_of_psnr(together_db)); }
 
 double left_of(double together_db, double asked_db, double now_db) {
   constexpr double least = 0.1;  // of all, whatever was asked for
-  const double all = squared_error(together_db);
-  return psnr_of_error(std::max(all - std::min(squared_error(now_db), squared_error(asked_db)), least * all));
+  const double all = error_of_psnr(together_db);
+  return psnr_of_error(std::max(all - std::min(error_of_psnr(now_db), error_of_psnr(asked_db)), least * all));
 }
 
 double psnr_of_both(double a_db, double b_db) {
-  return psnr_of_error(squared_error(a_db) + squared_error(b_db));
+  return psnr_of_error(error_of_psnr(a_db) + error_of_psnr(b_db));
 }
 
 }  // namespace binosplat

@@ -40,8 +40,9 @@ double levels_share(double together_db);
 double left_of(double together_db, double asked_db, double now_db);
 /// Of two PSNR in dB that of both errors together.
 double psnr_of_both(double a_db, double b_db);
-/// In dB what a squared error is, of colours up to 1.
+/// In dB what a squared error is, of colours up to 1; and the other way round.
 double psnr_of_error(double squared);
+double error_of_psnr(double db);
 
 /// Directions in which what levels lose is known: along x, against it, along y and so on.
 constexpr std::size_t detail_directions = 6;

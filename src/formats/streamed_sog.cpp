@@ -281,8 +281,8 @@ bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& 
   before_ = chosen_;
   choice_.reset();
   if (need.db && !views.empty()) {
-    choice_ = std::make_shared<const DetailChoice>(choose_levels_within(
-        leaves_, detail, std::pow(10.0, -0.1 * *need.db), most, seen, before, need.heads_turn));
+    choice_ = std::make_shared<const DetailChoice>(
+        choose_levels_within(leaves_, detail, error_of_psnr(*need.db), most, seen, before, need.heads_turn));
     chosen_ = choice_->levels;
   } else {
     std::vector<glm::dvec3> eyes;

@@ -14,6 +14,7 @@
 #include "render/sight.h"
 #include "scene/camera.h"
 #include "scene/model_parts.h"
+#include "scene/reduce.h"
 #include "study/squared_error.h"
 
 namespace binosplat::study {
@@ -70,11 +71,8 @@ bool can_draw(const std::function<void()>& draw) {
 class Leaves {
  public:
   Leaves(gl::Context& context, std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors)
-      : leaves_(leaves), layout_(leaves.size()) {
+      : leaves_(leaves), layout_(leaves.size()), model_(without_gaussians(leaves[0][0])) {
     for (std::size_t i = 0; i < leaves.size(); ++i) parts_.push_back(part_of(leaves[i], errors[i]));
-    model_.degree = leaves[0][0].degree;
-    model_.antialiased = leaves[0][0].antialiased;
-    model_.perspective = leaves[0][0].perspective;
     bring_to(coarsest());
     gpu_model_ = std::make_shared<render::GpuModel>(context, model_);
     frame_.emplace(gpu_model_);
@@ -121,7 +119,7 @@ class Leaves {
     DetailChoice choice;
     for (int look = 0; look < looks; ++look) {
       const DetailSeen seen{sight_->look({&view, 1}, {}, layout_), levels_};
-      choice = choose_levels_within(parts_, detail_views({&view, 1}), std::pow(10.0, -0.1 * asked_db),
+      choice = choose_levels_within(parts_, detail_views({&view, 1}), error_of_psnr(asked_db),
                                     std::numeric_limits<std::size_t>::max(), seen, {}, false);
       if (choice.levels == levels_) break;
       bring_to(choice.levels);

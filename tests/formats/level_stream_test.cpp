@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <random>
 #include <set>
 
@@ -42,6 +43,28 @@ std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dv
     std::this_thread::yield();
   }
   return counts;
+}
+
+/// Of all parts, in a picture of 100 x 100 px.
+shared::View before_all() {
+  shared::View view = at({0, 0, -30});
+  view.row_z = {0, 0, 1, 0};
+  view.centre.w = 1.0f;
+  view.width = view.height = 100;
+  return view;
+}
+
+/// Frames of a view that looks and takes, until that is so; false after a minute without.
+bool frames_until(LevelStream& stream, Model& model, const shared::View& view, const LevelStream::Look& look,
+                  const std::function<bool()>& is_so) {
+  const auto start = std::chrono::steady_clock::now();
+  do {
+    stream.want(std::vector{view}, look);
+    stream.take(model, 1);
+    if (std::chrono::steady_clock::now() - start > std::chrono::seconds(60)) return false;
+    std::this_thread::yield();
+  } while (!is_so());
+  return true;
 }
 
 const glm::dvec3 beside_first = {-14, -1, 0}, beside_last = {6, 0, 15}, far_away = {0, 0, -400};
@@ -130,10 +153,7 @@ TEST(LevelStream, LooksAFewTimes) {
   test::add_level_errors(copy);
   LevelStream stream(copy.path(), for_40_db);
   Model model = stream.coarsest();
-  shared::View view = at({0, 0, -30});
-  view.row_z = {0, 0, 1, 0};
-  view.centre.w = 1.0f;
-  view.width = view.height = 100;
+  shared::View view = before_all();
   // What one look shows the next one hides.
   std::vector<std::size_t> gaussians;
   const auto rest = [&] {
@@ -144,12 +164,7 @@ TEST(LevelStream, LooksAFewTimes) {
       const SeenPart seen{gaussians.size() % 2 == 1 ? 2000.0 : 1e-6, 30.0};
       return std::vector(parts.size(), seen);
     };
-    const auto start = std::chrono::steady_clock::now();
-    do {
-      stream.want(std::vector{view}, look);
-      stream.take(model, 1);
-      ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60)) << "it hangs";
-    } while (!stream.settled());
+    ASSERT_TRUE(frames_until(stream, model, view, look, [&] { return stream.settled(); })) << "it hangs";
   };
   rest();
   EXPECT_EQ(gaussians, (std::vector<std::size_t>{250, 1000, 250}));
@@ -167,39 +182,30 @@ TEST(LevelStream, FinerLevelsStayForAWhile) {
   test::add_level_errors(copy);
   LevelStream stream(copy.path(), for_40_db);
   Model model = stream.coarsest();
-  shared::View view = at({0, 0, -30});
-  view.row_z = {0, 0, 1, 0};
-  view.centre.w = 1.0f;
-  view.width = view.height = 100;
+  shared::View view = before_all();
   double of_last = 2000.0;  // px that are seen of the last part
   const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
     std::vector<SeenPart> seen(parts.size(), {2000.0, 30.0});
     seen[2].area = of_last;
     return seen;
   };
-  const auto start = std::chrono::steady_clock::now();
-  const auto waits = [&](std::size_t gaussians) {
-    while (stream.gaussians() != gaussians) {
-      stream.want(std::vector{view}, look);
-      stream.take(model, 1);
-      if (std::chrono::steady_clock::now() - start > std::chrono::seconds(60)) return false;
-      std::this_thread::yield();
-    }
-    return true;
+  const auto waits = [&](const std::function<bool()>& is_so) {
+    return frames_until(stream, model, view, look, is_so);
   };
-  ASSERT_TRUE(waits(1000));
+  ASSERT_TRUE(waits([&] { return stream.gaussians() == 1000; }));
   of_last = 1e-9;
   view.anchor.x += 0.1f;
   const auto hidden = std::chrono::steady_clock::now();
-  while (std::chrono::steady_clock::now() - hidden < std::chrono::milliseconds(500)) {
-    stream.want(std::vector{view}, look);
-    stream.take(model, 1);
-    ASSERT_EQ(stream.gaussians(), 1000u) << "at once";
-  }
+  const auto since = [&] { return std::chrono::steady_clock::now() - hidden; };
+  ASSERT_TRUE(waits([&] {
+    EXPECT_EQ(stream.gaussians(), 1000u) << "at once";
+    return since() >= std::chrono::milliseconds(500) || testing::Test::HasFailure();
+  }));
   EXPECT_FALSE(stream.settled()) << "something is left to go";
-  ASSERT_TRUE(waits(817)) << "in the end";
-  EXPECT_GT(std::chrono::steady_clock::now() - hidden, std::chrono::milliseconds(800));
-  EXPECT_TRUE(waits(817));
+  ASSERT_TRUE(waits([&] { return stream.gaussians() == 817; })) << "in the end";
+  EXPECT_GT(since(), std::chrono::milliseconds(800));
+  ASSERT_TRUE(waits([&] { return stream.settled(); })) << "and nothing more";
+  EXPECT_EQ(stream.gaussians(), 817u);
 }
 
 // By what is asked of frames, which may change.
@@ -212,22 +218,14 @@ TEST(LevelStream, SharesAQuality) {
   });
   Model model = stream.coarsest();
   EXPECT_EQ(stream.left(), 0.0);
-  shared::View view = at({0, 0, -30});
-  view.row_z = {0, 0, 1, 0};
-  view.centre.w = 1.0f;
-  view.width = view.height = 100;
+  shared::View view = before_all();
   int looks = 0;
   const auto rest = [&] {
     const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
       ++looks;
       return std::vector(parts.size(), SeenPart{20.0, 30.0});
     };
-    const auto start = std::chrono::steady_clock::now();
-    do {
-      stream.want(std::vector{view}, look);
-      stream.take(model, 1);
-      ASSERT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60)) << "it hangs";
-    } while (!stream.settled());
+    ASSERT_TRUE(frames_until(stream, model, view, look, [&] { return stream.settled(); })) << "it hangs";
   };
   rest();
   EXPECT_EQ(looks, 0);
@@ -336,10 +334,7 @@ TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
-  shared::View view = at({0, 0, -30});
-  view.row_z = {0, 0, 1, 0};
-  view.centre.w = 1.0f;
-  view.width = view.height = 100;
+  shared::View view = before_all();
   for (const int slow_ms : {0, 10}) {
     LevelStream stream(copy.path(), for_40_db);
     Model model = stream.coarsest();
