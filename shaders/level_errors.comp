@@ -19,6 +19,10 @@ uniform uint square_side;  // px
 uniform uint row_squares;
 uniform uint row_pixels;
 
+// What lies behind a part is taken to differ from its mean colour as its own pixels do, but by so much at least:
+// a part of one colour has others behind it.
+const float contrast_least = 0.125;
+
 shared vec4 sums[THREADS];
 
 vec4 sum_of_all(vec4 of_this) {
@@ -69,8 +73,7 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) {
     vec3 mean = all.a > 0.0 ? all.rgb / all.a : vec3(0.0);
     float deviation_squared = all.a > 0.0 ? max(sums_of_square.y / all.a - dot(mean, mean) / 3.0, 0.0) : 0.0;
-    // What lies behind a part is taken to differ from its mean colour as its own pixels do.
-    behind[square] = vec4(mean, deviation_squared);
+    behind[square] = vec4(mean, max(deviation_squared, contrast_least * contrast_least));
   }
 #else
   sum = sum_of_all(vec4(sum)).x;

@@ -79,6 +79,22 @@ TEST(LevelErrors, AreTheIntegralOfTheSquaredDifference) {
   }
 }
 
+TEST(LevelErrors, WhatAPartOfOneColourNoLongerCoversIsLost) {
+  const double less = 0.4;
+  std::vector<Model> levels = part(2.0, 0.8, less);
+  for (Model& level : levels) level.sh.assign(level.sh.size(), static_cast<float>(0.5 / sh_c0));  // all white
+  const std::vector<std::vector<Model>> parts = {levels};
+  const auto errors = level_errors(test::gl_context(), parts);
+  // White over white, give or take an eighth.
+  const double deviation = 2.0 / errors[0].pixels[0];
+  const double expected =
+      0.125 * 0.125 * less * less * std::numbers::pi * (deviation * deviation + KERNEL_PX2);
+  for (std::size_t d = 0; d < detail_directions; ++d)
+    EXPECT_NEAR(errors[0].of_level[1][d][0], expected, 0.15 * expected);
+  const test::FaultyShaders faulty("level_errors.comp", "contrast_least = 0.125", "contrast_least = 0.0");
+  EXPECT_LT(level_errors(test::gl_context(), parts)[0].of_level[1][0][0], 0.01 * expected);
+}
+
 TEST(LevelErrors, FaultsAreNoticed) {
   const std::vector<std::vector<Model>> parts = {
       {test::random_model(1, 300, 1), test::random_model(2, 150, 1)}};
