@@ -51,7 +51,7 @@ LevelFolder folder_at(const fs::path& folder) {
 /// What tells a run from others.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   nlohmann::ordered_json run =
-      study::object("format", "binosplat levels", "version", 4, "program", BINOSPLAT_VERSION, "leaf",
+      study::object("format", "binosplat levels", "version", 5, "program", BINOSPLAT_VERSION, "leaf",
                     o.settings.leaf, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
   if (o.scene.seed) run["seed"] = *o.scene.seed;
   if (o.scene.count) run["count"] = *o.scene.count;
@@ -85,11 +85,11 @@ ExitCode levels(const LevelsOptions& o) {
   const auto context = open_context(o.context);
   if (!again) save_json(fs::path(o.output) / "levels-run.json", run);
   const LevelsWritten written = write_streamed_sog(
-      model, o.settings, folder_at(o.output), [&](std::span<const std::vector<Model>> leaves, int pictures) {
-        JudgedLevels judged{study::level_errors(*context, leaves), {}};
-        judged.together = study::loss_together(*context, leaves, judged.leaves, pictures);
-        return judged;
-      });
+      model, o.settings, folder_at(o.output),
+      {[&](std::span<const std::vector<Model>> leaves) { return study::level_errors(*context, leaves); },
+       [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int pictures) {
+         return study::loss_together(*context, leaves, errors, pictures);
+       }});
   for (const std::string& loss : written.losses) log_warning("{}", loss);
   if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
   fmt::print("level   Gaussians\n");

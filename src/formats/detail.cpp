@@ -18,6 +18,17 @@ double distance_to(const DetailPart& part, const std::vector<glm::dvec3>& eyes) 
   return nearest;
 }
 
+std::array<glm::dvec3, 5> inward_of(const shared::View& view) {
+  const glm::dvec3 right(view.row_x), down(view.row_y), ahead(view.row_z);
+  const glm::dvec2 focal(view.lens.x, view.lens.y), first(view.lens.z, view.lens.w),
+      last = glm::dvec2(view.width, view.height) - first;
+  std::array<glm::dvec3, 5> inward = {focal.x * right + first.x * ahead, last.x * ahead - focal.x * right,
+                                      focal.y * down + first.y * ahead, last.y * ahead - focal.y * down,
+                                      ahead};
+  for (glm::dvec3& normal : inward) normal = glm::normalize(normal);
+  return inward;
+}
+
 }  // namespace
 
 glm::dvec3 detail_direction(std::size_t d) {
@@ -69,8 +80,7 @@ std::vector<DetailView> detail_views(std::span<const shared::View> views) {
   std::vector<DetailView> result;
   for (const shared::View& view : views) {
     result.push_back({.eye = glm::dvec3(view.anchor) + glm::dvec3(view.eye),
-                      .forward = glm::dvec3(view.row_z),
-                      .slope = std::sqrt(static_cast<double>(view.centre.w)),
+                      .inward = inward_of(view),
                       .focal = std::max<double>(view.lens.x, view.lens.y),
                       .pixels = static_cast<double>(view.width) * view.height});
   }

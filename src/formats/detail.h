@@ -1,6 +1,7 @@
 #pragma once
 // Which level of detail each part of a model gets, where there is room for so many Gaussians.
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <glm/glm.hpp>
@@ -76,8 +77,10 @@ std::vector<std::size_t> choose_levels(const std::vector<DetailPart>& parts,
 
 /// A view, in the model's frame.
 struct DetailView {
-  glm::dvec3 eye{0.0}, forward{0.0, 0.0, 1.0};
-  double slope = 1.0;   // the largest tangent between `forward` and a ray in the picture
+  glm::dvec3 eye{0.0};
+  /// Of length 1, at right angles to the planes through the eye and the picture's sides, towards it; last
+  /// that straight ahead. 0: sees all around.
+  std::array<glm::dvec3, 5> inward{};
   double focal = 1.0;   // px
   double pixels = 1.0;  // of the picture
 };
@@ -99,8 +102,9 @@ struct DetailChoice {
   std::vector<double> pixels;       // of the views
   double sphere_pixels = 0.0;       // of the sphere around them
   /// By part: squared error by view, of each of its levels, summed over pixels; at the end that of the sphere
-  /// around the views.
-  std::vector<std::vector<double>> errors;
+  /// around the views. In one list, of which `first` says where a part's begin, and the last one's end.
+  std::vector<double> errors;
+  std::vector<std::size_t> first;
 
   /// What that of some views, from `begin` to before `end`, which loses most does with any levels of the
   /// parts: squared, meaned over pixels and channels.
@@ -112,6 +116,10 @@ struct DetailChoice {
   /// By how much less the view that gains most of it, or the sphere, loses with a part at a level instead of
   /// another: squared, meaned over pixels and channels.
   double saved(std::size_t part, std::size_t from, std::size_t to) const;
+
+  std::size_t levels_of(std::size_t part) const {
+    return (first[part + 1] - first[part]) / (pixels.size() + 1);
+  }
 };
 
 /// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All

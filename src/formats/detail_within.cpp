@@ -17,24 +17,20 @@ namespace {
 
 /// In pixels narrower than those that are known errors grow by this power of how much narrower, at most so
 /// many times.
-constexpr double growth = 0.55, growth_most = 8.0;
+constexpr double growth = 0.3, growth_most = 8.0;
 
 constexpr std::size_t chunk = 256;  // parts that are worth a thread's while
 
 /// So many times the distance between the Gaussians of a level it reaches out from behind what hides it.
 constexpr double reach = 0.5;
 
-/// Whether the ball around the box, and around some of the pixels beside it that Gaussians are blurred to,
-/// meets the cone around the picture.
+/// Whether the box, and some of the pixels beside it that Gaussians are blurred to, may lie in the picture.
 bool sees(const DetailView& view, const DetailPart& part, double pixel) {
   constexpr double blurred_px = 4.0;
-  const glm::dvec3 to = 0.5 * (part.low + part.high) - view.eye;
-  const double ahead = glm::dot(to, view.forward);
-  const double aside = std::sqrt(std::max(0.0, glm::dot(to, to) - ahead * ahead));
-  const double cosine = 1.0 / std::hypot(1.0, view.slope), sine = view.slope * cosine;
-  const bool eye_is_nearest = ahead * cosine + aside * sine < 0.0;
-  const double away = eye_is_nearest ? glm::length(to) : aside * cosine - ahead * sine;
-  return away <= 0.5 * glm::distance(part.low, part.high) + blurred_px * pixel;
+  const glm::dvec3 to = 0.5 * (part.low + part.high) - view.eye, half = 0.5 * (part.high - part.low);
+  return std::ranges::all_of(view.inward, [&](const glm::dvec3& inward) {
+    return glm::dot(inward, to) + glm::dot(glm::abs(inward), half) >= -blurred_px * pixel;
+  });
 }
 
 /// What relative_error says of each level of one part, seen from one place.
@@ -143,16 +139,14 @@ class Sights {
     parallel_for(parts.size(), turn, chunk);
   }
 
-  /// Squared error of each level of a part, summed over px.
-  std::vector<double> errors(std::size_t view, std::size_t p) const {
+  /// Squared error of each level of a part, summed over px; left as it is where it is none.
+  void find_errors(std::size_t view, std::size_t p, double* errors) const {
     const DetailPart& part = parts_[p];
-    std::vector<double> result(part.levels.size(), 0.0);
     const SeenPart& seen = seen_[view][p];
-    if (seen.distance == 0.0 || part.pixels.empty()) return result;
+    if (seen.distance == 0.0 || part.pixels.empty()) return;
     const LookedAt look(part, seen.distance / focal_[view], 0.5 * (part.low + part.high) - eye_[view]);
-    for (std::size_t level = 0; level < result.size(); ++level)
-      result[level] = area(view, p, level) * look.error(level);
-    return result;
+    for (std::size_t level = 0; level < part.levels.size(); ++level)
+      errors[level] = area(view, p, level) * look.error(level);
   }
 
   double longest_focal() const { return focal_.back(); }
@@ -191,13 +185,12 @@ class ErrorChooser {
     for (const DetailView& view : views) allowed_.push_back(error * view.pixels);
     allowed_.push_back(error * sphere_pixels_);
     lost_.resize(allowed_.size());
-    errors_.resize(parts.size());
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      first_.push_back(first_.back() + allowed_.size() * parts[p].levels.size());
+    errors_.resize(first_.back());
     const auto find_errors = [&](std::size_t p) {
-      errors_[p].reserve(allowed_.size() * parts[p].levels.size());
-      for (std::size_t v = 0; v < allowed_.size(); ++v) {
-        const std::vector<double> of_levels = sights.errors(v, p);
-        errors_[p].insert(errors_[p].end(), of_levels.begin(), of_levels.end());
-      }
+      for (std::size_t v = 0; v < allowed_.size(); ++v)
+        sights.find_errors(v, p, &errors_[first_[p] + v * parts[p].levels.size()]);
     };
     parallel_for(parts.size(), find_errors, chunk);
     for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -234,8 +227,10 @@ class ErrorChooser {
   }
 
   double sphere_pixels() const { return sphere_pixels_; }
-  /// By part: by view, the sphere's last, of each level.
-  std::vector<std::vector<double>> take_errors() { return std::move(errors_); }
+  void give_errors(DetailChoice& choice) {
+    choice.errors = std::move(errors_);
+    choice.first = std::move(first_);
+  }
 
  private:
   struct Step {
@@ -252,7 +247,7 @@ class ErrorChooser {
   }
   bool fits(std::size_t p, std::size_t level) const { return with(p, level) <= most_; }
   double error_of(std::size_t view, std::size_t p, std::size_t level) const {
-    return errors_[p][view * parts_[p].levels.size() + level];
+    return errors_[first_[p] + view * parts_[p].levels.size() + level];
   }
 
   void take(std::size_t p, std::size_t level) {
@@ -291,7 +286,8 @@ class ErrorChooser {
   std::span<const std::size_t> before_;
   double sphere_pixels_;
   std::vector<double> allowed_, lost_;        // squared error, by view, the sphere's last
-  std::vector<std::vector<double>> errors_;   // by part: by view, of each level
+  std::vector<double> errors_;                // by part: by view, of each level
+  std::vector<std::size_t> first_ = {0};      // of a part's
   std::vector<std::size_t> chosen_, finest_;  // the finest that may be taken
   std::size_t total_ = 0;
 };
@@ -306,29 +302,26 @@ DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const st
                                   double error, std::size_t most, const DetailSeen& seen,
                                   std::span<const std::size_t> before, bool heads_turn) {
   ErrorChooser chooser(parts, views, Sights(parts, views, seen, heads_turn), error, most, before);
-  DetailChoice choice{chooser.choose(), {}, chooser.sphere_pixels(), {}};
+  DetailChoice choice{chooser.choose(), {}, chooser.sphere_pixels(), {}, {}};
   for (const DetailView& view : views) choice.pixels.push_back(view.pixels);
-  choice.errors = chooser.take_errors();
+  chooser.give_errors(choice);
   return choice;
 }
 
 double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size_t begin,
                               std::size_t end) const {
   std::vector<double> lost(end - begin, 0.0);
-  for (std::size_t p = 0; p < errors.size(); ++p) {
-    const std::size_t levels_of_part = errors[p].size() / (pixels.size() + 1);
-    for (std::size_t v = begin; levels_of_part > 0 && v < end; ++v)
-      lost[v - begin] += errors[p][v * levels_of_part + any_levels[p]] / pixels[v];
+  for (std::size_t p = 0; p + 1 < first.size(); ++p) {
+    for (std::size_t v = begin; levels_of(p) > 0 && v < end; ++v)
+      lost[v - begin] += errors[first[p] + v * levels_of(p) + any_levels[p]] / pixels[v];
   }
   return lost.empty() ? 0.0 : *std::ranges::max_element(lost);
 }
 
 double DetailChoice::saved(std::size_t part, std::size_t from, std::size_t to) const {
-  const std::vector<double>& of_part = errors[part];
-  const std::size_t levels_of_part = of_part.size() / (pixels.size() + 1);
   double most = 0.0;
   for (std::size_t v = 0; v <= pixels.size(); ++v) {
-    const double* const of_view = &of_part[v * levels_of_part];
+    const double* const of_view = &errors[first[part] + v * levels_of(part)];
     most = std::max(most, (of_view[from] - of_view[to]) / (v < pixels.size() ? pixels[v] : sphere_pixels));
   }
   return most;

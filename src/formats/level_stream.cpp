@@ -21,8 +21,6 @@ constexpr std::size_t room_most = 1 << 22;
 constexpr double between_looks_ms = 100.0;
 // That a choice is read for, at least, whatever is wished for meanwhile: choosing may take as long as looks.
 constexpr double reading_ms = 100.0;
-constexpr double glance_ms = 3.0;       // that a frame may take for a look
-constexpr double bands_most = 8.0;      // of a view: each costs all that does not depend on pixels, too
 constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
 constexpr double stays_s = 1.0;         // a level that nothing needs any more
 constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
@@ -74,7 +72,7 @@ void LevelStream::share(double together_db) {
   if (std::exchange(together_db_, together_db) == together_db || !shares_) return;
   by_db_ = asked_by_db_ || together_db_ > 0.0;
   looked_.clear();
-  band_.index = 0;
+  bands_.start_again();
   looks_ = 0;
   is_due_ = !wanted_.empty();
 }
@@ -93,7 +91,7 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   if (!same(views, wanted_)) {
     if (views.size() != wanted_.size()) {
       looked_.clear();
-      band_.index = 0;
+      bands_.start_again();
     }
     wanted_.assign(views.begin(), views.end());
     looks_ = 0;
@@ -131,26 +129,20 @@ bool LevelStream::look_on(const Look& look) {
     moves_ = !same(motion_.ahead(lead_s), wanted_);
     to_look_at_ = moves_ ? std::max<std::size_t>(wanted_.size(), 2) : wanted_.size();
     changed_since_look_ = false;
-    longest_look_ms_ = 0.0;
     seen_.clear();
   }
-  if (band_.index == 0) {
+  if (bands_.is_first()) {
     const std::size_t k = looked_.size();
     looked_.push_back(k < here() ? wanted_[k] : motion_.ahead(lead_s)[k % wanted_.size()]);
     seen_.emplace_back(parts_.size());
   }
   const auto start = Clock::now();
-  add(look(looked_.back(), band_, parts_), seen_.back());
-  longest_look_ms_ = std::max(longest_look_ms_, ms_since(start));
+  add(look(looked_.back(), bands_.next(), parts_), seen_.back());
   looked_now_ = true;
-  if (++band_.index < band_.count) return false;
-  band_.index = 0;
-  if (looked_.size() < to_look_at_) return false;
+  if (!bands_.note(ms_since(start)) || looked_.size() < to_look_at_) return false;
   const auto views = static_cast<double>(to_look_at_);
-  const double frame_ms = ms_since(*looked_at_) / (views * band_.count);
-  const double most = std::clamp(look_most_ms / (views * frame_ms), 1.0, bands_most);
-  band_.count =
-      static_cast<int>(std::clamp(std::ceil(longest_look_ms_ * band_.count / glance_ms), 1.0, most));
+  const double frame_ms = ms_since(*looked_at_) / (views * bands_.count());
+  bands_.divide(std::max(1, static_cast<int>(look_most_ms / (views * frame_ms))));
   return true;
 }
 
@@ -192,9 +184,10 @@ void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
   DetailNeed need = scene_.sharing(need_(scene_, wish.views), wish.together_db);
   need.stays_s = stays_s;
   const bool reads = scene_.choose(wish.views, need, wish.seen);
+  auto choice = scene_.choice();  // the one before it is freed when no frame waits for the lock any more
   {
     const std::lock_guard lock(mutex_);
-    choice_ = scene_.choice();
+    choice_.swap(choice);
     here_ = wish.here;
     lingers_ = scene_.lingers();
     at_ = wish.at;
@@ -223,19 +216,26 @@ void LevelStream::free_used() {
   used.swap(used_);
 }
 
-// Drops what was read for views that are gone; what saves most comes first.
+// Drops what was read for views that are gone; what saves most comes first. A frame meanwhile, which must not
+// wait for that, finds nothing to take.
 void LevelStream::sort_pieces() {
-  std::vector<StreamedSog::Piece> dropped;  // freed when no frame waits for the lock any more
-  const std::lock_guard lock(mutex_);
-  std::erase_if(pieces_, [&](StreamedSog::Piece& piece) {
+  std::deque<StreamedSog::Piece> pieces;
+  {
+    const std::lock_guard lock(mutex_);
+    pieces.swap(pieces_);
+  }
+  std::size_t dropped = 0;
+  std::erase_if(pieces, [&](const StreamedSog::Piece& piece) {
     if (scene_.wants(piece)) return false;
     scene_.put_back(piece);  // no other of this part has been read since, or this one would be gone
-    gaussians_read_ -= piece.model.count();
-    dropped.push_back(std::move(piece));
+    dropped += piece.model.count();
     return true;
   });
-  std::ranges::stable_sort(pieces_, std::greater<>(),
+  std::ranges::stable_sort(pieces, std::greater<>(),
                            [&](const StreamedSog::Piece& piece) { return scene_.worth(piece); });
+  const std::lock_guard lock(mutex_);
+  gaussians_read_ -= dropped;
+  pieces_ = std::move(pieces);
 }
 
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "formats/look_bands.h"
 #include "formats/streamed_sog.h"
 #include "scene/head_motion.h"
 #include "scene/model_parts.h"
@@ -110,8 +111,7 @@ class LevelStream {
   std::vector<std::vector<SeenPart>> seen_;  // and what it showed
   bool moves_ = false;                       // while these are looked at
   std::size_t to_look_at_ = 0;               // so many views
-  Band band_;                                // of the last of them, that comes next
-  double longest_look_ms_ = 0.0;             // of a band
+  LookBands bands_;                          // of the last of them
   bool changed_since_look_ = false;
   std::optional<Clock::time_point> looked_at_;
 

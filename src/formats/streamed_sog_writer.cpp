@@ -11,7 +11,9 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/statistics.h"
 #include "formats/json_file.h"
+#include "formats/leaf_errors.h"
 #include "formats/model_writers.h"
 #include "formats/morton.h"
 #include "formats/sog_source.h"
@@ -31,7 +33,7 @@ constexpr double pixel_share = 0.2;
 // Which pairs are merged is judged once for all levels, as this one sees them.
 constexpr int judged_level = 3;
 
-constexpr int pictures_in_all = 16;  // that tell what levels lose together; one of each piece, at least
+constexpr int pictures_in_all = 12;  // that tell what levels lose together; one of each scene, at least
 constexpr double more_most = 4.0;    // that they may lose more or less than each by itself
 
 constexpr const char* meta_name = "/meta.json";
@@ -67,6 +69,12 @@ struct Piece {
 
 using Levels = std::vector<Model>;  // of a leaf, from the finest
 
+/// Pieces that are drawn together, as a model they may be.
+struct Scene {
+  std::string losses;  // the file that tells what its pictures lose
+  std::size_t first_piece = 0, pieces = 0, count = 0;
+};
+
 /// In Morton order, whose pictures pack best.
 Model finest(const Model& model, const Leaf& leaf) {
   const Model as_it_lies = with_order(model, leaf.indices);
@@ -85,33 +93,8 @@ Levels levels_of(const Model& model, const Leaf& leaf, int coarsest) {
   return levels;
 }
 
-ordered_json json_of(const Box& b) {
+ordered_json box_json(const Box& b) {
   return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
-}
-
-/// Three digits are more than six directions tell.
-double rounded(double number) { return std::stod(fmt::format("{:.3g}", number)); }
-
-ordered_json json_of(double number) { return rounded(number); }
-
-ordered_json json_of(const LeafErrors& leaf);
-
-template <typename Item>
-ordered_json json_of(const std::vector<Item>& list) {
-  ordered_json json = ordered_json::array();
-  for (const Item& item : list) json.push_back(json_of(item));
-  return json;
-}
-
-ordered_json json_of(const LeafErrors& leaf) {
-  return {{"pixels", json_of(leaf.pixels)}, {"seen", json_of(leaf.seen)}, {"errors", json_of(leaf.of_level)}};
-}
-
-ordered_json times(const nlohmann::json& numbers, double factor) {
-  if (numbers.is_number()) return rounded(factor * numbers.get<double>());
-  ordered_json json = ordered_json::array();
-  for (const nlohmann::json& number : numbers) json.push_back(times(number, factor));
-  return json;
 }
 
 class Writer {
@@ -153,8 +136,7 @@ class Writer {
         {"environment", nullptr},
         {"filenames", filenames_},
         {"tree", node_json(tree_.root, leaf).first}};
-    const std::string text = meta.dump() + "\n";
-    folder_.write("lod-meta.json", std::as_bytes(std::span(text)));
+    write("lod-meta.json", meta);
     return written;
   }
 
@@ -175,8 +157,16 @@ class Writer {
       } while (++i < nodes.size() && count + nodes[i]->count <= settings_.piece);
       piece.leaves = leaves_.size() - piece.first_leaf;
       for (int level = 0; level < settings_.levels; ++level) add_files(piece, level);
+      add_to_scene(count);
       pieces_.push_back(std::move(piece));
     }
+  }
+
+  void add_to_scene(std::size_t count) {
+    if (scenes_.empty() || scenes_.back().count + count > settings_.together)
+      scenes_.push_back({fmt::format("together_{}.json", scenes_.size()), pieces_.size()});
+    ++scenes_.back().pieces;
+    scenes_.back().count += count;
   }
 
   /// Those that fit into a piece, in order.
@@ -213,7 +203,7 @@ class Writer {
   void write_pieces(Progress& progress) {
     std::vector<const Piece*> left;
     for (const Piece& piece : pieces_) {
-      if (!is_written(piece) || !folder_.has(piece.errors)) left.push_back(&piece);
+      if (!is_judged(piece)) left.push_back(&piece);
     }
     const auto merge = [&](const Piece& piece) {
       return std::async(std::launch::async, [&] { return merged(piece, progress); });
@@ -229,8 +219,11 @@ class Writer {
             [this, &progress, &piece = *left[k], levels = merging.get()] { write(piece, levels, progress); });
       }
       if (k + 1 < left.size()) merging = merge(*left[k + 1]);
-      if (k > 0 && !folder_.has(left[k - 1]->errors)) judge(*left[k - 1]);
+      if (k == 0) continue;
+      if (!folder_.has(left[k - 1]->errors)) judge(*left[k - 1]);
+      judge_scenes();
     }
+    judge_scenes();
   }
 
   void count(Progress& progress, std::size_t gaussians) {
@@ -255,13 +248,38 @@ class Writer {
 
   /// By what was written: rounded colours, scales and rotations cost as much as a level may.
   void judge(const Piece& piece) {
-    const int pictures = std::max(1, pictures_in_all / static_cast<int>(pieces_.size()));
-    const JudgedLevels judged = judge_(written(piece), pictures);
-    const ordered_json json = {{"leaves", json_of(judged.leaves)},
-                               {"predicted", judged.together.predicted},
-                               {"found", judged.together.found}};
+    write(piece.errors, json_of(judge_.alone(decoded_[&piece] = written(piece))));
+  }
+
+  /// As far as the folder has it.
+  bool is_judged(const Piece& piece) const {
+    return folder_.has(piece.errors) && std::ranges::all_of(piece.files, [&](const File& file) {
+             return folder_.has(file.folder + meta_name);
+           });
+  }
+
+  /// Those of which all pieces are judged.
+  void judge_scenes() {
+    for (const Scene& scene : scenes_) {
+      const auto pieces = std::span(pieces_).subspan(scene.first_piece, scene.pieces);
+      if (folder_.has(scene.losses) ||
+          !std::ranges::all_of(pieces, [&](const Piece& p) { return is_judged(p); }))
+        continue;
+      std::vector<Levels> leaves;
+      std::vector<LeafErrors> errors;
+      for (const Piece& piece : pieces) {
+        const auto kept = decoded_.extract(&piece);
+        std::ranges::move(kept ? std::move(kept.mapped()) : written(piece), std::back_inserter(leaves));
+        std::ranges::move(errors_of(piece), std::back_inserter(errors));
+      }
+      const int pictures = std::max(1, pictures_in_all / static_cast<int>(scenes_.size()));
+      write(scene.losses, json_of(judge_.together(leaves, errors, pictures)));
+    }
+  }
+
+  void write(const std::string& name, const ordered_json& json) const {
     const std::string text = json.dump() + "\n";
-    folder_.write(piece.errors, std::as_bytes(std::span(text)));
+    folder_.write(name, std::as_bytes(std::span(text)));
   }
 
   std::vector<Levels> written(const Piece& piece) const {
@@ -310,30 +328,30 @@ class Writer {
   }
 
   void tell_errors() {
-    std::vector<nlohmann::json> of_pieces;
-    LossTogether together;
+    const double more = lost_together();
     for (const Piece& piece : pieces_) {
-      of_pieces.push_back(parse_json(piece.errors, folder_.read(piece.errors)));
-      const JsonValue told(piece.errors, of_pieces.back());
-      together.predicted += told.at("predicted").number();
-      together.found += told.at("found").number();
+      const std::vector<LeafErrors> told = errors_of(piece);
+      for (std::size_t i = 0; i < piece.leaves; ++i) {
+        Leaf& leaf = leaves_[piece.first_leaf + i];
+        leaf.pixels = json_of(told[i].pixels);
+        leaf.seen = json_of(told[i].seen);
+        for (std::size_t level = 0; level < gaussians_.size(); ++level)
+          leaf.lods[std::to_string(level)]["errors"] = json_of(told[i].of_level[level], more);
+      }
     }
-    const bool is_known = together.predicted > 0.0 && together.found > 0.0;
-    const double more =
-        is_known ? std::clamp(together.found / together.predicted, 1.0 / more_most, more_most) : 1.0;
-    for (std::size_t k = 0; k < pieces_.size(); ++k) tell_errors(pieces_[k], of_pieces[k], more);
   }
 
-  void tell_errors(const Piece& piece, const nlohmann::json& told, double more) {
-    const JsonValue of_leaves = JsonValue(piece.errors, told).at("leaves").list_of(piece.leaves);
-    for (std::size_t i = 0; i < piece.leaves; ++i) {
-      Leaf& leaf = leaves_[piece.first_leaf + i];
-      leaf.pixels = of_leaves.at(i).at("pixels").value();
-      leaf.seen = of_leaves.at(i).at("seen").value();
-      const JsonValue of_levels = of_leaves.at(i).at("errors").list_of(gaussians_.size());
-      for (std::size_t level = 0; level < gaussians_.size(); ++level)
-        leaf.lods[std::to_string(level)]["errors"] = times(of_levels.at(level).value(), more);
-    }
+  std::vector<LeafErrors> errors_of(const Piece& piece) const {
+    return leaf_errors(piece.errors, folder_.read(piece.errors), piece.leaves, gaussians_.size());
+  }
+
+  /// Over what each by itself would lose: the median, since eyes from which hardly anything is seen are far
+  /// off.
+  double lost_together() const {
+    std::vector<double> shares;
+    for (const Scene& scene : scenes_)
+      std::ranges::copy(loss_shares(scene.losses, folder_.read(scene.losses)), std::back_inserter(shares));
+    return shares.empty() ? 1.0 : std::clamp(quantile(shares, 0.5), 1.0 / more_most, more_most);
   }
 
   /// The node and the box around it, from the next leaf on.
@@ -341,7 +359,7 @@ class Writer {
     if (node.children.empty()) {
       const Leaf& leaf = leaves_[next_leaf++];
       return {
-          {{"bound", json_of(leaf.box)}, {"pixels", leaf.pixels}, {"seen", leaf.seen}, {"lods", leaf.lods}},
+          {{"bound", box_json(leaf.box)}, {"pixels", leaf.pixels}, {"seen", leaf.seen}, {"lods", leaf.lods}},
           leaf.box};
     }
     Box around;
@@ -351,7 +369,7 @@ class Writer {
       children.push_back(std::move(json));
       around.include(box.low, box.high);
     }
-    return {{{"bound", json_of(around)}, {"children", std::move(children)}}, around};
+    return {{{"bound", box_json(around)}, {"children", std::move(children)}}, around};
   }
 
   const Model& model_;
@@ -361,9 +379,11 @@ class Writer {
   SpaceTree tree_;
   std::vector<Leaf> leaves_;
   std::vector<Piece> pieces_;
+  std::vector<Scene> scenes_;
   std::vector<std::string> filenames_;
   std::map<int, int> files_of_level_;
-  std::vector<std::size_t> gaussians_;  // by level
+  std::vector<std::size_t> gaussians_;                   // by level
+  std::map<const Piece*, std::vector<Levels>> decoded_;  // until they are drawn together
   std::mutex counting_;
   std::size_t done_ = 0;
 };

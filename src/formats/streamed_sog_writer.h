@@ -17,6 +17,7 @@ struct LevelSettings {
   int levels = 8;               // each with half of the Gaussians of the one before in each leaf, rounded up
   std::size_t file = 131072;    // Gaussians of a SOG, at most, or one leaf: readers decode whole files
   std::size_t piece = 1048576;  // of the finest level, at most, in memory at a time; no SOG has leaves of two
+  std::size_t together = 5242880;  // of the finest level, at most, or a piece, in pictures of many leaves
 };
 
 /// What the levels of a leaf lose (formats/detail.h), in lists of a number for each width of a pixel.
@@ -26,20 +27,19 @@ struct LeafErrors {
   std::vector<std::vector<std::vector<double>>> of_level;  // by level and direction, px times squared colour
 };
 
-/// The squared errors of some pictures in all, as what leaves lose by themselves predicts them, and as they
-/// are.
+/// The squared error of a picture, as what leaves lose by themselves predicts it, and as it is.
 struct LossTogether {
   double predicted = 0.0, found = 0.0;
 };
 
-struct JudgedLevels {
-  std::vector<LeafErrors> leaves;
-  LossTogether together;
+/// What levels of leaves lose, given from the finest, as the files have them.
+struct JudgeLevels {
+  std::function<std::vector<LeafErrors>(std::span<const std::vector<Model>> leaves)> alone;
+  /// In pictures of all of them: so many, or fewer.
+  std::function<std::vector<LossTogether>(std::span<const std::vector<Model>> leaves,
+                                          std::span<const LeafErrors> errors, int pictures)>
+      together;
 };
-
-/// Finds them for leaves, given their levels from the finest, as the files have them, and for so many
-/// pictures of all of them.
-using JudgeLevels = std::function<JudgedLevels(std::span<const std::vector<Model>> leaves, int pictures)>;
 
 /// The folder that a streamed SOG is written to; names are relative to it. Files may be written by several
 /// threads at a time.
@@ -60,9 +60,10 @@ struct LevelsWritten {
 /// chosen (formats/detail.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
-/// bytes. What levels lose is kept beside the SOGs until then, in errors_0.json and so on, and told in
-/// lod-meta.json: a leaf has "pixels" and "seen", and each of its lods "errors", by as much larger or smaller
-/// as pictures of many leaves are found to lose more or less than predicted. Progress is shown.
+/// bytes. What levels lose is kept beside the SOGs until then, in errors_0.json and together_0.json and so
+/// on, and told in lod-meta.json: a leaf has "pixels" and "seen", and each of its lods "errors", as much
+/// larger or smaller as the median picture of many leaves is found to lose more or less than predicted.
+/// Progress is shown.
 LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
                                  const JudgeLevels& judge);
 

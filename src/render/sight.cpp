@@ -30,7 +30,7 @@ shared::View shrunk(const shared::View& view, int by) {
   return small;
 }
 
-/// Columns of a picture, which end between cells, as windows do (ViewPart); none where there are more bands.
+/// px, which end between cells, as windows do (ViewPart); none where a band is narrower.
 struct Columns {
   std::uint32_t left, right;
 };
@@ -38,12 +38,10 @@ struct Columns {
 Columns columns_of(const Band& band, const shared::View& view) {
   constexpr std::uint32_t cell = BLEND_CELL;
   const std::uint32_t cells = (view.width + cell - 1) / cell;
-  const auto column = [&](int index) {
-    const std::uint64_t before = std::uint64_t{cells} * static_cast<std::uint32_t>(index);
-    return std::min(static_cast<std::uint32_t>(before / static_cast<std::uint32_t>(band.count)) * cell,
-                    view.width);
+  const auto column = [&](double share) {
+    return std::min(static_cast<std::uint32_t>(std::lround(share * cells)) * cell, view.width);
   };
-  return {column(band.index), column(band.index + 1)};
+  return {column(band.begin), column(band.end)};
 }
 
 }  // namespace
@@ -82,7 +80,7 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
     const Columns columns = columns_of(band, view);
     if (columns.left == columns.right) return seen;
     exact.parts.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
-    if (band.count > 1) {
+    if (!band.is_all()) {
       exact.parts.back().corner = {columns.left, 0};
       exact.parts.back().size = {columns.right - columns.left, view.height};
     }

@@ -22,8 +22,8 @@ class Sight {
   std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
                                           const ModelParts& parts, int shrink_most = shrink_usual);
 
-  /// The same of one view, and of its picture only what is in a band: areas of all bands add up to those of
-  /// the picture, but for what is hidden, which counts in each.
+  /// The same of one view, and of its picture only what is in a band: areas of bands side by side add up to
+  /// those of the picture, but for what is hidden, which counts in each.
   std::vector<SeenPart> look(const shared::View& view, Band band, const FrameSettings& settings,
                              const ModelParts& parts);
 

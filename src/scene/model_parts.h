@@ -75,10 +75,11 @@ struct SeenPart {
   double distance = 0.0;
 };
 
-/// One of so many bands of a picture, side by side from its left: what lies at the horizon, which is most of
-/// a large scene, is in all of them.
+/// Columns of a picture, from its left, as shares of its width: what lies at the horizon, which is most of a
+/// large scene, is in all bands side by side.
 struct Band {
-  int index = 0, count = 1;
+  double begin = 0.0, end = 1.0;
+  bool is_all() const { return begin <= 0.0 && end >= 1.0; }
 };
 
 }  // namespace binosplat

@@ -1,7 +1,6 @@
 #include "study/loss_together.h"
 
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -27,9 +26,10 @@ constexpr int looks = 3;  // at the levels of a picture; then a choice hardly ch
 constexpr int side = 512;     // px
 constexpr double fov = 95.0;  // degrees
 // Eyes are tried in small pictures of the coarsest levels.
-constexpr int tried_side = 128, tries_for_one = 24;
+constexpr int tried_side = 128, tries_for_one = 24, tried_at_once = 8;
 constexpr double shows_least = 0.35;  // of a picture, that is not empty,
 constexpr double as_far_least = 0.4;  // on the whole, of how far away what it looks at is
+constexpr double hidden = 0.01;       // px of a part that is shown; thousands of them are a pixel's tenths
 
 /// As lod-meta.json will tell it.
 DetailPart part_of(std::span<const Model> levels, const LeafErrors& errors) {
@@ -82,7 +82,6 @@ class Leaves {
   std::vector<std::size_t> coarsest() const {
     return std::vector<std::size_t>(leaves_.size(), leaves_[0].size() - 1);
   }
-  std::vector<std::size_t> finest() const { return std::vector<std::size_t>(leaves_.size(), 0); }
 
   void bring_to(const std::vector<std::size_t>& levels) {
     std::vector<ModelParts::Replacement> replacements;
@@ -102,10 +101,16 @@ class Leaves {
       const Model& level = leaves_[random.bits() % leaves_.size()].back();
       return glm::dvec3(level.position[random.bits() % level.count()]);
     };
-    for (int k = 0; k < tries_for_one * pictures && std::ssize(views) < pictures; ++k) {
-      const glm::dvec3 at = any(), eye = glm::mix(at, any(), random.uniform(0.3, 1.0));
-      if (eye != at && shows(from(eye, at, tried_side), glm::distance(eye, at)))
-        views.push_back(from(eye, at, side));
+    for (int k = 0; k < tries_for_one * pictures && std::ssize(views) < pictures; k += tried_at_once) {
+      std::vector<Try> tries(tried_at_once);
+      for (Try& one : tries) {
+        one.at = any();
+        one.eye = glm::mix(one.at, any(), random.uniform(0.3, 1.0));
+      }
+      std::erase_if(tries, [](const Try& one) { return one.eye == one.at; });
+      for (const Try& one : those_that_show(tries)) {
+        if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side));
+      }
     }
     return views;
   }
@@ -117,8 +122,11 @@ class Leaves {
   double settle(const shared::View& view) {
     bring_to(coarsest());
     DetailChoice choice;
+    shows_.assign(leaves_.size(), 0.0);
     for (int look = 0; look < looks; ++look) {
       const DetailSeen seen{sight_->look({&view, 1}, {}, layout_), levels_};
+      for (std::size_t i = 0; i < shows_.size(); ++i)
+        shows_[i] = std::max(shows_[i], seen.by_view[0][i].area);
       choice = choose_levels_within(parts_, detail_views({&view, 1}), error_of_psnr(asked_db),
                                     std::numeric_limits<std::size_t>::max(), seen, {}, false);
       if (choice.levels == levels_) break;
@@ -127,25 +135,45 @@ class Leaves {
     return choice.error();
   }
 
+  /// Brings what the view that was settled shows to the finest levels.
+  void refine() {
+    std::vector<std::size_t> levels = levels_;
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      if (shows_[i] > hidden) levels[i] = 0;
+    bring_to(levels);
+  }
+
  private:
-  /// Whether a view has much to show, and nothing close before what it looks at.
-  bool shows(const shared::View& view, double as_far) {
-    double area = 0.0, logarithms = 0.0;
-    std::vector<SeenPart> of_parts;
-    if (!can_draw([&] { of_parts = sight_->look({&view, 1}, {}, layout_).front(); })) return false;
-    for (const SeenPart& seen : of_parts) {
-      if (seen.area == 0.0) continue;
-      area += seen.area;
-      logarithms += seen.area * std::log(seen.distance);
+  struct Try {
+    glm::dvec3 eye, at;
+  };
+
+  /// Those whose views have much to show, and nothing close before what they look at.
+  std::vector<Try> those_that_show(std::span<const Try> tries) {
+    std::vector<shared::View> views;
+    for (const Try& one : tries) views.push_back(from(one.eye, one.at, tried_side));
+    std::vector<std::vector<SeenPart>> seen;
+    if (views.empty() || !can_draw([&] { seen = sight_->look(views, {}, layout_); })) return {};
+    std::vector<Try> found;
+    for (std::size_t k = 0; k < tries.size(); ++k) {
+      double area = 0.0, logarithms = 0.0;
+      for (const SeenPart& part : seen[k]) {
+        if (part.area == 0.0) continue;
+        area += part.area;
+        logarithms += part.area * std::log(part.distance);
+      }
+      if (area > shows_least * tried_side * tried_side &&
+          std::exp(logarithms / area) > as_far_least * glm::distance(tries[k].eye, tries[k].at))
+        found.push_back(tries[k]);
     }
-    return area > shows_least * tried_side * tried_side &&
-           std::exp(logarithms / area) > as_far_least * as_far;
+    return found;
   }
 
   std::span<const std::vector<Model>> leaves_;
   std::vector<DetailPart> parts_;
   ModelParts layout_;
   std::vector<std::size_t> levels_;
+  std::vector<double> shows_;  // of each, the view that was settled, px
   Model model_;
   std::shared_ptr<render::GpuModel> gpu_model_;
   std::optional<render::Frame> frame_;
@@ -154,28 +182,25 @@ class Leaves {
 
 }  // namespace
 
-LossTogether loss_together(gl::Context& context, std::span<const std::vector<Model>> of_leaves,
-                           std::span<const LeafErrors> errors, int pictures) {
+std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> of_leaves,
+                                        std::span<const LeafErrors> errors, int pictures) {
   Leaves leaves(context, of_leaves, errors);
   const std::vector<shared::View> views = leaves.find_views(pictures);
-  std::deque<std::optional<SquaredError>> wanted(views.size());
-  leaves.bring_to(leaves.finest());
-  for (std::size_t k = 0; k < views.size(); ++k) {
-    if (!can_draw([&] { leaves.draw(views[k]); })) continue;
-    wanted[k].emplace(context).add(leaves.colours(), side * side);
-  }
-  LossTogether loss;
-  for (std::size_t k = 0; k < views.size(); ++k) {
-    double predicted = 0.0;
-    const auto settle = [&] {
-      predicted = leaves.settle(views[k]);
-      leaves.draw(views[k]);
+  std::vector<LossTogether> losses;
+  for (const shared::View& view : views) {
+    LossTogether loss;
+    SquaredError error(context);
+    const auto draw = [&] {
+      loss.predicted = leaves.settle(view);
+      leaves.draw(view);
+      error.add(leaves.colours(), side * side);
+      leaves.refine();
+      leaves.draw(view);
+      loss.found = error.mean(leaves.colours());
     };
-    if (!wanted[k] || !can_draw(settle)) continue;
-    loss.predicted += predicted;
-    loss.found += wanted[k]->mean(leaves.colours());
+    if (can_draw(draw)) losses.push_back(loss);
   }
-  return loss;
+  return losses;
 }
 
 }  // namespace binosplat::study

@@ -175,6 +175,7 @@ class Flight {
       const auto begin = Clock::now();
       auto seen = sight_.look(view, band, plan_.settings, parts);
       numbers_.look_ms.push_back(ms_since(begin));
+      band_ = band;
       return seen;
     });
   }
@@ -206,6 +207,7 @@ class Flight {
     for (const ModelParts::Range& range : changes.filled) filled += range.count;
     if (filled > 0) numbers_.read_gaussians.push_back(static_cast<double>(filled));
     timeline_.push_back({{"look_ms", looked ? numbers_.look_ms.back() : 0.0},
+                         {"look_at", looked ? Json({band_.begin, band_.end}) : Json()},
                          {"take_ms", numbers_.take_ms.back()},
                          {"new", filled},
                          {"gpu_ms", drawn_ms},
@@ -285,6 +287,7 @@ class Flight {
   render::FrameReport report_;  // of the last frame along the path
   render::Sight sight_;
   study::SquaredError before_;
+  Band band_;  // that was looked at last
   Numbers numbers_;
   Json timeline_ = Json::array();
   std::optional<Clock::time_point> unsettled_;

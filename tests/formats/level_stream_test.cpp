@@ -48,8 +48,10 @@ std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dv
 /// Of all parts, in a picture of 100 x 100 px.
 shared::View before_all() {
   shared::View view = at({0, 0, -30});
+  view.row_x = {1, 0, 0, 0};
+  view.row_y = {0, 1, 0, 0};
   view.row_z = {0, 0, 1, 0};
-  view.centre.w = 1.0f;
+  view.lens = {100, 100, 50, 50};
   view.width = view.height = 100;
   return view;
 }
@@ -269,10 +271,8 @@ TEST(LevelStream, LooksAheadOfAHeadThatMoves) {
   };
   do {
     now = static_cast<float>(speed * std::min(seconds(), stops_at));
-    shared::View left = at({now, 0, -30});
-    left.row_z = {0, 0, 1, 0};
-    left.centre.w = 1.0f;
-    left.width = left.height = 100;
+    shared::View left = before_all();
+    left.anchor.x = now;
     shared::View right = left;
     right.centre.y = 1.0f;  // tells it from the other
     stream.want(std::vector{left, right}, look);
@@ -310,10 +310,8 @@ TEST(LevelStream, TellsOfAHeadThatMoves) {
   };
   while (!saw_ahead || seconds() < 0.5) {
     now = static_cast<float>(2.0 * seconds());
-    shared::View view = at({now, 0, -30});
-    view.row_z = {0, 0, 1, 0};
-    view.centre.w = 1.0f;
-    view.width = view.height = 100;
+    shared::View view = before_all();
+    view.anchor.x = now;
     stream.want(std::vector{view, view}, look);
     stream.take(model, 1);
     ASSERT_LT(seconds(), 60.0) << "it looks nowhere ahead";
@@ -338,11 +336,11 @@ TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
   for (const int slow_ms : {0, 10}) {
     LevelStream stream(copy.path(), for_40_db);
     Model model = stream.coarsest();
-    std::vector<std::pair<float, int>> looks;  // where the eye was, and of how many bands
+    std::vector<std::pair<float, Band>> looks;  // where the eye was, and at what
     const auto look = [&](const shared::View& seen_by, Band band, const ModelParts& parts) {
-      looks.emplace_back(seen_by.anchor.x, band.count);
+      looks.emplace_back(seen_by.anchor.x, band);
       std::this_thread::sleep_for(std::chrono::milliseconds(slow_ms));
-      return std::vector(parts.size(), SeenPart{2000.0 / band.count, 30.0});
+      return std::vector(parts.size(), SeenPart{2000.0 * (band.end - band.begin), 30.0});
     };
     for (const float x : {0.0f, 1.0f}) {
       view.anchor.x = x;
@@ -360,13 +358,21 @@ TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
       EXPECT_EQ(stream.gaussians(), 1000u);
     }
     ASSERT_GE(looks.size(), 4u);
-    EXPECT_EQ(looks[0], std::pair(0.0f, 1));
-    EXPECT_EQ(looks[1], std::pair(0.5f, 1));
+    for (const std::size_t k : {0u, 1u}) {
+      EXPECT_EQ(looks[k].first, k == 0 ? 0.0f : 0.5f);
+      EXPECT_TRUE(looks[k].second.is_all());
+    }
     if (slow_ms == 0) continue;
-    const int bands = looks[2].second;
-    EXPECT_GE(bands, 4) << "10 ms in glances of 3";
-    for (std::size_t k = 2; k < 2 + 2 * static_cast<std::size_t>(bands); ++k)
-      EXPECT_EQ(looks.at(k), std::pair(k < 2 + static_cast<std::size_t>(bands) ? 0.0f : 0.5f, bands)) << k;
+    std::size_t k = 2;
+    for (const float eye : {0.0f, 0.5f}) {
+      int bands = 0;
+      do {
+        EXPECT_EQ(looks.at(k).first, eye);
+        EXPECT_EQ(looks[k].second.begin, bands == 0 ? 0.0 : looks[k - 1].second.end);
+        ++bands;
+      } while (looks[k++].second.end < 1.0);
+      EXPECT_GE(bands, 4) << "10 ms in glances of 3";
+    }
   }
 }
 

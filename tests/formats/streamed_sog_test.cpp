@@ -200,8 +200,10 @@ void teach(nlohmann::json& meta) {
 /// A picture of 100 x 100 px of all that is ahead.
 shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
   shared::View view = at(eye);
+  view.row_x = {forward, 0, 0, 0};
+  view.row_y = {0, 1, 0, 0};
   view.row_z = {0, 0, forward, 0};
-  view.centre.w = 1.0f;
+  view.lens = {100, 100, 50, 50};
   view.width = view.height = 100;
   return view;
 }

@@ -28,23 +28,29 @@ struct StreamedSogWriter : testing::Test {
   /// Files go to `files`; after `most` of them nothing more can be written.
   LevelsWritten write(Files& files, std::size_t most = SIZE_MAX) const {
     std::mutex one_at_a_time;
-    return write_streamed_sog(model, settings,
-                              {[&](const std::string& name) { return files.contains(name); },
-                               [&](const std::string& name) { return files.at(name); },
-                               [&](const std::string& name, std::span<const std::byte> bytes) {
-                                 const std::lock_guard lock(one_at_a_time);
-                                 if (files.size() == most) throw std::runtime_error("interrupted");
-                                 EXPECT_FALSE(files.contains(name)) << name << " is written twice";
-                                 files[name] = as_text(bytes);
-                               }},
-                              [&](std::span<const std::vector<Model>> leaves, int of_piece) {
-                                pictures.push_back(of_piece);
-                                for (const std::vector<Model>& levels : leaves) {
-                                  for (std::size_t k = 0; k < levels.size(); ++k)
-                                    append(judged[k], levels[k], 0, levels[k].count());
-                                }
-                                return JudgedLevels{errors_of(leaves), together};
-                              });
+    return write_streamed_sog(
+        model, settings,
+        {[&](const std::string& name) { return files.contains(name); },
+         [&](const std::string& name) { return files.at(name); },
+         [&](const std::string& name, std::span<const std::byte> bytes) {
+           const std::lock_guard lock(one_at_a_time);
+           if (files.size() == most) throw std::runtime_error("interrupted");
+           EXPECT_FALSE(files.contains(name)) << name << " is written twice";
+           files[name] = as_text(bytes);
+         }},
+        {[&](std::span<const std::vector<Model>> leaves) {
+           for (const std::vector<Model>& levels : leaves) {
+             for (std::size_t k = 0; k < levels.size(); ++k)
+               append(judged[k], levels[k], 0, levels[k].count());
+           }
+           return errors_of(leaves);
+         },
+         [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int of_scene) {
+           EXPECT_EQ(leaves.size(), errors.size());
+           EXPECT_EQ(errors.back().pixels.at(1), 1000.0);
+           pictures.push_back(of_scene);
+           return together;
+         }});
   }
 
   /// By what can be told apart in lod-meta.json.
@@ -72,8 +78,8 @@ struct StreamedSogWriter : testing::Test {
 
   Model model = test::random_model(1, 3000, 1);
   mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));  // by level, all that was
-  mutable std::vector<int> pictures;  // that were asked for, by piece
-  LossTogether together;              // of each
+  mutable std::vector<int> pictures;   // that were asked for, by scene
+  std::vector<LossTogether> together;  // of each
   LevelSettings settings{.leaf = 200, .levels = 4};
 };
 
@@ -171,12 +177,15 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
 }
 
 TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
-  settings.piece = 1000;
-  together = {.predicted = 2e-4, .found = 4e-4};
+  settings.piece = 700;
+  settings.together = 1500;  // two pieces
+  together = {{1e-4, 2e-4}, {1e-4, 9e-4}, {1e-4, 1e-6}, {0.0, 0.0}};
   Files files;
   write(files);
-  EXPECT_GT(pictures.size(), 2u) << "one of each piece";
-  EXPECT_TRUE(std::ranges::all_of(pictures, [](int of_piece) { return of_piece >= 1; }));
+  const auto scenes = pictures.size();
+  EXPECT_GE(scenes, 2u);
+  EXPECT_LE(scenes, 3u);
+  EXPECT_TRUE(std::ranges::all_of(pictures, [&](int of_scene) { return of_scene == 12 / int(scenes); }));
   const auto expect_errors = [&](double expected) {
     for_leaves(json::parse(files.at("lod-meta.json"))["tree"], [&](const json& leaf) {
       EXPECT_EQ(leaf["lods"]["2"]["errors"][0][0], expected);
@@ -184,12 +193,21 @@ TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
     });
   };
   expect_errors(0.494);  // twice 0.247
-  for (const LossTogether absurd : {LossTogether{1e-9, 1e-3}, LossTogether{0.0, 0.0}}) {
+  for (const auto& absurd :
+       {std::vector<LossTogether>{{1e-9, 1e-3}}, std::vector<LossTogether>{{0.0, 0.0}}, {}}) {
     files.clear();
     together = absurd;
     write(files);
-    expect_errors(absurd.predicted > 0.0 ? 0.988 : 0.247);
+    expect_errors(!absurd.empty() && absurd[0].predicted > 0.0 ? 0.988 : 0.247);
   }
+  // Goes on with the pictures that are left.
+  Files again = files;
+  again.erase("lod-meta.json");
+  again.erase("together_1.json");
+  pictures.clear();
+  write(again);
+  EXPECT_EQ(again, files);
+  EXPECT_EQ(pictures.size(), 1u);
 }
 
 /// Gaussians by their places, which rounding hardly moves.
@@ -228,7 +246,7 @@ TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
 TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
   Files whole;
   write(whole);
-  ASSERT_EQ(whole.size(), 4u * 8 + 2);  // seven pictures and meta.json each
+  ASSERT_EQ(whole.size(), 4u * 8 + 3);  // seven pictures and meta.json each
   for (const std::size_t most : {0, 1, 8, 9, 20, 32}) {
     Files files;
     EXPECT_THROW(write(files, most), std::runtime_error);
@@ -242,7 +260,8 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
       if (!files.contains(folder + "meta.json"))
         std::erase_if(files, [&](const auto& file) { return file.first.starts_with(folder); });
     }
-    EXPECT_EQ(files.size(), 8 * complete + files.count("errors_0.json")) << "meta.json is written last";
+    EXPECT_EQ(files.size(), 8 * complete + files.count("errors_0.json") + files.count("together_0.json"))
+        << "meta.json is written last";
     EXPECT_EQ(write(files).kept, complete);
     EXPECT_EQ(files, whole) << most;
   }

@@ -180,7 +180,7 @@ TEST(Sight, OfBandsAddsUp) {
       std::vector<double> areas(7, 0.0);
       std::size_t bands_with_any = 0;
       for (int k = 0; k < count; ++k) {
-        const auto band = sight.look(views[0], {k, count}, {}, parted.parts);
+        const auto band = sight.look(views[0], {double(k) / count, double(k + 1) / count}, {}, parted.parts);
         for (std::size_t p = 0; p < 7; ++p) areas[p] += band[p].area;
         bands_with_any += band[3].area > 0.0 ? 1 : 0;
         EXPECT_LT(band[3].area, 0.99 * all[3].area) << "planted: the whole picture for a band";
