@@ -185,8 +185,8 @@ class ErrorChooser {
     for (const DetailView& view : views) allowed_.push_back(error * view.pixels);
     allowed_.push_back(error * sphere_pixels_);
     lost_.resize(allowed_.size());
-    for (std::size_t p = 0; p < parts.size(); ++p)
-      first_.push_back(first_.back() + allowed_.size() * parts[p].levels.size());
+    for (const DetailPart& part : parts)
+      first_.push_back(first_.back() + allowed_.size() * part.levels.size());
     errors_.resize(first_.back());
     const auto find_errors = [&](std::size_t p) {
       for (std::size_t v = 0; v < allowed_.size(); ++v)

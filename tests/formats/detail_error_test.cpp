@@ -201,6 +201,31 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
 }
 
+// Of a headset's eye, whose picture is not even about its middle, and which is turned.
+TEST(DetailErrors, GoByThePicturesSides) {
+  shared::View view{};
+  view.anchor = {1, 2, 3, 0.2f};
+  view.row_x = {0, 0, -1, 0};
+  view.row_y = {0, 1, 0, 0};
+  view.row_z = {1, 0, 0, 0};
+  view.lens = {100, 80, 30, 60};
+  view.width = 100;
+  view.height = 90;
+  const DetailView detail = detail_views({&view, 1}).front();
+  const auto sees = [&](double x, double y, double depth) {  // px
+    const glm::dvec3 at(depth, (y - 60.0) / 80.0 * depth, -(x - 30.0) / 100.0 * depth);
+    return std::ranges::all_of(detail.inward, [&](const glm::dvec3& n) { return glm::dot(n, at) > 0.0; });
+  };
+  for (const double depth : {0.5, 70.0}) {
+    for (const double x : {1.0, 99.0}) {
+      for (const double y : {1.0, 89.0}) EXPECT_TRUE(sees(x, y, depth));
+    }
+    for (const double x : {-1.0, 101.0}) EXPECT_FALSE(sees(x, 45.0, depth)) << x;
+    for (const double y : {-1.0, 91.0}) EXPECT_FALSE(sees(50.0, y, depth)) << y;
+    EXPECT_FALSE(sees(50.0, 45.0, -depth)) << "behind";
+  }
+}
+
 // What is hidden, or out of the picture, need not be fine.
 TEST(DetailErrors, GoByWhatIsSeen) {
   const std::vector<DetailPart> parts = row(8);
