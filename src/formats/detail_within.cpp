@@ -190,7 +190,7 @@ class ErrorChooser {
     errors_.resize(first_.back());
     const auto find_errors = [&](std::size_t p) {
       for (std::size_t v = 0; v < allowed_.size(); ++v)
-        sights.find_errors(v, p, &errors_[first_[p] + v * parts[p].levels.size()]);
+        sights.find_errors(v, p, errors_.data() + first_[p] + v * parts[p].levels.size());
     };
     parallel_for(parts.size(), find_errors, chunk);
     for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -321,7 +321,7 @@ double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size
 double DetailChoice::saved(std::size_t part, std::size_t from, std::size_t to) const {
   double most = 0.0;
   for (std::size_t v = 0; v <= pixels.size(); ++v) {
-    const double* const of_view = &errors[first[part] + v * levels_of(part)];
+    const double* const of_view = errors.data() + first[part] + v * levels_of(part);
     most = std::max(most, (of_view[from] - of_view[to]) / (v < pixels.size() ? pixels[v] : sphere_pixels));
   }
   return most;

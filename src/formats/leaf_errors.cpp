@@ -39,8 +39,17 @@ std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& 
   for (std::size_t k = 0; k < leaves; ++k) {
     const JsonValue leaf = list.at(k);
     read(leaf.at("pixels"), errors[k].pixels);
-    read(leaf.at("seen"), errors[k].seen);
-    read(leaf.at("errors").list_of(levels), errors[k].of_level);
+    const auto by_direction = [&](const JsonValue& of) {
+      for (std::size_t d = 0; d < detail_directions; ++d)
+        of.list_of(detail_directions).at(d).list_of(errors[k].pixels.size());
+      std::vector<std::vector<double>> numbers;
+      read(of, numbers);
+      return numbers;
+    };
+    errors[k].seen = by_direction(leaf.at("seen"));
+    const JsonValue of_levels = leaf.at("errors").list_of(levels);
+    for (std::size_t level = 0; level < levels; ++level)
+      errors[k].of_level.push_back(by_direction(of_levels.at(level)));
   }
   return errors;
 }

@@ -136,10 +136,16 @@ bool LevelStream::look_on(const Look& look) {
     looked_.push_back(k < here() ? wanted_[k] : motion_.ahead(lead_s)[k % wanted_.size()]);
     seen_.emplace_back(parts_.size());
   }
-  const auto start = Clock::now();
-  add(look(looked_.back(), bands_.next(), parts_), seen_.back());
+  double took_ms = 0.0;
+  bool is_last = false;
+  do {
+    const auto start = Clock::now();
+    add(look(looked_.back(), bands_.next(), parts_), seen_.back());
+    took_ms = ms_since(start);
+    is_last = bands_.note(took_ms);
+  } while (!is_last && took_ms < LookBands::nothing_ms);
   looked_now_ = true;
-  if (!bands_.note(ms_since(start)) || looked_.size() < to_look_at_) return false;
+  if (!is_last || looked_.size() < to_look_at_) return false;
   const auto views = static_cast<double>(to_look_at_);
   const double frame_ms = ms_since(*looked_at_) / (views * bands_.count());
   bands_.divide(std::max(1, static_cast<int>(look_most_ms / (views * frame_ms))));

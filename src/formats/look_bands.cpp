@@ -3,21 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace binosplat {
 
 namespace {
 
-constexpr double glance_ms = 3.0;  // that a frame may take for a look
-constexpr int bands_most = 8;      // each costs all that does not depend on pixels, too:
-constexpr double fixed = 0.8;      // of what the fastest one takes
+constexpr double glance_ms = 3.0;   // that a frame may take for a look
+constexpr int bands_most = 8;       // each costs all that does not depend on pixels, too:
+constexpr double fixed_most = 0.9;  // of what the fastest one takes
+constexpr double nearly = 1.1;      // as fast as with more of them
 
-/// What a band takes whatever it shows. Bands too narrow to show anything take less.
-double fixed_of(const std::vector<double>& ms) {
-  if (ms.size() == 1) return 0.0;
-  std::vector<double> sorted = ms;
-  std::ranges::sort(sorted);
-  return fixed * *std::ranges::lower_bound(sorted, 0.5 * sorted[sorted.size() / 2]);
+/// Of those that show anything.
+double fastest(const std::vector<double>& ms) {
+  double least = *std::ranges::max_element(ms);
+  for (const double of_band : ms)
+    if (of_band >= LookBands::nothing_ms) least = std::min(least, of_band);
+  return least;
 }
 
 }  // namespace
@@ -35,13 +37,24 @@ void LookBands::start_again() {
   is_known_ = false;
 }
 
+// A picture of n bands takes n times what does not depend on pixels, and once what does: another number of
+// bands tells them apart.
+void LookBands::find_fixed(double all_ms) {
+  if (count() != before_) fixed_ms_ = (all_ms - before_ms_) / (count() - before_);
+  before_ = count();
+  before_ms_ = all_ms;
+  fixed_ms_ = std::clamp(fixed_ms_, 0.0, fixed_most * fastest(ms_));
+}
+
 void LookBands::divide(int most) {
-  const double fixed_ms = fixed_of(ms_);
+  find_fixed(std::accumulate(ms_.begin(), ms_.end(), 0.0));
   std::vector<double> ms = ms_;  // of each, that it takes for its pixels
-  for (double& of_band : ms) of_band = std::max(0.0, of_band - fixed_ms);
+  for (double& of_band : ms) of_band = std::max(0.0, of_band - fixed_ms_);
   const double all_ms = std::accumulate(ms.begin(), ms.end(), 0.0);
-  const double needed = std::ceil(all_ms / std::max(glance_ms - fixed_ms, 1e-3));
-  const auto bands = static_cast<int>(std::clamp(needed, 1.0, double(std::min(most, bands_most))));
+  most = std::clamp(most, 1, bands_most);
+  const double enough_ms = std::max(glance_ms, nearly * (fixed_ms_ + all_ms / most));
+  int bands = 1;
+  while (bands < most && fixed_ms_ + all_ms / bands > enough_ms) ++bands;
   std::vector<double> edges = {0.0};
   double before = 0.0;  // ms of the bands to the left of this one
   for (std::size_t k = 0; k < ms.size(); before += ms[k++]) {

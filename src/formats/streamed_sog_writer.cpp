@@ -120,7 +120,7 @@ class Writer {
         file.is_there = folder_.has(file.folder + meta_name);
         (file.is_there ? written.kept : work) += file.is_there ? 1 : file.count;
       }
-      for (std::size_t i = 0; i < piece.leaves && !is_written(piece); ++i)
+      for (std::size_t i = 0; i < piece.leaves && !std::ranges::all_of(piece.files, &File::is_there); ++i)
         work += leaves_[piece.first_leaf + i].count(0);
     }
     Progress progress("writing levels of detail", work);
@@ -141,8 +141,6 @@ class Writer {
   }
 
  private:
-  static bool is_written(const Piece& piece) { return std::ranges::all_of(piece.files, &File::is_there); }
-
   /// Which leaves are a piece, and what of it goes where. Nodes that follow one another share a piece, since
   /// what lies far out is a node of a few.
   void plan() {
@@ -162,8 +160,10 @@ class Writer {
     }
   }
 
+  /// Scenes are of about as many Gaussians.
   void add_to_scene(std::size_t count) {
-    if (scenes_.empty() || scenes_.back().count + count > settings_.together)
+    const std::size_t all = model_.count(), scenes = (all - 1) / settings_.together + 1;
+    if (scenes_.empty() || scenes_.back().count * scenes >= all)
       scenes_.push_back({fmt::format("together_{}.json", scenes_.size()), pieces_.size()});
     ++scenes_.back().pieces;
     scenes_.back().count += count;
@@ -273,7 +273,8 @@ class Writer {
         std::ranges::move(errors_of(piece), std::back_inserter(errors));
       }
       const int pictures = std::max(1, pictures_in_all / static_cast<int>(scenes_.size()));
-      write(scene.losses, json_of(judge_.together(leaves, errors, pictures)));
+      write(scene.losses, json_of(settings_.levels > 1 ? judge_.together(leaves, errors, pictures)
+                                                       : std::vector<LossTogether>()));
     }
   }
 

@@ -16,7 +16,7 @@ struct LevelSettings {
   std::size_t leaf = 2048;      // Gaussians of the finest level in a leaf of the tree, at most
   int levels = 8;               // each with half of the Gaussians of the one before in each leaf, rounded up
   std::size_t file = 131072;    // Gaussians of a SOG, at most, or one leaf: readers decode whole files
-  std::size_t piece = 1048576;  // of the finest level, at most, in memory at a time; no SOG has leaves of two
+  std::size_t piece = 1048576;  // of the finest level, at most, worked on at a time; no SOG has leaves of two
   std::size_t together = 5242880;  // of the finest level, at most, or a piece, in pictures of many leaves
 };
 
@@ -60,10 +60,10 @@ struct LevelsWritten {
 /// chosen (formats/detail.h). A SOG has one level of neighbouring leaves. Its meta.json is written after its
 /// pictures, and lod-meta.json when all are there: SOGs whose meta.json the folder has already, from a run
 /// with the same model and settings that was interrupted, are left as they are, and the result has the same
-/// bytes. What levels lose is kept beside the SOGs until then, in errors_0.json and together_0.json and so
-/// on, and told in lod-meta.json: a leaf has "pixels" and "seen", and each of its lods "errors", as much
-/// larger or smaller as the median picture of many leaves is found to lose more or less than predicted.
-/// Progress is shown.
+/// bytes, if memory suffices for the same pictures. What levels lose is kept beside the SOGs, in
+/// errors_0.json and together_0.json and so on, and told in lod-meta.json: a leaf has "pixels" and "seen",
+/// and each of its lods "errors", as much larger or smaller as the median picture of many leaves is found to
+/// lose more or less than predicted. Progress is shown.
 LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
                                  const JudgeLevels& judge);
 

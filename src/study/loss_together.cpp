@@ -29,7 +29,7 @@ constexpr double fov = 95.0;  // degrees
 constexpr int tried_side = 128, tries_for_one = 24, tried_at_once = 8;
 constexpr double shows_least = 0.35;  // of a picture, that is not empty,
 constexpr double as_far_least = 0.4;  // on the whole, of how far away what it looks at is
-constexpr double hidden = 0.01;       // px of a part that is shown; thousands of them are a pixel's tenths
+constexpr double hidden = 0.01;       // px of a part that is shown; of hundreds of thousands
 
 /// As lod-meta.json will tell it.
 DetailPart part_of(std::span<const Model> levels, const LeafErrors& errors) {
@@ -84,13 +84,16 @@ class Leaves {
   }
 
   void bring_to(const std::vector<std::size_t>& levels) {
-    std::vector<ModelParts::Replacement> replacements;
-    for (std::size_t i = 0; i < leaves_.size(); ++i)
-      if (levels_.empty() || levels[i] != levels_[i]) replacements.push_back({i, &leaves_[i][levels[i]]});
-    levels_ = levels;
-    layout_.replace(model_, replacements);
+    put(levels);
     const ModelParts::Changes changes = layout_.take_changes();
     if (gpu_model_) gpu_model_->reload(changes);
+  }
+
+  /// When memory did not suffice, and nobody knows what is on the GPU.
+  void start_again() {
+    put(coarsest());
+    layout_.take_changes();
+    gpu_model_->reload();
   }
 
   /// Views from among them, as long as the levels are the coarsest.
@@ -144,6 +147,14 @@ class Leaves {
   }
 
  private:
+  void put(const std::vector<std::size_t>& levels) {
+    std::vector<ModelParts::Replacement> replacements;
+    for (std::size_t i = 0; i < leaves_.size(); ++i)
+      if (levels_.empty() || levels[i] != levels_[i]) replacements.push_back({i, &leaves_[i][levels[i]]});
+    levels_ = levels;
+    layout_.replace(model_, replacements);
+  }
+
   struct Try {
     glm::dvec3 eye, at;
   };
@@ -198,7 +209,11 @@ std::vector<LossTogether> loss_together(gl::Context& context, std::span<const st
       leaves.draw(view);
       loss.found = error.mean(leaves.colours());
     };
-    if (can_draw(draw)) losses.push_back(loss);
+    if (can_draw(draw)) {
+      losses.push_back(loss);
+    } else {
+      leaves.start_again();
+    }
   }
   return losses;
 }

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "formats/content.h"
@@ -30,8 +32,14 @@ struct StreamedSogWriter : testing::Test {
     std::mutex one_at_a_time;
     return write_streamed_sog(
         model, settings,
-        {[&](const std::string& name) { return files.contains(name); },
-         [&](const std::string& name) { return files.at(name); },
+        {[&](const std::string& name) {
+           const std::lock_guard lock(one_at_a_time);
+           return files.contains(name);
+         },
+         [&](const std::string& name) {
+           const std::lock_guard lock(one_at_a_time);
+           return files.at(name);
+         },
          [&](const std::string& name, std::span<const std::byte> bytes) {
            const std::lock_guard lock(one_at_a_time);
            if (files.size() == most) throw std::runtime_error("interrupted");
@@ -49,7 +57,7 @@ struct StreamedSogWriter : testing::Test {
            EXPECT_EQ(leaves.size(), errors.size());
            EXPECT_EQ(errors.back().pixels.at(1), 1000.0);
            pictures.push_back(of_scene);
-           return together;
+           return together ? *together : of_all(leaves, errors);
          }});
   }
 
@@ -59,12 +67,24 @@ struct StreamedSogWriter : testing::Test {
     for (const std::vector<Model>& levels : leaves) {
       LeafErrors& leaf = errors.emplace_back();
       leaf.pixels = {levels[0].position[0].x + 100.0, 1000.0};
-      leaf.seen = {{1.0, 2.0}, {levels[0].position[0].y + 100.0, 4.0}};
+      leaf.seen.assign(detail_directions, {levels[0].position[0].y + 100.0, 4.0});
       for (std::size_t level = 0; level < levels.size(); ++level)
-        leaf.of_level.push_back(
-            {{0.123456 * static_cast<double>(level)}, {static_cast<double>(levels[level].count())}});
+        leaf.of_level.emplace_back(
+            detail_directions,
+            std::vector{0.123456 * static_cast<double>(level), static_cast<double>(levels[level].count())});
     }
     return errors;
+  }
+
+  /// By what can be told apart in the factor that errors get.
+  static std::vector<LossTogether> of_all(std::span<const std::vector<Model>> leaves,
+                                          std::span<const LeafErrors> errors) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      sum = 0.7 * sum + errors[k].seen[0][0];
+      for (const Model& level : leaves[k]) sum = 0.7 * sum + level.position[0].x;
+    }
+    return {{1.0, 1.0 + 0.4 * std::sin(sum)}};
   }
 
   Model read(const Files& files, int lod) const {
@@ -78,8 +98,8 @@ struct StreamedSogWriter : testing::Test {
 
   Model model = test::random_model(1, 3000, 1);
   mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));  // by level, all that was
-  mutable std::vector<int> pictures;   // that were asked for, by scene
-  std::vector<LossTogether> together;  // of each
+  mutable std::vector<int> pictures;                  // that were asked for, by scene
+  std::optional<std::vector<LossTogether>> together;  // of each
   LevelSettings settings{.leaf = 200, .levels = 4};
 };
 
@@ -125,6 +145,7 @@ int outside(const json& meta, const Model& level, int lod) {
 }
 
 TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
+  together.emplace();  // no pictures
   Files files;
   const LevelsWritten written = write(files);
   json meta = json::parse(files.at("lod-meta.json"));
@@ -151,7 +172,9 @@ TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
       const json& part = leaf["lods"][std::to_string(lod)];
       EXPECT_EQ(part["count"], (finest + (1u << lod) - 1) >> lod);
       const double error = lod == 1 ? 0.123 : lod == 2 ? 0.247 : lod == 3 ? 0.37 : 0.0;
-      EXPECT_EQ(part["errors"], json({json({error}), json({part["count"].get<double>()})})) << "three digits";
+      EXPECT_EQ(part["errors"],
+                json(std::vector(detail_directions, std::vector{error, part["count"].get<double>()})))
+          << "three digits";
     }
     EXPECT_EQ(leaf["pixels"][1], 1000.0);
     EXPECT_EQ(leaf["seen"][1][1], 4.0);
@@ -200,7 +223,14 @@ TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
     write(files);
     expect_errors(!absurd.empty() && absurd[0].predicted > 0.0 ? 0.988 : 0.247);
   }
-  // Goes on with the pictures that are left.
+}
+
+TEST_F(StreamedSogWriter, GoesOnWithThePicturesThatAreLeft) {
+  settings.piece = 700;
+  settings.together = 1500;  // two pieces, or more
+  Files files;
+  write(files);
+  EXPECT_FALSE(files.contains("together_2.json"));
   Files again = files;
   again.erase("lod-meta.json");
   again.erase("together_1.json");
@@ -208,6 +238,11 @@ TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
   write(again);
   EXPECT_EQ(again, files);
   EXPECT_EQ(pictures.size(), 1u);
+  again.erase("lod-meta.json");
+  again.erase("errors_1.json");
+  again.erase("together_0.json");
+  write(again);
+  EXPECT_EQ(again, files);
 }
 
 /// Gaussians by their places, which rounding hardly moves.
@@ -247,7 +282,7 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
   Files whole;
   write(whole);
   ASSERT_EQ(whole.size(), 4u * 8 + 3);  // seven pictures and meta.json each
-  for (const std::size_t most : {0, 1, 8, 9, 20, 32}) {
+  for (const std::size_t most : {0, 1, 8, 9, 20, 32, 33, 34}) {
     Files files;
     EXPECT_THROW(write(files, most), std::runtime_error);
     ASSERT_EQ(files.size(), most);
