@@ -312,16 +312,18 @@ double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size
                               std::size_t end) const {
   std::vector<double> lost(end - begin, 0.0);
   for (std::size_t p = 0; p + 1 < first.size(); ++p) {
-    for (std::size_t v = begin; levels_of(p) > 0 && v < end; ++v)
-      lost[v - begin] += errors[first[p] + v * levels_of(p) + any_levels[p]] / pixels[v];
+    const std::size_t levels_of_part = levels_of(p);
+    for (std::size_t v = begin; levels_of_part > 0 && v < end; ++v)
+      lost[v - begin] += errors[first[p] + v * levels_of_part + any_levels[p]] / pixels[v];
   }
   return lost.empty() ? 0.0 : *std::ranges::max_element(lost);
 }
 
 double DetailChoice::saved(std::size_t part, std::size_t from, std::size_t to) const {
+  const std::size_t levels_of_part = levels_of(part);
   double most = 0.0;
   for (std::size_t v = 0; v <= pixels.size(); ++v) {
-    const double* const of_view = errors.data() + first[part] + v * levels_of(part);
+    const double* const of_view = errors.data() + first[part] + v * levels_of_part;
     most = std::max(most, (of_view[from] - of_view[to]) / (v < pixels.size() ? pixels[v] : sphere_pixels));
   }
   return most;
