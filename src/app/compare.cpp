@@ -1,7 +1,5 @@
 // binosplat compare: by how much two pictures differ, and where.
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,6 +8,7 @@
 
 #include "app/command.h"
 #include "app/option_checks.h"
+#include "base/memory.h"
 #include "formats/image_file.h"
 #include "measure/comparison.h"
 #include "measure/foveated.h"
@@ -38,9 +37,7 @@ using measure::Comparison;
 
 /// What --max-memory says; three quarters of the machine's memory by themselves.
 PictureLimit limit_of(const CompareOptions& options) {
-  const double machine =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  const double most = options.max_memory ? 1e6 * *options.max_memory : 0.75 * machine;
+  const double most = options.max_memory ? 1e6 * *options.max_memory : 0.75 * memory_bytes();
   return {static_cast<std::uint64_t>(std::min(most, 1e18)), bytes_per_pixel, "; --max-memory allows more"};
 }
 

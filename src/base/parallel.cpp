@@ -14,8 +14,8 @@ void parallel_chunks(std::size_t count, std::size_t chunk,
                     [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
 }
 
-void on_half_of_the_cores(const std::function<void()>& body) {
-  tbb::task_arena arena(std::max(1, tbb::this_task_arena::max_concurrency() / 2));
+void on_some_cores(double share, const std::function<void()>& body) {
+  tbb::task_arena arena(std::max(1, static_cast<int>(share * tbb::this_task_arena::max_concurrency())));
   arena.execute(body);
 }
 

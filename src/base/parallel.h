@@ -21,7 +21,7 @@ void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
   });
 }
 
-/// Calls body(), whose loops have half of the cores at most.
-void on_half_of_the_cores(const std::function<void()>& body);
+/// Calls body(), whose loops have a share of the cores at most, and one at least.
+void on_some_cores(double share, const std::function<void()>& body);
 
 }  // namespace binosplat

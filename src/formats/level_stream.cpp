@@ -19,8 +19,7 @@ constexpr std::size_t read_ahead = 1 << 20;
 // their harmonics.
 constexpr std::size_t room_most = 1 << 22;
 constexpr double between_looks_ms = 100.0;
-// That a choice is read for, at least, whatever is wished for meanwhile: choosing may take as long as looks.
-constexpr double reading_ms = 100.0;
+constexpr double chooser_share = 0.25, reader_share = 0.5;  // of the cores: the rest is for frames
 constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
 constexpr double stays_s = 1.0;         // a level that nothing needs any more
 constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
@@ -115,7 +114,10 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   const std::lock_guard lock(mutex_);
   if (trouble_) return;
   wish_ = std::move(wish);
-  if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+  if (!chooser_.joinable()) {
+    chooser_ = std::jthread([this](const std::stop_token& stop) { choose_on(stop); });
+    reader_ = std::jthread([this](const std::stop_token& stop) { read_on(stop); });
+  }
   changed_.notify_all();
 }
 
@@ -152,67 +154,84 @@ bool LevelStream::look_on(const Look& look) {
   return true;
 }
 
-void LevelStream::work(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
+// Whether it went well; if not, that is told, and nothing more is done.
+bool LevelStream::works(double share_of_cores, const std::function<void()>& work) {
+  try {
+    // Drawing must not wait for a core, nor for memory that all others are clearing.
+    on_some_cores(share_of_cores, work);
+    return true;
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    trouble_ = std::current_exception();
+    return false;
+  }
+}
+
+void LevelStream::choose_on(const std::stop_token& stop) {
   Wish wish;
+  std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
-    const auto is_there = [&] { return wish_.has_value() || !used_.empty(); };
-    if (!scene_.lingers()) {
+    const auto is_there = [&] { return wish_.has_value(); };
+    if (!lingers_) {
       changed_.wait(lock, stop, is_there);
     } else if (!changed_.wait_for(lock, stop, std::chrono::duration<double>(stays_s), is_there)) {
       wish_ = wish;  // chosen again, without what stayed beyond it
     }
-    if (stop.stop_requested()) return;
-    if (!used_.empty()) {
-      lock.unlock();
-      free_used();
-      lock.lock();
-    }
-    if (!wish_) continue;
+    if (!wish_ || stop.stop_requested()) continue;
     wish = *std::exchange(wish_, std::nullopt);
-    works_ = true;
+    chooses_ = true;
     lock.unlock();
-    std::exception_ptr trouble;
-    try {
-      // Drawing must not wait for a core, nor for memory that all others are clearing.
-      on_half_of_the_cores([&] { read(wish, stop); });
-    } catch (...) {
-      trouble = std::current_exception();
-    }
+    const bool went_well = works(chooser_share, [&] { choose(wish); });
     lock.lock();
-    works_ = false;
-    trouble_ = trouble;
-    if (trouble_) return;
+    chooses_ = false;
+    if (!went_well) return;
+    changed_.notify_all();
   }
 }
 
-void LevelStream::read(const Wish& wish, const std::stop_token& stop) {
+void LevelStream::choose(const Wish& wish) {
   DetailNeed need = scene_.sharing(need_(scene_, wish.views), wish.together_db);
   need.stays_s = stays_s;
-  const bool reads = scene_.choose(wish.views, need, wish.seen);
-  auto choice = scene_.choice();  // the one before it is freed when no frame waits for the lock any more
-  {
-    const std::lock_guard lock(mutex_);
-    choice_.swap(choice);
-    here_ = wish.here;
-    lingers_ = scene_.lingers();
-    at_ = wish.at;
-    asked_of_ = wish.together_db;
-    asked_db_ = need.db.value_or(0.0);
+  auto chosen = scene_.chooser().choose(wish.views, need, wish.seen);
+  auto choice = chosen->by_errors;  // the one before it is freed when no frame waits for the lock any more
+  const std::lock_guard lock(mutex_);
+  choice_.swap(choice);
+  here_ = wish.here;
+  at_ = wish.at;
+  lingers_ = chosen->lingers;
+  asked_of_ = wish.together_db;
+  asked_db_ = need.db.value_or(0.0);
+  next_.swap(chosen);
+}
+
+void LevelStream::read_on(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    changed_.wait(lock, stop, [&] { return next_ != nullptr || !used_.empty(); });
+    auto chosen = std::exchange(next_, nullptr);
+    reads_ = chosen != nullptr;
+    lock.unlock();
+    free_used();
+    const bool went_well = !chosen || works(reader_share, [&] { read(std::move(chosen), stop); });
+    lock.lock();
+    reads_ = false;
+    if (!went_well) return;
   }
-  if (!reads) return;
+}
+
+void LevelStream::read(std::shared_ptr<const LevelsChosen> chosen, const std::stop_token& stop) {
+  if (!scene_.choose(std::move(chosen))) return;
   sort_pieces();
   const auto take = [&](StreamedSog::Piece piece) {
     free_used();
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, stop, [&] { return gaussians_read_ < read_ahead || wish_; });
+    changed_.wait(lock, stop, [&] { return gaussians_read_ < read_ahead || next_; });
     gaussians_read_ += piece.model.count();
     pieces_.push_back(std::move(piece));
   };
-  const auto start = Clock::now();
   scene_.read(take, [&] {
     const std::lock_guard lock(mutex_);
-    return !stop.stop_requested() && (!wish_ || ms_since(start) < reading_ms);
+    return !stop.stop_requested() && !next_;
   });
 }
 

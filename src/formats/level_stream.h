@@ -20,11 +20,12 @@
 
 namespace binosplat {
 
-/// A streamed SOG that is read by a thread of its own. The parts of its model that are there stay until
-/// others have been read, and then change places with them a few at a time, so that no frame waits for more.
+/// A streamed SOG whose levels are chosen by one thread and read by another. The parts of its model that are
+/// there stay until others have been read, and then change places with them a few at a time, so that no frame
+/// waits for more.
 class LevelStream {
  public:
-  /// What views of a frame need; called by that thread.
+  /// What views of a frame need; called by the thread that chooses.
   using Need = std::function<DetailNeed(const StreamedSog& scene, std::span<const shared::View> views)>;
 
   /// Throws Error as StreamedSog does.
@@ -48,9 +49,9 @@ class LevelStream {
 
   /// Has read what these views need, which are those of one frame in the model's frame, instead of what
   /// others needed. By dB it calls `look` first, which tells what one of them shows of each part: for one
-  /// view in each call, since a frame has little time, or for a band of one, where that took longer than 3 ms
-  /// the last time and frames come fast. For all of them no more than ten times a second; until then what was
-  /// wanted stays.
+  /// view in each call, since a frame has little time, or for a band of one, where that took longer than 4.5
+  /// ms the last time and frames come fast. For all of them no more than ten times a second; until then what
+  /// was wanted stays.
   ///
   /// While the views move, the second half of them is looked at where they will be by the time that levels
   /// are there, a single view both here and there: levels come for all. Levels that are needed no more stay
@@ -61,7 +62,7 @@ class LevelStream {
 
   /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, but one
   /// part at least. Where a look was made for this frame what was read waits for the next, which makes none
-  /// then. Throws what reading it threw; then nothing more is read.
+  /// then. Throws what choosing or reading it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
 
   /// Whether the model has all that was wanted, and no more, and nothing is to be looked at again.
@@ -84,14 +85,17 @@ class LevelStream {
   };
   bool look_on(const Look& look);
   std::size_t here() const;
-  void work(const std::stop_token& stop);
-  void read(const Wish& wish, const std::stop_token& stop);
+  void choose_on(const std::stop_token& stop);
+  void choose(const Wish& wish);
+  void read_on(const std::stop_token& stop);
+  void read(std::shared_ptr<const LevelsChosen> chosen, const std::stop_token& stop);
+  bool works(double share_of_cores, const std::function<void()>& work);
   void sort_pieces();
   void free_used();
-  bool is_idle() const { return !wish_ && !works_ && pieces_.empty(); }
+  bool is_idle() const { return !wish_ && !chooses_ && !next_ && !reads_ && pieces_.empty(); }
   bool looks_again() const;
 
-  StreamedSog scene_;  // the thread's, once there is one
+  StreamedSog scene_;  // the reading thread's, once there is one, and its chooser that of the other
   Need need_;
   ModelParts parts_;
   bool asked_by_db_ = false, shares_ = false;  // as the need says
@@ -118,18 +122,19 @@ class LevelStream {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<Wish> wish_;
-  bool works_ = false;
+  std::shared_ptr<const LevelsChosen> next_;  // to be read for
+  bool chooses_ = false, reads_ = false;
   std::deque<StreamedSog::Piece> pieces_;
-  std::vector<StreamedSog::Piece> used_;  // freed by the thread, since frames must not wait for that
+  std::vector<StreamedSog::Piece> used_;  // freed by the reader, since frames must not wait for that
   std::size_t gaussians_read_ = 0;        // of these
   std::shared_ptr<const DetailChoice> choice_;
   std::size_t here_ = 0;  // of its views (Wish)
   Clock::time_point at_;
   double asked_db_ = 0.0;  // that it is for,
   double asked_of_ = 0.0;  // of what is shared
-  bool lingers_ = false;   // StreamedSog::lingers
+  bool lingers_ = false;   // LevelsChosen
   std::exception_ptr trouble_;
-  std::jthread thread_;  // last: it ends first
+  std::jthread chooser_, reader_;  // last: they end first
 };
 
 }  // namespace binosplat

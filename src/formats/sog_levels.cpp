@@ -93,6 +93,7 @@ std::vector<std::vector<SogLevels::Taken>> SogLevels::taken(
   std::vector<std::vector<Taken>> result(files_.size());
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const int level = level_of(leaf);
+    if (level < 0) continue;
     for (const Place& place : leaves_[leaf]) {
       if (place.level == level && place.range.count > 0) result[place.file].push_back({leaf, place.range});
     }

@@ -33,7 +33,8 @@ class SogLevels {
   /// Whether a file is there: those of levels that are not drawn need not be.
   bool there(std::size_t file) const;
 
-  /// For each file what is taken of it, in order, where the tree's leaf number i has level_of(i).
+  /// For each file what is taken of it, in order, where the tree's leaf number i has level_of(i), or nothing
+  /// is taken of it where that is below 0.
   std::vector<std::vector<Taken>> taken(const std::function<int(std::size_t leaf)>& level_of) const;
   std::vector<std::vector<Taken>> taken(int level) const;
 

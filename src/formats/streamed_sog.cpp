@@ -1,6 +1,7 @@
 #include "formats/streamed_sog.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "formats/content.h"
@@ -25,13 +27,15 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-using Taken = std::vector<SogLevels::Taken>;
+using Taken = std::vector<SogLevels::Taken>;  // of a file
 
 constexpr int no_level = -1;
 constexpr std::size_t files_at_a_time = 8;  // each by several threads, and whole in memory meanwhile
-// Bytes of decoded files that are kept: of some 20 million Gaussians, without which a head that moves through
-// four million has files of 131,072 decoded again and again for a few leaves each, eight cores long.
-constexpr std::size_t cached_most = std::size_t{512} << 20;
+// Bytes of decoded files that are kept: of some 80 million Gaussians, without which a head that moves through
+// 20 million has files of 131,072 decoded again and again for a few leaves each, eight cores long.
+std::size_t cached_most() {
+  return static_cast<std::size_t>(std::min(std::exp2(31.0), memory_bytes() / 8.0));
+}
 // Decoding so many of a file takes as long as one takes to reach the GPU.
 constexpr std::size_t decoded_for_one = 8;
 
@@ -44,11 +48,6 @@ struct Part {
 SogSource open_part(const fs::path& path) {
   const MappedFile file(path);
   return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
-}
-
-void tell_no_room(const fs::path& path, std::size_t total, std::size_t most) {
-  log_warning("{}: even its coarsest levels of detail have {} Gaussians, and there is room for {}",
-              path.string(), total, most);
 }
 
 /// The finest level that is there, or the one that was asked for.
@@ -116,7 +115,7 @@ Selection choose(const fs::path& path, const SogLevels& levels, const nlohmann::
     of_level[static_cast<std::size_t>(level.number)] += level.count;
     total += level.count;
   }
-  if (total > most) tell_no_room(path, total, most);
+  if (total > most) warn_of_no_room(path.string(), total, most);
   std::string parts;
   for (std::size_t level = 0; level < of_level.size(); ++level) {
     if (of_level[level] > 0)
@@ -229,7 +228,7 @@ struct StreamedSog::Source {
   SogLevels levels;
   std::vector<std::optional<SogSource>> files;  // the environment last, where there is one
   std::uint64_t bytes = 0;                      // of them (SogSource::bytes)
-  SogCache cache{cached_most};                  // by the number of the file
+  SogCache cache{cached_most()};                // by the number of the file
 
   Source(const fs::path& lod_meta, const nlohmann::json& json) : path(lod_meta), levels(path, json) {
     files.resize(levels.files().size());
@@ -254,6 +253,7 @@ StreamedSog::StreamedSog(const fs::path& path) {
   source_ = std::make_unique<Source>(lod_meta, json);
   leaves_ = source_->levels.leaves(json);
   check_leaves(source_->path, leaves_);
+  chooser_.emplace(source_->path.string(), leaves_, source_->around());
   read_.resize(leaves_.size());
   like_.name = source_->path.filename().string();
   like_.format = name_of(source_->levels);
@@ -267,62 +267,24 @@ StreamedSog::StreamedSog(const fs::path& path) {
 
 StreamedSog::~StreamedSog() = default;
 
-bool StreamedSog::choose(std::span<const shared::View> views, const DetailNeed& need,
-                         const DetailSeen& seen) {
-  if (need.db && !has_errors()) {
-    fail(
-        "--detail {}dB: {} has no errors of its levels to go by; `binosplat levels` writes them; or use "
-        "--detail PX",
-        *need.db, source_->path.string());
-  }
-  const std::size_t most = need.most - std::min(need.most, source_->around());
-  const std::span<const std::size_t> before = by_views_ ? std::span(chosen_) : std::span<std::size_t>();
-  const std::vector<DetailView> detail = detail_views(views);
-  before_ = chosen_;
-  choice_.reset();
-  if (need.db && !views.empty()) {
-    choice_ = std::make_shared<const DetailChoice>(
-        choose_levels_within(leaves_, detail, error_of_psnr(*need.db), most, seen, before, need.heads_turn));
-    chosen_ = choice_->levels;
-  } else {
-    std::vector<glm::dvec3> eyes;
-    double focal = 0.0;
-    for (const DetailView& view : detail) {
-      eyes.push_back(view.eye);
-      focal = std::max(focal, view.focal);
-    }
-    const double enough = views.empty() ? std::numeric_limits<double>::infinity() : need.apart_px / focal;
-    chosen_ = choose_levels(leaves_, eyes, most, enough, before);
-  }
-  by_views_ = !views.empty();
-  stay(need.db ? need.stays_s : 0.0, need.most);
-  const std::size_t total = count(chosen_);
-  if (total > need.most && !told_no_room_) tell_no_room(source_->path, total, need.most);
-  told_no_room_ = total > need.most;
+bool StreamedSog::choose(std::shared_ptr<const LevelsChosen> chosen) {
+  chosen_ = std::move(chosen);
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
-    if (!leaves_[leaf].levels.empty() && read_[leaf] != chosen_[leaf]) return true;
+    if (!leaves_[leaf].levels.empty() && read_[leaf] != level(leaf)) return true;
   return source_->around() > 0 && !environment_read_;
 }
 
 // Leaves that get fewer Gaussians come first: never are there more than before or after, if all are taken.
 void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
-  check_chosen();
+  const std::array<std::vector<Taken>, 2> all = {to_read(true), to_read(false)};
+  check_room(all);
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const auto& levels = leaves_[leaf].levels;
-    if (levels.empty() || read_[leaf] == chosen_[leaf] || levels[chosen_[leaf]].count > 0) continue;
-    const auto before = std::exchange(read_[leaf], chosen_[leaf]);
-    take({.part = leaf, .level = chosen_[leaf], .before = before, .model = like_});
+    if (levels.empty() || read_[leaf] == level(leaf) || levels[level(leaf)].count > 0) continue;
+    const auto before = std::exchange(read_[leaf], level(leaf));
+    take({.part = leaf, .level = level(leaf), .before = before, .model = like_});
   }
-  for (const bool shrinks : {true, false}) {
-    const auto level_of = [&](std::size_t leaf) {
-      const auto& levels = leaves_[leaf].levels;
-      if (levels.empty() || read_[leaf] == chosen_[leaf]) return no_level;
-      const std::size_t before = read_[leaf] ? levels[*read_[leaf]].count : 0;
-      return (levels[chosen_[leaf]].count < before) == shrinks ? levels[chosen_[leaf]].number : no_level;
-    };
-    std::vector<Taken> taken = source_->levels.taken(level_of);
-    if (source_->around() > 0 && !environment_read_ && !shrinks)
-      taken.emplace_back().push_back({leaves_.size(), {0, source_->around(), 0}});
+  for (const std::vector<Taken>& taken : all) {
     std::vector<std::size_t> files;
     for (std::size_t i = 0; i < taken.size(); ++i)
       if (!taken[i].empty()) files.push_back(i);
@@ -346,18 +308,36 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
   }
 }
 
-std::size_t StreamedSog::finest() const { return count(std::vector<std::size_t>(leaves_.size(), 0)); }
+std::vector<StreamedSog::Taken> StreamedSog::to_read(bool shrinks) const {
+  const auto level_of = [&](std::size_t leaf) {
+    const auto& levels = leaves_[leaf].levels;
+    if (levels.empty() || read_[leaf] == level(leaf)) return no_level;
+    const std::size_t before = read_[leaf] ? levels[*read_[leaf]].count : 0;
+    return (levels[level(leaf)].count < before) == shrinks ? levels[level(leaf)].number : no_level;
+  };
+  std::vector<Taken> taken = source_->levels.taken(level_of);
+  if (source_->around() > 0 && !environment_read_ && !shrinks)
+    taken.emplace_back().push_back({leaves_.size(), {0, source_->around(), 0}});
+  return taken;
+}
 
-std::size_t StreamedSog::count(std::span<const std::size_t> levels) const {
-  std::size_t total = source_->around();
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
-    total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[levels[leaf]].count;
-  return total;
+std::size_t StreamedSog::finest() const {
+  return source_->around() + count_of(leaves_, std::vector<std::size_t>(leaves_.size(), 0));
+}
+
+double StreamedSog::saved(std::size_t leaf, std::optional<std::size_t> before) const {
+  return before ? choice()->saved(leaf, *before, level(leaf)) : INFINITY;
+}
+
+double StreamedSog::worth(const Piece& piece) const {
+  if (!choice() || piece.part >= leaves_.size() || !piece.before || *piece.before < *piece.level)
+    return INFINITY;
+  return saved(piece.part, piece.before) / static_cast<double>(std::max<std::size_t>(piece.model.count(), 1));
 }
 
 double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const {
   if (taken.front().leaf >= leaves_.size()) return INFINITY;
-  if (!choice_) return leaves_[taken.front().leaf].levels[chosen_[taken.front().leaf]].number;
+  if (!choice()) return leaves_[taken.front().leaf].levels[level(taken.front().leaf)].number;
   double sum = 0.0;
   // In no hurry the order is the same whatever was read before.
   std::size_t count =
@@ -369,15 +349,12 @@ double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> ta
   return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
-void StreamedSog::check_chosen() const {
-  const auto level_of = [&](std::size_t leaf) {
-    return leaves_[leaf].levels.empty() ? no_level : leaves_[leaf].levels[chosen_[leaf]].number;
-  };
-  const std::vector<Taken> taken = source_->levels.taken(level_of);
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (!taken[i].empty()) check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
+void StreamedSog::check_room(std::span<const std::vector<Taken>> all) const {
+  for (const std::vector<Taken>& taken : all) {
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      if (!taken[i].empty()) check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
   }
-  const std::size_t total = count(chosen_);
+  const std::size_t total = source_->around() + count_of(leaves_, chosen_->levels);
   if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), like_.format);
   check_total(source_->path, total, source_->bytes);
 }
@@ -391,7 +368,7 @@ std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, const T
     const std::size_t leaf = taken[i].leaf;
     pieces.push_back({.part = leaf, .model = std::move(models[i])});
     if (leaf == leaves_.size()) continue;
-    pieces.back().level = chosen_[leaf];
+    pieces.back().level = level(leaf);
     pieces.back().before = read_[leaf];
   }
   return pieces;

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "base/clock.h"
 #include "formats/detail.h"
+#include "formats/level_chooser.h"
 #include "formats/sog_levels.h"
 #include "scene/model.h"
 #include "shared/types.h"
@@ -33,7 +33,7 @@ Model load_streamed_sog(const std::filesystem::path& lod_meta, const nlohmann::j
                         std::optional<int> lod, const std::optional<DetailBudget>& budget = {});
 
 /// A streamed SOG whose leaves change their levels as somebody moves through it. Its members may be called by
-/// different threads, but not at a time.
+/// different threads, but not at a time; the chooser's by another one, too.
 class StreamedSog {
  public:
   /// `path`: a lod-meta.json or the folder of one. Opens what is there of its SOGs. Throws Error as
@@ -49,32 +49,28 @@ class StreamedSog {
   std::size_t finest() const;
 
   /// Whether it says what its levels lose, so that they can be chosen by dB.
-  bool has_errors() const {
-    return std::ranges::any_of(leaves_, [](const DetailPart& leaf) { return !leaf.pixels.empty(); });
-  }
+  bool has_errors() const { return have_errors(leaves_); }
   /// A need for frames that may lose so much together with levels, dB; 0: nothing.
   DetailNeed sharing(DetailNeed need, double together_db) const {
     if (need.shares && together_db > 0.0 && has_errors()) need.db = levels_share(together_db);
     return need;
   }
 
-  /// Chooses a level for each leaf: the same for all views, which are those of one frame in the model's
-  /// frame; by the nearest eye and the longest focal length of them, wherever they look (choose_levels), or
-  /// by what each of them loses (choose_levels_within), with the levels of the last choice as those before.
-  /// Without views: the coarsest. True if there is something to read. Throws Error for dB where the file has
-  /// no errors.
-  /// `seen`: as choose_levels_within takes it.
-  bool choose(std::span<const shared::View> views, const DetailNeed& need, const DetailSeen& seen = {});
+  /// Of its leaves. Another thread may choose by it while this scene is read.
+  LevelChooser& chooser() { return *chooser_; }
+  /// Goes by a choice from now on. True if there is something to read.
+  bool choose(std::shared_ptr<const LevelsChosen> chosen);
+  /// By one that is made now (LevelChooser::choose).
+  bool choose(std::span<const shared::View> views, const DetailNeed& need, const DetailSeen& seen = {}) {
+    return choose(chooser_->choose(views, need, seen));
+  }
   /// The choice: for each leaf the place of its level among those that are there.
-  const std::vector<std::size_t>& chosen() const { return chosen_; }
-  /// Whether some levels are finer than needed, and stay for a while (DetailNeed::stays_s).
-  bool lingers() const { return lingers_; }
+  const std::vector<std::size_t>& chosen() const { return chosen_->levels; }
 
-  /// What the views of the last choice lose, at whatever levels; none where dB were not chosen by.
-  const std::shared_ptr<const DetailChoice>& choice() const { return choice_; }
-  /// What those views are taken to have against the finest levels, in dB, with the choice; likewise.
+  /// What the views of the last choice are taken to have against the finest levels, in dB, with the choice;
+  /// none where dB were not chosen by.
   std::optional<double> predicted_psnr() const {
-    return choice_ ? std::optional(psnr_of_error(choice_->error_of(chosen_))) : std::nullopt;
+    return choice() ? std::optional(psnr_of_error(choice()->error_of(chosen()))) : std::nullopt;
   }
 
   /// The Gaussians of a part at the level chosen.
@@ -93,7 +89,7 @@ class StreamedSog {
   void read(const Take& take, const std::function<bool()>& goes_on = {});
   /// Whether a piece that was read is of the level chosen now.
   bool wants(const Piece& piece) const {
-    return piece.part == leaves_.size() || piece.level == chosen_[piece.part];
+    return piece.part == leaves_.size() || piece.level == level(piece.part);
   }
   /// The squared error that a piece saves by the choice for each of its Gaussians (DetailChoice::saved);
   /// infinite where it has fewer than the one before, or where no dB are gone by.
@@ -103,30 +99,28 @@ class StreamedSog {
   /// Nothing counts as read any more.
   void forget() {
     read_.assign(leaves_.size(), std::nullopt);
-    environment_read_ = by_views_ = false;
+    environment_read_ = false;
+    chooser_->forget();
   }
 
  private:
   struct Source;
-  std::size_t count(std::span<const std::size_t> levels) const;
-  void stay(double seconds, std::size_t most);
+  std::size_t level(std::size_t leaf) const { return chosen_->levels[leaf]; }
+  const std::shared_ptr<const DetailChoice>& choice() const { return chosen_->by_errors; }
   double saved(std::size_t leaf, std::optional<std::size_t> before) const;
   double worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const;
-  void check_chosen() const;
-  std::vector<Piece> read_file(std::size_t file, const std::vector<SogLevels::Taken>& taken) const;
+  using Taken = std::vector<SogLevels::Taken>;  // of a file
+  std::vector<Taken> to_read(bool shrinks) const;
+  void check_room(std::span<const std::vector<Taken>> all) const;
+  std::vector<Piece> read_file(std::size_t file, const Taken& taken) const;
 
   std::unique_ptr<Source> source_;
   Model like_;
   std::vector<DetailPart> leaves_;
-  std::vector<std::size_t> chosen_;        // places in a leaf's `levels`
-  std::vector<std::size_t> before_;        // the choice before
-  bool by_views_ = false;                  // chosen
-  std::vector<Clock::time_point> needed_;  // when the chosen levels of the leaves were last
-  bool lingers_ = false;
-  std::shared_ptr<const DetailChoice> choice_;
+  std::optional<LevelChooser> chooser_;
+  std::shared_ptr<const LevelsChosen> chosen_ = std::make_shared<const LevelsChosen>();
   std::vector<std::optional<std::size_t>> read_;  // of the leaves
   bool environment_read_ = false;
-  bool told_no_room_ = false;
 };
 
 }  // namespace binosplat

@@ -254,8 +254,9 @@ TEST(StreamedSog, FinerLevelsStayWhereThereIsRoom) {
     const std::vector<double> all = {1000, 1000, 1000}, first_two = {1000, 1000, 1e-9};
     scene.scene.choose(views, need, showing(scene.scene, all));
     EXPECT_EQ(scene.read().count(), need.most == 999 ? 615u : 1000u);
-    scene.scene.choose(views, need, showing(scene.scene, first_two));
-    EXPECT_EQ(scene.scene.lingers(), need.stays_s > 0.0 && need.most != 999);
+    const auto chosen = scene.scene.chooser().choose(views, need, showing(scene.scene, first_two));
+    EXPECT_EQ(chosen->lingers, need.stays_s > 0.0 && need.most != 999);
+    scene.scene.choose(chosen);
     scene.read();
     std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
     scene.scene.choose(views, need, showing(scene.scene, first_two));
