@@ -1,11 +1,18 @@
 // Levels of detail by what views lose.
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <mutex>
 #include <numbers>
 #include <queue>
+#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -20,6 +27,9 @@ namespace {
 constexpr double growth = 0.3, growth_most = 8.0;
 
 constexpr std::size_t chunk = 256;  // parts that are worth a thread's while
+
+/// Of the Gaussians that are allowed, what is not worth looking for a step that it has room for.
+constexpr std::size_t little = 1024;
 
 /// So many times the distance between the Gaussians of a level it reaches out from behind what hides it.
 constexpr double reach = 0.5;
@@ -207,21 +217,19 @@ class ErrorChooser {
         if (fits(p, level)) take(p, level);
       }
     }
-    std::vector<Step> first(parts_.size());
-    parallel_for(
-        parts_.size(), [&](std::size_t p) { first[p] = best_step(p); }, chunk);
-    std::erase_if(first, [](const Step& step) { return step.worth <= 0.0; });
-    std::priority_queue<Step> steps({}, std::move(first));
-    while (!steps.empty()) {
-      const auto [worth, p, level] = steps.top();
-      steps.pop();
-      if (fits(p, level) && needed(p, level)) {
-        take(p, level);
-      } else {
-        finest_[p] = level + 1;  // coarser ones may be smaller, or needed more by what was before
-      }
-      const Step next = best_step(p);
-      if (next.worth > 0.0) steps.push(next);
+    const std::vector<Step> steps = steps_of_all();
+    std::vector<bool> left(parts_.size(), false);  // its steps: one was refused
+    std::priority_queue<Step> others;              // of such parts
+    auto next = steps.begin();
+    while (is_needed() && has_room()) {
+      while (next != steps.end() && left[next->part]) ++next;
+      const bool in_order = next != steps.end() && (others.empty() || others.top() < *next);
+      if (!in_order && others.empty()) break;
+      const Step step = in_order ? *next++ : others.top();
+      if (!in_order) others.pop();
+      if (try_step(step) && in_order) continue;
+      left[step.part] = true;
+      if (const Step other = best_step(step.part); other.worth > 0.0) others.push(other);
     }
     return chosen_;
   }
@@ -237,8 +245,9 @@ class ErrorChooser {
     double worth = 0.0;  // error saved per Gaussian
     std::size_t part = 0, level = 0;
     bool operator<(const Step& other) const {
-      return worth != other.worth ? worth < other.worth : part > other.part;
+      return std::tuple(worth, other.part, level) < std::tuple(other.worth, part, other.level);
     }
+    bool operator>(const Step& other) const { return other < *this; }
   };
 
   std::size_t count(std::size_t p, std::size_t level) const { return parts_[p].levels[level].count; }
@@ -249,6 +258,55 @@ class ErrorChooser {
   double error_of(std::size_t view, std::size_t p, std::size_t level) const {
     return errors_[first_[p] + view * parts_[p].levels.size() + level];
   }
+
+  /// What a part does by itself, as long as nothing is refused; worth no more than what comes before.
+  std::vector<Step> steps_of(std::size_t p) const {
+    std::vector<Step> steps;
+    double most = std::numeric_limits<double>::infinity();
+    for (Step step = best_step(p, chosen_[p]); step.worth > 0.0; step = best_step(p, step.level)) {
+      most = step.worth = std::min(most, step.worth);
+      steps.push_back(step);
+    }
+    return steps;
+  }
+
+  /// That of all parts, in the order in which they are taken: what others lose does not change it.
+  std::vector<Step> steps_of_all() const {
+    std::vector<Step> all;
+    std::mutex adding;
+    const auto add = [&](std::size_t begin, std::size_t end) {
+      std::vector<Step> steps;
+      for (std::size_t p = begin; p < end; ++p) std::ranges::copy(steps_of(p), std::back_inserter(steps));
+      const std::lock_guard lock(adding);
+      all.insert(all.end(), steps.begin(), steps.end());
+    };
+    parallel_chunks(parts_.size(), chunk, add);
+    tbb::parallel_sort(all.begin(), all.end(), std::greater<>());
+    return all;
+  }
+
+  /// Takes it if it is needed and fits; else tells which steps of the part are left.
+  bool try_step(const Step& step) {
+    const auto [worth, p, level] = step;
+    if (!fits(p, level)) {
+      finest_[p] = level + 1;  // coarser ones may be smaller
+    } else if (!needed(p, level)) {
+      finest_[p] = next_needed(p, level);
+    } else {
+      take(p, level);
+      return true;
+    }
+    return false;
+  }
+
+  /// Whether any view loses too much.
+  bool is_needed() const {
+    for (std::size_t v = 0; v < allowed_.size(); ++v)
+      if (lost_[v] * (before_.empty() ? 1.0 : inertia) > allowed_[v]) return true;
+    return false;
+  }
+  /// For more than a little.
+  bool has_room() const { return most_ > total_ && most_ - total_ > most_ / little; }
 
   void take(std::size_t p, std::size_t level) {
     for (std::size_t v = 0; v < lost_.size(); ++v)
@@ -267,14 +325,20 @@ class ErrorChooser {
     return false;
   }
 
+  /// The finest level that may be needed where this one is not: that of before counts more.
+  std::size_t next_needed(std::size_t p, std::size_t level) const {
+    return before_.empty() || level >= before_[p] ? chosen_[p] : before_[p];
+  }
+
   /// That of a part which saves the most error per Gaussian; worth nothing where none does.
-  Step best_step(std::size_t p) const {
+  Step best_step(std::size_t p) const { return best_step(p, chosen_[p]); }
+  Step best_step(std::size_t p, std::size_t from) const {
     Step best{0.0, p, 0};
-    for (std::size_t level = chosen_[p]; level-- > finest_[p];) {
+    for (std::size_t level = from; level-- > finest_[p];) {
       double saved = 0.0;
       for (std::size_t v = 0; v < lost_.size(); ++v)
-        saved = std::max(saved, error_of(v, p, chosen_[p]) - error_of(v, p, level));
-      const double added = static_cast<double>(count(p, level)) - static_cast<double>(count(p, chosen_[p]));
+        saved = std::max(saved, error_of(v, p, from) - error_of(v, p, level));
+      const double added = static_cast<double>(count(p, level)) - static_cast<double>(count(p, from));
       const double worth = inertia_of(before_, p, level) * saved / std::max(added, 1.0);
       if (worth > best.worth) best = {worth, p, level};
     }
