@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <functional>
+#include <numeric>
 #include <span>
 
 #include "base/parallel.h"
@@ -19,24 +20,34 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
 
 using Range = ModelParts::Range;
 
-// How one kind of a Gaussian's numbers lies on the GPU: pack(i, room) puts those of Gaussian i of the model
-// into room for `words`, which is zero where it leaves it alone.
+// How one kind of a Gaussian's numbers lies on the GPU: pack(first, places, room) puts those of the Gaussians
+// first + place of the model into room for `words` of each, which is zero where it leaves it alone.
 struct Packing {
   std::size_t words;
-  std::function<void(std::size_t i, std::span<std::uint32_t> room)> pack;
+  std::function<void(std::size_t first, std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>
+      pack;
 };
+
+template <typename PackOne>
+Packing packing_of(std::size_t words, const PackOne& pack_one) {
+  return {words, [words, pack_one](std::size_t first, std::span<const std::uint32_t> places,
+                                   std::span<std::uint32_t> room) {
+            for (std::size_t k = 0; k < places.size(); ++k)
+              pack_one(first + places[k], room.subspan(k * words, words));
+          }};
+}
 
 Packing packing_of_gaussians(const Model& model, int precision) {
   const auto words = static_cast<std::size_t>(gaussian_bytes(precision)) / sizeof(std::uint32_t);
   if (precision == PRECISION_HALF) {
-    return {words, [&model](std::size_t i, std::span<std::uint32_t> room) {
-              std::ranges::copy(pack(gaussian_of(model, i)), room.begin());
-            }};
+    return packing_of(words, [&model](std::size_t i, std::span<std::uint32_t> room) {
+      std::ranges::copy(pack(gaussian_of(model, i)), room.begin());
+    });
   }
-  return {words, [&model](std::size_t i, std::span<std::uint32_t> room) {
-            const shared::Gaussian gaussian = gaussian_of(model, i);
-            std::memcpy(room.data(), &gaussian, sizeof(gaussian));
-          }};
+  return packing_of(words, [&model](std::size_t i, std::span<std::uint32_t> room) {
+    const shared::Gaussian gaussian = gaussian_of(model, i);
+    std::memcpy(room.data(), &gaussian, sizeof(gaussian));
+  });
 }
 
 Packing packing_of_harmonics(const Model& model, int precision) {
@@ -44,13 +55,13 @@ Packing packing_of_harmonics(const Model& model, int precision) {
   const auto words =
       static_cast<std::size_t>(harmonic_bytes(model.degree, precision)) / sizeof(std::uint32_t);
   if (precision == PRECISION_HALF) {
-    return {words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
-              pack(std::span(model.sh).subspan(i * floats, floats), room);
-            }};
+    return packing_of(words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
+      pack(std::span(model.sh).subspan(i * floats, floats), room);
+    });
   }
-  return {words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
-            std::memcpy(room.data(), &model.sh[i * floats], floats * sizeof(float));
-          }};
+  return packing_of(words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
+    std::memcpy(room.data(), &model.sh[i * floats], floats * sizeof(float));
+  });
 }
 
 // All of a page's Gaussians into a buffer of the page; in pieces: memory that is touched once takes long.
@@ -59,10 +70,13 @@ void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buf
   std::vector<std::uint32_t> packed(std::min<std::size_t>(piece, page.count) * packing.words);
   for (std::size_t at = 0; at < page.count; at += piece) {
     const std::size_t count = std::min(piece, page.count - at);
-    const auto pack_one = [&](std::size_t k) {
-      packing.pack(page.first + at + k, std::span(packed).subspan(k * packing.words, packing.words));
+    std::vector<std::uint32_t> places(count);
+    std::iota(places.begin(), places.end(), static_cast<std::uint32_t>(at));
+    const auto pack_some = [&](std::size_t begin, std::size_t end) {
+      packing.pack(page.first, std::span(places).subspan(begin, end - begin),
+                   std::span(packed).subspan(begin * packing.words, (end - begin) * packing.words));
     };
-    parallel_for(count, pack_one, 1 << 12);
+    parallel_chunks(count, 1 << 12, pack_some);
     buffer.upload_part<std::uint32_t>(std::span(packed).first(count * packing.words), at * packing.words);
   }
 }
@@ -124,8 +138,8 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelP
     add_places(page, changes.emptied, places);
     const auto upload = [&](const Packing& packing, gl::Buffer& buffer, std::size_t count) {
       scatter_.upload(buffer, std::span(places).first(count), packing.words,
-                      [&](std::uint32_t place, std::span<std::uint32_t> room) {
-                        packing.pack(page.first + place, room);
+                      [&](std::span<const std::uint32_t> some, std::span<std::uint32_t> room) {
+                        packing.pack(page.first, some, room);
                       });
     };
     upload(packing_of_gaussians(model, precision), *page.gaussians, places.size());
@@ -148,9 +162,11 @@ std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {
 // not overtake them.
 void ModelBuffers::hide(const Page& page, std::int64_t first) const {
   constexpr std::int64_t piece = std::int64_t{1} << 22;  // bytes
-  const std::vector<std::byte> zeros(piece);
-  for (std::int64_t at = first * gaussian_bytes(precision); at < page.gaussians->bytes(); at += piece) {
-    const std::int64_t bytes = std::min(piece, page.gaussians->bytes() - at);
+  const std::int64_t begin = first * gaussian_bytes(precision), end = page.gaussians->bytes();
+  const std::vector<std::byte> zeros(
+      static_cast<std::size_t>(std::clamp(end - begin, std::int64_t{0}, piece)));
+  for (std::int64_t at = begin; at < end; at += piece) {
+    const std::int64_t bytes = std::min(piece, end - at);
     page.gaussians->upload_part(std::span(zeros).first(static_cast<std::size_t>(bytes)),
                                 static_cast<std::size_t>(at));
   }

@@ -21,10 +21,11 @@ class Scatter {
 
   explicit Scatter(gl::Context& context);
 
-  /// Fills records of `words` of 4 bytes of the buffer, which fill(place, room) makes; the room is zero where
-  /// it leaves it alone.
-  void upload(const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
-              const std::function<void(std::uint32_t place, std::span<std::uint32_t> room)>& fill);
+  /// Fills records of `words` of 4 bytes of the buffer, which fill(places, room) makes, some at a time; the
+  /// room is zero where it leaves it alone.
+  void upload(
+      const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
+      const std::function<void(std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>& fill);
 
  private:
   gl::Dispatcher dispatcher_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/parallel.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -127,13 +126,12 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
   refuse_cut(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
   const auto found = of_parts_.read<std::int64_t>(2 * parts.size() * views.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const auto convert = [&](std::size_t p) {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
       const std::int64_t* const of = &found[2 * (v * parts.size() + p)];
-      if (of[0] == 0) return;
+      if (of[0] == 0) continue;
       const double area = static_cast<double>(of[0]);
       seen[v][p] = {area / SEEN_SCALE * pixel_areas[v], std::exp2(static_cast<double>(of[1]) / area - 32.0)};
-    };
-    parallel_for(parts.size(), convert, 4096);
+    }
   }
   return seen;
 }

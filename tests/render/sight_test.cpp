@@ -201,15 +201,16 @@ TEST(Sight, ForgetsWhatItSaw) {
   const std::vector<shared::View> one = {front()}, two = {make_view(beside), front()};
   const auto same = [&] {
     Sight sight(parted.gpu_model);
-    bool same = true;
+    bool all_same = true;
     for (const auto& views : {two, one, two, one}) {
       const auto again = sight.look(views, {}, parted.parts), alone = parted.look(views);
       for (std::size_t v = 0; v < views.size(); ++v) {
         for (std::size_t p = 0; p < indices.size(); ++p)
-          same = same && again[v][p].area == alone[v][p].area && again[v][p].distance == alone[v][p].distance;
+          all_same = all_same && again[v][p].area == alone[v][p].area &&
+                     again[v][p].distance == alone[v][p].distance;
       }
     }
-    return same;
+    return all_same;
   };
   EXPECT_TRUE(same());
   const test::FaultyShaders faulty("parts_seen.comp", "if (area != uvec2(0)) sums[from] = uvec2(0);", "");
