@@ -9,7 +9,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr double glance_ms = 3.0;   // that a frame may take for a look
+constexpr double glance_ms = 4.5;   // that a frame may take for a look
 constexpr int bands_most = 8;       // each costs all that does not depend on pixels, too:
 constexpr double fixed_most = 0.9;  // of what the fastest one takes
 constexpr double nearly = 1.1;      // as fast as with more of them
