@@ -95,6 +95,8 @@ double relative_error(const DetailPart& part, std::size_t level, double width, c
 struct DetailSeen {
   std::vector<std::vector<SeenPart>> by_view;
   std::vector<std::size_t> drawn;  // the places of the levels that were looked at, by part
+  /// So many Gaussians of finer levels than these may be chosen, or one part's: more do not come in time.
+  std::size_t to_come = std::numeric_limits<std::size_t>::max();
 };
 
 struct DetailChoice {
@@ -105,6 +107,7 @@ struct DetailChoice {
   /// around the views. In one list, of which `first` says where a part's begin, and the last one's end.
   std::vector<double> errors;
   std::vector<std::size_t> first;
+  bool is_limited = false;  // more is needed than may come (DetailSeen::to_come)
 
   /// What that of some views, from `begin` to before `end`, which loses most does with any levels of the
   /// parts: squared, meaned over pixels and channels.

@@ -1,6 +1,7 @@
 #include "formats/level_chooser.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -58,7 +59,9 @@ std::shared_ptr<const LevelsChosen> LevelChooser::choose(std::span<const shared:
     const double enough = views.empty() ? std::numeric_limits<double>::infinity() : need.apart_px / focal;
     chosen.levels = choose_levels(leaves_, eyes, most, enough, before_);
   }
-  stay(chosen, need.db ? need.stays_s : 0.0, need.most);
+  // While more is needed than comes, nothing comes instead of what is there already.
+  const bool is_limited = chosen.by_errors && chosen.by_errors->is_limited;
+  stay(chosen, is_limited ? INFINITY : need.db ? need.stays_s : 0.0, need.most);
   const std::size_t total = count(chosen.levels);
   if (total > need.most && !told_no_room_) warn_of_no_room(name_, total, need.most);
   told_no_room_ = total > need.most;

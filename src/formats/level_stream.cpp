@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
@@ -23,6 +24,7 @@ constexpr double chooser_share = 0.25, reader_share = 0.5;  // of the cores: the
 constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
 constexpr double stays_s = 1.0;         // a level that nothing needs any more
 constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
+constexpr double come_least = 1 << 14;  // Gaussians that a choice may want, however slow frames are
 constexpr int looks_most = 3;           // at the same views; then a choice hardly changes any more
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
@@ -96,9 +98,10 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
     looks_ = 0;
     is_due_ = true;
   }
-  if (looks_again()) {
+  {
     const std::lock_guard lock(mutex_);
-    is_due_ = is_due_ || is_idle();
+    if (is_limited_) looks_ = 0;
+    is_due_ = is_due_ || (looks_again() && is_idle());
   }
   if (!is_due_) return;
   Wish wish;
@@ -107,7 +110,8 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
     wish.together_db = together_db_;
   } else {
     if (take_is_due_ || !look_on(look)) return;
-    wish = {std::exchange(looked_, {}), {std::move(seen_), drawn_}, here(), *looked_at_, together_db_};
+    wish = {
+        std::exchange(looked_, {}), {std::move(seen_), drawn_, to_come()}, here(), *looked_at_, together_db_};
     ++looks_;
   }
   is_due_ = !same(wish.views, wanted_);
@@ -199,6 +203,7 @@ void LevelStream::choose(const Wish& wish) {
   here_ = wish.here;
   at_ = wish.at;
   lingers_ = chosen->lingers;
+  is_limited_ = chosen->by_errors && chosen->by_errors->is_limited;
   asked_of_ = wish.together_db;
   asked_db_ = need.db.value_or(0.0);
   next_.swap(chosen);
@@ -264,6 +269,13 @@ void LevelStream::sort_pieces() {
 }
 
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
+  const auto now = Clock::now();
+  if (taken_at_) {
+    const double seconds = std::chrono::duration<double>(now - *taken_at_).count();
+    frame_s_ = frame_s_ == 0.0 ? seconds : std::lerp(frame_s_, seconds, 0.1);
+  }
+  taken_at_ = now;
+  taken_most_ = most;
   std::vector<StreamedSog::Piece> taken;
   {
     const std::lock_guard lock(mutex_);
@@ -298,7 +310,16 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
 }
 
 // Coarse parts hide what fine ones do not.
-bool LevelStream::looks_again() const { return by_db_ && changed_since_look_ && looks_ < looks_most; }
+bool LevelStream::looks_again() const {
+  return by_db_ && (is_limited_ || (changed_since_look_ && looks_ < looks_most));
+}
+
+// What frames take until a head is where levels are chosen for, since every other one looks.
+std::size_t LevelStream::to_come() const {
+  if (frame_s_ == 0.0) return std::numeric_limits<std::size_t>::max();
+  const double all = 0.5 * static_cast<double>(taken_most_) * lead_s / frame_s_;
+  return static_cast<std::size_t>(std::clamp(all, come_least, 1e15));
+}
 
 bool LevelStream::settled() const {
   const std::lock_guard lock(mutex_);

@@ -94,6 +94,7 @@ class LevelStream {
   void free_used();
   bool is_idle() const { return !wish_ && !chooses_ && !next_ && !reads_ && pieces_.empty(); }
   bool looks_again() const;
+  std::size_t to_come() const;
 
   StreamedSog scene_;  // the reading thread's, once there is one, and its chooser that of the other
   Need need_;
@@ -107,8 +108,11 @@ class LevelStream {
   std::vector<std::size_t> drawn_;                       // places of the parts' levels, in the model
   mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, the last time,
   mutable double told_here_ = 0.0, told_ahead_ = 0.0;    // squared errors
-  bool looked_now_ = false;   // since the last take(): a frame does one of both, in turns,
-  bool take_is_due_ = false;  // where there is much of both
+  bool looked_now_ = false;                    // since the last take(): a frame does one of both, in turns,
+  bool take_is_due_ = false;                   // where there is much of both
+  std::optional<Clock::time_point> taken_at_;  // the last take(),
+  std::size_t taken_most_ = 0;                 // what it would have taken,
+  double frame_s_ = 0.0;                       // and from one to the next, in the mean
   // By dB:
   int looks_ = 0;                            // at these views, all of them
   std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
@@ -130,9 +134,10 @@ class LevelStream {
   std::shared_ptr<const DetailChoice> choice_;
   std::size_t here_ = 0;  // of its views (Wish)
   Clock::time_point at_;
-  double asked_db_ = 0.0;  // that it is for,
-  double asked_of_ = 0.0;  // of what is shared
-  bool lingers_ = false;   // LevelsChosen
+  double asked_db_ = 0.0;    // that it is for,
+  double asked_of_ = 0.0;    // of what is shared
+  bool lingers_ = false;     // LevelsChosen
+  bool is_limited_ = false;  // DetailChoice
   std::exception_ptr trouble_;
   std::jthread chooser_, reader_;  // last: they end first
 };

@@ -285,6 +285,49 @@ TEST(DetailErrors, KeepToWhatWasChosenBefore) {
   EXPECT_NE(choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any, {}, far).levels, far);
 }
 
+// Of what does not come in time many parts get some, not a few all.
+TEST(DetailErrors, WantNoMoreThanComesInTime) {
+  const std::vector<DetailPart> parts = row(200);
+  const DetailView view = along_x(-1.0);
+  const Levels coarsest(parts.size(), 3);
+  const auto wanted = [&](std::size_t to_come, const Levels& drawn) {
+    return choose_levels_within(parts, {view}, 1e-6, any, {{}, drawn, to_come}, {}, false);
+  };
+  const auto gaussians = [&](std::size_t p, const Levels& levels) {
+    return levels[p] < coarsest[p] ? parts[p].levels[levels[p]].count : 0;
+  };
+  const DetailChoice all = wanted(any, coarsest);
+  std::size_t needed = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p) needed += gaussians(p, all.levels);
+  EXPECT_FALSE(all.is_limited);
+  EXPECT_FALSE(wanted(needed, coarsest).is_limited);
+  EXPECT_EQ(wanted(needed, coarsest).levels, all.levels);
+  Levels order;  // of the parts, what saves most per Gaussian first
+  for (std::size_t p = 0; p < parts.size(); ++p) order.push_back(p);
+  std::ranges::sort(order, std::greater<>(), [&](std::size_t p) {
+    return all.saved(p, 3, all.levels[p]) / std::max(1.0, static_cast<double>(gaussians(p, all.levels)));
+  });
+  for (const std::size_t to_come : {needed / 8, needed / 4, needed / 2}) {
+    const DetailChoice some = wanted(to_come, coarsest);
+    EXPECT_TRUE(some.is_limited) << to_come;
+    std::size_t come = 0, left = to_come;
+    for (std::size_t p = 0; p < parts.size(); ++p) come += gaussians(p, some.levels);
+    EXPECT_LE(come, to_come);
+    EXPECT_GT(come, to_come / 2);
+    Levels few = coarsest;
+    for (const std::size_t p : order) {
+      if (gaussians(p, all.levels) > left) continue;
+      left -= gaussians(p, all.levels);
+      few[p] = all.levels[p];
+    }
+    EXPECT_LT(some.error(), all.error_of(few)) << to_come << ", planted: one part after another";
+  }
+  EXPECT_EQ(std::ranges::count(wanted(0, coarsest).levels, 3u), 199) << "one part's, or nothing ever comes";
+  EXPECT_EQ(wanted(needed / 4, all.levels).levels, all.levels) << "all is there";
+  EXPECT_FALSE(wanted(needed / 4, all.levels).is_limited);
+  EXPECT_FALSE(wanted(0, {}).is_limited) << "nobody looked";
+}
+
 TEST(DetailErrors, TellWhatAnotherLevelSaves) {
   const std::vector<DetailPart> parts = row(4);
   const DetailView near = along_x(-1.0), far = along_x(-9.0), away = along_x(-1.0, -1.0);

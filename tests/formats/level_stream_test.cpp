@@ -10,10 +10,14 @@
 #include <random>
 #include <set>
 
+#include "formats/content.h"
 #include "formats/model_file.h"
+#include "formats/streamed_sog_writer.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 #include "support/level_errors.h"
+#include "support/models.h"
+#include "support/program.h"
 
 namespace binosplat {
 namespace {
@@ -374,6 +378,63 @@ TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
       EXPECT_GE(bands, 3) << "10 ms in glances of 4.5";
     }
   }
+}
+
+/// So many Gaussians in leaves of 200 at three levels, of which each loses more, the same from everywhere.
+void write_levels(const test::TempFolder& folder, std::size_t count) {
+  const auto path = [&](const std::string& name) { return folder / name; };
+  const auto learn = [](std::span<const std::vector<Model>> leaves) {
+    std::vector<LeafErrors> errors;
+    for (const std::vector<Model>& levels : leaves) {
+      LeafErrors& leaf = errors.emplace_back();
+      leaf.pixels = {0.1};
+      leaf.seen.assign(detail_directions, {100.0});
+      for (std::size_t level = 0; level < levels.size(); ++level)
+        leaf.of_level.emplace_back(detail_directions, std::vector{2.0 * static_cast<double>(level)});
+    }
+    return errors;
+  };
+  const auto together = [](std::span<const std::vector<Model>>, std::span<const LeafErrors>, int) {
+    return std::vector<LossTogether>{{1.0, 1.0}};
+  };
+  Model model = test::random_model(1, static_cast<int>(count), 0);
+  model.name = "model";
+  write_streamed_sog(model, {.leaf = 200, .levels = 3},
+                     {[&](const std::string& name) { return fs::exists(path(name)); },
+                      [&](const std::string& name) { return test::read_text(path(name)); },
+                      [&](const std::string& name, std::span<const std::byte> bytes) {
+                        fs::create_directories(path(name).parent_path());
+                        test::write_text(path(name), std::string(as_text(bytes)));
+                      }},
+                     {learn, together});
+}
+
+// What frames cannot take in time is not wanted yet, but comes in the end.
+TEST(LevelStream, WantsNoMoreThanComes) {
+  constexpr std::size_t most = 1 << 14;  // of a choice, however slow frames are
+  const test::TempFolder folder;
+  write_levels(folder, 3 * most);
+  LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
+    return DetailNeed{.db = 100.0};
+  });
+  Model model = stream.coarsest();
+  std::vector<std::size_t> there;  // at each look
+  const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+    there.push_back(stream.gaussians());
+    return std::vector(parts.size(), SeenPart{50.0, 30.0});
+  };
+  const auto frame = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
+  stream.take(model, 1);
+  frame();
+  stream.take(model, 1);
+  EXPECT_TRUE(frames_until(stream, model, before_all(), look, [&] {
+    frame();
+    return stream.settled();
+  }));
+  EXPECT_EQ(stream.gaussians(), 3 * most);
+  ASSERT_GE(there.size(), 4u);
+  for (std::size_t k = 0; k + 1 < there.size(); ++k)
+    EXPECT_LE(there[k + 1], there[k] + most) << k << ", planted: all at once";
 }
 
 TEST(LevelStream, EndsInTheMidstOfIt) {

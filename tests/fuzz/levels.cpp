@@ -48,7 +48,7 @@ void check(const SogLevels& levels, const nlohmann::json& json) {
   });
   follow([&](double x, const auto& before) {
     DetailSeen seen;
-    if (!before.empty()) seen = {{std::vector<SeenPart>(leaves.size(), {x, x + 1.0})}, before};
+    if (!before.empty()) seen = {{std::vector<SeenPart>(leaves.size(), {x, x + 1.0})}, before, 700};
     return choose_levels_within(leaves, {{.eye = {x, 0, 0}}}, 1e-4, most, seen, before).levels;
   });
 }
