@@ -27,8 +27,10 @@ struct DetailNeed {
   std::size_t most = std::numeric_limits<std::size_t>::max();  // Gaussians of the model
   std::optional<double> db = {};  // instead of apart_px: each view's PSNR against the finest levels
   bool heads_turn = true;         // by dB: what is out of sight may be seen a moment later
-  double stays_s = 0.0;           // by dB: for so long finer levels stay than are needed, where there is room
-  bool shares = false;            // nothing was asked for: levels may lose a part of what frames may
+  /// By dB: for so long finer levels stay than are needed, where there is room; longer, where more is needed
+  /// than comes (DetailSeen::to_come).
+  double stays_s = 0.0;
+  bool shares = false;  // nothing was asked for: levels may lose a part of what frames may
 };
 
 // Levels and what a frame leaves out of them (FrameSettings::quality) share a budget where their squared
@@ -131,7 +133,8 @@ struct DetailChoice {
 /// to be hidden by nothing. A part that no view sees takes part in this as if it were seen, and as hidden as
 /// others are on the whole, and goes on until all such parts lose no more than `error` of the pixels of a
 /// whole sphere; unless `heads_turn` is false: then it keeps its coarsest. A part of unknown errors gets its
-/// finest level. More than `most`, and more error, only where they leave no choice. `before` is kept to: its
+/// finest level. More than `most`, and more error, only where they leave no choice, but
+/// for a thousandth of `most` that is left. `before` is kept to: its
 /// levels go on until a tenth less is lost, finer ones end at a tenth more.
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
                                   double error, std::size_t most, const DetailSeen& seen = {},

@@ -67,7 +67,7 @@ class ErrorChooser {
     std::vector<bool> left(parts_.size(), false);  // its steps: one was refused
     std::priority_queue<Step> others;              // of such parts
     auto next = steps.begin();
-    while (is_needed() && has_room()) {
+    while (loses_more_than(before_.empty() ? 1.0 : 1.0 / inertia) && has_room()) {
       while (next != steps.end() && left[next->part]) ++next;
       const bool in_order = next != steps.end() && (others.empty() || others.top() < *next);
       if (!in_order && others.empty()) break;
@@ -82,7 +82,7 @@ class ErrorChooser {
 
   double sphere_pixels() const { return sphere_pixels_; }
   void give_errors(DetailChoice& choice) {
-    choice.is_limited = is_limited_;
+    choice.is_limited = is_limited_ && loses_more_than(1.0);
     choice.errors = std::move(errors_);
     choice.first = std::move(first_);
   }
@@ -158,10 +158,10 @@ class ErrorChooser {
     return more == 0 || others == 0 || (others <= to_come_ && more <= to_come_ - others);
   }
 
-  /// Whether any view loses too much.
-  bool is_needed() const {
+  /// Whether any view loses more than so many times what is allowed.
+  bool loses_more_than(double times) const {
     for (std::size_t v = 0; v < allowed_.size(); ++v)
-      if (lost_[v] * (before_.empty() ? 1.0 : inertia) > allowed_[v]) return true;
+      if (lost_[v] > times * allowed_[v]) return true;
     return false;
   }
   /// For more than a little.

@@ -61,7 +61,7 @@ std::shared_ptr<const LevelsChosen> LevelChooser::choose(std::span<const shared:
   }
   // While more is needed than comes, nothing comes instead of what is there already.
   const bool is_limited = chosen.by_errors && chosen.by_errors->is_limited;
-  stay(chosen, is_limited ? INFINITY : need.db ? need.stays_s : 0.0, need.most);
+  stay(chosen, is_limited ? INFINITY : need.db ? need.stays_s : 0.0, need.most, seen.drawn);
   const std::size_t total = count(chosen.levels);
   if (total > need.most && !told_no_room_) warn_of_no_room(name_, total, need.most);
   told_no_room_ = total > need.most;
@@ -75,12 +75,16 @@ std::size_t LevelChooser::count(std::span<const std::size_t> levels) const {
 
 // Finer levels of the choice before stay in this one until they were not needed for some seconds, those that
 // were needed last first: as long as there is room.
-void LevelChooser::stay(LevelsChosen& chosen, double seconds, std::size_t most) {
+void LevelChooser::stay(LevelsChosen& chosen, double seconds, std::size_t most,
+                        std::span<const std::size_t> drawn) {
   const auto now = Clock::now();
   needed_.resize(leaves_.size());
   std::vector<std::size_t> staying;
+  const auto there = [&](std::size_t leaf) {  // what was chosen but has not come does not stay
+    return drawn.empty() ? before_[leaf] : std::max(before_[leaf], drawn[leaf]);
+  };
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
-    const bool is_finer = !before_.empty() && before_[leaf] < chosen.levels[leaf];
+    const bool is_finer = !before_.empty() && there(leaf) < chosen.levels[leaf];
     if (is_finer && ms_since(needed_[leaf]) < 1e3 * seconds) {
       staying.push_back(leaf);
     } else {
@@ -93,10 +97,10 @@ void LevelChooser::stay(LevelsChosen& chosen, double seconds, std::size_t most) 
                               most - std::min(most, needed));
   for (const std::size_t leaf : staying) {
     const auto& levels = leaves_[leaf].levels;
-    const std::size_t finer = levels[before_[leaf]].count, coarser = levels[chosen.levels[leaf]].count;
+    const std::size_t finer = levels[there(leaf)].count, coarser = levels[chosen.levels[leaf]].count;
     if (finer > coarser + room) break;
     room -= finer - std::min(finer, coarser);
-    chosen.levels[leaf] = before_[leaf];
+    chosen.levels[leaf] = there(leaf);
     chosen.lingers = true;
   }
 }

@@ -18,7 +18,7 @@ struct LevelsChosen {
   std::vector<std::size_t> levels;  // places among those that are there
   /// What the views that they are for lose, at whatever levels; none where dB were not chosen by.
   std::shared_ptr<const DetailChoice> by_errors;
-  bool lingers = false;  // some are finer than needed, and stay for a while (DetailNeed::stays_s)
+  bool lingers = false;  // some are finer than needed, and stay (DetailNeed::stays_s)
 };
 
 class LevelChooser {
@@ -39,7 +39,7 @@ class LevelChooser {
 
  private:
   std::size_t count(std::span<const std::size_t> levels) const;
-  void stay(LevelsChosen& chosen, double seconds, std::size_t most);
+  void stay(LevelsChosen& chosen, double seconds, std::size_t most, std::span<const std::size_t> drawn);
 
   std::string name_;
   const std::vector<DetailPart>& leaves_;

@@ -21,11 +21,13 @@ constexpr std::size_t read_ahead = 1 << 20;
 constexpr std::size_t room_most = 1 << 22;
 constexpr double between_looks_ms = 100.0;
 constexpr double chooser_share = 0.25, reader_share = 0.5;  // of the cores: the rest is for frames
-constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
-constexpr double stays_s = 1.0;         // a level that nothing needs any more
-constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
-constexpr double come_least = 1 << 14;  // Gaussians that a choice may want, however slow frames are
-constexpr int looks_most = 3;           // at the same views; then a choice hardly changes any more
+constexpr double look_most_ms = 360.0;   // at all bands of all views: slow frames have fewer bands
+constexpr double stays_s = 1.0;          // a level that nothing needs any more
+constexpr double lead_s = 0.5;           // ahead of a head that moves: until what is chosen is drawn
+constexpr double come_least = 1 << 14;   // Gaussians that a choice may want, however slow frames are
+constexpr double frame_most_s = 0.1;     // slower ones waited for something else
+constexpr int looks_limited_most = 100;  // at the same views, while more is needed than may come
+constexpr int looks_most = 3;            // at the same views; then a choice hardly changes any more
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
   return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
@@ -100,7 +102,6 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   }
   {
     const std::lock_guard lock(mutex_);
-    if (is_limited_) looks_ = 0;
     is_due_ = is_due_ || (looks_again() && is_idle());
   }
   if (!is_due_) return;
@@ -166,7 +167,7 @@ bool LevelStream::works(double share_of_cores, const std::function<void()>& work
     return true;
   } catch (...) {
     const std::lock_guard lock(mutex_);
-    trouble_ = std::current_exception();
+    if (!trouble_) trouble_ = std::current_exception();
     return false;
   }
 }
@@ -176,7 +177,7 @@ void LevelStream::choose_on(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     const auto is_there = [&] { return wish_.has_value(); };
-    if (!lingers_) {
+    if (!lingers_ || is_limited_) {
       changed_.wait(lock, stop, is_there);
     } else if (!changed_.wait_for(lock, stop, std::chrono::duration<double>(stays_s), is_there)) {
       wish_ = wish;  // chosen again, without what stayed beyond it
@@ -271,7 +272,7 @@ void LevelStream::sort_pieces() {
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   const auto now = Clock::now();
   if (taken_at_) {
-    const double seconds = std::chrono::duration<double>(now - *taken_at_).count();
+    const double seconds = std::min(std::chrono::duration<double>(now - *taken_at_).count(), frame_most_s);
     frame_s_ = frame_s_ == 0.0 ? seconds : std::lerp(frame_s_, seconds, 0.1);
   }
   taken_at_ = now;
@@ -311,7 +312,7 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
 
 // Coarse parts hide what fine ones do not.
 bool LevelStream::looks_again() const {
-  return by_db_ && (is_limited_ || (changed_since_look_ && looks_ < looks_most));
+  return by_db_ && (is_limited_ ? looks_ < looks_limited_most : changed_since_look_ && looks_ < looks_most);
 }
 
 // What frames take until a head is where levels are chosen for, since every other one looks.

@@ -54,8 +54,9 @@ class LevelStream {
   /// was wanted stays.
   ///
   /// While the views move, the second half of them is looked at where they will be by the time that levels
-  /// are there, a single view both here and there: levels come for all. Levels that are needed no more stay
-  /// for a second, if there is room: much that a moving head's eyes lose behind something comes back.
+  /// are there, a single view both here and there: levels come for all. No more is wanted than comes in half
+  /// a second, or 16,384 Gaussians. Levels that are needed no more stay for a second, or until all has come,
+  /// if there is room: much that a moving head's eyes lose behind something comes back.
   using Look =
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);

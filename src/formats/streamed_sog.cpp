@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -254,6 +253,8 @@ StreamedSog::StreamedSog(const fs::path& path) {
   leaves_ = source_->levels.leaves(json);
   check_leaves(source_->path, leaves_);
   chooser_.emplace(source_->path.string(), leaves_, source_->around());
+  for (int level = 0; level < source_->levels.count(); ++level)
+    static_cast<void>(source_->levels.taken(level));  // throws where leaves share Gaussians
   read_.resize(leaves_.size());
   like_.name = source_->path.filename().string();
   like_.format = name_of(source_->levels);

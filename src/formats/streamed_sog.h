@@ -2,7 +2,6 @@
 // Streamed SOG: several SOGs and a lod-meta.json, which says which of their Gaussians are which part of the
 // model at which level of detail. Frame: the trainer's (RDF).
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
