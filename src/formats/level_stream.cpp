@@ -21,12 +21,13 @@ constexpr std::size_t read_ahead = 1 << 20;
 constexpr std::size_t room_most = 1 << 22;
 constexpr double between_looks_ms = 100.0;
 constexpr double chooser_share = 0.25, reader_share = 0.5;  // of the cores: the rest is for frames
-constexpr double look_most_ms = 360.0;   // at all bands of all views: slow frames have fewer bands
-constexpr double stays_s = 1.0;          // a level that nothing needs any more
-constexpr double lead_s = 0.5;           // ahead of a head that moves: until what is chosen is drawn
-constexpr double come_least = 1 << 14;   // Gaussians that a choice may want, however slow frames are
-constexpr double frame_most_s = 0.1;     // slower ones waited for something else
-constexpr int looks_limited_most = 100;  // at the same views, while more is needed than may come
+constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
+constexpr double stays_s = 1.0;         // a level that nothing needs any more
+constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
+// Of what frames could take since the last choice, what the next one may want: every other of them looks, and
+// a quarter more, or they run out of it while the one after that is made.
+constexpr double comes_share = 0.5 * 1.25;
+constexpr double comes_least = 1 << 14;  // Gaussians, however few frames there were
 constexpr int looks_most = 3;            // at the same views; then a choice hardly changes any more
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
@@ -270,12 +271,7 @@ void LevelStream::sort_pieces() {
 }
 
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
-  const auto now = Clock::now();
-  if (taken_at_) {
-    const double seconds = std::min(std::chrono::duration<double>(now - *taken_at_).count(), frame_most_s);
-    frame_s_ = frame_s_ == 0.0 ? seconds : std::lerp(frame_s_, seconds, 0.1);
-  }
-  taken_at_ = now;
+  ++takes_;
   taken_most_ = most;
   std::vector<StreamedSog::Piece> taken;
   {
@@ -312,14 +308,15 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
 
 // Coarse parts hide what fine ones do not.
 bool LevelStream::looks_again() const {
-  return by_db_ && (is_limited_ ? looks_ < looks_limited_most : changed_since_look_ && looks_ < looks_most);
+  return by_db_ && (is_limited_ || (changed_since_look_ && looks_ < looks_most));
 }
 
-// What frames take until a head is where levels are chosen for, since every other one looks.
-std::size_t LevelStream::to_come() const {
-  if (frame_s_ == 0.0) return std::numeric_limits<std::size_t>::max();
-  const double all = 0.5 * static_cast<double>(taken_most_) * lead_s / frame_s_;
-  return static_cast<std::size_t>(std::clamp(all, come_least, 1e15));
+// Where a head rests nothing comes too late, nor before it was ever seen.
+std::size_t LevelStream::to_come() {
+  const double all = comes_share * static_cast<double>(taken_most_) * std::exchange(takes_, 0);
+  const bool rests = looks_ > 0 || !std::exchange(has_wished_, true);
+  return rests ? std::numeric_limits<std::size_t>::max()
+               : static_cast<std::size_t>(std::clamp(all, comes_least, 1e15));
 }
 
 bool LevelStream::settled() const {

@@ -54,9 +54,10 @@ class LevelStream {
   /// was wanted stays.
   ///
   /// While the views move, the second half of them is looked at where they will be by the time that levels
-  /// are there, a single view both here and there: levels come for all. No more is wanted than comes in half
-  /// a second, or 16,384 Gaussians. Levels that are needed no more stay for a second, or until all has come,
-  /// if there is room: much that a moving head's eyes lose behind something comes back.
+  /// are there, a single view both here and there: levels come for all. No more is wanted than
+  /// frames take until the next choice, or 16,384 Gaussians. Levels that are needed no more stay for a
+  /// second, or until all has come, if there is room: much that a moving head's eyes lose behind something
+  /// comes back.
   using Look =
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);
@@ -95,7 +96,7 @@ class LevelStream {
   void free_used();
   bool is_idle() const { return !wish_ && !chooses_ && !next_ && !reads_ && pieces_.empty(); }
   bool looks_again() const;
-  std::size_t to_come() const;
+  std::size_t to_come();
 
   StreamedSog scene_;  // the reading thread's, once there is one, and its chooser that of the other
   Need need_;
@@ -109,11 +110,11 @@ class LevelStream {
   std::vector<std::size_t> drawn_;                       // places of the parts' levels, in the model
   mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, the last time,
   mutable double told_here_ = 0.0, told_ahead_ = 0.0;    // squared errors
-  bool looked_now_ = false;                    // since the last take(): a frame does one of both, in turns,
-  bool take_is_due_ = false;                   // where there is much of both
-  std::optional<Clock::time_point> taken_at_;  // the last take(),
-  std::size_t taken_most_ = 0;                 // what it would have taken,
-  double frame_s_ = 0.0;                       // and from one to the next, in the mean
+  bool looked_now_ = false;     // since the last take(): a frame does one of both, in turns,
+  bool take_is_due_ = false;    // where there is much of both
+  std::size_t taken_most_ = 0;  // what the last take() would have taken,
+  int takes_ = 0;               // and how many there were since the last choice was wished, if one
+  bool has_wished_ = false;
   // By dB:
   int looks_ = 0;                            // at these views, all of them
   std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
