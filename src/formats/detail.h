@@ -133,9 +133,9 @@ struct DetailChoice {
 /// to be hidden by nothing. A part that no view sees takes part in this as if it were seen, and as hidden as
 /// others are on the whole, and goes on until all such parts lose no more than `error` of the pixels of a
 /// whole sphere; unless `heads_turn` is false: then it keeps its coarsest. A part of unknown errors gets its
-/// finest level. More than `most`, and more error, only where they leave no choice, but
-/// for a thousandth of `most` that is left. `before` is kept to: its
-/// levels go on until a tenth less is lost, finer ones end at a tenth more.
+/// finest level. More than `most`, and more error, only where they leave no choice, but for a thousandth of
+/// `most` that is left. `before` is kept to: its levels go on until a tenth less is lost, finer ones end at a
+/// tenth more.
 DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
                                   double error, std::size_t most, const DetailSeen& seen = {},
                                   std::span<const std::size_t> before = {}, bool heads_turn = true);

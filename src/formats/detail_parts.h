@@ -10,6 +10,9 @@
 
 namespace binosplat {
 
+/// Parts that are worth a thread's while.
+inline constexpr std::size_t chunk_of_parts = 256;
+
 /// By how much a level must be too coarse, or finer than need be, before it is left: heads are never still.
 inline constexpr double inertia = 1.1;
 

@@ -33,7 +33,4 @@ class Sights {
   std::vector<std::vector<SeenPart>> seen_;
 };
 
-/// Parts that are worth a thread's while.
-inline constexpr std::size_t chunk_of_parts = 256;
-
 }  // namespace binosplat

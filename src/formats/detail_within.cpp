@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -81,8 +80,9 @@ class ErrorChooser {
   }
 
   double sphere_pixels() const { return sphere_pixels_; }
+  /// Whether more is needed than may come.
+  bool is_limited() const { return is_limited_ && loses_more_than(1.0); }
   void give_errors(DetailChoice& choice) {
-    choice.is_limited = is_limited_ && loses_more_than(1.0);
     choice.errors = std::move(errors_);
     choice.first = std::move(first_);
   }
@@ -107,14 +107,12 @@ class ErrorChooser {
   }
 
   /// What a part does by itself, as long as nothing is refused; worth no more than what comes before.
-  std::vector<Step> steps_of(std::size_t p) const {
-    std::vector<Step> steps;
+  void add_steps(std::size_t p, std::vector<Step>& steps) const {
     double most = std::numeric_limits<double>::infinity();
     for (Step step = best_step(p, chosen_[p]); step.worth > 0.0; step = best_step(p, step.level)) {
       most = step.worth = std::min(most, step.worth);
       steps.push_back(step);
     }
-    return steps;
   }
 
   /// That of all parts, in the order in which they are taken: what others lose does not change it.
@@ -123,7 +121,7 @@ class ErrorChooser {
     std::mutex adding;
     const auto add = [&](std::size_t begin, std::size_t end) {
       std::vector<Step> steps;
-      for (std::size_t p = begin; p < end; ++p) std::ranges::copy(steps_of(p), std::back_inserter(steps));
+      for (std::size_t p = begin; p < end; ++p) add_steps(p, steps);
       const std::lock_guard lock(adding);
       all.insert(all.end(), steps.begin(), steps.end());
     };
@@ -224,7 +222,7 @@ DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const st
                                   double error, std::size_t most, const DetailSeen& seen,
                                   std::span<const std::size_t> before, bool heads_turn) {
   ErrorChooser chooser(parts, views, Sights(parts, views, seen, heads_turn), error, most, seen, before);
-  DetailChoice choice{chooser.choose(), {}, chooser.sphere_pixels(), {}, {}, false};
+  DetailChoice choice{chooser.choose(), {}, chooser.sphere_pixels(), {}, {}, chooser.is_limited()};
   for (const DetailView& view : views) choice.pixels.push_back(view.pixels);
   chooser.give_errors(choice);
   return choice;

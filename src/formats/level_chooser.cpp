@@ -18,13 +18,6 @@ constexpr double stays_most = 0.5;
 
 }  // namespace
 
-std::size_t count_of(const std::vector<DetailPart>& leaves, std::span<const std::size_t> levels) {
-  std::size_t total = 0;
-  for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf)
-    total += leaves[leaf].levels.empty() ? 0 : leaves[leaf].levels[levels[leaf]].count;
-  return total;
-}
-
 bool have_errors(const std::vector<DetailPart>& leaves) {
   return std::ranges::any_of(leaves, [](const DetailPart& leaf) { return !leaf.pixels.empty(); });
 }
@@ -60,8 +53,7 @@ std::shared_ptr<const LevelsChosen> LevelChooser::choose(std::span<const shared:
     chosen.levels = choose_levels(leaves_, eyes, most, enough, before_);
   }
   // While more is needed than comes, nothing comes instead of what is there already.
-  const bool is_limited = chosen.by_errors && chosen.by_errors->is_limited;
-  stay(chosen, is_limited ? INFINITY : need.db ? need.stays_s : 0.0, need.most, seen.drawn);
+  stay(chosen, chosen.is_limited() ? INFINITY : need.db ? need.stays_s : 0.0, need.most, seen.drawn);
   const std::size_t total = count(chosen.levels);
   if (total > need.most && !told_no_room_) warn_of_no_room(name_, total, need.most);
   told_no_room_ = total > need.most;
@@ -70,7 +62,10 @@ std::shared_ptr<const LevelsChosen> LevelChooser::choose(std::span<const shared:
 }
 
 std::size_t LevelChooser::count(std::span<const std::size_t> levels) const {
-  return around_ + count_of(leaves_, levels);
+  std::size_t total = around_;
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf)
+    total += leaves_[leaf].levels.empty() ? 0 : leaves_[leaf].levels[levels[leaf]].count;
+  return total;
 }
 
 // Finer levels of the choice before stay in this one until they were not needed for some seconds, those that

@@ -2,9 +2,9 @@
 // Levels of detail that are chosen anew as views change.
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/clock.h"
@@ -19,6 +19,9 @@ struct LevelsChosen {
   /// What the views that they are for lose, at whatever levels; none where dB were not chosen by.
   std::shared_ptr<const DetailChoice> by_errors;
   bool lingers = false;  // some are finer than needed, and stay (DetailNeed::stays_s)
+
+  /// More is needed than may come (DetailChoice).
+  bool is_limited() const { return by_errors && by_errors->is_limited; }
 };
 
 class LevelChooser {
@@ -37,8 +40,10 @@ class LevelChooser {
   /// There is no choice before the next one.
   void forget() { before_.clear(); }
 
- private:
+  /// Gaussians at such levels of the leaves.
   std::size_t count(std::span<const std::size_t> levels) const;
+
+ private:
   void stay(LevelsChosen& chosen, double seconds, std::size_t most, std::span<const std::size_t> drawn);
 
   std::string name_;
@@ -48,9 +53,6 @@ class LevelChooser {
   std::vector<Clock::time_point> needed_;  // when the chosen levels of the leaves were last
   bool told_no_room_ = false;
 };
-
-/// Gaussians of leaves at such levels.
-std::size_t count_of(const std::vector<DetailPart>& leaves, std::span<const std::size_t> levels);
 
 /// That not even the coarsest levels fit.
 void warn_of_no_room(const std::string& name, std::size_t total, std::size_t most);

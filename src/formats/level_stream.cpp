@@ -205,7 +205,7 @@ void LevelStream::choose(const Wish& wish) {
   here_ = wish.here;
   at_ = wish.at;
   lingers_ = chosen->lingers;
-  is_limited_ = chosen->by_errors && chosen->by_errors->is_limited;
+  is_limited_ = chosen->is_limited();
   asked_of_ = wish.together_db;
   asked_db_ = need.db.value_or(0.0);
   next_.swap(chosen);

@@ -54,10 +54,9 @@ class LevelStream {
   /// was wanted stays.
   ///
   /// While the views move, the second half of them is looked at where they will be by the time that levels
-  /// are there, a single view both here and there: levels come for all. No more is wanted than
-  /// frames take until the next choice, or 16,384 Gaussians. Levels that are needed no more stay for a
-  /// second, or until all has come, if there is room: much that a moving head's eyes lose behind something
-  /// comes back.
+  /// are there, a single view both here and there: levels come for all. No more is wanted than frames take
+  /// until the next choice, or 16,384 Gaussians. Levels that are needed no more stay for a second, or until
+  /// all has come, if there is room: much that a moving head's eyes lose behind something comes back.
   using Look =
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);
@@ -139,7 +138,7 @@ class LevelStream {
   double asked_db_ = 0.0;    // that it is for,
   double asked_of_ = 0.0;    // of what is shared
   bool lingers_ = false;     // LevelsChosen
-  bool is_limited_ = false;  // DetailChoice
+  bool is_limited_ = false;  // likewise
   std::exception_ptr trouble_;
   std::jthread chooser_, reader_;  // last: they end first
 };

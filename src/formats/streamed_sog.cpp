@@ -323,7 +323,7 @@ std::vector<StreamedSog::Taken> StreamedSog::to_read(bool shrinks) const {
 }
 
 std::size_t StreamedSog::finest() const {
-  return source_->around() + count_of(leaves_, std::vector<std::size_t>(leaves_.size(), 0));
+  return chooser_->count(std::vector<std::size_t>(leaves_.size(), 0));
 }
 
 double StreamedSog::saved(std::size_t leaf, std::optional<std::size_t> before) const {
@@ -355,7 +355,7 @@ void StreamedSog::check_room(std::span<const std::vector<Taken>> all) const {
     for (std::size_t i = 0; i < taken.size(); ++i)
       if (!taken[i].empty()) check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
   }
-  const std::size_t total = source_->around() + count_of(leaves_, chosen_->levels);
+  const std::size_t total = chooser_->count(chosen());
   if (total == 0) fail("{} holds no Gaussians ({})", source_->path.string(), like_.format);
   check_total(source_->path, total, source_->bytes);
 }

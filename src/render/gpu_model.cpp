@@ -68,12 +68,12 @@ Packing packing_of_harmonics(const Model& model, int precision) {
 void upload_page(const Packing& packing, const ModelBuffers::Page& page, gl::Buffer& buffer) {
   constexpr std::size_t piece = 1 << 16;
   std::vector<std::uint32_t> packed(std::min<std::size_t>(piece, page.count) * packing.words);
+  std::vector<std::uint32_t> places(std::min<std::size_t>(piece, page.count));
+  std::iota(places.begin(), places.end(), 0u);
   for (std::size_t at = 0; at < page.count; at += piece) {
     const std::size_t count = std::min(piece, page.count - at);
-    std::vector<std::uint32_t> places(count);
-    std::iota(places.begin(), places.end(), static_cast<std::uint32_t>(at));
     const auto pack_some = [&](std::size_t begin, std::size_t end) {
-      packing.pack(page.first, std::span(places).subspan(begin, end - begin),
+      packing.pack(page.first + at, std::span(places).subspan(begin, end - begin),
                    std::span(packed).subspan(begin * packing.words, (end - begin) * packing.words));
     };
     parallel_chunks(count, 1 << 12, pack_some);

@@ -8,13 +8,6 @@
 
 namespace binosplat::render {
 
-namespace {
-
-// Some 0.3 ms. Threads that must be waited for have no core for 4 ms where others read.
-constexpr std::size_t words_a_thread = std::size_t{1} << 19;
-
-}  // namespace
-
 Scatter::Scatter(gl::Context& context)
     : dispatcher_(context), places_(context, "places of uploads"), records_(context, "uploads") {}
 
@@ -28,7 +21,7 @@ void Scatter::upload(
     const auto fill_some = [&](std::size_t begin, std::size_t end) {
       fill(now.subspan(begin, end - begin), std::span(records).subspan(begin * words, (end - begin) * words));
     };
-    parallel_chunks(now.size(), std::max<std::size_t>(words_a_thread / words, 1), fill_some);
+    parallel_chunks(now.size(), std::max<std::size_t>(numbers_a_thread / words, 1), fill_some);
     places_.upload(now);
     records_.upload(records);
     dispatcher_.begin_frame();

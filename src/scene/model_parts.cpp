@@ -12,9 +12,6 @@ namespace {
 // Which the model grows by, and whose memory is touched then: more would take a frame's time (1,024: 5 ms).
 constexpr std::size_t blocks_at_once = 128;
 
-// Some 0.3 ms. Threads that must be waited for have no core for 4 ms where others read.
-constexpr std::size_t numbers_a_thread = std::size_t{1} << 19;
-
 void hide(Model& model, std::size_t first, std::size_t count) {
   std::fill_n(model.opacity.begin() + static_cast<std::ptrdiff_t>(first), count, 0.0f);
 }
