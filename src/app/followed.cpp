@@ -15,7 +15,9 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr int looks = 3;  // by dB; then a choice hardly changes any more
+constexpr int looks_most = 3;  // by dB; then a choice hardly changes any more
+// Parts by which it is found what levels lose: of a picture, or of each of a turning head's.
+constexpr std::size_t sample_of_one = 96, sample_of_many = 12;
 
 std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views,
                            const render::FrameSettings& settings) {
@@ -84,11 +86,29 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
     if (sight || choose(nullptr, views, settings)) forget(model);
     if (sight && scene_.choose({}, {})) change();  // what is looked at is the coarsest
   }
-  for (int look = 0; look < (sight ? looks : 1); ++look) {
-    if (!choose(sight ? &*sight : nullptr, views, settings)) break;
-    change();
-  }
+  const auto choose_and_change = [&](int looks) {
+    for (int look = 0; look < looks; ++look) {
+      if (!choose(sight ? &*sight : nullptr, views, settings)) break;
+      change();
+    }
+  };
+  choose_and_change(sight ? looks_most : 1);
+  if (!sight || views.empty()) return switched;
+  const PartsTrial trial = sight->trial(settings);
+  try_sample(model, views.front(), trial);
+  choose_and_change(1);
+  try_sample(model, views.front(), trial);  // those of the first are no longer there by chance
   return switched;
+}
+
+void FollowedLevels::try_sample(Model& model, const shared::View& view, const PartsTrial& trial) {
+  const auto parts =
+      sample_of(*scene_.choice(), scene_.chosen(), heads_turn_ ? sample_of_many : sample_of_one, samples_++);
+  if (parts.empty()) return;
+  trial.keep(view);
+  const PartModels before = exchange(scene_.finest_of(parts), model, parts_, trial);
+  found_.note(loss_of(*scene_.choice(), scene_.chosen(), parts, trial.differs(view)));
+  exchange(before, model, parts_, trial);
 }
 
 void FollowedLevels::read(Model& model) {
@@ -99,6 +119,8 @@ void FollowedLevels::read(Model& model) {
 
 void FollowedLevels::forget(Model& model) {
   scene_.forget();
+  found_ = {};
+  samples_ = 0;
   parts_ = ModelParts(scene_.parts());
   model.resize(0);
 }
@@ -109,6 +131,7 @@ bool FollowedLevels::choose(render::Sight* sight, std::span<const shared::View> 
   if (sight != nullptr) seen = {sight->look(views, settings, parts_), scene_.chosen()};
   DetailNeed needed = need(views);
   needed.heads_turn = heads_turn_;
+  needed.found = found_.factor();
   return scene_.choose(views, needed, seen);
 }
 
@@ -126,7 +149,7 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
     levels.switched = settle(model, frame.model(), views, settings, changing);
   if (!before.empty()) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
   levels.gaussians = parts_.gaussians();
-  levels.predicted_psnr = scene_.predicted_psnr();
+  levels.predicted_psnr = scene_.predicted_psnr(found_.factor());
   levels.left = settings.quality;
   if (settings.quality > 0.0f && levels.predicted_psnr)
     levels.left = left_of(settings.quality, *levels.predicted_psnr, *levels.predicted_psnr);

@@ -8,6 +8,7 @@
 
 #include "app/scene_options.h"
 #include "base/image.h"
+#include "formats/level_sample.h"
 #include "formats/streamed_sog.h"
 #include "render/frame.h"
 #include "render/sight.h"
@@ -85,6 +86,8 @@ class FollowedLevels {
               std::span<const shared::View> views, const render::FrameSettings& settings,
               const Changing& changing);
   void read(Model& model);
+  /// Finds by a sample what the levels of the last choice lose.
+  void try_sample(Model& model, const shared::View& view, const PartsTrial& trial);
   /// As if there were nothing yet.
   void forget(Model& model);
   /// Whether the views need other levels, by what they show of those that there are; no `sight`: for no dB.
@@ -98,6 +101,8 @@ class FollowedLevels {
   bool heads_turn_;
   StreamedSog scene_;
   ModelParts parts_;
+  LevelsFound found_;
+  unsigned samples_ = 0;
   std::vector<shared::View> brought_;       // what bring() was for, until the first shot
   double read_ms_ = 0.0, upload_ms_ = 0.0;  // since the last shot
   std::optional<Model> finest_;

@@ -30,6 +30,7 @@ struct DetailNeed {
   /// By dB: for so long finer levels stay than are needed, where there is room; longer, where more is needed
   /// than comes (DetailSeen::to_come).
   double stays_s = 0.0;
+  double found = 1.0;  // by dB: what levels were found to lose, of what is predicted (formats/level_sample.h)
   bool shares = false;  // nothing was asked for: levels may lose a part of what frames may
 };
 
@@ -118,6 +119,10 @@ struct DetailChoice {
     return error_of(any_levels, 0, pixels.size());
   }
   double error() const { return error_of(levels); }
+  /// What a view loses by a part: squared, meaned over its pixels and channels.
+  double lost(std::size_t view, std::size_t part, std::size_t level) const {
+    return errors[first[part] + view * levels_of(part) + level] / pixels[view];
+  }
   /// By how much less the view that gains most of it, or the sphere, loses with a part at a level instead of
   /// another: squared, meaned over pixels and channels.
   double saved(std::size_t part, std::size_t from, std::size_t to) const;

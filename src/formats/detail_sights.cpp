@@ -19,12 +19,20 @@ constexpr double growth = 0.3, growth_most = 8.0;
 /// So many times the distance between the Gaussians of a level it reaches out from behind what hides it.
 constexpr double reach = 0.5;
 
-/// Whether the box, and some of the pixels beside it that Gaussians are blurred to, may lie in the picture.
+/// How far apart so many Gaussians of a part are taken to lie, world units.
+double apart(const DetailPart& part, std::size_t count) {
+  return glm::distance(part.low, part.high) / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
+}
+
+/// Whether the box may lie in the picture, or some of the pixels beside it that Gaussians are blurred to, or
+/// what its coarsest level reaches out of it.
 bool sees(const DetailView& view, const DetailPart& part, double pixel) {
   constexpr double blurred_px = 4.0;
+  const double beside =
+      blurred_px * pixel + (part.levels.empty() ? 0.0 : reach * apart(part, part.levels.back().count));
   const glm::dvec3 to = 0.5 * (part.low + part.high) - view.eye, half = 0.5 * (part.high - part.low);
   return std::ranges::all_of(view.inward, [&](const glm::dvec3& inward) {
-    return glm::dot(inward, to) + glm::dot(glm::abs(inward), half) >= -blurred_px * pixel;
+    return glm::dot(inward, to) + glm::dot(glm::abs(inward), half) >= -beside;
   });
 }
 
@@ -147,9 +155,7 @@ double Sights::area(std::size_t view, std::size_t p, std::size_t level) const {
   const DetailPart& part = parts_[p];
   if (drawn_.empty() || (level <= drawn_[p] && seen.area > 0.0)) return seen.area;
   const std::size_t count = part.levels[std::max(level, drawn_[p])].count;
-  const double apart =
-      glm::distance(part.low, part.high) / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
-  const double side = std::sqrt(seen.area) + reach * apart * focal_[view] / seen.distance;
+  const double side = std::sqrt(seen.area) + reach * apart(part, count) * focal_[view] / seen.distance;
   return side * side;
 }
 

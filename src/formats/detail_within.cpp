@@ -234,7 +234,7 @@ double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size
   for (std::size_t p = 0; p + 1 < first.size(); ++p) {
     const std::size_t levels_of_part = levels_of(p);
     for (std::size_t v = begin; levels_of_part > 0 && v < end; ++v)
-      lost[v - begin] += errors[first[p] + v * levels_of_part + any_levels[p]] / pixels[v];
+      lost[v - begin] += this->lost(v, p, any_levels[p]);
   }
   return lost.empty() ? 0.0 : *std::ranges::max_element(lost);
 }

@@ -28,23 +28,14 @@ constexpr double lead_s = 0.5;          // ahead of a head that moves: until wha
 // a quarter more, or they run out of it while the one after that is made.
 constexpr double comes_share = 0.5 * 1.25;
 constexpr double comes_least = 1 << 14;  // Gaussians, however few frames there were
-constexpr int looks_most = 3;            // at the same views; then a choice hardly changes any more
+constexpr int looks_most = 3;            // at the same views; then a choice hardly changes any more,
+constexpr int looks_most_found = 5;      // but by what a sample was found to lose
+constexpr std::size_t sample_of_moving = 8, sample_of_rest = 24;  // parts: what a frame has time for
+constexpr int between_samples = 20;                               // frames, of which each sample takes three
+constexpr double unnoticed = 0.05;  // by which what is found may change, of itself
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
   return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
-}
-
-// What is seen in another band, too.
-void add(const std::vector<SeenPart>& more, std::vector<SeenPart>& seen) {
-  for (std::size_t p = 0; p < seen.size(); ++p) {
-    const double area = seen[p].area + more[p].area;
-    if (more[p].area == 0.0) continue;
-    const double share = more[p].area / area;
-    seen[p].distance = seen[p].area == 0.0
-                           ? more[p].distance
-                           : std::pow(seen[p].distance, 1.0 - share) * std::pow(more[p].distance, share);
-    seen[p].area = area;
-  }
 }
 
 }  // namespace
@@ -105,15 +96,21 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
     const std::lock_guard lock(mutex_);
     is_due_ = is_due_ || (looks_again() && is_idle());
   }
-  if (!is_due_) return;
+  if (!is_due_ || tries_out()) return;
   Wish wish;
   if (!by_db_) {
     wish.views = wanted_;
     wish.together_db = together_db_;
   } else {
     if (take_is_due_ || !look_on(look)) return;
-    wish = {
-        std::exchange(looked_, {}), {std::move(seen_), drawn_, to_come()}, here(), *looked_at_, together_db_};
+    wish = {std::exchange(looked_, {}),
+            {std::move(seen_), drawn_, to_come()},
+            here(),
+            *looked_at_,
+            together_db_,
+            found_.factor(),
+            next_sample(),
+            moves_ ? sample_of_moving : sample_of_rest};
     ++looks_;
   }
   is_due_ = !same(wish.views, wanted_);
@@ -136,7 +133,7 @@ bool LevelStream::look_on(const Look& look) {
     looked_at_ = Clock::now();
     moves_ = !same(motion_.ahead(lead_s), wanted_);
     to_look_at_ = moves_ ? std::max<std::size_t>(wanted_.size(), 2) : wanted_.size();
-    changed_since_look_ = false;
+    changed_since_look_ = found_other_ = false;
     seen_.clear();
   }
   if (bands_.is_first()) {
@@ -148,7 +145,7 @@ bool LevelStream::look_on(const Look& look) {
   bool is_last = false;
   do {
     const auto start = Clock::now();
-    add(look(looked_.back(), bands_.next(), parts_), seen_.back());
+    add_band(look(looked_.back(), bands_.next(), parts_), seen_.back());
     took_ms = ms_since(start);
     is_last = bands_.note(took_ms);
   } while (!is_last && took_ms < LookBands::nothing_ms);
@@ -188,6 +185,7 @@ void LevelStream::choose_on(const std::stop_token& stop) {
     chooses_ = true;
     lock.unlock();
     const bool went_well = works(chooser_share, [&] { choose(wish); });
+    wish.sample.reset();
     lock.lock();
     chooses_ = false;
     if (!went_well) return;
@@ -198,7 +196,13 @@ void LevelStream::choose_on(const std::stop_token& stop) {
 void LevelStream::choose(const Wish& wish) {
   DetailNeed need = scene_.sharing(need_(scene_, wish.views), wish.together_db);
   need.stays_s = stays_s;
+  need.found = wish.found;
   auto chosen = scene_.chooser().choose(wish.views, need, wish.seen);
+  std::optional<Sample> sample;
+  if (wish.sample && chosen->by_errors) {
+    auto parts = sample_of(*chosen->by_errors, chosen->levels, wish.sample_parts, *wish.sample);
+    if (!parts.empty()) sample = {chosen->by_errors, wish.views.front(), {std::move(parts), {}}};
+  }
   auto choice = chosen->by_errors;  // the one before it is freed when no frame waits for the lock any more
   const std::lock_guard lock(mutex_);
   choice_.swap(choice);
@@ -209,6 +213,7 @@ void LevelStream::choose(const Wish& wish) {
   asked_of_ = wish.together_db;
   asked_db_ = need.db.value_or(0.0);
   next_.swap(chosen);
+  next_sample_.swap(sample);
 }
 
 void LevelStream::read_on(const std::stop_token& stop) {
@@ -216,10 +221,14 @@ void LevelStream::read_on(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     changed_.wait(lock, stop, [&] { return next_ != nullptr || !used_.empty(); });
     auto chosen = std::exchange(next_, nullptr);
+    auto sample = std::exchange(next_sample_, std::nullopt);
     reads_ = chosen != nullptr;
     lock.unlock();
     free_used();
-    const bool went_well = !chosen || works(reader_share, [&] { read(std::move(chosen), stop); });
+    const bool went_well = !chosen || works(reader_share, [&] {
+      if (sample) read(std::move(*sample));
+      read(std::move(chosen), stop);
+    });
     lock.lock();
     reads_ = false;
     if (!went_well) return;
@@ -240,6 +249,12 @@ void LevelStream::read(std::shared_ptr<const LevelsChosen> chosen, const std::st
     const std::lock_guard lock(mutex_);
     return !stop.stop_requested() && !next_;
   });
+}
+
+void LevelStream::read(Sample sample) {
+  sample.models = scene_.finest_of(sample.models.parts);
+  const std::lock_guard lock(mutex_);
+  if (!sample_) sample_ = std::move(sample);
 }
 
 void LevelStream::free_used() {
@@ -272,6 +287,7 @@ void LevelStream::sort_pieces() {
 
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   ++takes_;
+  ++frames_since_sample_;
   taken_most_ = most;
   std::vector<StreamedSog::Piece> taken;
   {
@@ -279,7 +295,8 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
     if (trouble_) std::rethrow_exception(trouble_);
     const bool looked = std::exchange(looked_now_, false);
     take_is_due_ = looked && !pieces_.empty();
-    if (take_is_due_) return {};
+    may_try_ = !looked && sample_;
+    if (take_is_due_ || sample_) return {};
     std::size_t gaussians = 0;
     while (!pieces_.empty()) {
       gaussians += pieces_.front().model.count();
@@ -306,9 +323,44 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   return parts_.take_changes();
 }
 
+// Nobody else changes a sample that is there.
+void LevelStream::try_out(Model& model, const PartsTrial& trial) {
+  is_tried_out_ = true;
+  if (!std::exchange(may_try_, false)) return;
+  Sample& sample = *sample_;
+  if (trial_ == Trial::keeps) {
+    trial_ = Trial::compares;
+    return trial.keep(sample.view);
+  }
+  PartModels before = exchange(sample.models, model, parts_, trial);
+  if (trial_ == Trial::compares) {
+    const double factor = found_.factor();
+    found_.note(loss_of(*sample.choice, drawn_, before.parts, trial.differs(sample.view)));
+    found_other_ = std::abs(std::log(found_.factor() / factor)) > unnoticed;
+    std::swap(sample.models, before);
+    trial_ = Trial::puts_back;
+    return;
+  }
+  trial_ = Trial::keeps;
+  const std::lock_guard lock(mutex_);
+  sample_.reset();
+}
+
+std::optional<unsigned> LevelStream::next_sample() {
+  if (!is_tried_out_ || (samples_ > 0 && frames_since_sample_ < between_samples)) return std::nullopt;
+  frames_since_sample_ = 0;
+  return samples_++;
+}
+
+bool LevelStream::tries_out() const {
+  const std::lock_guard lock(mutex_);
+  return sample_.has_value();
+}
+
 // Coarse parts hide what fine ones do not.
 bool LevelStream::looks_again() const {
-  return by_db_ && (is_limited_ || (changed_since_look_ && looks_ < looks_most));
+  return by_db_ && (is_limited_ || (changed_since_look_ && looks_ < looks_most) ||
+                    (found_other_ && looks_ < looks_most_found));
 }
 
 // Where a head rests nothing comes too late, nor before it was ever seen.
@@ -341,7 +393,8 @@ std::optional<double> LevelStream::predicted_psnr() const {
     told_ahead_ = here < all ? choice->error_of(drawn_, here, all) : told_here_;
     told_by_ = std::move(choice);
   }
-  return psnr_of_error(std::lerp(told_here_, told_ahead_, std::min(1e-3 * ms_since(at) / lead_s, 1.0)));
+  const double ahead = std::min(1e-3 * ms_since(at) / lead_s, 1.0);
+  return psnr_of_error(found_.factor() * std::lerp(told_here_, told_ahead_, ahead));
 }
 
 }  // namespace binosplat

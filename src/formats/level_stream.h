@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "formats/level_sample.h"
 #include "formats/look_bands.h"
 #include "formats/streamed_sog.h"
 #include "scene/head_motion.h"
@@ -66,6 +67,11 @@ class LevelStream {
   /// then. Throws what choosing or reading it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
 
+  /// By dB: finds on a sample of parts what the levels truly lose, by pictures of the first of the views that
+  /// were looked at last, in frames that neither look nor take anything; choices, and what is told, go by it.
+  /// To be called in each frame, after take(), of which everything must be on the GPU.
+  void try_out(Model& model, const PartsTrial& trial);
+
   /// Whether the model has all that was wanted, and no more, and nothing is to be looked at again.
   bool settled() const;
   /// Gaussians of the model.
@@ -82,7 +88,15 @@ class LevelStream {
     DetailSeen seen;
     std::size_t here = 0;  // of the views: they come first, and others lie ahead
     Clock::time_point at;
-    double together_db = 0.0;
+    double together_db = 0.0, found = 1.0;
+    std::optional<unsigned> sample = {};  // is wanted, and which,
+    std::size_t sample_parts = 0;         // of so many
+  };
+  /// The finest levels of parts of a choice, and the view that they are tried out in, in three frames.
+  struct Sample {
+    std::shared_ptr<const DetailChoice> choice;
+    shared::View view;
+    PartModels models;  // then those that were there
   };
   bool look_on(const Look& look);
   std::size_t here() const;
@@ -90,11 +104,16 @@ class LevelStream {
   void choose(const Wish& wish);
   void read_on(const std::stop_token& stop);
   void read(std::shared_ptr<const LevelsChosen> chosen, const std::stop_token& stop);
+  void read(Sample sample);
   bool works(double share_of_cores, const std::function<void()>& work);
   void sort_pieces();
   void free_used();
-  bool is_idle() const { return !wish_ && !chooses_ && !next_ && !reads_ && pieces_.empty(); }
+  bool is_idle() const {
+    return !wish_ && !chooses_ && !next_ && !next_sample_ && !reads_ && !sample_ && pieces_.empty();
+  }
   bool looks_again() const;
+  bool tries_out() const;
+  std::optional<unsigned> next_sample();
   std::size_t to_come();
 
   StreamedSog scene_;  // the reading thread's, once there is one, and its chooser that of the other
@@ -115,6 +134,13 @@ class LevelStream {
   int takes_ = 0;               // and how many there were since the last choice was wished, if one
   bool has_wished_ = false;
   // By dB:
+  LevelsFound found_;
+  bool is_tried_out_ = false;  // by somebody
+  unsigned samples_ = 0;
+  int frames_since_sample_ = 0;  // was wanted
+  bool may_try_ = false;         // in this frame
+  bool found_other_ = false;     // than before, since the last look
+  enum class Trial { keeps, compares, puts_back } trial_ = Trial::keeps;
   int looks_ = 0;                            // at these views, all of them
   std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
   std::vector<std::vector<SeenPart>> seen_;  // and what it showed
@@ -127,7 +153,8 @@ class LevelStream {
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<Wish> wish_;
-  std::shared_ptr<const LevelsChosen> next_;  // to be read for
+  std::shared_ptr<const LevelsChosen> next_;    // to be read for
+  std::optional<Sample> next_sample_, sample_;  // to be read, and to be tried out
   bool chooses_ = false, reads_ = false;
   std::deque<StreamedSog::Piece> pieces_;
   std::vector<StreamedSog::Piece> used_;  // freed by the reader, since frames must not wait for that

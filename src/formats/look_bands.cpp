@@ -70,4 +70,16 @@ void LookBands::divide(int most) {
   start_again();
 }
 
+void add_band(const std::vector<SeenPart>& more, std::vector<SeenPart>& seen) {
+  for (std::size_t p = 0; p < seen.size(); ++p) {
+    const double area = seen[p].area + more[p].area;
+    if (more[p].area == 0.0) continue;
+    const double share = more[p].area / area;
+    seen[p].distance = seen[p].area == 0.0
+                           ? more[p].distance
+                           : std::pow(seen[p].distance, 1.0 - share) * std::pow(more[p].distance, share);
+    seen[p].area = area;
+  }
+}
+
 }  // namespace binosplat

@@ -39,4 +39,7 @@ class LookBands {
   double before_ms_ = 0.0, fixed_ms_ = 0.0;  // what a picture took then; what any band takes
 };
 
+/// Adds what is seen of parts in another band of a view.
+void add_band(const std::vector<SeenPart>& more, std::vector<SeenPart>& seen);
+
 }  // namespace binosplat

@@ -360,6 +360,26 @@ void StreamedSog::check_room(std::span<const std::vector<Taken>> all) const {
   check_total(source_->path, total, source_->bytes);
 }
 
+PartModels StreamedSog::finest_of(std::span<const std::size_t> leaves) const {
+  std::vector<int> numbers(leaves_.size(), no_level);
+  for (const std::size_t leaf : leaves) numbers[leaf] = leaves_[leaf].levels.front().number;
+  const auto taken = source_->levels.taken([&](std::size_t leaf) { return numbers[leaf]; });
+  std::vector<std::vector<Piece>> of_files(taken.size());
+  parallel_for(taken.size(), [&](std::size_t i) {
+    if (taken[i].empty()) return;
+    check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
+    of_files[i] = read_file(i, taken[i]);
+  });
+  PartModels finest;
+  for (std::vector<Piece>& of_file : of_files) {
+    for (Piece& piece : of_file) {
+      finest.parts.push_back(piece.part);
+      finest.models.push_back(std::move(piece.model));
+    }
+  }
+  return finest;
+}
+
 std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, const Taken& taken) const {
   const SogSource& source = *source_->files[file];
   std::vector<Model> models =

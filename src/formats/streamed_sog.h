@@ -11,6 +11,7 @@
 
 #include "formats/detail.h"
 #include "formats/level_chooser.h"
+#include "formats/level_sample.h"
 #include "formats/sog_levels.h"
 #include "scene/model.h"
 #include "shared/types.h"
@@ -67,10 +68,13 @@ class StreamedSog {
   const std::vector<std::size_t>& chosen() const { return chosen_->levels; }
 
   /// What the views of the last choice are taken to have against the finest levels, in dB, with the choice;
-  /// none where dB were not chosen by.
-  std::optional<double> predicted_psnr() const {
-    return choice() ? std::optional(psnr_of_error(choice()->error_of(chosen()))) : std::nullopt;
+  /// none where dB were not chosen by. `found`: DetailNeed.
+  std::optional<double> predicted_psnr(double found = 1.0) const {
+    return choice() ? std::optional(psnr_of_error(found * choice()->error_of(chosen()))) : std::nullopt;
   }
+
+  /// What the views of the last choice lose; none where dB were not chosen by.
+  const std::shared_ptr<const DetailChoice>& choice() const { return chosen_->by_errors; }
 
   /// The Gaussians of a part at the level chosen.
   struct Piece {
@@ -86,6 +90,8 @@ class StreamedSog {
   /// `goes_on` in between, where it is not empty, and leaves out the rest if it does not. Throws Error where
   /// a file has become unreadable.
   void read(const Take& take, const std::function<bool()>& goes_on = {});
+  /// Reads the finest levels of some leaves, which does not count as read.
+  PartModels finest_of(std::span<const std::size_t> leaves) const;
   /// Whether a piece that was read is of the level chosen now.
   bool wants(const Piece& piece) const {
     return piece.part == leaves_.size() || piece.level == level(piece.part);
@@ -105,7 +111,6 @@ class StreamedSog {
  private:
   struct Source;
   std::size_t level(std::size_t leaf) const { return chosen_->levels[leaf]; }
-  const std::shared_ptr<const DetailChoice>& choice() const { return chosen_->by_errors; }
   double saved(std::size_t leaf, std::optional<std::size_t> before) const;
   double worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const;
   using Taken = std::vector<SogLevels::Taken>;  // of a file

@@ -171,13 +171,15 @@ void Session::follow(LevelStream& levels) {
     return sight_->look(view, band, choices.settings, parts);
   });
   const ModelParts::Changes changes = levels.take(model_, gaussians_a_frame);
+  if (!changes.empty()) {
+    show_.release();
+    frame_.model()->reload(changes);
+  }
+  if (sight_) levels.try_out(model_, sight_->trial(choices.settings));
   left_ = levels.left();
   constexpr float unnoticed = 0.25f;  // dB
   if (settings().quality > drawn_quality_ + unnoticed) change();
-  if (changes.empty()) return;
-  show_.release();
-  frame_.model()->reload(changes);
-  change();
+  if (!changes.empty()) change();
 }
 
 std::vector<shared::View> Session::views() {

@@ -50,7 +50,8 @@ Sight::Sight(std::shared_ptr<GpuModel> model)
       dispatcher_(model->context()),
       sums_(model->context(), "how much is seen by splat"),
       owners_(model->context(), "parts by block"),
-      of_parts_(model->context(), "how much is seen by part") {}
+      of_parts_(model->context(), "how much is seen by part"),
+      kept_(model->context()) {}
 
 std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
                                                const FrameSettings& settings, const ModelParts& parts,
@@ -134,6 +135,27 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
     }
   }
   return seen;
+}
+
+void Sight::draw_whole(const shared::View& view, const FrameSettings& settings) {
+  FrameSettings exact = exact_of(settings);
+  exact.precision = settings.precision;
+  frame_.draw({&view, 1}, exact);
+}
+
+PartsTrial Sight::trial(const FrameSettings& settings) {
+  return {.upload = [this](const ModelParts::Changes& changes) { frame_.model()->reload(changes); },
+          .keep =
+              [this, settings](const shared::View& view) {
+                draw_whole(view, settings);
+                kept_.clear();
+                kept_.add(frame_.colours(), view.width * view.height);
+              },
+          .differs =
+              [this, settings](const shared::View& view) {
+                draw_whole(view, settings);
+                return kept_.mean(frame_.colours());
+              }};
 }
 
 }  // namespace binosplat::render

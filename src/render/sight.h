@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/frame.h"
+#include "render/squared_error.h"
 #include "scene/model_parts.h"
 
 namespace binosplat::render {
@@ -27,17 +28,23 @@ class Sight {
   std::vector<SeenPart> look(const shared::View& view, Band band, const FrameSettings& settings,
                              const ModelParts& parts);
 
+  /// By pictures of whole size, drawn exactly as those that are looked at; for as long as this one lives.
+  PartsTrial trial(const FrameSettings& settings);
+
  private:
   static constexpr int shrink_usual = 4;
   std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
                                           const ModelParts& parts, int shrink_most, Band band);
+
+  void draw_whole(const shared::View& view, const FrameSettings& settings);
 
   Frame frame_;
   gl::Dispatcher dispatcher_;
   gl::Buffer sums_;    // by splat, 64 bits of alpha T^2, low first
   gl::Buffer owners_;  // uint by block
   gl::Buffer
-      of_parts_;  // (view, part): 64 bits of alpha T^2, and of that times the logarithm of the distance
+      of_parts_;       // (view, part): 64 bits of alpha T^2, and of that times the logarithm of the distance
+  SquaredError kept_;  // a picture that was drawn whole
 };
 
 }  // namespace binosplat::render

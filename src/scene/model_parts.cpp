@@ -41,6 +41,16 @@ std::size_t ModelParts::take_block(Model& model, const glm::vec3& where) {
   return found;
 }
 
+Model ModelParts::part(const Model& model, std::size_t part) const {
+  Model found = without_gaussians(model);
+  found.resize(counts_[part]);
+  for (std::size_t n = 0; n < blocks_[part].size(); ++n) {
+    const std::size_t first = n * block;
+    copy(model, blocks_[part][n] * block, std::min(block, found.count() - first), found, first);
+  }
+  return found;
+}
+
 void ModelParts::replace(Model& model, std::size_t part, const Model& by) {
   const Replacement one{part, &by};
   replace(model, {&one, 1});

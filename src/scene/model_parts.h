@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/model.h"
+#include "shared/types.h"
 
 namespace binosplat {
 
@@ -32,6 +33,9 @@ class ModelParts {
   const std::vector<std::uint32_t>& owners() const { return owners_; }
   /// In which blocks a part lies, in the order of its Gaussians.
   const std::vector<std::size_t>& blocks(std::size_t part) const { return blocks_[part]; }
+
+  /// The Gaussians of a part.
+  Model part(const Model& model, std::size_t part) const;
 
   /// Puts `by`, of the model's degree, in the place of a part. The model, which is the same in every call,
   /// grows where there is no place left, and its `room` by an eighth where that is full.
@@ -65,6 +69,15 @@ class ModelParts {
   std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> free_;
   std::map<std::size_t, bool> changed_;  // blocks, and whether they are filled
   std::size_t gaussians_ = 0;
+};
+
+/// Tries out what a picture gains by other parts: uploads what has changed of the model, and then keeps the
+/// picture of a view, or finds how far that of the same view is from the one that was kept, squared and
+/// meaned over pixels and channels.
+struct PartsTrial {
+  std::function<void(const ModelParts::Changes& changes)> upload;
+  std::function<void(const shared::View& view)> keep;
+  std::function<double(const shared::View& view)> differs;
 };
 
 /// What a view shows of a part: alpha T^2, summed over its Gaussians and the view's pixels, and how far away

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "measure/search.h"
 #include "render/frame.h"
-#include "study/squared_error.h"
+#include "render/squared_error.h"
 
 namespace binosplat::study {
 
@@ -80,7 +80,7 @@ std::vector<PathFrame> draw_along_path(gl::Context& context, const Model& model,
         result.equals_one = same_bits(pictures, beside.read_pictures());
       }
       result.one_pairs = one.draw(views, result.pairs);
-      result.one_db = SquaredError(context, truth).psnr(beside.colours());
+      result.one_db = render::SquaredError(context, truth).psnr(beside.colours());
     }
     progress();
   }
@@ -93,7 +93,7 @@ float tolerance_along_path(gl::Context& context, const Model& model,
   if (render::is_exact(variant.th)) return 0.0f;
   render::Frame frame(context, model);
   frame.draw(frames.at(1));
-  SquaredError error(context, frame.read_pictures());
+  render::SquaredError error(context, frame.read_pictures());
   const auto at = [&](double tolerance) {
     frame.forget();
     variant.tolerance = 0.0f;

@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "measure/search.h"
+#include "render/squared_error.h"
 #include "scene/axes.h"
-#include "study/squared_error.h"
 #include "study/stability.h"
 #include "study/wake.h"
 
@@ -37,7 +37,7 @@ struct Calibrator::Wanted {
   Wanted(gl::Context& context, std::span<const Picture> pictures, std::uint32_t levels, std::uint64_t pairs)
       : error(context, pictures, levels), exact_pairs(pairs) {}
 
-  SquaredError error;  // against the exact picture, or the photo
+  render::SquaredError error;  // against the exact picture, or the photo
   std::uint64_t exact_pairs;
   double exact_db = equal_db;  // of the exact picture against the photo
 };

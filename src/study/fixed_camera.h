@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/frame.h"
-#include "study/squared_error.h"
+#include "render/squared_error.h"
 #include "study/stability.h"
 
 namespace binosplat::study {
@@ -41,7 +41,7 @@ class FixedCamera {
   std::vector<shared::View> views_;
   double exact_pairs_ = 0.0;
   std::vector<Picture> exact_;
-  SquaredError error_;
+  render::SquaredError error_;
   render::DepthTable table_;
 };
 

@@ -11,10 +11,10 @@
 #include "formats/detail.h"
 #include "render/frame.h"
 #include "render/sight.h"
+#include "render/squared_error.h"
 #include "scene/camera.h"
 #include "scene/model_parts.h"
 #include "scene/reduce.h"
-#include "study/squared_error.h"
 
 namespace binosplat::study {
 
@@ -200,7 +200,7 @@ std::vector<LossTogether> loss_together(gl::Context& context, std::span<const st
   std::vector<LossTogether> losses;
   for (const shared::View& view : views) {
     LossTogether loss;
-    SquaredError error(context);
+    render::SquaredError error(context);
     const auto draw = [&] {
       loss.predicted = leaves.settle(view);
       leaves.draw(view);

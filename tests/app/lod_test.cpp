@@ -119,7 +119,7 @@ TEST(RenderLevels, ByDecibelsAsAFileTells) {
   const test::TempFolder folder;
   const test::Copy copy(fixtures / "sog/st-lod");
   const auto render = [&] {
-    return test::run_program({"render", copy.path(), "--path", write_path(folder, {-200, -20}), "--detail",
+    return test::run_program({"render", copy.path(), "--path", write_path(folder, {-800, -20}), "--detail",
                               "40dB", "--detail-report", "-o", folder / "out", "--json", folder / "j"});
   };
   EXPECT_TRUE(ended(render(), 2, "has no errors of its levels to go by"));
@@ -130,8 +130,7 @@ TEST(RenderLevels, ByDecibelsAsAFileTells) {
   EXPECT_EQ(report["settings"]["detail_db"], 40.0);
   EXPECT_FALSE(report["settings"].contains("detail_px"));
   const auto far = report["views"][0]["levels_of_detail"], near = report["views"][1]["levels_of_detail"];
-  EXPECT_EQ(far["gaussians"], 250);
-  EXPECT_GT(near["gaussians"], 250);
+  EXPECT_LT(far["gaussians"], near["gaussians"]);
   EXPECT_GE(far["predicted_psnr_db"], 40.0);
   EXPECT_NE(
       told.out.find(fmt::format(", {:.2f} dB predicted, {:.2f} dB against the finest",
@@ -179,7 +178,7 @@ TEST(RenderLevels, ShareAQuality) {
   REQUIRE_FIXTURES(fixtures);
   const test::TempFolder folder;
   const test::Copy copy(fixtures / "sog/st-lod");
-  const std::string cameras = write_path(folder, {-60});
+  const std::string cameras = write_path(folder, {-400});
   const auto render = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"render", copy.path(), "--cameras",    cameras,  "--quality",
                                           "40",     "-o",        folder / "out", "--json", folder / "j"};

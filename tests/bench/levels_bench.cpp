@@ -21,8 +21,8 @@
 #include "formats/level_stream.h"
 #include "formats/model_file.h"
 #include "render/sight.h"
+#include "render/squared_error.h"
 #include "stereo/rig.h"
-#include "study/squared_error.h"
 
 namespace binosplat {
 namespace {
@@ -65,7 +65,7 @@ std::uint32_t pixels_of(const Views& views) { return 2 * views[0].width * views[
 
 // By columns, over which what a view shows is spread most evenly: all splats of a hundred million Gaussians
 // do not fit one buffer, and most of them lie at the horizon.
-void draw_in_windows(render::Frame& frame, const Views& views, study::SquaredError& pictures) {
+void draw_in_windows(render::Frame& frame, const Views& views, render::SquaredError& pictures) {
   constexpr std::uint32_t windows = 16;
   const std::uint32_t across = views[0].width, height = views[0].height;
   const std::uint32_t columns = (across / windows + BLEND_CELL - 1) / BLEND_CELL * BLEND_CELL;
@@ -81,9 +81,9 @@ void draw_in_windows(render::Frame& frame, const Views& views, study::SquaredErr
 }
 
 // The pictures of the finest levels at the frames that are judged, and at the last.
-std::deque<study::SquaredError> judge(gl::Context& context, const Plan& plan,
-                                      const std::vector<Views>& path) {
-  std::deque<study::SquaredError> pictures;
+std::deque<render::SquaredError> judge(gl::Context& context, const Plan& plan,
+                                       const std::vector<Views>& path) {
+  std::deque<render::SquaredError> pictures;
   if (plan.judged == 0) return pictures;
   const Model finest = load_model(plan.scene, {.lod = 0});
   render::Frame frame(context, finest);
@@ -136,9 +136,10 @@ class Flight {
         gpu_model_(std::make_shared<render::GpuModel>(context, model_)),
         frame_(gpu_model_),
         sight_(gpu_model_),
+        trial_(sight_.trial(plan.settings)),
         before_(context) {}
 
-  Numbers run(std::deque<study::SquaredError>& finest) {
+  Numbers run(std::deque<render::SquaredError>& finest) {
     const auto start = Clock::now();
     settle(path_.front());
     numbers_.late_s.push_back(1e-3 * ms_since(start));
@@ -184,6 +185,7 @@ class Flight {
     do {
       want(views);
       gpu_model_->reload(levels_.take(model_, plan_.gaussians_a_frame));
+      levels_.try_out(model_, trial_);
     } while (!levels_.settled());
   }
 
@@ -196,6 +198,9 @@ class Flight {
     const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
     gpu_model_->reload(changes);
     numbers_.take_ms.push_back(ms_since(taking));
+    const auto trying = Clock::now();
+    levels_.try_out(model_, trial_);
+    const double trial_ms = ms_since(trying);
     report_ = frame_.draw(views, settings());
     const double drawn_ms = report_.total_ms;
     numbers_.frame_ms.push_back(drawn_ms);
@@ -210,6 +215,7 @@ class Flight {
                          {"look_at", looked ? Json({band_.begin, band_.end}) : Json()},
                          {"take_ms", numbers_.take_ms.back()},
                          {"new", filled},
+                         {"trial_ms", trial_ms},
                          {"gpu_ms", drawn_ms},
                          {"all_ms", numbers_.all_ms.back()}});
   }
@@ -224,7 +230,7 @@ class Flight {
   }
 
   // Whether this frame is one that is compared with the finest levels.
-  bool judge(std::size_t n, std::deque<study::SquaredError>& finest) {
+  bool judge(std::size_t n, std::deque<render::SquaredError>& finest) {
     bool judged = false;
     for (std::size_t k = 0; k + 1 < finest.size(); ++k) {
       if (n != path_.size() * k / (finest.size() - 1)) continue;
@@ -264,12 +270,12 @@ class Flight {
   }
 
   // Once all is there, and whether that is what a GPU gets which gets it whole.
-  void end(std::deque<study::SquaredError>& finest) {
+  void end(std::deque<render::SquaredError>& finest) {
     settle(path_.back());
     frame_.draw(path_.back(), settings());
     if (!finest.empty()) numbers_.rest_db = finest.back().psnr(frame_.colours());
     frame_.draw(path_.back());
-    study::SquaredError drawn(context_);
+    render::SquaredError drawn(context_);
     drawn.add(frame_.colours(), pixels_of(path_.back()));
     render::Frame whole(context_, model_);
     whole.draw(path_.back());
@@ -286,7 +292,8 @@ class Flight {
   render::Frame frame_;
   render::FrameReport report_;  // of the last frame along the path
   render::Sight sight_;
-  study::SquaredError before_;
+  PartsTrial trial_;
+  render::SquaredError before_;
   Band band_;  // that was looked at last
   Numbers numbers_;
   Json timeline_ = Json::array();
@@ -354,7 +361,7 @@ void run_all(const Plan& plan) {
   const std::vector<Views> path = path_of(plan);
   fmt::print("{}, {} frames of 2 x {} x {} px, {}\n\n", context->renderer(), path.size(), path[0][0].width,
              path[0][0].height, plan.scene);
-  std::deque<study::SquaredError> finest = judge(*context, plan, path);
+  std::deque<render::SquaredError> finest = judge(*context, plan, path);
   for (const std::string& detail : plan.details) {
     const Json row = row_of(detail, Flight(*context, plan, path, detail).run(finest));
     if (&detail == &plan.details.front()) print_head(row);

@@ -190,14 +190,14 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   EXPECT_EQ(still.levels[7], one.levels[7]);
   EXPECT_LE(still.error(), 1e-4);
   EXPECT_EQ(choose_levels_within(parts, {beside}, 1e-4, any, {}, {}, false).levels, Levels(parts.size(), 3));
-  // A part beside the picture is seen whose pixels reach into it.
+  // A part beside the picture is seen whose coarsest Gaussians reach into it.
   const std::vector<DetailPart> at_edge = {row(1).front()};
   DetailView view{.eye = {0.5, 0.5, -2.0},
-                  .inward = inward_of({std::sin(0.74), 0, std::cos(0.74)}, 0.5),
+                  .inward = inward_of({std::sin(0.79), 0, std::cos(0.79)}, 0.5),
                   .focal = 100.0,
                   .pixels = 1.0};
   EXPECT_GT(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
-  view.inward = inward_of({std::sin(0.76), 0, std::cos(0.76)}, 0.5);
+  view.inward = inward_of({std::sin(0.83), 0, std::cos(0.83)}, 0.5);
   EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
 }
 

@@ -451,6 +451,44 @@ TEST(LevelStream, WantsNoMoreThanComes) {
   EXPECT_EQ(stream.gaussians(), 3 * most);
 }
 
+// What samples are found to lose changes what is told, and what is wanted.
+TEST(LevelStream, GoesByWhatASampleLoses) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  const auto settle = [&](double found, bool tries) {
+    LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
+      return DetailNeed{.db = 24.0};
+    });
+    Model model = stream.coarsest();
+    const auto look = [](const shared::View&, Band, const ModelParts& parts) {
+      return std::vector(parts.size(), SeenPart{100.0, 30.0});
+    };
+    int kept = 0, tried = 0;
+    const PartsTrial trial = {.upload = [](const ModelParts::Changes&) {},
+                              .keep = [&](const shared::View&) { ++kept; },
+                              .differs =
+                                  [&](const shared::View&) {
+                                    ++tried;
+                                    return found;
+                                  }};
+    const auto settles = [&] {
+      if (tries) stream.try_out(model, trial);
+      return stream.settled();
+    };
+    EXPECT_TRUE(frames_until(stream, model, before_all(), look, settles));
+    EXPECT_EQ(kept, tried);
+    EXPECT_EQ(tried > 0, tries);
+    return std::pair(stream.gaussians(), stream.predicted_psnr().value());
+  };
+  const auto [gaussians, told] = settle(0.0, false);
+  EXPECT_NEAR(told, 24.0, 1.0);
+  const auto [fewer, of_fewer] = settle(0.0, true);
+  EXPECT_LT(fewer, gaussians);
+  const auto [more, of_more] = settle(10.0, true);
+  EXPECT_GT(more, gaussians);
+  for (const double db : {of_fewer, of_more}) EXPECT_GT(db, 23.0);
+}
+
 TEST(LevelStream, EndsInTheMidstOfIt) {
   REQUIRE_FIXTURES(folder);
   for (int n = 0; n < 20; ++n) {

@@ -262,5 +262,34 @@ TEST(Sight, IsInPixelsToo) {
   EXPECT_GT(std::abs(in_pixels({.depth = Depth::seen}) - all), 0.1 * all);
 }
 
+TEST(Sight, TriesPartsOut) {
+  const Model all = test::random_model(3, 60, 1), other = test::random_model(4, 20, 1);
+  Parted parted(all, {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20}});
+  Sight sight(parted.gpu_model);
+  const PartsTrial trial = sight.trial({});
+  const auto picture = [&] {
+    render::Frame frame(test::gl_context(), parted.model);
+    const shared::View view = front();
+    frame.draw({&view, 1}, {});
+    return frame.read_pictures();
+  };
+  const auto before = picture();
+  trial.keep(front());
+  EXPECT_EQ(trial.differs(front()), 0.0);
+  parted.parts.replace(parted.model, 1, other);
+  const auto after = picture();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < after[0].colour.size(); ++i) {
+    const auto shown = [&](const Picture& p) { return glm::clamp(glm::dvec3(p.colour[i]), 0.0, 1.0); };
+    const glm::dvec3 apart = shown(before[0]) - shown(after[0]);
+    sum += glm::dot(apart, apart) / 3.0;
+  }
+  EXPECT_EQ(trial.differs(front()), 0.0) << "planted: not uploaded";
+  trial.upload(parted.parts.take_changes());
+  const double expected = sum / static_cast<double>(after[0].colour.size());
+  EXPECT_GT(expected, 1e-4);
+  EXPECT_NEAR(trial.differs(front()), expected, 1e-3 * expected);
+}
+
 }  // namespace
 }  // namespace binosplat

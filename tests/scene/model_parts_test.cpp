@@ -118,6 +118,16 @@ TEST_F(Parts, TellWhatHasChangedAndNothingElse) {
   }
 }
 
+TEST_F(Parts, AreToldAsTheyWerePut) {
+  for (const int count : {0, 1, 64, 65, 200}) {
+    replace(2, count);
+    replace(4, 30);
+    const Model found = parts.part(model, 2);
+    ASSERT_EQ(found.count(), wanted[2].count());
+    for (std::size_t i = 0; i < found.count(); ++i) EXPECT_TRUE(equal(found, i, wanted[2], i)) << i;
+  }
+}
+
 TEST_F(Parts, MakeNoBoxLarger) {
   for (std::size_t p = 0; p < 5; ++p) {
     wanted[p] = test::random_model(seed++, 1000, 1);

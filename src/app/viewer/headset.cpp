@@ -99,6 +99,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
         return sight->look(view, band, settings.frame, parts);
       });
       gpu_model->reload(loaded.levels->take(drawn, gaussians_a_frame));
+      if (sight) loaded.levels->try_out(drawn, sight->trial(settings.frame));
       return static_cast<float>(loaded.levels->left());
     };
   }

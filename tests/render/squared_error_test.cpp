@@ -1,5 +1,5 @@
 // Pictures compared where they were drawn.
-#include "study/squared_error.h"
+#include "render/squared_error.h"
 
 #include <gtest/gtest.h>
 
@@ -10,13 +10,13 @@
 #include "support/gl.h"
 #include "support/models.h"
 
-namespace binosplat::study {
+namespace binosplat::render {
 namespace {
 
 TEST(SquaredError, OfWhatStaysOnTheGpuIsThatOfPicturesReadBack) {
   const std::vector<shared::View> views(2, make_view(look_at({0, 0, -4}, {0, 0, 0}, {0, -1, 0}, 60, 80, 48)));
   const Model model = test::random_model(1, 300, 1), other = test::random_model(2, 300, 1);
-  render::Frame frame(test::gl_context(), model), other_frame(test::gl_context(), other);
+  Frame frame(test::gl_context(), model), other_frame(test::gl_context(), other);
   frame.draw(views);
   SquaredError read(test::gl_context(), frame.read_pictures());
   SquaredError kept(test::gl_context()), half(test::gl_context());
@@ -34,7 +34,7 @@ TEST(SquaredError, OfWhatStaysOnTheGpuIsThatOfPicturesReadBack) {
 TEST(SquaredError, OfWindowsIsThatOfTheWholePictures) {
   const std::vector<shared::View> views(2, make_view(look_at({0, 0, -4}, {0, 0, 0}, {0, -1, 0}, 60, 80, 48)));
   const Model model = test::random_model(1, 300, 1), other = test::random_model(2, 300, 1);
-  render::Frame frame(test::gl_context(), model), other_frame(test::gl_context(), other);
+  Frame frame(test::gl_context(), model), other_frame(test::gl_context(), other);
   SquaredError whole(test::gl_context()), windows(test::gl_context()), misplaced(test::gl_context());
   frame.draw(views);
   whole.add(frame.colours(), 2 * 80 * 48);
@@ -55,4 +55,4 @@ TEST(SquaredError, OfWindowsIsThatOfTheWholePictures) {
 }
 
 }  // namespace
-}  // namespace binosplat::study
+}  // namespace binosplat::render

@@ -10,7 +10,7 @@
 #include "gl/buffer.h"
 #include "gl/dispatch.h"
 
-namespace binosplat::study {
+namespace binosplat::render {
 
 class SquaredError {
  public:
@@ -43,4 +43,4 @@ class SquaredError {
   std::uint32_t levels_ = 0;
 };
 
-}  // namespace binosplat::study
+}  // namespace binosplat::render

@@ -1,4 +1,4 @@
-#include "study/squared_error.h"
+#include "render/squared_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "shared/limits.h"
 
-namespace binosplat::study {
+namespace binosplat::render {
 
 SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels)
     : dispatcher_(context),
@@ -54,4 +54,4 @@ double SquaredError::mean(const gl::Buffer& colours) {
 
 double SquaredError::psnr(const gl::Buffer& colours) { return -10.0 * std::log10(mean(colours)); }
 
-}  // namespace binosplat::study
+}  // namespace binosplat::render

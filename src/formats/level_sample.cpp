@@ -1,0 +1,72 @@
+#include "formats/level_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/random.h"
+
+namespace binosplat {
+
+namespace {
+
+// What parts lose together, over the sum of what each loses by itself: those that lie beside one another are
+// wrong alike. 0.6 to 1.4 dB, in headset pictures of the city, from street and air, and of taebak.
+const double together = std::pow(10.0, 0.09);
+constexpr double fades = 0.95;  // what was found counts so much beside what is found next
+constexpr double factor_most = 8.0;
+
+}  // namespace
+
+// By Efraimidis and Spirakis (2006): the largest of random numbers to the power of one over the weight.
+std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const std::size_t> levels,
+                                   std::size_t most, unsigned seed) {
+  struct Key {
+    double key;
+    std::size_t part;
+    bool operator<(const Key& other) const { return key > other.key; }
+  };
+  Random random(seed);
+  std::vector<Key> keys;
+  for (std::size_t p = 0; p < levels.size(); ++p) {
+    if (levels[p] == 0) continue;
+    const double lost = choice.lost(0, p, levels[p]);
+    if (lost > 0.0) keys.push_back({std::log(random.uniform(1e-12, 1.0)) / lost, p});
+  }
+  const std::size_t count = std::min(keys.size(), most);
+  std::partial_sort(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(count), keys.end());
+  std::vector<std::size_t> parts;
+  for (std::size_t k = 0; k < count; ++k) parts.push_back(keys[k].part);
+  return parts;
+}
+
+PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, const PartsTrial& trial) {
+  PartModels before{others.parts, {}};
+  std::vector<ModelParts::Replacement> replacements;
+  for (std::size_t k = 0; k < others.parts.size(); ++k) {
+    before.models.push_back(parts.part(model, others.parts[k]));
+    replacements.push_back({others.parts[k], &others.models[k]});
+  }
+  parts.replace(model, replacements);
+  trial.upload(parts.take_changes());
+  return before;
+}
+
+SampleLoss loss_of(const DetailChoice& choice, std::span<const std::size_t> levels,
+                   std::span<const std::size_t> parts, double found) {
+  SampleLoss loss{.found = found, .all = choice.error_of(levels, 0, 1), .parts = parts.size()};
+  for (const std::size_t part : parts) loss.predicted += choice.lost(0, part, levels[part]);
+  return loss;
+}
+
+void LevelsFound::note(const SampleLoss& loss) {
+  if (!(loss.predicted > 0.0 && loss.all > 0.0)) return;
+  const double left = 1.0 - std::min(loss.predicted / loss.all, 1.0);
+  const double parts =
+      static_cast<double>(loss.parts) / std::max(left, 0.01);  // of all, nothing is up to chance
+  parts_ = fades * parts_ + parts;
+  found_ = fades * found_ + parts * loss.found / loss.predicted * std::pow(together, left);
+}
+
+double LevelsFound::factor() const { return std::clamp(found_ / parts_, 1.0 / factor_most, factor_most); }
+
+}  // namespace binosplat

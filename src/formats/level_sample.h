@@ -1,0 +1,53 @@
+#pragma once
+// What levels of detail truly lose, by a sample of parts: what is predicted is known of each part by itself,
+// and in the mean of a scene, but not of what a view shows of it.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "formats/detail.h"
+#include "scene/model.h"
+#include "scene/model_parts.h"
+
+namespace binosplat {
+
+/// So many parts, or fewer, that are not at their finest level, each the likelier the more the first view is
+/// predicted to lose by it. The same seed draws the same parts.
+std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const std::size_t> levels,
+                                   std::size_t most, unsigned seed);
+
+/// What a sample of parts loses in a view: squared, meaned over pixels and channels.
+struct SampleLoss {
+  double predicted = 0.0, found = 0.0;
+  double all = 0.0;       // that all parts are predicted to lose
+  std::size_t parts = 0;  // of the sample
+};
+
+/// The Gaussians of some parts, each another one.
+struct PartModels {
+  std::vector<std::size_t> parts;
+  std::vector<Model> models;
+};
+
+/// Puts others in the place of parts of a model, uploads that, and returns those that were there.
+PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, const PartsTrial& trial);
+
+/// The loss of parts that the first view of a choice, which sees others at `levels`, was found to lose so
+/// much by.
+SampleLoss loss_of(const DetailChoice& choice, std::span<const std::size_t> levels,
+                   std::span<const std::size_t> parts, double found);
+
+/// How many times what is predicted levels are found to lose: what was found first counts less and less.
+class LevelsFound {
+ public:
+  void note(const SampleLoss& loss);
+  double factor() const;
+
+ private:
+  static constexpr double prior = 8.0;  // parts of which nothing is known but what is predicted
+
+  double parts_ = prior, found_ = prior;  // and times what is predicted, with what was found before
+};
+
+}  // namespace binosplat

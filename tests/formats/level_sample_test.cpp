@@ -1,0 +1,110 @@
+// What levels lose, by a sample of parts.
+
+#include "formats/level_sample.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "scene/reduce.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+/// So many parts of two levels, of which the coarser loses one more for each part in a view of 10 pixels.
+DetailChoice choice_of(std::size_t parts) {
+  DetailChoice choice;
+  choice.pixels = {10.0};
+  choice.sphere_pixels = 1000.0;
+  choice.first = {0};
+  for (std::size_t p = 0; p < parts; ++p) {
+    choice.levels.push_back(1);
+    for (const double error : {0.0, static_cast<double>(p), 0.0, 0.0}) choice.errors.push_back(error);
+    choice.first.push_back(choice.errors.size());
+  }
+  return choice;
+}
+
+TEST(LevelSample, HasWhatLosesMoreMoreOften) {
+  const DetailChoice choice = choice_of(10);
+  std::vector<std::size_t> levels = choice.levels;
+  levels[9] = 0;
+  std::vector<int> times(10, 0);
+  constexpr unsigned samples = 4000;
+  for (unsigned seed = 0; seed < samples; ++seed) {
+    const auto parts = sample_of(choice, levels, 1, seed);
+    ASSERT_EQ(parts.size(), 1u);
+    ++times[parts[0]];
+  }
+  EXPECT_EQ(times[0], 0) << "it loses nothing";
+  EXPECT_EQ(times[9], 0) << "it is at its finest";
+  for (int p = 1; p < 9; ++p) {
+    const double expected = samples * p / 36.0;
+    EXPECT_NEAR(times[static_cast<std::size_t>(p)], expected, 5.0 * std::sqrt(expected)) << p;
+  }
+  const auto all = sample_of(choice, levels, 100, 1);
+  EXPECT_EQ(std::set(all.begin(), all.end()), (std::set<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(sample_of(choice, levels, 3, 5), sample_of(choice, levels, 3, 5));
+  EXPECT_NE(sample_of(choice, levels, 3, 5), sample_of(choice, levels, 3, 6));
+}
+
+TEST(LevelSample, ChangesPlacesWithWhatIsThere) {
+  Model model = without_gaussians(test::random_model(1, 1, 1));
+  ModelParts parts(4);
+  for (std::size_t p = 0; p < 4; ++p)
+    parts.replace(model, p, test::random_model(static_cast<unsigned>(p), 70, 1));
+  parts.take_changes();
+  std::vector<std::size_t> uploaded;
+  const PartsTrial trial = {.upload =
+                                [&](const ModelParts::Changes& changes) {
+                                  EXPECT_FALSE(changes.empty());
+                                  uploaded.push_back(parts.gaussians());
+                                },
+                            .keep = {},
+                            .differs = {}};
+  const PartModels finest{{2, 0}, {test::random_model(9, 300, 1), test::random_model(10, 100, 1)}};
+  const Model second = parts.part(model, 2);
+  const PartModels before = exchange(finest, model, parts, trial);
+  EXPECT_EQ(parts.part(model, 2).position, finest.models[0].position);
+  EXPECT_EQ(before.models[0].position, second.position);
+  exchange(before, model, parts, trial);
+  EXPECT_EQ(parts.part(model, 2).sh, second.sh);
+  EXPECT_EQ(uploaded, (std::vector<std::size_t>{540, 280}));
+}
+
+TEST(LevelSample, IsPredictedToLoseASum) {
+  const DetailChoice choice = choice_of(4);
+  const std::vector<std::size_t> levels = {1, 1, 0, 1}, sample = {1, 2, 3};
+  const SampleLoss loss = loss_of(choice, levels, sample, 0.7);
+  EXPECT_DOUBLE_EQ(loss.predicted, 0.4);
+  EXPECT_DOUBLE_EQ(loss.all, 0.4);
+  EXPECT_EQ(loss.found, 0.7);
+  EXPECT_EQ(loss.parts, 3u);
+}
+
+TEST(LevelsFound, AreWhatSamplesOfAllLose) {
+  LevelsFound found;
+  EXPECT_EQ(found.factor(), 1.0) << "as predicted";
+  found.note({});
+  found.note({.predicted = 0.0, .found = 1.0, .all = 1.0, .parts = 8});
+  found.note({.predicted = NAN, .found = 1.0, .all = 1.0, .parts = 8});
+  EXPECT_EQ(found.factor(), 1.0) << "nothing is said";
+  found.note({.predicted = 1e-4, .found = 3e-4, .all = 1e-4, .parts = 8});
+  EXPECT_NEAR(found.factor(), 3.0, 0.05);
+  for (int k = 0; k < 200; ++k) found.note({.predicted = 1e-4, .found = 0.5e-4, .all = 1e-4, .parts = 8});
+  EXPECT_NEAR(found.factor(), 0.5, 0.02) << "what was found first is forgotten";
+  for (int k = 0; k < 200; ++k) found.note({.predicted = 1e-4, .found = 1e-2, .all = 1e-4, .parts = 8});
+  EXPECT_EQ(found.factor(), 8.0);
+}
+
+// 0.9 dB, as pictures of the city and of taebak have it.
+TEST(LevelsFound, PartsLoseMoreTogether) {
+  LevelsFound found;
+  for (int k = 0; k < 200; ++k) found.note({.predicted = 1e-7, .found = 1e-7, .all = 1e-4, .parts = 8});
+  EXPECT_NEAR(10.0 * std::log10(found.factor()), 0.9, 0.1);
+}
+
+}  // namespace
+}  // namespace binosplat
