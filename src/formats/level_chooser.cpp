@@ -39,9 +39,8 @@ std::shared_ptr<const LevelsChosen> LevelChooser::choose(std::span<const shared:
   const std::vector<DetailView> detail = detail_views(views);
   LevelsChosen chosen;
   if (need.db && !views.empty()) {
-    chosen.by_errors = std::make_shared<const DetailChoice>(
-        choose_levels_within(leaves_, detail, error_of_psnr(*need.db) / need.found, most, seen, before_,
-                             need.heads_turn));
+    chosen.by_errors = std::make_shared<const DetailChoice>(choose_levels_within(
+        leaves_, detail, error_of_psnr(*need.db) / need.found, most, seen, before_, need.heads_turn));
     chosen.levels = chosen.by_errors->levels;
   } else {
     std::vector<glm::dvec3> eyes;
