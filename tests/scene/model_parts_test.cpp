@@ -43,9 +43,9 @@ testing::AssertionResult holds(const Model& model, const ModelParts& parts,
 
 struct Parts : testing::Test {
   Model like = [] {
-    Model model;
-    model.degree = 1;
-    return model;
+    Model none;
+    none.degree = 1;
+    return none;
   }();
   Model model = like;
   ModelParts parts{5};
