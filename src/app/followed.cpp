@@ -104,10 +104,12 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
 void FollowedLevels::try_sample(Model& model, const shared::View& view, const PartsTrial& trial) {
   const auto parts =
       sample_of(*scene_.choice(), scene_.chosen(), heads_turn_ ? sample_of_many : sample_of_one, samples_++);
-  if (parts.empty()) return;
+  PartModels finest = scene_.finest_of(parts);
+  if (options_.gpu_memory) keep_what_fits(finest, model, parts_);
+  if (finest.parts.empty()) return;
   trial.keep(view);
-  const PartModels before = exchange(scene_.finest_of(parts), model, parts_, trial);
-  found_.note(loss_of(*scene_.choice(), scene_.chosen(), parts, trial.differs(view)));
+  const PartModels before = exchange(finest, model, parts_, trial);
+  found_.note(loss_of(*scene_.choice(), scene_.chosen(), finest.parts, trial.differs(view)));
   exchange(before, model, parts_, trial);
 }
 

@@ -39,6 +39,16 @@ std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const s
   return parts;
 }
 
+void keep_what_fits(PartModels& others, const Model& model, const ModelParts& parts) {
+  std::size_t taken = parts.gaussians() + parts.size() * ModelParts::block, kept = 0;  // half empty blocks
+  for (; kept < others.parts.size(); ++kept) {
+    taken += others.models[kept].count();
+    if (taken > model.room) break;
+  }
+  others.parts.resize(kept);
+  others.models.resize(kept);
+}
+
 PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, const PartsTrial& trial) {
   PartModels before{others.parts, {}};
   std::vector<ModelParts::Replacement> replacements;

@@ -30,6 +30,9 @@ struct PartModels {
   std::vector<Model> models;
 };
 
+/// Leaves out what a model's `room` may be too small for.
+void keep_what_fits(PartModels& others, const Model& model, const ModelParts& parts);
+
 /// Puts others in the place of parts of a model, uploads that, and returns those that were there.
 PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, const PartsTrial& trial);
 

@@ -253,8 +253,7 @@ void LevelStream::read(std::shared_ptr<const LevelsChosen> chosen, const std::st
 
 void LevelStream::read(Sample sample) {
   sample.models = scene_.finest_of(sample.models.parts);
-  const std::lock_guard lock(mutex_);
-  if (!sample_) sample_ = std::move(sample);
+  if (const std::lock_guard lock(mutex_); !sample_) sample_ = std::move(sample);
 }
 
 void LevelStream::free_used() {
@@ -328,7 +327,8 @@ void LevelStream::try_out(Model& model, const PartsTrial& trial) {
   is_tried_out_ = true;
   if (!std::exchange(may_try_, false)) return;
   Sample& sample = *sample_;
-  if (trial_ == Trial::keeps) {
+  if (trial_ == Trial::keeps) keep_what_fits(sample.models, model, parts_);
+  if (trial_ == Trial::keeps && !sample.models.parts.empty()) {
     trial_ = Trial::compares;
     return trial.keep(sample.view);
   }

@@ -74,6 +74,21 @@ TEST(LevelSample, ChangesPlacesWithWhatIsThere) {
   EXPECT_EQ(uploaded, (std::vector<std::size_t>{540, 280}));
 }
 
+TEST(LevelSample, HasRoom) {
+  Model model = without_gaussians(test::random_model(1, 1, 1));
+  ModelParts parts(2);
+  model.room = 2 * ModelParts::block + 100 + 300;
+  parts.replace(model, 0, test::random_model(1, 100, 1));
+  PartModels finest{{0, 1}, {test::random_model(2, 200, 1), test::random_model(3, 101, 1)}};
+  keep_what_fits(finest, model, parts);
+  EXPECT_EQ(finest.parts, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(finest.models.size(), 1u);
+  model.room += 2;
+  finest = {{0, 1}, {test::random_model(2, 200, 1), test::random_model(3, 101, 1)}};
+  keep_what_fits(finest, model, parts);
+  EXPECT_EQ(finest.parts.size(), 2u) << "planted: one less";
+}
+
 TEST(LevelSample, IsPredictedToLoseASum) {
   const DetailChoice choice = choice_of(4);
   const std::vector<std::size_t> levels = {1, 1, 0, 1}, sample = {1, 2, 3};
