@@ -230,13 +230,12 @@ DetailChoice choose_levels_within(const std::vector<DetailPart>& parts, const st
 
 double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size_t begin,
                               std::size_t end) const {
-  std::vector<double> lost(end - begin, 0.0);
+  std::vector<double> sums(end - begin, 0.0);
   for (std::size_t p = 0; p + 1 < first.size(); ++p) {
-    const std::size_t levels_of_part = levels_of(p);
-    for (std::size_t v = begin; levels_of_part > 0 && v < end; ++v)
-      lost[v - begin] += this->lost(v, p, any_levels[p]);
+    if (levels_of(p) == 0) continue;
+    for (std::size_t v = begin; v < end; ++v) sums[v - begin] += lost(v, p, any_levels[p]);
   }
-  return lost.empty() ? 0.0 : *std::ranges::max_element(lost);
+  return sums.empty() ? 0.0 : *std::ranges::max_element(sums);
 }
 
 double DetailChoice::saved(std::size_t part, std::size_t from, std::size_t to) const {

@@ -29,6 +29,12 @@ shared::View shrunk(const shared::View& view, int by) {
   return small;
 }
 
+FrameSettings exact_in_precision(const FrameSettings& settings) {
+  FrameSettings exact = exact_of(settings);
+  exact.precision = settings.precision;
+  return exact;
+}
+
 /// px, which end between cells, as windows do (ViewPart); none where a band is narrower.
 struct Columns {
   std::uint32_t left, right;
@@ -67,8 +73,7 @@ std::vector<SeenPart> Sight::look(const shared::View& view, Band band, const Fra
 std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
                                                const FrameSettings& settings, const ModelParts& parts,
                                                int shrink_most, Band band) {
-  FrameSettings exact = exact_of(settings);
-  exact.precision = settings.precision;
+  FrameSettings exact = exact_in_precision(settings);
   std::vector<shared::View> small(views.begin(), views.end());
   std::vector<double> pixel_areas;  // of the views' pixels
   std::vector<std::vector<SeenPart>> seen(views.size(), std::vector<SeenPart>(parts.size()));
@@ -138,9 +143,7 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
 }
 
 void Sight::draw_whole(const shared::View& view, const FrameSettings& settings) {
-  FrameSettings exact = exact_of(settings);
-  exact.precision = settings.precision;
-  frame_.draw({&view, 1}, exact);
+  frame_.draw({&view, 1}, exact_in_precision(settings));
 }
 
 PartsTrial Sight::trial(const FrameSettings& settings) {
