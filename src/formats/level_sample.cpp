@@ -27,7 +27,7 @@ std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const s
   for (std::size_t p = 0; p < levels.size(); ++p) {
     if (levels[p] == 0) continue;
     const double lost = choice.lost(0, p, levels[p]);
-    if (lost > 0.0) keys.push_back({std::log(random.uniform(1e-12, 1.0)) / lost, p});
+    if (lost > 0.0) keys.emplace_back(std::log(random.uniform(1e-12, 1.0)) / lost, p);
   }
   const std::size_t count = std::min(keys.size(), most);
   std::ranges::partial_sort(keys, keys.begin() + static_cast<std::ptrdiff_t>(count), std::greater<>());
