@@ -1,6 +1,7 @@
 #include "app/detail.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "render/halves.h"
 #include "render/memory.h"
@@ -29,9 +30,9 @@ std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians, bool i
   if (!in_parts) return needs.model + needs.frame;
   const int precision = shape.settings.precision;
   const std::int64_t bytes_of_one =
-      render::gaussian_bytes(precision) + render::harmonic_bytes(shape.degree, precision) + 4;
-  const auto uploads =
-      static_cast<std::int64_t>(std::min<std::size_t>(gaussians, render::Scatter::records_at_once));
+      render::gaussian_bytes(precision) + render::harmonic_bytes(shape.degree, precision) + 2 * 4;
+  const auto uploads = static_cast<std::int64_t>(
+      std::bit_ceil(std::min<std::size_t>(gaussians, render::Scatter::records_at_once)));
   return needs.model + needs.frame + uploads * bytes_of_one;
 }
 

@@ -19,7 +19,8 @@ std::int64_t rounded(std::int64_t bytes) { return std::max<std::int64_t>((bytes 
 
 }  // namespace
 
-Buffer::Buffer(Context& context, std::string label) : context_(context), label_(std::move(label)) {}
+Buffer::Buffer(Context& context, std::string label, Use use)
+    : context_(context), label_(std::move(label)), use_(use) {}
 
 Buffer::~Buffer() { release(); }
 
@@ -28,6 +29,7 @@ void Buffer::release() {
   context_.gl().DeleteBuffers(1, &id_);
   context_.count_allocation(-bytes_);
   id_ = 0;
+  mapped_ = nullptr;
   bytes_ = 0;
 }
 
@@ -78,10 +80,13 @@ void Buffer::check_reach(std::int64_t bytes) const {
 
 void Buffer::allocate(std::int64_t bytes) {
   const Functions& gl = context_.gl();
+  const bool is_written = use_ == Use::written;
+  constexpr GLbitfield writes = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
   gl.CreateBuffers(1, &id_);
-  gl.NamedBufferStorage(id_, bytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
+  gl.NamedBufferStorage(id_, bytes, nullptr, is_written ? writes : GL_DYNAMIC_STORAGE_BIT);
   const GLenum error = gl.GetError();
-  if (error != GL_NO_ERROR) {
+  if (error == GL_NO_ERROR && is_written) mapped_ = gl.MapNamedBufferRange(id_, 0, bytes, writes);
+  if (error != GL_NO_ERROR || (is_written && mapped_ == nullptr)) {
     gl.DeleteBuffers(1, &id_);
     id_ = 0;
     throw Error(

@@ -14,7 +14,9 @@ namespace binosplat::gl {
 /// contents are undefined until written.
 class Buffer {
  public:
-  Buffer(Context& context, std::string label);
+  /// Where `written` it is one that the CPU writes to (room()), over and over.
+  enum class Use { on_gpu, written };
+  Buffer(Context& context, std::string label, Use use = Use::on_gpu);
   ~Buffer();
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
@@ -34,6 +36,14 @@ class Buffer {
   template <typename T>
   void upload(const std::vector<T>& data) {
     upload(std::span<const T>(data));
+  }
+
+  /// Makes room for `count` elements and says where to write them; a driver would copy what is uploaded once
+  /// more. What was given to the GPU before and reads this buffer must have run (gl/fence.h). Not to be read.
+  template <typename T>
+  std::span<T> room(std::size_t count) {
+    reserve(static_cast<std::int64_t>(count * sizeof(T)));
+    return {static_cast<T*>(mapped_), count};
   }
 
   /// Elements from element `first` on, within what is reserved; the others stay.
@@ -71,7 +81,9 @@ class Buffer {
 
   Context& context_;
   std::string label_;
+  Use use_;
   std::uint32_t id_ = 0;
+  void* mapped_ = nullptr;
   std::int64_t bytes_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "gl/fence.h"
 
 namespace binosplat::gl {
 
@@ -91,14 +92,9 @@ void Dispatcher::start(const Program& program, const Work& work, std::initialize
 
 std::vector<StageTime> Dispatcher::wait_and_time() {
   const Functions& gl = context_.gl();
-  const GLsync fence = gl.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  constexpr std::uint64_t one_second = 1'000'000'000;
-  GLenum state = GL_TIMEOUT_EXPIRED;
-  while (state == GL_TIMEOUT_EXPIRED)
-    state = gl.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, one_second);
-  gl.DeleteSync(fence);
-  context_.check_alive();
-  if (state == GL_WAIT_FAILED) throw std::runtime_error("the GPU was lost while drawing a frame");
+  Fence fence(context_);
+  fence.set();
+  fence.wait();
 
   std::vector<std::uint64_t> at(marks_.size());
   for (std::size_t i = 0; i < marks_.size(); ++i) {

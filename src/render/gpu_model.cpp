@@ -21,7 +21,7 @@ shared::Gaussian gaussian_of(const Model& model, std::size_t i) {
 using Range = ModelParts::Range;
 
 // How one kind of a Gaussian's numbers lies on the GPU: pack(first, places, room) puts those of the Gaussians
-// first + place of the model into room for `words` of each, which is zero where it leaves it alone.
+// first + place of the model into room for `words` of each, and zeros where it has fewer.
 struct Packing {
   std::size_t words;
   std::function<void(std::size_t first, std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>
@@ -61,6 +61,7 @@ Packing packing_of_harmonics(const Model& model, int precision) {
   }
   return packing_of(words, [&model, floats](std::size_t i, std::span<std::uint32_t> room) {
     std::memcpy(room.data(), &model.sh[i * floats], floats * sizeof(float));
+    std::ranges::fill(room.subspan(floats), 0u);
   });
 }
 
@@ -95,7 +96,11 @@ void add_places(const ModelBuffers::Page& page, std::span<const Range> ranges,
 
 ModelBuffers::ModelBuffers(gl::Context& context, const Model& model, int in_precision,
                            std::uint32_t page_gaussians)
-    : precision(in_precision), networks(context), page_gaussians_(page_gaussians), scatter_(context) {
+    : precision(in_precision),
+      networks(context),
+      page_gaussians_(page_gaussians),
+      to_gaussians_(context),
+      to_harmonics_(context) {
   upload(context, model);
 }
 
@@ -136,14 +141,18 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelP
     add_places(page, changes.filled, places);
     const std::size_t filled = places.size();
     add_places(page, changes.emptied, places);
-    const auto upload = [&](const Packing& packing, gl::Buffer& buffer, std::size_t count) {
-      scatter_.upload(buffer, std::span(places).first(count), packing.words,
-                      [&](std::span<const std::uint32_t> some, std::span<std::uint32_t> room) {
-                        packing.pack(page.first, some, room);
-                      });
+    // Of those that are emptied zeros: what they were is long out of reach of a cache.
+    const auto upload = [&](Scatter& scatter, const Packing& packing, gl::Buffer& buffer, std::size_t count) {
+      const auto fill = [&](std::span<const std::uint32_t> some, std::span<std::uint32_t> room) {
+        const auto first = static_cast<std::size_t>(some.data() - places.data());
+        const std::size_t packed = std::clamp(filled, first, first + some.size()) - first;
+        packing.pack(page.first, some.first(packed), room);
+        std::ranges::fill(room.subspan(packed * packing.words), 0u);
+      };
+      scatter.upload(buffer, std::span(places).first(count), packing.words, fill);
     };
-    upload(packing_of_gaussians(model, precision), *page.gaussians, places.size());
-    upload(packing_of_harmonics(model, precision), *page.harmonics, filled);
+    upload(to_gaussians_, packing_of_gaussians(model, precision), *page.gaussians, places.size());
+    upload(to_harmonics_, packing_of_harmonics(model, precision), *page.harmonics, filled);
   }
   for (const Range& range : changes.filled) {
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {

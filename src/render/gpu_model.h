@@ -53,8 +53,8 @@ struct ModelBuffers {
   void upload_pages(gl::Context& context, const Scaffold& scaffold, std::size_t step);
 
   std::uint32_t page_gaussians_;
-  std::size_t page_step_ = 0;  // Gaussians
-  Scatter scatter_;
+  std::size_t page_step_ = 0;            // Gaussians
+  Scatter to_gaussians_, to_harmonics_;  // two, since one waits until the GPU has read what it had before
 };
 
 class GpuModel {

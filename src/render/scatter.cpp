@@ -1,7 +1,7 @@
 #include "render/scatter.h"
 
 #include <algorithm>
-#include <vector>
+#include <bit>
 
 #include "base/parallel.h"
 #include "shared/limits.h"
@@ -9,28 +9,33 @@
 namespace binosplat::render {
 
 Scatter::Scatter(gl::Context& context)
-    : dispatcher_(context), places_(context, "places of uploads"), records_(context, "uploads") {}
+    : dispatcher_(context),
+      places_(context, "places of uploads", gl::Buffer::Use::written),
+      records_(context, "uploads", gl::Buffer::Use::written),
+      read_(context) {}
 
 void Scatter::upload(
     const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
     const std::function<void(std::span<const std::uint32_t>, std::span<std::uint32_t>)>& fill) {
-  std::vector<std::uint32_t> records;
   while (!places.empty()) {
     const auto now = places.first(std::min(places.size(), records_at_once));
-    records.assign(now.size() * words, 0);
+    const std::size_t word_count = now.size() * words;
+    read_.wait();
+    const std::size_t room = std::bit_ceil(now.size());  // few sizes: making room takes long
+    std::ranges::copy(now, places_.room<std::uint32_t>(room).begin());
+    const auto records = records_.room<std::uint32_t>(room * words);
     const auto fill_some = [&](std::size_t begin, std::size_t end) {
-      fill(now.subspan(begin, end - begin), std::span(records).subspan(begin * words, (end - begin) * words));
+      fill(now.subspan(begin, end - begin), records.subspan(begin * words, (end - begin) * words));
     };
     parallel_chunks(now.size(), std::max<std::size_t>(numbers_a_thread / words, 1), fill_some);
-    places_.upload(now);
-    records_.upload(records);
     dispatcher_.begin_frame();
     dispatcher_.begin_stage("scatter");
-    dispatcher_.run(dispatcher_.context().program("scatter.comp"), gl::Work::threads(records.size(), THREADS),
+    dispatcher_.run(dispatcher_.context().program("scatter.comp"), gl::Work::threads(word_count, THREADS),
                     {{"Places", places_}, {"Records", records_}, {"Scattered", buffer}},
                     {{"words", static_cast<std::uint32_t>(words)},
-                     {"word_count", static_cast<std::uint32_t>(records.size())}});
+                     {"word_count", static_cast<std::uint32_t>(word_count)}});
     dispatcher_.end_frame();
+    read_.set();
     places = places.subspan(now.size());
   }
   dispatcher_.context().gl().MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

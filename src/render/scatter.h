@@ -8,6 +8,7 @@
 
 #include "gl/buffer.h"
 #include "gl/dispatch.h"
+#include "gl/fence.h"
 
 namespace binosplat::render {
 
@@ -15,14 +16,13 @@ namespace binosplat::render {
 /// takes a driver 10 us, whatever its size.
 class Scatter {
  public:
-  /// For which there is room on the GPU. More go there in turns, each of which waits for the one before:
-  /// frames that needed two turns took 6 to 17 ms for that on an H200, where others took 2.
+  /// For which there is room on the GPU. More go there in turns, each of which waits for the one before.
   static constexpr std::size_t records_at_once = 1 << 16;
 
   explicit Scatter(gl::Context& context);
 
-  /// Fills records of `words` of 4 bytes of the buffer, which fill(places, room) makes, some at a time; the
-  /// room is zero where it leaves it alone.
+  /// Fills records of `words` of 4 bytes of the buffer, which fill(places, room) makes, some at a time: all
+  /// words of each, since what lies in the room is of no meaning.
   void upload(
       const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
       const std::function<void(std::span<const std::uint32_t> places, std::span<std::uint32_t> room)>& fill);
@@ -31,6 +31,7 @@ class Scatter {
   gl::Dispatcher dispatcher_;
   gl::Buffer places_;   // uint by record
   gl::Buffer records_;  // uint by record and word
+  gl::Fence read_;      // by the GPU
 };
 
 }  // namespace binosplat::render

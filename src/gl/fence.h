@@ -1,0 +1,28 @@
+#pragma once
+// Waiting for the GPU.
+
+#include "gl/context.h"
+
+namespace binosplat::gl {
+
+/// A mark among the commands that the GPU gets.
+class Fence {
+ public:
+  explicit Fence(Context& context) : context_(context) {}
+  ~Fence() { remove(); }
+  Fence(const Fence&) = delete;
+  Fence& operator=(const Fence&) = delete;
+
+  /// Marks what was asked of the GPU so far, instead of what was marked before.
+  void set();
+  /// Waits until the GPU has done what was marked, if anything was. Throws std::runtime_error if it is lost.
+  void wait();
+
+ private:
+  void remove();
+
+  Context& context_;
+  GLsync sync_ = nullptr;
+};
+
+}  // namespace binosplat::gl
