@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "base/parallel.h"
 #include "formats/detail_parts.h"
@@ -24,17 +25,19 @@ double apart(const DetailPart& part, std::size_t count) {
   return glm::distance(part.low, part.high) / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
 }
 
-/// Whether the box may lie in the picture, or some of the pixels beside it that Gaussians are blurred to, or
-/// what its coarsest level reaches out of it.
-bool sees(const DetailView& view, const DetailPart& part, double pixel) {
+/// How far the box lies beside the picture at least, world units; 0 where it may lie in it, or in some of the
+/// pixels beside it that Gaussians are blurred to.
+double beside(const DetailView& view, const DetailPart& part, double pixel) {
   constexpr double blurred_px = 4.0;
-  const double beside =
-      blurred_px * pixel + (part.levels.empty() ? 0.0 : reach * apart(part, part.levels.back().count));
   const glm::dvec3 to = 0.5 * (part.low + part.high) - view.eye, half = 0.5 * (part.high - part.low);
-  return std::ranges::all_of(view.inward, [&](const glm::dvec3& inward) {
-    return glm::dot(inward, to) + glm::dot(glm::abs(inward), half) >= -beside;
-  });
+  double inside = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& inward : view.inward)
+    inside = std::min(inside, glm::dot(inward, to) + glm::dot(glm::abs(inward), half));
+  return std::max(0.0, -inside - blurred_px * pixel);
 }
+
+/// How far a level of so many Gaussians reaches out of what its part shows.
+double reach_of(const DetailPart& part, std::size_t count) { return reach * apart(part, count); }
 
 /// What relative_error says of each level of one part, seen from one place.
 class LookedAt {
@@ -97,7 +100,7 @@ SeenPart unhidden(const DetailPart& part, const DetailView& view) {
 
 Sights::Sights(const std::vector<DetailPart>& parts, const std::vector<DetailView>& views,
                const DetailSeen& looked_at, bool heads_turn)
-    : parts_(parts), drawn_(looked_at.drawn), seen_(views.size() + 1, std::vector<SeenPart>(parts.size())) {
+    : parts_(parts), drawn_(looked_at.drawn), seen_(views.size() + 1, std::vector<Seen>(parts.size())) {
   const auto& found = looked_at.by_view;
   for (const DetailView& view : views) {
     focal_.push_back(view.focal);
@@ -109,13 +112,16 @@ Sights::Sights(const std::vector<DetailPart>& parts, const std::vector<DetailVie
     for (std::size_t v = 0; v < views.size(); ++v) {
       const SeenPart open = unhidden(parts[p], views[v]);
       const bool was_seen = !found.empty() && found[v][p].area > 0.0;
-      if (!was_seen && !sees(views[v], parts[p], open.distance / views[v].focal)) continue;
-      is_seen[p] = 1;
-      SeenPart& seen = seen_[v][p] = open;
+      const double outside = was_seen ? 0.0 : beside(views[v], parts[p], open.distance / views[v].focal);
+      if (outside > 0.0 &&
+          (parts[p].levels.empty() || outside > reach_of(parts[p], parts[p].levels.back().count)))
+        continue;
+      if (outside == 0.0) is_seen[p] = 1;
+      Seen& seen = seen_[v][p] = {open, outside};
       if (found.empty()) continue;
       seen.area = found[v][p].area;
       if (was_seen) seen.distance = found[v][p].distance;
-      areas[p] += glm::dvec2(seen.area, open.area);
+      if (outside == 0.0) areas[p] += glm::dvec2(seen.area, open.area);
     }
   };
   parallel_for(parts.size(), see, chunk_of_parts);
@@ -131,10 +137,10 @@ Sights::Sights(const std::vector<DetailPart>& parts, const std::vector<DetailVie
   if (views.empty() || !heads_turn) return;
   const auto turn = [&](std::size_t p) {
     if (is_seen[p]) return;
-    SeenPart& most = seen_.back()[p];
+    Seen& most = seen_.back()[p];
     for (const DetailView& view : views) {
       const SeenPart open = unhidden(parts[p], view);
-      if (share * open.area > most.area) most = {share * open.area, open.distance};
+      if (share * open.area > most.area) most = {{share * open.area, open.distance}, 0.0};
     }
   };
   parallel_for(parts.size(), turn, chunk_of_parts);
@@ -142,20 +148,22 @@ Sights::Sights(const std::vector<DetailPart>& parts, const std::vector<DetailVie
 
 void Sights::find_errors(std::size_t view, std::size_t p, double* errors) const {
   const DetailPart& part = parts_[p];
-  const SeenPart& seen = seen_[view][p];
+  const Seen& seen = seen_[view][p];
   if (seen.distance == 0.0 || part.pixels.empty()) return;
   const LookedAt look(part, seen.distance / focal_[view], 0.5 * (part.low + part.high) - eye_[view]);
   for (std::size_t level = 0; level < part.levels.size(); ++level)
     errors[level] = area(view, p, level) * look.error(level);
 }
 
-// What is seen of a part at a level, px. Where a finer one was drawn, it is more.
+// What is seen of a part at a level, px. Where a finer one was drawn, it is more; and of what lies beside the
+// picture no more than was seen, but by levels that reach into it.
 double Sights::area(std::size_t view, std::size_t p, std::size_t level) const {
-  const SeenPart& seen = seen_[view][p];
+  const Seen& seen = seen_[view][p];
   const DetailPart& part = parts_[p];
-  if (drawn_.empty() || (level <= drawn_[p] && seen.area > 0.0)) return seen.area;
-  const std::size_t count = part.levels[std::max(level, drawn_[p])].count;
-  const double side = std::sqrt(seen.area) + reach * apart(part, count) * focal_[view] / seen.distance;
+  if (drawn_.empty() || (level <= drawn_[p] && (seen.area > 0.0 || seen.outside > 0.0))) return seen.area;
+  const double out = reach_of(part, part.levels[std::max(level, drawn_[p])].count);
+  if (seen.outside > out) return seen.area;
+  const double side = std::sqrt(seen.area) + out * focal_[view] / seen.distance;
   return side * side;
 }
 

@@ -24,13 +24,16 @@ class Sights {
   double longest_focal() const { return focal_.back(); }
 
  private:
+  struct Seen : SeenPart {
+    double outside = 0.0;  // how far beside the picture it lies, world units
+  };
   double area(std::size_t view, std::size_t p, std::size_t level) const;
 
   const std::vector<DetailPart>& parts_;
   std::span<const std::size_t> drawn_;
   std::vector<double> focal_;
   std::vector<glm::dvec3> eye_;
-  std::vector<std::vector<SeenPart>> seen_;
+  std::vector<std::vector<Seen>> seen_;  // by view
 };
 
 }  // namespace binosplat
