@@ -12,8 +12,8 @@
 
 namespace binosplat {
 
-/// So many parts, or fewer, that are not at their finest level, each the likelier the more the first view is
-/// predicted to lose by it. The same seed draws the same parts.
+/// So many parts, or fewer, that are not at their finest level, each as likely as the root of what the first
+/// view is predicted to lose by it is large. The same seed draws the same parts.
 std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed);
 
@@ -41,7 +41,8 @@ PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, c
 SampleLoss loss_of(const DetailChoice& choice, std::span<const std::size_t> levels,
                    std::span<const std::size_t> parts, double found);
 
-/// How many times what is predicted levels are found to lose: what was found first counts less and less.
+/// How many times what is predicted levels are found to lose: what was found first counts less and less, and
+/// nothing once all that is lost was in a sample.
 class LevelsFound {
  public:
   void note(const SampleLoss& loss);
