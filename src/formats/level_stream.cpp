@@ -24,15 +24,13 @@ constexpr double chooser_share = 0.25, reader_share = 0.5;  // of the cores: the
 constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
 constexpr double stays_s = 1.0;         // a level that nothing needs any more
 constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
-// Of what frames could take since the last choice, what the next one may want: every other of them looks, and
-// a quarter more, or they run out of it while the one after that is made.
-constexpr double comes_share = 0.5 * 1.25;
+// Of what frames could take since the last choice, what the next one may want: a quarter more, or they run
+// out of it while the one after that is made.
+constexpr double comes_share = 1.25;
 constexpr double comes_least = 1 << 14;  // Gaussians, however few frames there were
 constexpr int looks_most = 3;            // at the same views; then a choice hardly changes any more,
-constexpr int looks_most_found = 5;      // but by what a sample was found to lose
+constexpr int looks_most_found = 8;      // but by what a sample was found to lose
 constexpr std::size_t sample_of_moving = 8, sample_of_rest = 24;  // parts: what a frame has time for
-constexpr int between_samples = 20;                               // frames, of which each sample takes three
-constexpr double unnoticed = 0.05;  // by which what is found may change, of itself
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
   return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
@@ -95,8 +93,9 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   {
     const std::lock_guard lock(mutex_);
     is_due_ = is_due_ || (looks_again() && is_idle());
+    if (tries_out()) return;
   }
-  if (!is_due_ || tries_out()) return;
+  if (!is_due_) return;
   Wish wish;
   if (!by_db_) {
     wish.views = wanted_;
@@ -110,7 +109,7 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
             together_db_,
             found_.factor(),
             next_sample(),
-            moves_ ? sample_of_moving : sample_of_rest};
+            !moves_};
     ++looks_;
   }
   is_due_ = !same(wish.views, wanted_);
@@ -149,7 +148,7 @@ bool LevelStream::look_on(const Look& look) {
     took_ms = ms_since(start);
     is_last = bands_.note(took_ms);
   } while (!is_last && took_ms < LookBands::nothing_ms);
-  looked_now_ = true;
+  look_ms_ = took_ms;
   if (!is_last || looked_.size() < to_look_at_) return false;
   const auto views = static_cast<double>(to_look_at_);
   const double frame_ms = ms_since(*looked_at_) / (views * bands_.count());
@@ -200,8 +199,9 @@ void LevelStream::choose(const Wish& wish) {
   auto chosen = scene_.chooser().choose(wish.views, need, wish.seen);
   std::optional<Sample> sample;
   if (wish.sample && chosen->by_errors) {
-    auto parts = sample_of(*chosen->by_errors, chosen->levels, wish.sample_parts, *wish.sample);
-    if (!parts.empty()) sample = {chosen->by_errors, wish.views.front(), {std::move(parts), {}}};
+    auto parts = wish.rests ? sample_of(*chosen->by_errors, chosen->levels, sample_of_rest, *wish.sample)
+                            : sample_of(*chosen->by_errors, wish.seen.drawn, sample_of_moving, *wish.sample);
+    if (!parts.empty()) sample = {chosen->by_errors, wish.views.front(), {std::move(parts), {}}, wish.rests};
   }
   auto choice = chosen->by_errors;  // the one before it is freed when no frame waits for the lock any more
   const std::lock_guard lock(mutex_);
@@ -284,79 +284,6 @@ void LevelStream::sort_pieces() {
   pieces_ = std::move(pieces);
 }
 
-ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
-  ++takes_;
-  ++frames_since_sample_;
-  taken_most_ = most;
-  std::vector<StreamedSog::Piece> taken;
-  {
-    const std::lock_guard lock(mutex_);
-    if (trouble_) std::rethrow_exception(trouble_);
-    const bool looked = std::exchange(looked_now_, false);
-    take_is_due_ = looked && !pieces_.empty();
-    may_try_ = !looked && sample_;
-    if (take_is_due_ || sample_) return {};
-    std::size_t gaussians = 0;
-    while (!pieces_.empty()) {
-      gaussians += pieces_.front().model.count();
-      if (!taken.empty() && gaussians > most) break;
-      gaussians_read_ -= pieces_.front().model.count();
-      taken.push_back(std::move(pieces_.front()));
-      pieces_.pop_front();
-    }
-  }
-  if (taken.empty()) return {};
-  std::vector<ModelParts::Replacement> replacements;
-  for (const StreamedSog::Piece& piece : taken) {
-    replacements.push_back({piece.part, &piece.model});
-    if (piece.level) drawn_[piece.part] = *piece.level;
-  }
-  parts_.replace(model, replacements);
-  changed_since_look_ = true;
-  told_by_.reset();
-  {
-    const std::lock_guard lock(mutex_);
-    std::ranges::move(taken, std::back_inserter(used_));
-  }
-  changed_.notify_all();
-  return parts_.take_changes();
-}
-
-// Nobody else changes a sample that is there.
-void LevelStream::try_out(Model& model, const PartsTrial& trial) {
-  is_tried_out_ = true;
-  if (!std::exchange(may_try_, false)) return;
-  Sample& sample = *sample_;
-  if (trial_ == Trial::keeps) keep_what_fits(sample.models, model, parts_);
-  if (trial_ == Trial::keeps && !sample.models.parts.empty()) {
-    trial_ = Trial::compares;
-    return trial.keep(sample.view);
-  }
-  PartModels before = exchange(sample.models, model, parts_, trial);
-  if (trial_ == Trial::compares) {
-    const double factor = found_.factor();
-    found_.note(loss_of(*sample.choice, drawn_, before.parts, trial.differs(sample.view)));
-    found_other_ = std::abs(std::log(found_.factor() / factor)) > unnoticed;
-    std::swap(sample.models, before);
-    trial_ = Trial::puts_back;
-    return;
-  }
-  trial_ = Trial::keeps;
-  const std::lock_guard lock(mutex_);
-  sample_.reset();
-}
-
-std::optional<unsigned> LevelStream::next_sample() {
-  if (!is_tried_out_ || (samples_ > 0 && frames_since_sample_ < between_samples)) return std::nullopt;
-  frames_since_sample_ = 0;
-  return samples_++;
-}
-
-bool LevelStream::tries_out() const {
-  const std::lock_guard lock(mutex_);
-  return sample_.has_value();
-}
-
 // Coarse parts hide what fine ones do not.
 bool LevelStream::looks_again() const {
   return by_db_ && (is_limited_ || (changed_since_look_ && looks_ < looks_most) ||
@@ -365,7 +292,7 @@ bool LevelStream::looks_again() const {
 
 // Where a head rests nothing comes too late, nor before it was ever seen.
 std::size_t LevelStream::to_come() {
-  const double all = comes_share * static_cast<double>(taken_most_) * std::exchange(takes_, 0);
+  const double all = comes_share * static_cast<double>(std::exchange(could_take_, 0));
   const bool rests = looks_ > 0 || !std::exchange(has_wished_, true);
   return rests ? std::numeric_limits<std::size_t>::max()
                : static_cast<std::size_t>(std::clamp(all, comes_least, 1e15));
@@ -393,7 +320,8 @@ std::optional<double> LevelStream::predicted_psnr() const {
     told_ahead_ = here < all ? choice->error_of(drawn_, here, all) : told_here_;
     told_by_ = std::move(choice);
   }
-  const double ahead = std::min(1e-3 * ms_since(at) / lead_s, 1.0);
+  // What comes nearer loses the more the nearer it is.
+  const double ahead = std::pow(std::min(1e-3 * ms_since(at) / lead_s, 1.0), 2);
   return psnr_of_error(found_.factor() * std::lerp(told_here_, told_ahead_, ahead));
 }
 

@@ -62,9 +62,10 @@ class LevelStream {
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);
 
-  /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, but one
-  /// part at least. Where a look was made for this frame what was read waits for the next, which makes none
-  /// then. Throws what choosing or reading it threw; then nothing more is read.
+  /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, nor
+  /// more than 6 ms leave time for with a look that was made for this frame and with uploading, but one part
+  /// at least unless the look took all of it: then the next frame makes none. Throws what choosing or reading
+  /// it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
 
   /// By dB: finds on a sample of parts what the levels truly lose, by pictures of the first of the views that
@@ -89,14 +90,15 @@ class LevelStream {
     std::size_t here = 0;  // of the views: they come first, and others lie ahead
     Clock::time_point at;
     double together_db = 0.0, found = 1.0;
-    std::optional<unsigned> sample = {};  // is wanted, and which,
-    std::size_t sample_parts = 0;         // of so many
+    std::optional<unsigned> sample = {};  // is wanted, and which
+    bool rests = false;                   // the head
   };
   /// The finest levels of parts of a choice, and the view that they are tried out in, in three frames.
   struct Sample {
     std::shared_ptr<const DetailChoice> choice;
     shared::View view;
-    PartModels models;  // then those that were there
+    PartModels models;           // then those that were there
+    bool waits_for_all = false;  // that was chosen, before it is tried out
   };
   bool look_on(const Look& look);
   std::size_t here() const;
@@ -108,11 +110,12 @@ class LevelStream {
   bool works(double share_of_cores, const std::function<void()>& work);
   void sort_pieces();
   void free_used();
+  std::optional<std::size_t> take_some(Model& model, std::size_t most, bool is_first);
   bool is_idle() const {
     return !wish_ && !chooses_ && !next_ && !next_sample_ && !reads_ && !sample_ && pieces_.empty();
   }
   bool looks_again() const;
-  bool tries_out() const;
+  bool tries_out() const;  // in this frame; under the lock
   std::optional<unsigned> next_sample();
   std::size_t to_come();
 
@@ -128,10 +131,10 @@ class LevelStream {
   std::vector<std::size_t> drawn_;                       // places of the parts' levels, in the model
   mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, the last time,
   mutable double told_here_ = 0.0, told_ahead_ = 0.0;    // squared errors
-  bool looked_now_ = false;     // since the last take(): a frame does one of both, in turns,
-  bool take_is_due_ = false;    // where there is much of both
-  std::size_t taken_most_ = 0;  // what the last take() would have taken,
-  int takes_ = 0;               // and how many there were since the last choice was wished, if one
+  double look_ms_ = 0.0;                                 // since the last take(),
+  bool take_is_due_ = false;                             // which a look had left no time
+  double taken_a_ms_ = 1 << 14;                          // Gaussians, by the last ones;
+  std::size_t could_take_ = 0;                           // since the last choice was wished, if one
   bool has_wished_ = false;
   // By dB:
   LevelsFound found_;

@@ -37,7 +37,7 @@ struct Plan {
   double rate = 90.0;  // a second
   int judged = 8;      // of the frames, evenly spread, against the finest
   int shrink = 1;
-  std::size_t gaussians_a_frame = 1 << 15;
+  std::size_t gaussians_a_frame = 1 << 16;
   std::size_t most = std::numeric_limits<std::size_t>::max();
   render::FrameSettings settings;
 };
@@ -196,6 +196,7 @@ class Flight {
     const bool looked = looks < numbers_.look_ms.size();
     const auto taking = Clock::now();
     const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
+    const double taken_ms = ms_since(taking);
     gpu_model_->reload(changes);
     numbers_.take_ms.push_back(ms_since(taking));
     const auto trying = Clock::now();
@@ -213,7 +214,8 @@ class Flight {
     if (filled > 0) numbers_.read_gaussians.push_back(static_cast<double>(filled));
     timeline_.push_back({{"look_ms", looked ? numbers_.look_ms.back() : 0.0},
                          {"look_at", looked ? Json({band_.begin, band_.end}) : Json()},
-                         {"take_ms", numbers_.take_ms.back()},
+                         {"take_ms", taken_ms},
+                         {"upload_ms", numbers_.take_ms.back() - taken_ms},
                          {"new", filled},
                          {"trial_ms", trial_ms},
                          {"gpu_ms", drawn_ms},
@@ -386,7 +388,7 @@ int main(int argc, char** argv) {
   app.add_option("--judged", plan.judged, "Frames that are compared with the finest levels (8)")
       ->check(CLI::Range(0, 1000));
   app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
-  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (32768)");
+  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (65536)");
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");

@@ -20,7 +20,7 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr std::size_t gaussians_a_frame = 1 << 15;  // of levels that change: no frame waits for more
+constexpr std::size_t gaussians_a_frame = 1 << 16;  // of levels that change: no frame waits for more
 
 volatile std::sig_atomic_t signalled = 0;
 

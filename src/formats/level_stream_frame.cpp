@@ -1,0 +1,118 @@
+// What a level stream does in a frame besides looking: takes what was read, or tries out a sample of it.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <utility>
+
+#include "formats/level_stream.h"
+
+namespace binosplat {
+
+namespace {
+
+constexpr double brings_ms = 6.0;  // that a frame may look, take and upload: it draws in the rest
+constexpr std::size_t taken_at_once = 1 << 12;  // Gaussians, before one sees what that took
+constexpr int between_samples = 20;             // frames, of which each sample takes three
+constexpr double unnoticed = 0.05;              // by which what is found may change, of itself
+
+}  // namespace
+
+ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
+  const double look_ms = std::exchange(look_ms_, 0.0);
+  const double ms = (brings_ms - look_ms) / 2.0;  // uploading takes as long
+  ++frames_since_sample_;
+  {
+    const std::lock_guard lock(mutex_);
+    if (trouble_) std::rethrow_exception(trouble_);
+    may_try_ = look_ms == 0.0 && tries_out();
+    take_is_due_ = ms <= 0.0 && !pieces_.empty();
+    if (tries_out()) return {};
+  }
+  if (ms <= 0.0) return {};
+  const auto start = Clock::now();
+  std::optional<std::size_t> taken;  // Gaussians, which may be none
+  double took_ms = 0.0;
+  while (took_ms < ms && taken.value_or(0) < most) {
+    const auto some = take_some(model, most - taken.value_or(0), !taken);
+    if (!some) break;
+    taken = taken.value_or(0) + *some;
+    took_ms = ms_since(start);
+  }
+  if (taken >= taken_at_once)
+    taken_a_ms_ = std::lerp(taken_a_ms_, static_cast<double>(*taken) / took_ms, 0.1);
+  could_take_ += std::min(most, static_cast<std::size_t>(ms * taken_a_ms_));
+  if (!taken) return {};
+  changed_since_look_ = true;
+  told_by_.reset();
+  changed_.notify_all();
+  return parts_.take_changes();
+}
+
+// Some parts of what was read, of no more than so many Gaussians, but one part if it is the first; how many
+// there are, if any.
+std::optional<std::size_t> LevelStream::take_some(Model& model, std::size_t most, bool is_first) {
+  std::vector<StreamedSog::Piece> taken;
+  std::size_t gaussians = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    while (!pieces_.empty() && gaussians < taken_at_once) {
+      const std::size_t count = pieces_.front().model.count();
+      if (gaussians + count > most && !(is_first && taken.empty())) break;
+      gaussians += count;
+      taken.push_back(std::move(pieces_.front()));
+      pieces_.pop_front();
+    }
+    gaussians_read_ -= gaussians;
+  }
+  if (taken.empty()) return std::nullopt;
+  std::vector<ModelParts::Replacement> replacements;
+  for (const StreamedSog::Piece& piece : taken) {
+    replacements.push_back({piece.part, &piece.model});
+    if (piece.level) drawn_[piece.part] = *piece.level;
+  }
+  parts_.replace(model, replacements);
+  const std::lock_guard lock(mutex_);
+  std::ranges::move(taken, std::back_inserter(used_));
+  return gaussians;
+}
+
+// Nobody else changes a sample that is there.
+void LevelStream::try_out(Model& model, const PartsTrial& trial) {
+  is_tried_out_ = true;
+  if (!std::exchange(may_try_, false)) return;
+  Sample& sample = *sample_;
+  if (trial_ == Trial::keeps) keep_what_fits(sample.models, model, parts_);
+  if (trial_ == Trial::keeps && !sample.models.parts.empty()) {
+    trial_ = Trial::compares;
+    return trial.keep(sample.view);
+  }
+  PartModels before = exchange(sample.models, model, parts_, trial);
+  if (trial_ == Trial::compares) {
+    const double factor = found_.factor();
+    found_.note(loss_of(*sample.choice, drawn_, before.parts, trial.differs(sample.view)));
+    found_other_ = std::abs(std::log(found_.factor() / factor)) > unnoticed;
+    std::swap(sample.models, before);
+    trial_ = Trial::puts_back;
+    return;
+  }
+  trial_ = Trial::keeps;
+  const std::lock_guard lock(mutex_);
+  sample_.reset();
+}
+
+std::optional<unsigned> LevelStream::next_sample() {
+  if (!is_tried_out_ || (samples_ > 0 && frames_since_sample_ < between_samples)) return std::nullopt;
+  frames_since_sample_ = 0;
+  return samples_++;
+}
+
+// What a head that rests sees is what was chosen for it, once that is there.
+bool LevelStream::tries_out() const {
+  if (!sample_) return false;
+  const bool has_all = !next_ && !reads_ && pieces_.empty();
+  return trial_ != Trial::keeps || !sample_->waits_for_all || moves_ || has_all;
+}
+
+}  // namespace binosplat
