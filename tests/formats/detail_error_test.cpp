@@ -197,6 +197,11 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
                   .focal = 100.0,
                   .pixels = 1.0};
   EXPECT_GT(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
+  DetailSeen seen{{{SeenPart{}}}, {3}};
+  EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any, seen).error(), 0.0)
+      << "they were drawn, and do not";
+  seen.drawn = {1};
+  EXPECT_GT(choose_levels_within(at_edge, {view}, 1e9, any, seen).error(), 0.0) << "finer ones were";
   view.inward = inward_of({std::sin(0.83), 0, std::cos(0.83)}, 0.5);
   EXPECT_EQ(choose_levels_within(at_edge, {view}, 1e9, any).error(), 0.0);
 }

@@ -451,6 +451,38 @@ TEST(LevelStream, WantsNoMoreThanComes) {
   EXPECT_EQ(stream.gaussians(), 3 * most);
 }
 
+// Frames that look take what the look leaves time for: a long one none of what has been read meanwhile.
+TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  const auto takes_where_it_looked = [&](int look_ms) {
+    LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
+      return DetailNeed{.db = 100.0};
+    });
+    Model model = stream.coarsest();
+    int looks = 0;
+    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+      ++looks;
+      std::this_thread::sleep_for(std::chrono::milliseconds(look_ms));
+      return std::vector(parts.size(), SeenPart{50.0, 30.0});
+    };
+    bool takes = false;
+    shared::View view = before_all();
+    for (int frame = 0; frame < 10 && !takes; ++frame) {
+      const int before = looks;
+      view.anchor.x += 0.01f;
+      stream.want(std::vector{view}, look);
+      takes = !stream.take(model, 1).empty() && looks > before;
+      std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    }
+    EXPECT_TRUE(frames_until(stream, model, view, look, [&] { return stream.settled(); })) << "it hangs";
+    EXPECT_EQ(stream.gaussians(), 3000u);
+    return takes;
+  };
+  EXPECT_FALSE(takes_where_it_looked(20));
+  EXPECT_TRUE(takes_where_it_looked(0)) << "planted: a short one";
+}
+
 // What samples are found to lose changes what is told, and what is wanted.
 TEST(LevelStream, GoesByWhatASampleLoses) {
   const test::TempFolder folder;
