@@ -29,6 +29,7 @@ std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians, bool i
   const render::MemoryNeeds needs = render::memory_needs(shape);
   if (!in_parts) return needs.model + needs.frame;
   const int precision = shape.settings.precision;
+  // Each of both with its place.
   const std::int64_t bytes_of_one =
       render::gaussian_bytes(precision) + render::harmonic_bytes(shape.degree, precision) + 2 * 4;
   const auto uploads = static_cast<std::int64_t>(

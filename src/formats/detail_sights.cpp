@@ -20,11 +20,6 @@ constexpr double growth = 0.3, growth_most = 8.0;
 /// So many times the distance between the Gaussians of a level it reaches out from behind what hides it.
 constexpr double reach = 0.5;
 
-/// How far apart so many Gaussians of a part are taken to lie, world units.
-double apart(const DetailPart& part, std::size_t count) {
-  return glm::distance(part.low, part.high) / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
-}
-
 /// How far the box lies beside the picture at least, world units; 0 where it may lie in it, or in some of the
 /// pixels beside it that Gaussians are blurred to.
 double beside(const DetailView& view, const DetailPart& part, double pixel) {
@@ -36,8 +31,11 @@ double beside(const DetailView& view, const DetailPart& part, double pixel) {
   return std::max(0.0, -inside - blurred_px * pixel);
 }
 
-/// How far a level of so many Gaussians reaches out of what its part shows.
-double reach_of(const DetailPart& part, std::size_t count) { return reach * apart(part, count); }
+/// How far a level of so many Gaussians reaches out of what its part shows, world units.
+double reach_of(const DetailPart& part, std::size_t count) {
+  const double box = glm::distance(part.low, part.high);
+  return reach * box / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
+}
 
 /// What relative_error says of each level of one part, seen from one place.
 class LookedAt {

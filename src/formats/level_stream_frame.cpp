@@ -26,9 +26,10 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   {
     const std::lock_guard lock(mutex_);
     if (trouble_) std::rethrow_exception(trouble_);
-    may_try_ = look_ms == 0.0 && tries_out();
     take_is_due_ = ms <= 0.0 && !pieces_.empty();
-    if (tries_out()) return {};
+    const bool tries = tries_out();
+    may_try_ = tries && look_ms == 0.0;
+    if (tries) return {};
   }
   if (ms <= 0.0) return {};
   const auto start = Clock::now();

@@ -131,6 +131,10 @@ TEST(RenderLevels, ByDecibelsAsAFileTells) {
   EXPECT_FALSE(report["settings"].contains("detail_px"));
   const auto far = report["views"][0]["levels_of_detail"], near = report["views"][1]["levels_of_detail"];
   EXPECT_LT(far["gaussians"], near["gaussians"]);
+  EXPECT_GT(near["gaussians"], 250);
+  // The coarsest, 250, have 35 dB from however far away, whatever the file says of them.
+  EXPECT_GT(far["gaussians"], 250);
+  EXPECT_GE(far["finest_psnr_db"], 40.0);
   EXPECT_GE(far["predicted_psnr_db"], 40.0);
   EXPECT_NE(
       told.out.find(fmt::format(", {:.2f} dB predicted, {:.2f} dB against the finest",
