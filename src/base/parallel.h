@@ -21,10 +21,6 @@ void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
   });
 }
 
-/// Numbers of 4 bytes, to be copied, below which a frame takes no second thread: some 0.3 ms. One that must
-/// be waited for may have no core for 4 ms where others read.
-inline constexpr std::size_t numbers_a_thread = std::size_t{1} << 19;
-
 /// Calls body() in the background: its loops have a share of the cores at most, and one at least, and threads
 /// that take part, this one too, give way to others from then on.
 void on_some_cores(double share, const std::function<void()>& body);

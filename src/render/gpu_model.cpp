@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstring>
 #include <functional>
+#include <mutex>
 #include <numeric>
 #include <span>
 
+#include "base/frame_crew.h"
 #include "base/parallel.h"
 #include "render/halves.h"
 
@@ -88,8 +90,27 @@ void add_places(const ModelBuffers::Page& page, std::span<const Range> ranges,
   for (const Range& range : ranges) {
     const std::size_t first = std::max<std::size_t>(range.first, page.first);
     const std::size_t end = std::min<std::size_t>(range.first + range.count, page.first + page.count);
-    for (std::size_t i = first; i < end; ++i) places.push_back(static_cast<std::uint32_t>(i - page.first));
+    if (first >= end) continue;
+    const std::size_t before = places.size();
+    places.resize(before + end - first);
+    std::iota(places.begin() + static_cast<std::ptrdiff_t>(before), places.end(),
+              static_cast<std::uint32_t>(first - page.first));
   }
+}
+
+// The positions in these ranges.
+void add_to(std::optional<Bounds>& box, const Model& model, std::span<const Range> ranges) {
+  std::mutex adding;
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    Bounds some{model.position[ranges[begin].first], model.position[ranges[begin].first]};
+    for (const Range& range : ranges.subspan(begin, end - begin)) {
+      for (const glm::vec3& p : std::span(model.position).subspan(range.first, range.count))
+        some = {glm::min(some.low, p), glm::max(some.high, p)};
+    }
+    const std::lock_guard lock(adding);
+    box = box ? Bounds{glm::min(box->low, some.low), glm::max(box->high, some.high)} : some;
+  };
+  frame_chunks(ranges.size(), 32, add);
 }
 
 }  // namespace
@@ -154,12 +175,7 @@ void ModelBuffers::upload(gl::Context& context, const Model& model, const ModelP
     upload(to_gaussians_, packing_of_gaussians(model, precision), *page.gaussians, places.size());
     upload(to_harmonics_, packing_of_harmonics(model, precision), *page.harmonics, filled);
   }
-  for (const Range& range : changes.filled) {
-    for (std::size_t i = range.first; i < range.first + range.count; ++i) {
-      const glm::vec3& p = model.position[i];
-      box = box ? Bounds{glm::min(box->low, p), glm::max(box->high, p)} : Bounds{p, p};
-    }
-  }
+  add_to(box, model, changes.filled);
 }
 
 std::int64_t ModelBuffers::room_in(const Page& page, const Model& model) const {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/parallel.h"
+#include "base/frame_crew.h"
 #include "shared/limits.h"
 
 namespace binosplat::render {
@@ -27,7 +27,7 @@ void Scatter::upload(
     const auto fill_some = [&](std::size_t begin, std::size_t end) {
       fill(now.subspan(begin, end - begin), records.subspan(begin * words, (end - begin) * words));
     };
-    parallel_chunks(now.size(), std::max<std::size_t>(numbers_a_thread / words, 1), fill_some);
+    frame_chunks(now.size(), std::max<std::size_t>(frame_chunk_numbers / words, 1), fill_some);
     dispatcher_.begin_frame();
     dispatcher_.begin_stage("scatter");
     dispatcher_.run(dispatcher_.context().program("scatter.comp"), gl::Work::threads(word_count, THREADS),

@@ -17,7 +17,7 @@ namespace binosplat::render {
 class Scatter {
  public:
   /// For which there is room on the GPU. More go there in turns, each of which waits for the one before.
-  static constexpr std::size_t records_at_once = 1 << 16;
+  static constexpr std::size_t records_at_once = 1 << 17;
 
   explicit Scatter(gl::Context& context);
 

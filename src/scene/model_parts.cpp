@@ -1,8 +1,10 @@
 #include "scene/model_parts.h"
 
 #include <algorithm>
+#include <bit>
+#include <utility>
 
-#include "base/parallel.h"
+#include "base/frame_crew.h"
 #include "scene/reduce.h"
 
 namespace binosplat {
@@ -18,9 +20,11 @@ void hide(Model& model, std::size_t first, std::size_t count) {
 
 }  // namespace
 
-// Places that are made for later, too, lie where something is, which makes no box larger.
+// The first that is free, so that they stay side by side. Places that are made for later, too, lie where
+// something is, which makes no box larger.
 std::size_t ModelParts::take_block(Model& model, const glm::vec3& where) {
-  if (free_.empty()) {
+  while (none_before_ < free_.size() && free_[none_before_] == 0) ++none_before_;
+  if (none_before_ == free_.size()) {
     const std::size_t before = owners_.size();
     const std::size_t more = std::clamp<std::size_t>(before / 8, 1, blocks_at_once);
     const std::size_t in_room = std::max(model.room / block, before) - before;
@@ -30,15 +34,29 @@ std::size_t ModelParts::take_block(Model& model, const glm::vec3& where) {
       model.reserve(model.room);
     }
     model.resize(owners_.size() * block);
-    for (std::size_t b = before; b < owners_.size(); ++b) free_.push(b);
+    changes_.resize(owners_.size());
+    for (std::size_t b = before; b < owners_.size(); ++b) set_free(b);
     hide(model, before * block, (owners_.size() - before) * block);
     const auto at = static_cast<std::ptrdiff_t>(before * block);
     std::fill(model.rotation.begin() + at, model.rotation.end(), glm::vec4(1, 0, 0, 0));
     std::fill(model.position.begin() + at, model.position.end(), where);
   }
-  const std::size_t found = free_.top();
-  free_.pop();
-  return found;
+  std::uint64_t& word = free_[none_before_];
+  const auto bit = static_cast<std::size_t>(std::countr_zero(word));
+  word &= word - 1;
+  return none_before_ * 64 + bit;
+}
+
+void ModelParts::set_free(std::size_t b) {
+  const std::size_t word = b / 64;
+  if (word >= free_.size()) free_.resize(word + 1);
+  free_[word] |= std::uint64_t{1} << b % 64;
+  none_before_ = std::min(none_before_, word);
+}
+
+void ModelParts::note(std::size_t b, Change change) {
+  if (changes_[b] == Change::none) changed_.push_back(b);
+  changes_[b] = change;
 }
 
 Model ModelParts::part(const Model& model, std::size_t part) const {
@@ -57,9 +75,12 @@ void ModelParts::replace(Model& model, std::size_t part, const Model& by) {
 }
 
 void ModelParts::replace(Model& model, std::span<const Replacement> all) {
-  for (const Replacement& each : all) give_back(model, each.part);
+  std::vector<std::vector<std::size_t>> before;  // blocks of the parts
+  for (const Replacement& each : all) before.push_back(give_back(each.part));
   for (const auto& [part, by] : all) take_place(model, part, *by);
   const auto fill = [&](std::size_t k) {
+    for (const std::size_t b : before[k])
+      if (changes_[b] == Change::emptied) hide(model, b * block, block);
     const auto& [part, by] = all[k];
     for (std::size_t n = 0; n < blocks_[part].size(); ++n) {
       const std::size_t first = n * block, count = std::min(block, by->count() - first);
@@ -73,23 +94,26 @@ void ModelParts::replace(Model& model, std::span<const Replacement> all) {
   std::size_t gaussians = 1;
   for (const Replacement& each : all) gaussians += each.by->count();
   const std::size_t numbers = gaussians * (11 + 3 * static_cast<std::size_t>(sh_count(model.degree)));
-  parallel_for(all.size(), fill, all.size() * numbers_a_thread / numbers + 1);
+  const auto fill_some = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) fill(k);
+  };
+  frame_chunks(all.size(), all.size() * frame_chunk_numbers / numbers + 1, fill_some);
 }
 
-void ModelParts::give_back(Model& model, std::size_t part) {
+std::vector<std::size_t> ModelParts::give_back(std::size_t part) {
   for (const std::size_t b : blocks_[part]) {
-    hide(model, b * block, block);
-    changed_[b] = false;
-    free_.push(b);
+    note(b, Change::emptied);
+    set_free(b);
   }
-  blocks_[part].clear();
+  return std::exchange(blocks_[part], {});
 }
 
 void ModelParts::take_place(Model& model, std::size_t part, const Model& by) {
+  blocks_[part].reserve((by.count() + block - 1) / block);
   for (std::size_t first = 0; first < by.count(); first += block) {
     const std::size_t b = take_block(model, by.position.front());
     owners_[b] = static_cast<std::uint32_t>(part);
-    changed_[b] = true;
+    note(b, Change::filled);
     blocks_[part].push_back(b);
   }
   gaussians_ = gaussians_ - counts_[part] + by.count();
@@ -98,8 +122,10 @@ void ModelParts::take_place(Model& model, std::size_t part, const Model& by) {
 
 ModelParts::Changes ModelParts::take_changes() {
   Changes changes;
-  for (const auto& [b, filled] : changed_) {
-    std::vector<Range>& ranges = filled ? changes.filled : changes.emptied;
+  std::ranges::sort(changed_);
+  for (const std::size_t b : changed_) {
+    std::vector<Range>& ranges = changes_[b] == Change::filled ? changes.filled : changes.emptied;
+    changes_[b] = Change::none;
     if (!ranges.empty() && ranges.back().first + ranges.back().count == b * block) {
       ranges.back().count += block;
     } else {

@@ -4,8 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <queue>
 #include <span>
 #include <vector>
 
@@ -59,15 +57,20 @@ class ModelParts {
   Changes take_changes();
 
  private:
-  void give_back(Model& model, std::size_t part);
+  enum class Change : std::uint8_t { none, filled, emptied };
+  std::vector<std::size_t> give_back(std::size_t part);
   void take_place(Model& model, std::size_t part, const Model& by);
   std::size_t take_block(Model& model, const glm::vec3& where);
+  void set_free(std::size_t b);
+  void note(std::size_t b, Change change);
 
   std::vector<std::vector<std::size_t>> blocks_;  // by part
   std::vector<std::size_t> counts_;               // by part
   std::vector<std::uint32_t> owners_;             // by block
-  std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> free_;
-  std::map<std::size_t, bool> changed_;  // blocks, and whether they are filled
+  std::vector<std::uint64_t> free_;               // a bit by block
+  std::size_t none_before_ = 0;                   // of its words has any
+  std::vector<Change> changes_;                   // by block, since the last take_changes()
+  std::vector<std::size_t> changed_;              // blocks
   std::size_t gaussians_ = 0;
 };
 

@@ -1,0 +1,56 @@
+#include "base/frame_crew.h"
+
+#include <tbb/info.h>
+
+#include <algorithm>
+
+namespace binosplat {
+
+FrameCrew::FrameCrew(int threads) {
+  for (int k = 0; k < threads; ++k)
+    threads_.emplace_back([this](const std::stop_token& stop) { help(stop); });
+}
+
+void FrameCrew::run(std::size_t count, std::size_t chunk, const Body& body) {
+  if (count == 0) return;
+  if (threads_.empty() || count <= chunk || is_called_.exchange(true)) return body(0, count);
+  {
+    const std::lock_guard lock(mutex_);
+    body_ = &body;
+    count_ = count;
+    chunk_ = chunk;
+    next_ = 0;
+  }
+  changed_.notify_all();
+  work(body);
+  {
+    std::unique_lock lock(mutex_);
+    body_ = nullptr;  // none begins any more
+    changed_.wait(lock, [&] { return helping_ == 0; });
+  }
+  is_called_ = false;
+}
+
+void FrameCrew::help(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (changed_.wait(lock, stop, [&] { return body_ != nullptr && next_ < count_; })) {
+    ++helping_;
+    const Body& body = *body_;
+    lock.unlock();
+    work(body);
+    lock.lock();
+    if (--helping_ == 0) changed_.notify_all();
+  }
+}
+
+void FrameCrew::work(const Body& body) {
+  for (std::size_t begin = next_.fetch_add(chunk_); begin < count_; begin = next_.fetch_add(chunk_))
+    body(begin, std::min(begin + chunk_, count_));
+}
+
+void frame_chunks(std::size_t count, std::size_t chunk, const FrameCrew::Body& body) {
+  static FrameCrew crew(tbb::info::default_concurrency() / 4 - 1);
+  crew.run(count, chunk, body);
+}
+
+}  // namespace binosplat
