@@ -24,9 +24,9 @@ constexpr double chooser_share = 0.25, reader_share = 0.5;  // of the cores: the
 constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
 constexpr double stays_s = 1.0;         // a level that nothing needs any more
 constexpr double lead_s = 0.5;          // ahead of a head that moves: until what is chosen is drawn
-// Of what frames could take since the last choice, what the next one may want: a quarter more, or they run
-// out of it while the one after that is made.
-constexpr double comes_share = 1.25;
+// Of what frames could take since the last choice was asked for, what the next one may want: they go on with
+// it while the one after it is made, which takes as long as from one to the next.
+constexpr double comes_share = 2.0;
 constexpr double comes_least = 1 << 14;  // Gaussians, however few frames there were
 constexpr int looks_most = 3;            // at the same views; then a choice hardly changes any more,
 constexpr int looks_most_found = 8;      // but by what a sample was found to lose
@@ -48,9 +48,9 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
   by_db_ = asked_by_db_ || (shares_ && together_db_ > 0.0);
   scene_.choose({}, need);
   Model model = scene_.like();
-  // Half empty blocks included.
+  // Half empty blocks included, and a sample.
   model.room = std::min(scene_.finest(), need.most < scene_.finest() ? need.most : room_most) +
-               scene_.parts() * ModelParts::block;
+               scene_.parts() * ModelParts::block + sample_of_rest * scene_.largest_part();
   // Touched now: the system gives memory a page at a time, and slowly while others decode (10 ms a frame).
   model.reserve(model.room);
   model.resize(std::min(model.room, room_most));
@@ -134,11 +134,13 @@ bool LevelStream::look_on(const Look& look) {
     to_look_at_ = moves_ ? std::max<std::size_t>(wanted_.size(), 2) : wanted_.size();
     changed_since_look_ = found_other_ = false;
     seen_.clear();
+    bands_looked_at_ = 0;
   }
   if (bands_.is_first()) {
     const std::size_t k = looked_.size();
     looked_.push_back(k < here() ? wanted_[k] : motion_.ahead(lead_s)[k % wanted_.size()]);
     seen_.emplace_back(parts_.size());
+    bands_.begin(looked_.back());
   }
   double took_ms = 0.0;
   bool is_last = false;
@@ -147,12 +149,12 @@ bool LevelStream::look_on(const Look& look) {
     add_band(look(looked_.back(), bands_.next(), parts_), seen_.back());
     took_ms = ms_since(start);
     is_last = bands_.note(took_ms);
+    ++bands_looked_at_;
   } while (!is_last && took_ms < LookBands::nothing_ms);
   look_ms_ = took_ms;
   if (!is_last || looked_.size() < to_look_at_) return false;
-  const auto views = static_cast<double>(to_look_at_);
-  const double frame_ms = ms_since(*looked_at_) / (views * bands_.count());
-  bands_.divide(std::max(1, static_cast<int>(look_most_ms / (views * frame_ms))));
+  const double frame_ms = ms_since(*looked_at_) / bands_looked_at_;
+  bands_.allow(static_cast<int>(look_most_ms / (static_cast<double>(to_look_at_) * frame_ms)));
   return true;
 }
 

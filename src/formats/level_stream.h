@@ -62,10 +62,15 @@ class LevelStream {
       std::function<std::vector<SeenPart>(const shared::View& view, Band band, const ModelParts& parts)>;
   void want(std::span<const shared::View> views, const Look& look);
 
+  /// How many ms of a frame are for a look, for what it takes and for uploading that: time_for_levels(), or
+  /// as many as it gives at most, until this is called.
+  void give_time(double ms) { brings_ms_ = ms; }
+  static constexpr double brings_most_ms = 6.0;
+
   /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, nor
-  /// more than 6 ms leave time for with a look that was made for this frame and with uploading, but one part
-  /// at least unless the look took all of it: then the next frame makes none. Throws what choosing or reading
-  /// it threw; then nothing more is read.
+  /// more than a frame has time for with a look that was made for it and with uploading, but one part
+  /// at least unless the look took all of it. Where something is left after a look, the next frame makes
+  /// none. Throws what choosing or reading it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
 
   /// By dB: finds on a sample of parts what the levels truly lose, by pictures of the first of the views that
@@ -131,10 +136,11 @@ class LevelStream {
   std::vector<std::size_t> drawn_;                       // places of the parts' levels, in the model
   mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, the last time,
   mutable double told_here_ = 0.0, told_ahead_ = 0.0;    // squared errors
-  double look_ms_ = 0.0;                                 // since the last take(),
-  bool take_is_due_ = false;                             // which a look had left no time
-  double taken_a_ms_ = 1 << 14;                          // Gaussians, by the last ones;
-  std::size_t could_take_ = 0;                           // since the last choice was wished, if one
+  double brings_ms_ = brings_most_ms;
+  double look_ms_ = 0.0;         // since the last take(),
+  bool take_is_due_ = false;     // of what a look had left no time for
+  double taken_a_ms_ = 1 << 14;  // Gaussians, by the last ones;
+  std::size_t could_take_ = 0;   // since the last choice was wished, if one
   bool has_wished_ = false;
   // By dB:
   LevelsFound found_;
@@ -150,6 +156,7 @@ class LevelStream {
   bool moves_ = false;                       // while these are looked at
   std::size_t to_look_at_ = 0;               // so many views
   LookBands bands_;                          // of the last of them
+  int bands_looked_at_ = 0;                  // of all
   bool changed_since_look_ = false;
   std::optional<Clock::time_point> looked_at_;
 
@@ -172,5 +179,9 @@ class LevelStream {
   std::exception_ptr trouble_;
   std::jthread chooser_, reader_;  // last: they end first
 };
+
+/// What is left for levels of a frame that is due after so many ms, where drawing takes so long: 2.5 ms at
+/// least, or a head would wait for levels forever, and 6 at most.
+double time_for_levels(double frame_ms, double drawn_ms);
 
 }  // namespace binosplat

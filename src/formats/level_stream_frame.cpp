@@ -12,21 +12,26 @@ namespace binosplat {
 
 namespace {
 
-constexpr double brings_ms = 6.0;  // that a frame may look, take and upload: it draws in the rest
-constexpr std::size_t taken_at_once = 1 << 12;  // Gaussians, before one sees what that took
+// Of a frame's time, ms: what is neither drawing nor levels, and the least that levels need to go on at all.
+constexpr double apart_ms = 1.2, brings_least_ms = 2.5;
+constexpr std::size_t taken_at_once = 1 << 14;  // Gaussians, before one sees what that took
 constexpr int between_samples = 20;             // frames, of which each sample takes three
 constexpr double unnoticed = 0.05;              // by which what is found may change, of itself
 
 }  // namespace
 
+double time_for_levels(double frame_ms, double drawn_ms) {
+  return std::clamp(frame_ms - drawn_ms - apart_ms, brings_least_ms, LevelStream::brings_most_ms);
+}
+
 ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
   const double look_ms = std::exchange(look_ms_, 0.0);
-  const double ms = (brings_ms - look_ms) / 2.0;  // uploading takes as long
+  const double ms = (brings_ms_ - look_ms) / 2.0;  // uploading takes as long
   ++frames_since_sample_;
   {
     const std::lock_guard lock(mutex_);
     if (trouble_) std::rethrow_exception(trouble_);
-    take_is_due_ = ms <= 0.0 && !pieces_.empty();
+    take_is_due_ = look_ms > 0.0 && !pieces_.empty();
     const bool tries = tries_out();
     may_try_ = tries && look_ms == 0.0;
     if (tries) return {};
@@ -45,6 +50,10 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
     taken_a_ms_ = std::lerp(taken_a_ms_, static_cast<double>(*taken) / took_ms, 0.1);
   could_take_ += std::min(most, static_cast<std::size_t>(ms * taken_a_ms_));
   if (!taken) return {};
+  if (take_is_due_) {
+    const std::lock_guard lock(mutex_);
+    take_is_due_ = !pieces_.empty();
+  }
   changed_since_look_ = true;
   told_by_.reset();
   changed_.notify_all();

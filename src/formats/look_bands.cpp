@@ -1,8 +1,10 @@
 #include "formats/look_bands.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace binosplat {
@@ -10,7 +12,7 @@ namespace binosplat {
 namespace {
 
 constexpr double glance_ms = 4.5;   // that a frame may take for a look
-constexpr int bands_most = 8;       // each costs all that does not depend on pixels, too:
+constexpr int bands_most = 12;      // each costs all that does not depend on pixels, too:
 constexpr double fixed_most = 0.9;  // of what the fastest one takes
 constexpr double nearly = 1.1;      // as fast as with more of them
 
@@ -22,20 +24,82 @@ double fastest(const std::vector<double>& ms) {
   return least;
 }
 
+/// In which a column of the view lies, at the height of its centre.
+glm::vec3 along(const shared::View& view, double share) {
+  const auto x = static_cast<float>(share) * static_cast<float>(view.width) - view.lens.z;
+  return glm::vec3(view.row_z) + x / view.lens.x * glm::vec3(view.row_x);
+}
+
+/// The other way round; none where it is not in the picture.
+std::optional<double> column(const shared::View& view, const glm::vec3& along) {
+  const float ahead = glm::dot(along, glm::vec3(view.row_z)), right = glm::dot(along, glm::vec3(view.row_x));
+  const double share = (right / ahead * view.lens.x + view.lens.z) / static_cast<float>(view.width);
+  constexpr double rounding = 1e-4;
+  if (!(ahead > 0.0f && share > -rounding && share < 1.0 + rounding)) return std::nullopt;
+  return std::clamp(share, 0.0, 1.0);
+}
+
+/// Of bands from the left up to a column.
+double sum_until(double share, const std::vector<double>& edges, const std::vector<double>& ms) {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < ms.size() && edges[b] < share; ++b)
+    sum += ms[b] * std::min(1.0, (share - edges[b]) / std::max(edges[b + 1] - edges[b], 1e-9));
+  return sum;
+}
+
 }  // namespace
 
+void LookBands::begin(const shared::View& view) {
+  view_ = view;
+  constexpr std::size_t slices = 64;  // equally wide
+  std::array<double, slices> ms{};    // for pixels
+  const auto side = [](std::size_t k) { return static_cast<double>(k) / double{slices}; };
+  for (std::size_t k = 0; k < slices; ++k) ms[k] = expected(view, side(k), side(k + 1));
+  const double all_ms = std::accumulate(ms.begin(), ms.end(), 0.0);
+  const double enough_ms = std::max(glance_ms, nearly * (fixed_ms_ + all_ms / most_));
+  int bands = 1;
+  while (bands < most_ && fixed_ms_ + all_ms / bands > enough_ms) ++bands;
+  edges_ = {0.0};
+  double before = 0.0;  // ms of the slices to the left of this one
+  for (std::size_t k = 0; k < slices; before += ms[k++]) {
+    while (count() + 1 < bands) {
+      const double here = all_ms * static_cast<double>(edges_.size()) / bands - before;
+      if (here > ms[k]) break;
+      edges_.push_back(std::lerp(side(k), side(k + 1), here / std::max(ms[k], 1e-9)));
+    }
+  }
+  edges_.push_back(1.0);
+  ms_.assign(edges_.size() - 1, 0.0);
+  at_ = 0;
+}
+
+// What was found last in these directions, for pixels, ms; where nobody looked, as much as in the mean of
+// what was looked at last.
+double LookBands::expected(const shared::View& view, double begin, double end) const {
+  for (const Picture& picture : last_) {
+    const auto left = column(picture.view, along(view, begin)),
+               right = column(picture.view, along(view, end));
+    if (left && right) {
+      return std::max(
+          0.0, sum_until(*right, picture.edges, picture.ms) - sum_until(*left, picture.edges, picture.ms));
+    }
+  }
+  return last_.empty() ? 0.0 : (end - begin) * sum_until(1.0, last_.front().edges, last_.front().ms);
+}
+
 bool LookBands::note(double ms) {
-  ms_[at_] = is_known_ ? std::min(ms_[at_], ms) : ms;
+  ms_[at_] = ms;
   if (++at_ < ms_.size()) return false;
   at_ = 0;
-  is_known_ = true;
+  find_fixed(std::accumulate(ms_.begin(), ms_.end(), 0.0));
+  std::vector<double> of_pixels = ms_;
+  for (double& of_band : of_pixels) of_band = std::max(0.0, of_band - fixed_ms_);
+  last_.insert(last_.begin(), {view_, edges_, std::move(of_pixels)});
+  if (last_.size() > 2) last_.pop_back();
   return true;
 }
 
-void LookBands::start_again() {
-  at_ = 0;
-  is_known_ = false;
-}
+void LookBands::allow(int most) { most_ = std::clamp(most, 1, bands_most); }
 
 // A picture of n bands takes n times what does not depend on pixels, and once what does: another number of
 // bands tells them apart.
@@ -44,30 +108,6 @@ void LookBands::find_fixed(double all_ms) {
   before_ = count();
   before_ms_ = all_ms;
   fixed_ms_ = std::clamp(fixed_ms_, 0.0, fixed_most * fastest(ms_));
-}
-
-void LookBands::divide(int most) {
-  find_fixed(std::accumulate(ms_.begin(), ms_.end(), 0.0));
-  std::vector<double> ms = ms_;  // of each, that it takes for its pixels
-  for (double& of_band : ms) of_band = std::max(0.0, of_band - fixed_ms_);
-  const double all_ms = std::accumulate(ms.begin(), ms.end(), 0.0);
-  most = std::clamp(most, 1, bands_most);
-  const double enough_ms = std::max(glance_ms, nearly * (fixed_ms_ + all_ms / most));
-  int bands = 1;
-  while (bands < most && fixed_ms_ + all_ms / bands > enough_ms) ++bands;
-  std::vector<double> edges = {0.0};
-  double before = 0.0;  // ms of the bands to the left of this one
-  for (std::size_t k = 0; k < ms.size(); before += ms[k++]) {
-    while (static_cast<int>(edges.size()) < bands) {
-      const double here = all_ms * static_cast<double>(edges.size()) / bands - before;
-      if (here > ms[k]) break;
-      edges.push_back(std::lerp(edges_[k], edges_[k + 1], here / std::max(ms[k], 1e-9)));
-    }
-  }
-  edges.push_back(1.0);
-  edges_ = std::move(edges);
-  ms_.assign(edges_.size() - 1, 0.0);
-  start_again();
 }
 
 void add_band(const std::vector<SeenPart>& more, std::vector<SeenPart>& seen) {

@@ -1,35 +1,31 @@
 #include "formats/streamed_sog.h"
 
+#include <tbb/parallel_pipeline.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <mutex>
-#include <set>
 #include <utility>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/progress.h"
 #include "formats/content.h"
 #include "formats/json_file.h"
 #include "formats/sog_cache.h"
 #include "formats/sog_levels.h"
+#include "formats/sog_parts.h"
 #include "formats/sog_source.h"
-#include "scene/reduce.h"
 
 namespace binosplat {
 
 namespace {
 
 namespace fs = std::filesystem;
-using Taken = std::vector<SogLevels::Taken>;  // of a file
 
-constexpr int no_level = -1;
-constexpr std::size_t files_at_a_time = 8;  // each by several threads, and whole in memory meanwhile
+constexpr std::size_t files_at_a_time = 16;  // each by several threads, and whole in memory meanwhile
 // Bytes of decoded files that are kept: of some 80 million Gaussians, without which a head that moves through
 // 20 million has files of 131,072 decoded again and again for a few leaves each, eight cores long.
 std::size_t cached_most() {
@@ -37,121 +33,6 @@ std::size_t cached_most() {
 }
 // Decoding so many of a file takes as long as one takes to reach the GPU.
 constexpr std::size_t decoded_for_one = 8;
-
-/// A SOG and what is taken of it.
-struct Part {
-  SogSource source;
-  Taken taken;
-};
-
-SogSource open_part(const fs::path& path) {
-  const MappedFile file(path);
-  return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
-}
-
-/// The finest level that is there, or the one that was asked for.
-int choose(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
-  const auto range = [&] { return levels.count() == 1 ? "0" : fmt::format("0 to {}", levels.count() - 1); };
-  if (lod && (*lod < 0 || *lod >= levels.count())) {
-    fail("--lod {}: {} has the levels {}, 0 being the finest", *lod, path.string(), range());
-  }
-  std::set<int> there;
-  std::optional<fs::path> missing;
-  const auto of_levels = levels.missing();
-  for (int level = 0; level < levels.count(); ++level) {
-    const auto& absent = of_levels[static_cast<std::size_t>(level)];
-    if (!absent) there.insert(level);
-    if (absent && (!missing || level == lod)) missing = absent;
-  }
-  if (there.empty()) {
-    fail("{}: no level of detail is complete; {} is missing: fetch it", path.string(), missing->string());
-  }
-  if (lod && there.count(*lod) == 0) {
-    fail("--lod {}: {} is missing; the finest level that is there is {}", *lod, missing->string(),
-         *there.begin());
-  }
-  const int level = lod.value_or(*there.begin());
-  if (!lod && level > 0) {
-    log_warning("{}: level 0 is not complete ({} is missing); level {} is drawn", path.string(),
-                missing->string(), level);
-  }
-  return level;
-}
-
-/// What is taken of each file, and what to call it.
-struct Selection {
-  std::vector<Taken> taken;
-  std::string name;
-};
-
-std::string name_of(const SogLevels& levels) {
-  return fmt::format("streamed SOG, levels chosen of {}", levels.count());
-}
-
-void check_leaves(const fs::path& path, const std::vector<DetailPart>& leaves) {
-  if (std::all_of(leaves.begin(), leaves.end(), [](const auto& leaf) { return leaf.levels.empty(); }))
-    fail("{}: none of its levels of detail is there: fetch one", path.string());
-}
-
-/// A level for each leaf, so that they fit.
-Selection choose(const fs::path& path, const SogLevels& levels, const nlohmann::json& root,
-                 const DetailBudget& budget) {
-  const std::vector<DetailPart> leaves = levels.leaves(root);
-  check_leaves(path, leaves);
-  std::size_t file = 0;
-  while (!levels.there(file)) ++file;
-  std::size_t most = budget.gaussians(open_part(levels.files()[file]).degree());
-  const std::size_t around = levels.environment() ? open_part(*levels.environment()).count() : 0;
-  most -= std::min(most, around);
-  const std::vector<std::size_t> chosen = choose_levels(leaves, budget.eyes, most);
-  std::vector<std::size_t> of_level(static_cast<std::size_t>(levels.count()), 0);
-  std::size_t total = 0;
-  std::vector<int> numbers(leaves.size(), no_level);
-  for (std::size_t i = 0; i < leaves.size(); ++i) {
-    if (leaves[i].levels.empty()) continue;
-    const DetailPart::Level& level = leaves[i].levels[chosen[i]];
-    numbers[i] = level.number;
-    of_level[static_cast<std::size_t>(level.number)] += level.count;
-    total += level.count;
-  }
-  if (total > most) warn_of_no_room(path.string(), total, most);
-  std::string parts;
-  for (std::size_t level = 0; level < of_level.size(); ++level) {
-    if (of_level[level] > 0)
-      parts += fmt::format("{}{} Gaussians of level {}", parts.empty() ? "" : ", ", of_level[level], level);
-  }
-  log_info("{}: {}", path.string(), parts);
-  return {levels.taken([&](std::size_t leaf) { return numbers[leaf]; }), name_of(levels)};
-}
-
-/// One level for all.
-Selection choose_one(const fs::path& path, const SogLevels& levels, std::optional<int> lod) {
-  const int level = choose(path, levels, lod);
-  log_info("{}: level of detail {} of {}", path.string(), level, levels.count());
-  return {levels.taken(level), fmt::format("streamed SOG, level {} of {}", level, levels.count())};
-}
-
-std::vector<Part> open_parts(const fs::path& lod_meta, const SogLevels& levels,
-                             const std::vector<Taken>& taken) {
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < taken.size(); ++i) {
-    if (taken[i].empty()) continue;
-    parts.push_back({open_part(levels.files()[i]), taken[i]});
-    check_taken(lod_meta, levels.files()[i], parts.back().source, taken[i]);
-  }
-  if (levels.environment()) {
-    SogSource source = open_part(*levels.environment());
-    const std::size_t count = source.count();
-    parts.push_back({std::move(source), {{0, {0, count, 0}}}});
-  }
-  return parts;
-}
-
-std::vector<SogSource::Range> ranges_of(const Taken& taken) {
-  std::vector<SogSource::Range> ranges;
-  for (const SogLevels::Taken& of_leaf : taken) ranges.push_back(of_leaf.range);
-  return ranges;
-}
 
 fs::path lod_meta_of(const fs::path& path) {
   std::error_code ignored;
@@ -181,45 +62,6 @@ nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
 bool is_sog_levels(const nlohmann::json& root) { return root.is_object() && root.contains("lodLevels"); }
 
 bool is_streamed_sog(const fs::path& path) { return parse_lod_meta(lod_meta_of(path)).has_value(); }
-
-Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, std::optional<int> lod,
-                        const std::optional<DetailBudget>& budget) {
-  const SogLevels levels(lod_meta, root);
-  const Selection choice =
-      budget ? choose(lod_meta, levels, root, *budget) : choose_one(lod_meta, levels, lod);
-  std::vector<Part> parts = open_parts(lod_meta, levels, choice.taken);
-  Model model;
-  model.name = lod_meta.filename().string();
-  model.format = choice.name;
-  std::size_t total = 0;
-  std::uint64_t bytes = 0;
-  for (Part& part : parts) {
-    bytes += part.source.bytes();
-    model.degree = std::max(model.degree, part.source.degree());
-    model.antialiased = model.antialiased || part.source.antialiased();
-    model.perspective = part.source.perspective();  // of all alike
-    for (SogLevels::Taken& taken : part.taken) {
-      taken.range.slot = total;
-      total += taken.range.count;
-    }
-  }
-  if (total == 0) fail("{} holds no Gaussians ({})", lod_meta.string(), choice.name);
-  check_total(lod_meta, total, bytes);
-  model.resize(total);
-  std::vector<std::uint8_t> kept(total);
-  Progress progress("reading " + lod_meta.string(), total);
-  std::mutex counting;
-  std::size_t done = 0;
-  parallel_for(parts.size(), [&](std::size_t i) {
-    const std::vector<SogSource::Range> ranges = ranges_of(parts[i].taken);
-    parts[i].source.decode(model, ranges, kept);
-    const std::lock_guard<std::mutex> lock(counting);
-    for (const SogSource::Range& range : ranges) done += range.count;
-    progress.update(done);
-  });
-  keep_only(model, kept);
-  return model;
-}
 
 /// What lod-meta.json says, and the SOGs that are there; none of another file.
 struct StreamedSog::Source {
@@ -257,7 +99,7 @@ StreamedSog::StreamedSog(const fs::path& path) {
     static_cast<void>(source_->levels.taken(level));  // throws where leaves share Gaussians
   read_.resize(leaves_.size());
   like_.name = source_->path.filename().string();
-  like_.format = name_of(source_->levels);
+  like_.format = format_of_chosen(source_->levels);
   for (const auto& file : source_->files) {
     if (!file) continue;
     like_.degree = std::max(like_.degree, file->degree());
@@ -293,20 +135,37 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
     std::vector<double> first(taken.size());
     for (const std::size_t i : files) first[i] = worth(i, taken[i], goes_on != nullptr);
     std::ranges::stable_sort(files, std::greater<>(), [&](std::size_t i) { return first[i]; });
-    for (std::size_t at = 0; at < files.size(); at += files_at_a_time) {
-      std::vector<std::vector<Piece>> pieces(std::min(files_at_a_time, files.size() - at));
-      parallel_for(pieces.size(),
-                   [&](std::size_t i) { pieces[i] = read_file(files[at + i], taken[files[at + i]]); });
-      for (std::vector<Piece>& of_file : pieces) {
-        for (Piece& piece : of_file) {
-          if (piece.level) read_[piece.part] = piece.level;
-          environment_read_ = environment_read_ || !piece.level;
-          take(std::move(piece));
-        }
-      }
-      if (goes_on && !goes_on()) return;
-    }
+    if (files.empty()) continue;
+    read_files(files, taken, take, goes_on);
+    if (goes_on && !goes_on()) return;
   }
+}
+
+// One that takes long holds up no other, but those after it are taken after it.
+void StreamedSog::read_files(std::span<const std::size_t> files, std::span<const Taken> taken,
+                             const Take& take, const std::function<bool()>& goes_on) {
+  auto next = files.begin();
+  const auto begin = [&](tbb::flow_control& control) -> std::size_t {
+    const bool ends = next != files.begin() && goes_on && !goes_on();
+    if (next == files.end() || ends) {
+      control.stop();
+      return 0;
+    }
+    return *next++;
+  };
+  const auto decode = [&](std::size_t file) { return read_file(file, taken[file]); };
+  const auto hand_over = [&](std::vector<Piece> of_file) {
+    for (Piece& piece : of_file) {
+      if (piece.level) read_[piece.part] = piece.level;
+      environment_read_ = environment_read_ || !piece.level;
+      take(std::move(piece));
+    }
+  };
+  tbb::parallel_pipeline(
+      files_at_a_time,
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
+          tbb::make_filter<std::size_t, std::vector<Piece>>(tbb::filter_mode::parallel, decode) &
+          tbb::make_filter<std::vector<Piece>, void>(tbb::filter_mode::serial_in_order, hand_over));
 }
 
 std::vector<StreamedSog::Taken> StreamedSog::to_read(bool shrinks) const {
@@ -324,6 +183,13 @@ std::vector<StreamedSog::Taken> StreamedSog::to_read(bool shrinks) const {
 
 std::size_t StreamedSog::finest() const {
   return chooser_->count(std::vector<std::size_t>(leaves_.size(), 0));
+}
+
+std::size_t StreamedSog::largest_part() const {
+  std::size_t most = 0;
+  for (const DetailPart& leaf : leaves_)
+    if (!leaf.levels.empty()) most = std::max(most, leaf.levels.front().count);
+  return most;
 }
 
 double StreamedSog::saved(std::size_t leaf, std::optional<std::size_t> before) const {

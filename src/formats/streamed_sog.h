@@ -45,8 +45,9 @@ class StreamedSog {
   const Model& like() const { return like_; }
   /// Its leaves, and at the end the environment.
   std::size_t parts() const { return leaves_.size() + 1; }
-  /// Gaussians at the finest levels.
+  /// Gaussians at the finest levels, and of that part which has most.
   std::size_t finest() const;
+  std::size_t largest_part() const;
 
   /// Whether it says what its levels lose, so that they can be chosen by dB.
   bool has_errors() const { return have_errors(leaves_); }
@@ -84,11 +85,11 @@ class StreamedSog {
   };
   using Take = std::function<void(Piece piece)>;
 
-  /// Reads the leaves whose level is another one than when they were read last, and hands them to `take`, in
-  /// the same thread; those that get fewer Gaussians first, then by dB those files that save the most error
-  /// per Gaussian, else coarse levels before fine ones. Asks
-  /// `goes_on` in between, where it is not empty, and leaves out the rest if it does not. Throws Error where
-  /// a file has become unreadable.
+  /// Reads the leaves whose level is another one than when they were read last, and hands them to `take`, one
+  /// at a time, maybe in other threads; those that get fewer Gaussians first, then by dB those files that
+  /// save the most error per Gaussian, else coarse levels before fine ones. Asks `goes_on` after some, where
+  /// it is not empty, and leaves out the rest if it does not. Throws Error where a file has become
+  /// unreadable.
   void read(const Take& take, const std::function<bool()>& goes_on = {});
   /// Reads the finest levels of some leaves, which does not count as read.
   PartModels finest_of(std::span<const std::size_t> leaves) const;
@@ -115,6 +116,8 @@ class StreamedSog {
   double worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const;
   using Taken = std::vector<SogLevels::Taken>;  // of a file
   std::vector<Taken> to_read(bool shrinks) const;
+  void read_files(std::span<const std::size_t> files, std::span<const Taken> taken, const Take& take,
+                  const std::function<bool()>& goes_on);
   void check_room(std::span<const std::vector<Taken>> all) const;
   std::vector<Piece> read_file(std::size_t file, const Taken& taken) const;
 

@@ -17,7 +17,7 @@ namespace binosplat::preview {
 namespace {
 
 constexpr std::size_t reports_kept = 240;
-constexpr std::size_t gaussians_a_frame = 1 << 16;  // of levels that change; nobody sees the wait
+constexpr std::size_t gaussians_a_frame = 1 << 17;  // of levels that change; nobody sees the wait
 
 // Where the densest part of a model lies before a camera: the median view depth of what is ahead.
 double depth_ahead(const Model& model, const Camera& of_world) {

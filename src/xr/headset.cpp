@@ -93,9 +93,9 @@ class Viewer {
     }
     if (session.take_masks_changed()) projection->take_masks();
     follow(session, hands, views, time);
-    const float left = follow_levels();
+    const double period_ms = 1e-6 * static_cast<double>(time.period);
+    const float left = follow_levels(period_ms);
     if (settings_.budget_ms && !budget_) {
-      const double period_ms = 1e-6 * static_cast<double>(time.period);
       budget_.emplace(*settings_.budget_ms > 0.0 ? *settings_.budget_ms : own_share * period_ms);
     }
     const Effort effort = budget_ ? budget_->effort() : Effort{left, 1.0};
@@ -107,7 +107,7 @@ class Viewer {
     const render::FrameReport report =
         projection->draw(frame_, views, walk_->stage(), settings, effort.scale, beside_.show, gaze);
     times_.push_back(report.total_ms);
-    if (budget_) budget_->took(report.total_ms, 1e-6 * static_cast<double>(time.period));
+    if (budget_) budget_->took(report.total_ms, period_ms);
     session.end_frame(time, projection->layer());
   }
 
@@ -133,11 +133,11 @@ class Viewer {
   }
 
   /// By what the last frame's views need. Returns what is left of the quality that a frame is to have.
-  float follow_levels() {
+  float follow_levels(double period_ms) {
     const render::Frame& frame = frame_.frame();
     if (!beside_.levels || frame.views().empty()) return settings_.frame.quality;
     const auto views = std::span(frame.views()).first(frame.shape().asked);
-    return beside_.levels(model_, frame_.frame().model(), views);
+    return beside_.levels(model_, frame_.frame().model(), views, period_ms, times_.back());
   }
 
   const Instance& instance_;

@@ -28,10 +28,10 @@ struct Beside {
   /// Shows the left eye's picture. May be empty.
   Projection::DrawnLeft show;
   /// Of a model with levels of detail: changes the model, on the GPU as well, a little for each frame, to
-  /// what these views need. Returns what of the frame's quality is left for what it leaves out of them. May
-  /// be empty.
+  /// what these views need; frames are due every `frame_ms`, and drawing the last one took `drawn_ms`.
+  /// Returns what of the frame's quality is left for what it leaves out of them. May be empty.
   std::function<float(Model& model, const std::shared_ptr<render::GpuModel>& gpu_model,
-                      std::span<const shared::View> views)>
+                      std::span<const shared::View> views, double frame_ms, double drawn_ms)>
       levels;
 };
 

@@ -37,7 +37,7 @@ struct Plan {
   double rate = 90.0;  // a second
   int judged = 8;      // of the frames, evenly spread, against the finest
   int shrink = 1;
-  std::size_t gaussians_a_frame = 1 << 16;
+  std::size_t gaussians_a_frame = 1 << 17;
   std::size_t most = std::numeric_limits<std::size_t>::max();
   render::FrameSettings settings;
 };
@@ -194,6 +194,7 @@ class Flight {
     const std::size_t looks = numbers_.look_ms.size();
     want(views);
     const bool looked = looks < numbers_.look_ms.size();
+    levels_.give_time(time_for_levels(1e3 / plan_.rate, report_.total_ms));
     const auto taking = Clock::now();
     const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
     const double taken_ms = ms_since(taking);
@@ -388,7 +389,7 @@ int main(int argc, char** argv) {
   app.add_option("--judged", plan.judged, "Frames that are compared with the finest levels (8)")
       ->check(CLI::Range(0, 1000));
   app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
-  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (65536)");
+  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (131072)");
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");

@@ -455,10 +455,11 @@ TEST(LevelStream, WantsNoMoreThanComes) {
 TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
-  const auto takes_where_it_looked = [&](int look_ms) {
+  const auto takes_where_it_looked = [&](int look_ms, double frame_has_ms) {
     LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
       return DetailNeed{.db = 100.0};
     });
+    stream.give_time(frame_has_ms);
     Model model = stream.coarsest();
     int looks = 0;
     const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
@@ -475,12 +476,26 @@ TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
       takes = !stream.take(model, 1).empty() && looks > before;
       std::this_thread::sleep_for(std::chrono::milliseconds(150));
     }
+    if (takes) {
+      const int before = looks;
+      view.anchor.x += 0.01f;
+      stream.want(std::vector{view}, look);
+      EXPECT_EQ(looks, before) << "though others are left to take";
+      EXPECT_FALSE(stream.take(model, 1).empty());
+    }
     EXPECT_TRUE(frames_until(stream, model, view, look, [&] { return stream.settled(); })) << "it hangs";
     EXPECT_EQ(stream.gaussians(), 3000u);
     return takes;
   };
-  EXPECT_FALSE(takes_where_it_looked(20));
-  EXPECT_TRUE(takes_where_it_looked(0)) << "planted: a short one";
+  EXPECT_FALSE(takes_where_it_looked(20, LevelStream::brings_most_ms));
+  EXPECT_FALSE(takes_where_it_looked(3, 2.5)) << "in a frame that has less time";
+  EXPECT_TRUE(takes_where_it_looked(0, LevelStream::brings_most_ms)) << "planted: a short one";
+}
+
+TEST(LevelStream, HasWhatDrawingLeavesOfAFrame) {
+  EXPECT_NEAR(time_for_levels(11.1, 5.9), 4.0, 1e-9);
+  EXPECT_EQ(time_for_levels(11.1, 1.0), 6.0);
+  EXPECT_EQ(time_for_levels(11.1, 20.0), 2.5) << "or a head would wait forever";
 }
 
 // What samples are found to lose changes what is told, and what is wanted.
@@ -519,6 +534,35 @@ TEST(LevelStream, GoesByWhatASampleLoses) {
   const auto [more, of_more] = settle(10.0, true);
   EXPECT_GT(more, gaussians);
   for (const double db : {of_fewer, of_more}) EXPECT_GT(db, 23.0);
+}
+
+// Where the model has all the Gaussians that it may have, too.
+TEST(LevelStream, HasRoomForASample) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
+    return DetailNeed{.most = 1600, .db = 60.0};
+  });
+  Model model = stream.coarsest();
+  const auto look = [](const shared::View&, Band, const ModelParts& parts) {
+    return std::vector(parts.size(), SeenPart{100.0, 30.0});
+  };
+  int tried = 0;
+  const PartsTrial trial = {.upload = [](const ModelParts::Changes&) {},
+                            .keep = [](const shared::View&) {},
+                            .differs =
+                                [&](const shared::View&) {
+                                  EXPECT_GT(stream.gaussians(), 1600u);
+                                  ++tried;
+                                  return 0.01;
+                                }};
+  EXPECT_TRUE(frames_until(stream, model, before_all(), look, [&] {
+    stream.try_out(model, trial);
+    return stream.settled();
+  }));
+  EXPECT_GT(tried, 0) << "planted: room for what is chosen only";
+  EXPECT_GT(stream.gaussians(), 1500u);
+  EXPECT_LE(stream.gaussians(), 1600u);
 }
 
 TEST(LevelStream, EndsInTheMidstOfIt) {

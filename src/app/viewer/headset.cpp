@@ -20,7 +20,7 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr std::size_t gaussians_a_frame = 1 << 16;  // of levels that change: no frame waits for more
+constexpr std::size_t gaussians_a_frame = 1 << 17;  // of levels that change: no frame waits for more
 
 volatile std::sig_atomic_t signalled = 0;
 
@@ -93,7 +93,8 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   std::optional<render::Sight> sight;
   if (loaded.levels) {
     beside.levels = [&](Model& drawn, const std::shared_ptr<render::GpuModel>& gpu_model,
-                        std::span<const shared::View> views) {
+                        std::span<const shared::View> views, double frame_ms, double drawn_ms) {
+      loaded.levels->give_time(time_for_levels(frame_ms, drawn_ms));
       loaded.levels->want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
         if (!sight) sight.emplace(gpu_model);
         return sight->look(view, band, settings.frame, parts);
