@@ -106,6 +106,7 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
             {std::move(seen_), drawn_, to_come()},
             here(),
             *looked_at_,
+            ahead_at_,
             together_db_,
             found_.factor(),
             next_sample(),
@@ -138,6 +139,9 @@ bool LevelStream::look_on(const Look& look) {
   }
   if (bands_.is_first()) {
     const std::size_t k = looked_.size();
+    if (k == here())
+      ahead_at_ =
+          Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(lead_s));
     looked_.push_back(k < here() ? wanted_[k] : motion_.ahead(lead_s)[k % wanted_.size()]);
     seen_.emplace_back(parts_.size());
     bands_.begin(looked_.back());
@@ -209,7 +213,8 @@ void LevelStream::choose(const Wish& wish) {
   const std::lock_guard lock(mutex_);
   choice_.swap(choice);
   here_ = wish.here;
-  at_ = wish.at;
+  chosen_at_ = wish.at;
+  chosen_ahead_at_ = wish.ahead_at;
   lingers_ = chosen->lingers;
   is_limited_ = chosen->is_limited();
   asked_of_ = wish.together_db;
@@ -308,12 +313,13 @@ bool LevelStream::settled() const {
 std::optional<double> LevelStream::predicted_psnr() const {
   std::shared_ptr<const DetailChoice> choice;
   std::size_t here = 0;
-  Clock::time_point at;
+  Clock::time_point at, ahead_at;
   {
     const std::lock_guard lock(mutex_);
     choice = choice_;
     here = here_;
-    at = at_;
+    at = chosen_at_;
+    ahead_at = chosen_ahead_at_;
   }
   if (!choice) return std::nullopt;
   if (choice != told_by_) {
@@ -323,7 +329,8 @@ std::optional<double> LevelStream::predicted_psnr() const {
     told_by_ = std::move(choice);
   }
   // What comes nearer loses the more the nearer it is.
-  const double ahead = std::pow(std::min(1e-3 * ms_since(at) / lead_s, 1.0), 2);
+  const double until_ms = std::chrono::duration<double, std::milli>(ahead_at - at).count();
+  const double ahead = until_ms > 0.0 ? std::pow(std::min(ms_since(at) / until_ms, 1.0), 2) : 0.0;
   return psnr_of_error(found_.factor() * std::lerp(told_here_, told_ahead_, ahead));
 }
 

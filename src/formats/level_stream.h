@@ -92,8 +92,8 @@ class LevelStream {
   struct Wish {
     std::vector<shared::View> views;
     DetailSeen seen;
-    std::size_t here = 0;  // of the views: they come first, and others lie ahead
-    Clock::time_point at;
+    std::size_t here = 0;            // of the views: they come first, and others lie ahead
+    Clock::time_point at, ahead_at;  // when eyes are there
     double together_db = 0.0, found = 1.0;
     std::optional<unsigned> sample = {};  // is wanted, and which
     bool rests = false;                   // the head
@@ -159,6 +159,7 @@ class LevelStream {
   int bands_looked_at_ = 0;                  // of all
   bool changed_since_look_ = false;
   std::optional<Clock::time_point> looked_at_;
+  Clock::time_point ahead_at_;  // when eyes will be where the first look ahead was
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
@@ -170,12 +171,12 @@ class LevelStream {
   std::vector<StreamedSog::Piece> used_;  // freed by the reader, since frames must not wait for that
   std::size_t gaussians_read_ = 0;        // of these
   std::shared_ptr<const DetailChoice> choice_;
-  std::size_t here_ = 0;  // of its views (Wish)
-  Clock::time_point at_;
-  double asked_db_ = 0.0;    // that it is for,
-  double asked_of_ = 0.0;    // of what is shared
-  bool lingers_ = false;     // LevelsChosen
-  bool is_limited_ = false;  // likewise
+  std::size_t here_ = 0;                           // of its views (Wish)
+  Clock::time_point chosen_at_, chosen_ahead_at_;  // Wish.at, ahead_at
+  double asked_db_ = 0.0;                          // that it is for,
+  double asked_of_ = 0.0;                          // of what is shared
+  bool lingers_ = false;                           // LevelsChosen
+  bool is_limited_ = false;                        // likewise
   std::exception_ptr trouble_;
   std::jthread chooser_, reader_;  // last: they end first
 };
