@@ -98,7 +98,7 @@ class LevelStream {
     std::optional<unsigned> sample = {};  // is wanted, and which
     bool rests = false;                   // the head
   };
-  /// The finest levels of parts of a choice, and the view that they are tried out in, in three frames.
+  /// The finest levels of parts of a choice, and the view that they are tried out in, in four frames.
   struct Sample {
     std::shared_ptr<const DetailChoice> choice;
     shared::View view;
@@ -149,7 +149,7 @@ class LevelStream {
   int frames_since_sample_ = 0;  // was wanted
   bool may_try_ = false;         // in this frame
   bool found_other_ = false;     // than before, since the last look
-  enum class Trial { keeps, compares, puts_back } trial_ = Trial::keeps;
+  enum class Trial { keeps, exchanges, compares, puts_back } trial_ = Trial::keeps;
   int looks_ = 0;                            // at these views, all of them
   std::vector<shared::View> looked_;         // a look at some of the views, each as it was then,
   std::vector<std::vector<SeenPart>> seen_;  // and what it showed

@@ -15,7 +15,7 @@ namespace {
 // Of a frame's time, ms: what is neither drawing nor levels, and the least that levels need to go on at all.
 constexpr double apart_ms = 1.2, brings_least_ms = 2.5;
 constexpr std::size_t taken_at_once = 1 << 14;  // Gaussians, before one sees what that took
-constexpr int between_samples = 20;             // frames, of which each sample takes three
+constexpr int between_samples = 20;             // frames, of which each sample takes four
 constexpr double unnoticed = 0.05;              // by which what is found may change, of itself
 
 }  // namespace
@@ -93,21 +93,29 @@ void LevelStream::try_out(Model& model, const PartsTrial& trial) {
   is_tried_out_ = true;
   if (!std::exchange(may_try_, false)) return;
   Sample& sample = *sample_;
-  if (trial_ == Trial::keeps) keep_what_fits(sample.models, model, parts_);
-  if (trial_ == Trial::keeps && !sample.models.parts.empty()) {
-    trial_ = Trial::compares;
-    return trial.keep(sample.view);
+  switch (trial_) {
+    case Trial::keeps:
+      keep_what_fits(sample.models, model, parts_);
+      if (sample.models.parts.empty()) break;
+      trial.keep(sample.view);
+      trial_ = Trial::exchanges;
+      return;
+    case Trial::exchanges:
+      sample.models = exchange(sample.models, model, parts_, trial);
+      trial_ = Trial::compares;
+      return;
+    case Trial::compares: {
+      const double factor = found_.factor();
+      found_.note(loss_of(*sample.choice, drawn_, sample.models.parts, trial.differs(sample.view)));
+      found_other_ = std::abs(std::log(found_.factor() / factor)) > unnoticed;
+      trial_ = Trial::puts_back;
+      return;
+    }
+    case Trial::puts_back:
+      sample.models = exchange(sample.models, model, parts_, trial);
+      trial_ = Trial::keeps;
+      break;
   }
-  PartModels before = exchange(sample.models, model, parts_, trial);
-  if (trial_ == Trial::compares) {
-    const double factor = found_.factor();
-    found_.note(loss_of(*sample.choice, drawn_, before.parts, trial.differs(sample.view)));
-    found_other_ = std::abs(std::log(found_.factor() / factor)) > unnoticed;
-    std::swap(sample.models, before);
-    trial_ = Trial::puts_back;
-    return;
-  }
-  trial_ = Trial::keeps;
   const std::lock_guard lock(mutex_);
   sample_.reset();
 }
