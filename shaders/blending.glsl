@@ -279,7 +279,8 @@ void blend(uint at[AHEAD]) {
       z_sum[p] += weight * transmittance[p];
 #endif
 #if SUMS == SUMS_SEEN
-      seen += int(floor(weight * transmittance[p] * float(SEEN_SCALE) + 0.5));
+      float counted = transmittance[p] >= float(SEEN_LEAST) ? weight * transmittance[p] : 0.0;
+      seen += int(floor(counted * float(SEEN_SCALE) + 0.5));
       transmittance[p] -= weight;
 #elif RECORDS || SUMS != SUMS_NONE
       if (IS_MET(p, k)) measure(at[k], p, weight);
@@ -308,7 +309,15 @@ void blend(uint at[AHEAD]) {
     if (seen != 0) atomicAdd(batch_measured[at[k]], seen);
 #endif
   }
-  for (uint p = 0u; p < COLUMN; ++p) transmittance[p] = left[p];
+  for (uint p = 0u; p < COLUMN; ++p) {
+    transmittance[p] = left[p];
+#if SUMS == SUMS_SEEN
+    if (left[p] < float(SEEN_LEAST) && !is_done(p)) {
+      least[p] = -left[p];
+      transmittance[p] = 0.0;
+    }
+#endif
+  }
 }
 
 // Those that follow one another.

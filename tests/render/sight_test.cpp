@@ -128,8 +128,12 @@ TEST(Sight, IsWhatTheReferenceSees) {
   };
   for (const std::uint32_t page : {0u, 10000u}) EXPECT_LE(differing(page), model.count() / 500);
   {
-    const test::FaultyShaders faulty("blending.glsl", "weight * transmittance[p] * float(SEEN_SCALE)",
-                                     "weight * float(SEEN_SCALE)");
+    const test::FaultyShaders faulty("blending.glsl", "weight * transmittance[p] : 0.0", "weight : 0.0");
+    EXPECT_GT(differing(0), model.count() / 10);
+  }
+  {
+    const test::FaultyShaders faulty("blending.glsl", "transmittance[p] >= float(SEEN_LEAST)",
+                                     "transmittance[p] >= 0.2");
     EXPECT_GT(differing(0), model.count() / 10);
   }
   const test::FaultyShaders faulty("parts_seen.comp", "views[v].anchor.xyz +", "0.5 +");
