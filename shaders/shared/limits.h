@@ -61,8 +61,8 @@
 // The squared change of a pixel without a splat, likewise, which counts as no more than this.
 #define CHANGE_SCALE 67108864.0
 #define CHANGE_MOST 0.015625
-// And what a splat shows in a pixel, alpha T^2; nothing once T is below SEEN_LEAST: all that follows would show no
-// more than half of its square.
+// And what a splat shows in a pixel, alpha T^2; nothing once T is below SEEN_LEAST: all that follows would
+// show no more than half of its square.
 #define SEEN_SCALE 1048576.0
 #define SEEN_LEAST 0.01
 // What a blend that draws no picture sums over the pixels of each splat.
