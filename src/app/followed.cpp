@@ -15,7 +15,6 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr int looks_most = 3;  // by dB; then a choice hardly changes any more
 // Parts by which it is found what levels lose: of a picture, or of each of a turning head's.
 constexpr std::size_t sample_of_one = 96, sample_of_many = 12;
 
@@ -35,7 +34,7 @@ DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings&
         2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720)));
     need.most = gaussians_that_fit(*options.gpu_memory, settings, views.empty() ? pair : views,
                                    scene.like().degree, true);
-    need.most -= std::min(need.most, scene.parts() * ModelParts::block);  // which may be nearly empty
+    need.most -= std::min(need.most, scene.spare());
   }
   return need;
 }
@@ -63,7 +62,7 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
                             const Changing& changing) {
   if (options_.gpu_memory) {
     const std::size_t most = need(views).most;
-    model.room = std::min(most, scene_.finest()) + scene_.parts() * ModelParts::block;
+    model.room = std::min(most, scene_.finest()) + scene_.spare();
   }
   std::optional<render::Sight> sight;  // not longer than this: it takes the memory of a small frame
   if (goes_by_db()) sight.emplace(gpu_model);

@@ -13,6 +13,9 @@
 
 namespace binosplat {
 
+/// By dB: so many looks at the same views, since after them a choice hardly changes any more.
+inline constexpr int looks_most = 3;
+
 /// A level for each leaf of a streamed SOG.
 struct LevelsChosen {
   std::vector<std::size_t> levels;  // places among those that are there

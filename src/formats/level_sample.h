@@ -12,6 +12,9 @@
 
 namespace binosplat {
 
+/// Parts of a sample that is tried out between frames of a head that rests: what they have time for.
+inline constexpr std::size_t sample_of_rest = 24;
+
 /// So many parts, or fewer, that are not at their finest level, each as likely as the root of what the first
 /// view is predicted to lose by it is large. The same seed draws the same parts.
 std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const std::size_t> levels,

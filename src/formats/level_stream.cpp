@@ -28,9 +28,8 @@ constexpr double lead_s = 0.5;          // ahead of a head that moves: until wha
 // it while the one after it is made, which takes as long as from one to the next.
 constexpr double comes_share = 2.0;
 constexpr double comes_least = 1 << 14;  // Gaussians, however few frames there were
-constexpr int looks_most = 3;            // at the same views; then a choice hardly changes any more,
-constexpr int looks_most_found = 8;      // but by what a sample was found to lose
-constexpr std::size_t sample_of_moving = 8, sample_of_rest = 24;  // parts: what a frame has time for
+constexpr int looks_most_found = 8;      // at the same views, where a sample was found to lose another amount
+constexpr std::size_t sample_of_moving = 8;  // parts
 
 bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
   return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
@@ -48,9 +47,8 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
   by_db_ = asked_by_db_ || (shares_ && together_db_ > 0.0);
   scene_.choose({}, need);
   Model model = scene_.like();
-  // Half empty blocks included, and a sample.
-  model.room = std::min(scene_.finest(), need.most < scene_.finest() ? need.most : room_most) +
-               scene_.parts() * ModelParts::block + sample_of_rest * scene_.largest_part();
+  model.room =
+      std::min(scene_.finest(), need.most < scene_.finest() ? need.most : room_most) + scene_.spare();
   // Touched now: the system gives memory a page at a time, and slowly while others decode (10 ms a frame).
   model.reserve(model.room);
   model.resize(std::min(model.room, room_most));

@@ -91,10 +91,11 @@ bool LookBands::note(double ms) {
   ms_[at_] = ms;
   if (++at_ < ms_.size()) return false;
   at_ = 0;
-  find_fixed(std::accumulate(ms_.begin(), ms_.end(), 0.0));
+  const double all_ms = std::accumulate(ms_.begin(), ms_.end(), 0.0);
+  find_fixed(all_ms);
   std::vector<double> of_pixels = ms_;
   for (double& of_band : of_pixels) of_band = std::max(0.0, of_band - fixed_ms_);
-  last_.insert(last_.begin(), {view_, edges_, std::move(of_pixels)});
+  last_.insert(last_.begin(), {view_, edges_, std::move(of_pixels), all_ms});
   if (last_.size() > 2) last_.pop_back();
   return true;
 }
@@ -104,9 +105,8 @@ void LookBands::allow(int most) { most_ = std::clamp(most, 1, bands_most); }
 // A picture of n bands takes n times what does not depend on pixels, and once what does: another number of
 // bands tells them apart.
 void LookBands::find_fixed(double all_ms) {
-  if (count() != before_) fixed_ms_ = (all_ms - before_ms_) / (count() - before_);
-  before_ = count();
-  before_ms_ = all_ms;
+  const int before = last_.empty() ? count() : static_cast<int>(last_.front().ms.size());
+  if (count() != before) fixed_ms_ = (all_ms - last_.front().all_ms) / (count() - before);
   fixed_ms_ = std::clamp(fixed_ms_, 0.0, fixed_most * fastest(ms_));
 }
 

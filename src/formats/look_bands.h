@@ -35,6 +35,7 @@ class LookBands {
   struct Picture {
     shared::View view;
     std::vector<double> edges, ms;  // of its bands; for pixels
+    double all_ms = 0.0;            // that it took
   };
   double expected(const shared::View& view, double begin, double end) const;
   void find_fixed(double all_ms);
@@ -43,10 +44,9 @@ class LookBands {
   std::vector<double> ms_ = {0.0};  // of each
   std::size_t at_ = 0;
   int most_ = 1;
-  shared::View view_{};                      // of the picture that is looked at,
-  std::vector<Picture> last_;                // and those before it, the last first
-  int before_ = 1;                           // bands of the last one, and
-  double before_ms_ = 0.0, fixed_ms_ = 0.0;  // what it took; what any band takes
+  shared::View view_{};        // of the picture that is looked at,
+  std::vector<Picture> last_;  // and those before it, the last first
+  double fixed_ms_ = 0.0;      // what any band takes
 };
 
 /// Adds what is seen of parts in another band of a view.

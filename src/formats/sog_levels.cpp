@@ -88,9 +88,9 @@ bool SogLevels::there(std::size_t file) const {
   return fs::is_regular_file(files_[file], ignored);
 }
 
-std::vector<std::vector<SogLevels::Taken>> SogLevels::taken(
+std::vector<SogLevels::TakenOfFile> SogLevels::taken(
     const std::function<int(std::size_t leaf)>& level_of) const {
-  std::vector<std::vector<Taken>> result(files_.size());
+  std::vector<TakenOfFile> result(files_.size());
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const int level = level_of(leaf);
     if (level < 0) continue;
@@ -102,7 +102,7 @@ std::vector<std::vector<SogLevels::Taken>> SogLevels::taken(
   return result;
 }
 
-std::vector<std::vector<SogLevels::Taken>> SogLevels::taken(int level) const {
+std::vector<SogLevels::TakenOfFile> SogLevels::taken(int level) const {
   return taken([level](std::size_t) { return level; });
 }
 
@@ -166,7 +166,7 @@ SogLevels::Place SogLevels::place(int level, const JsonValue& lod) const {
   return {level, index, {lod.at("offset").whole(most_gaussians), lod.at("count").whole(most_gaussians), 0}};
 }
 
-void SogLevels::sort(std::vector<Taken>& taken, std::size_t index) const {
+void SogLevels::sort(TakenOfFile& taken, std::size_t index) const {
   std::sort(taken.begin(), taken.end(),
             [](const Taken& a, const Taken& b) { return a.range.first < b.range.first; });
   for (std::size_t i = 1; i < taken.size(); ++i) {

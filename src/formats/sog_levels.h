@@ -21,6 +21,7 @@ class SogLevels {
     std::size_t leaf = 0;
     SogSource::Range range;
   };
+  using TakenOfFile = std::vector<Taken>;
 
   /// Of the parsed lod-meta.json at `path`. Throws Error, here as in all that follows, naming the key that is
   /// wrong.
@@ -35,8 +36,8 @@ class SogLevels {
 
   /// For each file what is taken of it, in order, where the tree's leaf number i has level_of(i), or nothing
   /// is taken of it where that is below 0.
-  std::vector<std::vector<Taken>> taken(const std::function<int(std::size_t leaf)>& level_of) const;
-  std::vector<std::vector<Taken>> taken(int level) const;
+  std::vector<TakenOfFile> taken(const std::function<int(std::size_t leaf)>& level_of) const;
+  std::vector<TakenOfFile> taken(int level) const;
 
   /// The tree's leaves, with the levels whose files are there, and their errors where those are told; from
   /// the same lod-meta.json.
@@ -56,7 +57,7 @@ class SogLevels {
   std::filesystem::path file(const JsonValue& value) const;
   std::vector<bool> found() const;
   Place place(int level, const JsonValue& lod) const;
-  void sort(std::vector<Taken>& taken, std::size_t index) const;
+  void sort(TakenOfFile& taken, std::size_t index) const;
 
   std::filesystem::path path_;
   int count_ = 0;

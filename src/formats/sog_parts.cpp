@@ -17,7 +17,7 @@ SogSource open_part(const std::filesystem::path& path) {
   return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
 }
 
-std::vector<SogSource::Range> ranges_of(const TakenOfSog& taken) {
+std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken) {
   std::vector<SogSource::Range> ranges;
   for (const SogLevels::Taken& of_leaf : taken) ranges.push_back(of_leaf.range);
   return ranges;

@@ -11,16 +11,13 @@
 
 namespace binosplat {
 
-/// What is taken of a SOG, by leaf.
-using TakenOfSog = std::vector<SogLevels::Taken>;
-
 /// In place of the number of a level (SogLevels::taken).
 inline constexpr int no_level = -1;
 
 /// By its meta.json. Throws Error as load_sog does.
 SogSource open_part(const std::filesystem::path& path);
 
-std::vector<SogSource::Range> ranges_of(const TakenOfSog& taken);
+std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken);
 
 /// Throws Error if no leaf has a level that is there.
 void check_leaves(const std::filesystem::path& path, const std::vector<DetailPart>& leaves);

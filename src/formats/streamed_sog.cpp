@@ -57,6 +57,14 @@ nlohmann::json levels_json(const fs::path& path, const fs::path& asked) {
   return std::move(*json);
 }
 
+/// Gaussians of that which has most.
+std::size_t largest_part(const std::vector<DetailPart>& leaves) {
+  std::size_t most = 0;
+  for (const DetailPart& leaf : leaves)
+    if (!leaf.levels.empty()) most = std::max(most, leaf.levels.front().count);
+  return most;
+}
+
 }  // namespace
 
 bool is_sog_levels(const nlohmann::json& root) { return root.is_object() && root.contains("lodLevels"); }
@@ -98,6 +106,8 @@ StreamedSog::StreamedSog(const fs::path& path) {
   for (int level = 0; level < source_->levels.count(); ++level)
     static_cast<void>(source_->levels.taken(level));  // throws where leaves share Gaussians
   read_.resize(leaves_.size());
+  spare_ = parts() * ModelParts::block;
+  if (has_errors()) spare_ += std::min(sample_of_rest * largest_part(leaves_), finest() / 8);
   like_.name = source_->path.filename().string();
   like_.format = format_of_chosen(source_->levels);
   for (const auto& file : source_->files) {
@@ -119,7 +129,7 @@ bool StreamedSog::choose(std::shared_ptr<const LevelsChosen> chosen) {
 
 // Leaves that get fewer Gaussians come first: never are there more than before or after, if all are taken.
 void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
-  const std::array<std::vector<Taken>, 2> all = {to_read(true), to_read(false)};
+  const std::array<std::vector<SogLevels::TakenOfFile>, 2> all = {to_read(true), to_read(false)};
   check_room(all);
   for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
     const auto& levels = leaves_[leaf].levels;
@@ -127,7 +137,7 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
     const auto before = std::exchange(read_[leaf], level(leaf));
     take({.part = leaf, .level = level(leaf), .before = before, .model = like_});
   }
-  for (const std::vector<Taken>& taken : all) {
+  for (const std::vector<SogLevels::TakenOfFile>& taken : all) {
     std::vector<std::size_t> files;
     for (std::size_t i = 0; i < taken.size(); ++i)
       if (!taken[i].empty()) files.push_back(i);
@@ -142,8 +152,9 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
 }
 
 // One that takes long holds up no other, but those after it are taken after it.
-void StreamedSog::read_files(std::span<const std::size_t> files, std::span<const Taken> taken,
-                             const Take& take, const std::function<bool()>& goes_on) {
+void StreamedSog::read_files(std::span<const std::size_t> files,
+                             std::span<const SogLevels::TakenOfFile> taken, const Take& take,
+                             const std::function<bool()>& goes_on) {
   auto next = files.begin();
   const auto begin = [&](tbb::flow_control& control) -> std::size_t {
     const bool ends = next != files.begin() && goes_on && !goes_on();
@@ -168,14 +179,14 @@ void StreamedSog::read_files(std::span<const std::size_t> files, std::span<const
           tbb::make_filter<std::vector<Piece>, void>(tbb::filter_mode::serial_in_order, hand_over));
 }
 
-std::vector<StreamedSog::Taken> StreamedSog::to_read(bool shrinks) const {
+std::vector<SogLevels::TakenOfFile> StreamedSog::to_read(bool shrinks) const {
   const auto level_of = [&](std::size_t leaf) {
     const auto& levels = leaves_[leaf].levels;
     if (levels.empty() || read_[leaf] == level(leaf)) return no_level;
     const std::size_t before = read_[leaf] ? levels[*read_[leaf]].count : 0;
     return (levels[level(leaf)].count < before) == shrinks ? levels[level(leaf)].number : no_level;
   };
-  std::vector<Taken> taken = source_->levels.taken(level_of);
+  std::vector<SogLevels::TakenOfFile> taken = source_->levels.taken(level_of);
   if (source_->around() > 0 && !environment_read_ && !shrinks)
     taken.emplace_back().push_back({leaves_.size(), {0, source_->around(), 0}});
   return taken;
@@ -183,13 +194,6 @@ std::vector<StreamedSog::Taken> StreamedSog::to_read(bool shrinks) const {
 
 std::size_t StreamedSog::finest() const {
   return chooser_->count(std::vector<std::size_t>(leaves_.size(), 0));
-}
-
-std::size_t StreamedSog::largest_part() const {
-  std::size_t most = 0;
-  for (const DetailPart& leaf : leaves_)
-    if (!leaf.levels.empty()) most = std::max(most, leaf.levels.front().count);
-  return most;
 }
 
 double StreamedSog::saved(std::size_t leaf, std::optional<std::size_t> before) const {
@@ -202,7 +206,7 @@ double StreamedSog::worth(const Piece& piece) const {
   return saved(piece.part, piece.before) / static_cast<double>(std::max<std::size_t>(piece.model.count(), 1));
 }
 
-double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const {
+double StreamedSog::worth(std::size_t file, const SogLevels::TakenOfFile& taken, bool by_cache) const {
   if (taken.front().leaf >= leaves_.size()) return INFINITY;
   if (!choice()) return leaves_[taken.front().leaf].levels[level(taken.front().leaf)].number;
   double sum = 0.0;
@@ -216,8 +220,8 @@ double StreamedSog::worth(std::size_t file, std::span<const SogLevels::Taken> ta
   return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }
 
-void StreamedSog::check_room(std::span<const std::vector<Taken>> all) const {
-  for (const std::vector<Taken>& taken : all) {
+void StreamedSog::check_room(std::span<const std::vector<SogLevels::TakenOfFile>> all) const {
+  for (const std::vector<SogLevels::TakenOfFile>& taken : all) {
     for (std::size_t i = 0; i < taken.size(); ++i)
       if (!taken[i].empty()) check_taken(source_->path, source_->name(i), *source_->files[i], taken[i]);
   }
@@ -246,7 +250,8 @@ PartModels StreamedSog::finest_of(std::span<const std::size_t> leaves) const {
   return finest;
 }
 
-std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file, const Taken& taken) const {
+std::vector<StreamedSog::Piece> StreamedSog::read_file(std::size_t file,
+                                                       const SogLevels::TakenOfFile& taken) const {
   const SogSource& source = *source_->files[file];
   std::vector<Model> models =
       source.decode_each(like_, ranges_of(taken), *source_->cache.textures(file, source));

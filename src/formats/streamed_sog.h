@@ -45,9 +45,11 @@ class StreamedSog {
   const Model& like() const { return like_; }
   /// Its leaves, and at the end the environment.
   std::size_t parts() const { return leaves_.size() + 1; }
-  /// Gaussians at the finest levels, and of that part which has most.
+  /// Gaussians at the finest levels.
   std::size_t finest() const;
-  std::size_t largest_part() const;
+  /// Gaussians that a model has room for beside those of the levels chosen: half empty blocks, and where dB
+  /// can be gone by a sample at its finest (formats/level_sample.h), of an eighth of all at most.
+  std::size_t spare() const { return spare_; }
 
   /// Whether it says what its levels lose, so that they can be chosen by dB.
   bool has_errors() const { return have_errors(leaves_); }
@@ -113,17 +115,17 @@ class StreamedSog {
   struct Source;
   std::size_t level(std::size_t leaf) const { return chosen_->levels[leaf]; }
   double saved(std::size_t leaf, std::optional<std::size_t> before) const;
-  double worth(std::size_t file, std::span<const SogLevels::Taken> taken, bool by_cache) const;
-  using Taken = std::vector<SogLevels::Taken>;  // of a file
-  std::vector<Taken> to_read(bool shrinks) const;
-  void read_files(std::span<const std::size_t> files, std::span<const Taken> taken, const Take& take,
-                  const std::function<bool()>& goes_on);
-  void check_room(std::span<const std::vector<Taken>> all) const;
-  std::vector<Piece> read_file(std::size_t file, const Taken& taken) const;
+  double worth(std::size_t file, const SogLevels::TakenOfFile& taken, bool by_cache) const;
+  std::vector<SogLevels::TakenOfFile> to_read(bool shrinks) const;
+  void read_files(std::span<const std::size_t> files, std::span<const SogLevels::TakenOfFile> taken,
+                  const Take& take, const std::function<bool()>& goes_on);
+  void check_room(std::span<const std::vector<SogLevels::TakenOfFile>> all) const;
+  std::vector<Piece> read_file(std::size_t file, const SogLevels::TakenOfFile& taken) const;
 
   std::unique_ptr<Source> source_;
   Model like_;
   std::vector<DetailPart> leaves_;
+  std::size_t spare_ = 0;
   std::optional<LevelChooser> chooser_;
   std::shared_ptr<const LevelsChosen> chosen_ = std::make_shared<const LevelsChosen>();
   std::vector<std::optional<std::size_t>> read_;  // of the leaves

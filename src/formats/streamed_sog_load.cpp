@@ -19,7 +19,7 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-using Taken = TakenOfSog;
+using Taken = SogLevels::TakenOfFile;
 
 /// A SOG and what is taken of it.
 struct Part {

@@ -33,7 +33,9 @@ shared::View at(const glm::dvec3& eye) {
 
 DetailNeed coarse_to_30_px(const StreamedSog&, std::span<const shared::View>) { return {30.0}; }
 
-DetailNeed for_40_db(const StreamedSog&, std::span<const shared::View>) { return {.db = 40.0}; }
+LevelStream::Need for_db(double db) {
+  return [db](const StreamedSog&, std::span<const shared::View>) { return DetailNeed{.db = db}; };
+}
 
 /// Takes what comes for a view, so many Gaussians at a time; how many there were after each that came.
 std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dvec3& eye, std::size_t most) {
@@ -157,7 +159,7 @@ TEST(LevelStream, LooksAFewTimes) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
-  LevelStream stream(copy.path(), for_40_db);
+  LevelStream stream(copy.path(), for_db(40.0));
   Model model = stream.coarsest();
   shared::View view = before_all();
   // What one look shows the next one hides.
@@ -186,7 +188,7 @@ TEST(LevelStream, FinerLevelsStayForAWhile) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
-  LevelStream stream(copy.path(), for_40_db);
+  LevelStream stream(copy.path(), for_db(40.0));
   Model model = stream.coarsest();
   shared::View view = before_all();
   double of_last = 2000.0;  // px that are seen of the last part
@@ -254,7 +256,7 @@ TEST(LevelStream, LooksAheadOfAHeadThatMoves) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
-  LevelStream stream(copy.path(), for_40_db);
+  LevelStream stream(copy.path(), for_db(40.0));
   Model model = stream.coarsest();
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
@@ -298,8 +300,7 @@ TEST(LevelStream, TellsOfAHeadThatMoves) {
   REQUIRE_FIXTURES(folder);
   const test::Copy copy(folder / "sog/st-lod");
   test::add_level_errors(copy);
-  LevelStream stream(
-      copy.path(), [](const StreamedSog&, std::span<const shared::View>) { return DetailNeed{.db = 20.0}; });
+  LevelStream stream(copy.path(), for_db(20.0));
   Model model = stream.coarsest();
   float now = 0.0f;  // where the head is
   bool saw_ahead = false;
@@ -338,7 +339,7 @@ TEST(LevelStream, LooksAtBandsWhereThatTakesLong) {
   test::add_level_errors(copy);
   shared::View view = before_all();
   for (const int slow_ms : {0, 10}) {
-    LevelStream stream(copy.path(), for_40_db);
+    LevelStream stream(copy.path(), for_db(40.0));
     Model model = stream.coarsest();
     std::vector<std::pair<float, Band>> looks;  // where the eye was, and at what
     const auto look = [&](const shared::View& seen_by, Band band, const ModelParts& parts) {
@@ -414,9 +415,7 @@ TEST(LevelStream, WantsNoMoreThanComes) {
   constexpr std::size_t most = 1 << 14;  // of a choice, however few frames there were
   const test::TempFolder folder;
   write_levels(folder, 3 * most);
-  LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
-    return DetailNeed{.db = 100.0};
-  });
+  LevelStream stream(folder.path(), for_db(100.0));
   Model model = stream.coarsest();
   const std::size_t coarsest = stream.gaussians();
   double area = 1e-12;
@@ -456,9 +455,7 @@ TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
   const auto takes_where_it_looked = [&](int look_ms, double frame_has_ms) {
-    LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
-      return DetailNeed{.db = 100.0};
-    });
+    LevelStream stream(folder.path(), for_db(100.0));
     stream.give_time(frame_has_ms);
     Model model = stream.coarsest();
     int looks = 0;
@@ -503,9 +500,7 @@ TEST(LevelStream, GoesByWhatASampleLoses) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
   const auto settle = [&](double found, bool tries) {
-    LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View>) {
-      return DetailNeed{.db = 24.0};
-    });
+    LevelStream stream(folder.path(), for_db(24.0));
     Model model = stream.coarsest();
     const auto look = [](const shared::View&, Band, const ModelParts& parts) {
       return std::vector(parts.size(), SeenPart{100.0, 30.0});
@@ -544,6 +539,7 @@ TEST(LevelStream, HasRoomForASample) {
     return DetailNeed{.most = 1600, .db = 60.0};
   });
   Model model = stream.coarsest();
+  EXPECT_EQ(model.room, 1600 + StreamedSog(folder.path()).spare()) << "which --gpu-memory counts";
   const auto look = [](const shared::View&, Band, const ModelParts& parts) {
     return std::vector(parts.size(), SeenPart{100.0, 30.0});
   };
@@ -582,7 +578,7 @@ TEST(LevelStream, TellsWhatIsWrong) {
   const test::Copy copy(folder / "sog/st-lod");
   LevelStream stream(copy.path(), coarse_to_30_px);
   Model model = stream.coarsest();
-  EXPECT_TRUE(test::fails_saying([&] { LevelStream(copy.path(), for_40_db).coarsest(); },
+  EXPECT_TRUE(test::fails_saying([&] { LevelStream(copy.path(), for_db(40.0)).coarsest(); },
                                  {"--detail 40dB", "has no errors of its levels to go by"}));
   std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
   EXPECT_TRUE(test::fails_saying([&] { follow(stream, model, beside_first, 1); }, {"0_0", "means_l.webp"}));
