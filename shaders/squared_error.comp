@@ -1,5 +1,5 @@
 // The squared error of drawn pixels against wanted ones, summed by work group: calibration compares many frames without
-// reading a picture back. One invocation a pixel.
+// reading a picture back. One invocation for every so manieth pixel.
 #include "shared/limits.h"
 #include "shared/grid.glsl"
 
@@ -9,6 +9,7 @@ layout(std430, binding = 0) readonly buffer Colours { vec4 colours[]; };  // C, 
 layout(std430, binding = 1) readonly buffer Wanted { vec4 wanted[]; };    // C
 layout(std430, binding = 2) writeonly buffer Sums { float sums_of_groups[]; };
 uniform uint pixel_count;
+uniform uint group_count;
 uniform uint levels;  // 0: as they are; 255: both as 8 bits would keep them
 
 shared float sums[THREADS];
@@ -19,18 +20,19 @@ vec3 kept(vec3 colour) {
 }
 
 void main() {
-  uint pixel = thread_index();
-  uint self = gl_LocalInvocationIndex;
-  sums[self] = 0.0;
-  if (pixel < pixel_count) {
-    vec3 d = kept(colours[pixel].rgb) - kept(wanted[pixel].rgb);
-    sums[self] = dot(d, d);
+  uint self = gl_LocalInvocationIndex, group = group_index();
+  float sum = 0.0;
+  if (group < group_count) {
+    for (uint pixel = thread_index(); pixel < pixel_count; pixel += group_count * THREADS) {
+      vec3 d = kept(colours[pixel].rgb) - kept(wanted[pixel].rgb);
+      sum += dot(d, d);
+    }
   }
+  sums[self] = sum;
   barrier();
   for (uint half_way = THREADS / 2u; half_way > 0u; half_way /= 2u) {
     if (self < half_way) sums[self] += sums[self + half_way];
     barrier();
   }
-  uint group = group_index();
-  if (self == 0u && group * THREADS < pixel_count) sums_of_groups[group] = sums[0];
+  if (self == 0u && group < group_count) sums_of_groups[group] = sums[0];
 }

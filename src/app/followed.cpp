@@ -108,7 +108,8 @@ void FollowedLevels::try_sample(Model& model, const shared::View& view, const Pa
   if (finest.parts.empty()) return;
   trial.keep(view);
   const PartModels before = exchange(finest, model, parts_, trial);
-  found_.note(loss_of(*scene_.choice(), scene_.chosen(), finest.parts, trial.differs(view)));
+  const double all = scene_.choice()->error_of(scene_.chosen(), 0, 1);
+  found_.note(loss_of(*scene_.choice(), all, scene_.chosen(), finest.parts, trial.differs(view)));
   exchange(before, model, parts_, trial);
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -130,6 +131,23 @@ struct DetailChoice {
   std::size_t levels_of(std::size_t part) const {
     return (first[part + 1] - first[part]) / (pixels.size() + 1);
   }
+};
+
+/// What views lose with levels that change a few at a time: a frame has no time for those of all parts.
+class LevelsLost {
+ public:
+  /// Of all parts, once.
+  LevelsLost(std::shared_ptr<const DetailChoice> choice, std::vector<std::size_t> levels);
+  const DetailChoice& choice() const { return *choice_; }
+  /// Goes by these levels of the parts from now on.
+  void follow(std::span<const std::size_t> levels);
+  /// DetailChoice::error_of them, but for rounding.
+  double error(std::size_t begin, std::size_t end) const;
+
+ private:
+  std::shared_ptr<const DetailChoice> choice_;
+  std::vector<std::size_t> levels_;
+  std::vector<double> lost_;  // by view
 };
 
 /// The same by errors: few Gaussians with which each view loses no more than `error`, squared and meaned. All

@@ -238,6 +238,27 @@ double DetailChoice::error_of(std::span<const std::size_t> any_levels, std::size
   return sums.empty() ? 0.0 : *std::ranges::max_element(sums);
 }
 
+LevelsLost::LevelsLost(std::shared_ptr<const DetailChoice> choice, std::vector<std::size_t> levels)
+    : choice_(std::move(choice)), levels_(std::move(levels)) {
+  for (std::size_t v = 0; v < choice_->pixels.size(); ++v)
+    lost_.push_back(choice_->error_of(levels_, v, v + 1));
+}
+
+void LevelsLost::follow(std::span<const std::size_t> levels) {
+  for (std::size_t p = 0; p < levels_.size(); ++p) {
+    if (levels_[p] == levels[p]) continue;
+    for (std::size_t v = 0; v < lost_.size(); ++v)
+      lost_[v] += choice_->lost(v, p, levels[p]) - choice_->lost(v, p, levels_[p]);
+    levels_[p] = levels[p];
+  }
+}
+
+double LevelsLost::error(std::size_t begin, std::size_t end) const {
+  double most = 0.0;  // which rounding leaves less than
+  for (std::size_t v = begin; v < end; ++v) most = std::max(most, lost_[v]);
+  return most;
+}
+
 double DetailChoice::saved(std::size_t part, std::size_t from, std::size_t to) const {
   const std::size_t levels_of_part = levels_of(part);
   double most = 0.0;

@@ -61,9 +61,9 @@ PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, c
   return before;
 }
 
-SampleLoss loss_of(const DetailChoice& choice, std::span<const std::size_t> levels,
+SampleLoss loss_of(const DetailChoice& choice, double all, std::span<const std::size_t> levels,
                    std::span<const std::size_t> parts, double found) {
-  SampleLoss loss{.found = found, .all = choice.error_of(levels, 0, 1), .parts = parts.size()};
+  SampleLoss loss{.found = found, .all = all, .parts = parts.size()};
   for (const std::size_t part : parts) loss.predicted += choice.lost(0, part, levels[part]);
   return loss;
 }

@@ -39,9 +39,9 @@ void keep_what_fits(PartModels& others, const Model& model, const ModelParts& pa
 /// Puts others in the place of parts of a model, uploads that, and returns those that were there.
 PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, const PartsTrial& trial);
 
-/// The loss of parts that the first view of a choice, which sees others at `levels`, was found to lose so
+/// The loss of parts at `levels` that the first view of a choice, which loses `all`, was found to lose so
 /// much by.
-SampleLoss loss_of(const DetailChoice& choice, std::span<const std::size_t> levels,
+SampleLoss loss_of(const DetailChoice& choice, double all, std::span<const std::size_t> levels,
                    std::span<const std::size_t> parts, double found);
 
 /// How many times what is predicted levels are found to lose: what was found first counts less and less, and

@@ -19,7 +19,6 @@ constexpr std::size_t read_ahead = 1 << 20;
 // Gaussians that room is made for at once, where nobody says how many there may be: 0.4 GB, or 1 with all
 // their harmonics.
 constexpr std::size_t room_most = 1 << 22;
-constexpr double between_looks_ms = 100.0;
 constexpr double chooser_share = 0.25, reader_share = 0.5;  // of the cores: the rest is for frames
 constexpr double look_most_ms = 360.0;  // at all bands of all views: slow frames have fewer bands
 constexpr double stays_s = 1.0;         // a level that nothing needs any more
@@ -56,6 +55,7 @@ Model LevelStream::coarsest(std::span<const shared::View> views) {
   scene_.read([&](const StreamedSog::Piece& piece) { parts_.replace(model, piece.part, piece.model); });
   parts_.take_changes();
   drawn_ = scene_.chosen();
+  gaussians_ = parts_.gaussians();
   return model;
 }
 
@@ -78,6 +78,7 @@ double LevelStream::left() const {
 
 void LevelStream::want(std::span<const shared::View> views, const Look& look) {
   if (views.empty()) return;
+  note_uploaded();
   motion_.note(views);
   if (!same(views, wanted_)) {
     if (views.size() != wanted_.size()) {
@@ -142,7 +143,7 @@ bool LevelStream::look_on(const Look& look) {
           Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(lead_s));
     looked_.push_back(k < here() ? wanted_[k] : motion_.ahead(lead_s)[k % wanted_.size()]);
     seen_.emplace_back(parts_.size());
-    bands_.begin(looked_.back());
+    bands_.begin(looked_.back(), expected_share * brings_ms_);
   }
   double took_ms = 0.0;
   bool is_last = false;
@@ -201,15 +202,16 @@ void LevelStream::choose(const Wish& wish) {
   need.stays_s = stays_s;
   need.found = wish.found;
   auto chosen = scene_.chooser().choose(wish.views, need, wish.seen);
+  std::shared_ptr<LevelsLost> lost;
+  if (chosen->by_errors) lost = std::make_shared<LevelsLost>(chosen->by_errors, wish.seen.drawn);
   std::optional<Sample> sample;
-  if (wish.sample && chosen->by_errors) {
+  if (wish.sample && lost) {
     auto parts = wish.rests ? sample_of(*chosen->by_errors, chosen->levels, sample_of_rest, *wish.sample)
                             : sample_of(*chosen->by_errors, wish.seen.drawn, sample_of_moving, *wish.sample);
-    if (!parts.empty()) sample = {chosen->by_errors, wish.views.front(), {std::move(parts), {}}, wish.rests};
+    if (!parts.empty()) sample = {lost, wish.views.front(), {std::move(parts), {}}, wish.rests};
   }
-  auto choice = chosen->by_errors;  // the one before it is freed when no frame waits for the lock any more
   const std::lock_guard lock(mutex_);
-  choice_.swap(choice);
+  lost_.swap(lost);  // the one before it is freed when no frame waits for the lock any more
   here_ = wish.here;
   chosen_at_ = wish.at;
   chosen_ahead_at_ = wish.ahead_at;
@@ -249,6 +251,7 @@ void LevelStream::read(std::shared_ptr<const LevelsChosen> chosen, const std::st
     changed_.wait(lock, stop, [&] { return gaussians_read_ < read_ahead || next_; });
     gaussians_read_ += piece.model.count();
     pieces_.push_back(std::move(piece));
+    came_.notify_all();
   };
   scene_.read(take, [&] {
     const std::lock_guard lock(mutex_);
@@ -287,6 +290,7 @@ void LevelStream::sort_pieces() {
   const std::lock_guard lock(mutex_);
   gaussians_read_ -= dropped;
   pieces_ = std::move(pieces);
+  came_.notify_all();
 }
 
 // Coarse parts hide what fine ones do not.
@@ -309,27 +313,25 @@ bool LevelStream::settled() const {
 }
 
 std::optional<double> LevelStream::predicted_psnr() const {
-  std::shared_ptr<const DetailChoice> choice;
+  std::shared_ptr<LevelsLost> lost;
   std::size_t here = 0;
   Clock::time_point at, ahead_at;
   {
     const std::lock_guard lock(mutex_);
-    choice = choice_;
+    lost = lost_;
     here = here_;
     at = chosen_at_;
     ahead_at = chosen_ahead_at_;
   }
-  if (!choice) return std::nullopt;
-  if (choice != told_by_) {
-    const std::size_t all = choice->pixels.size();
-    told_here_ = choice->error_of(drawn_, 0, here);
-    told_ahead_ = here < all ? choice->error_of(drawn_, here, all) : told_here_;
-    told_by_ = std::move(choice);
-  }
+  if (!lost) return std::nullopt;
+  lost->follow(drawn_);
+  const std::size_t all = lost->choice().pixels.size();
+  const double here_error = lost->error(0, here);
+  const double ahead_error = here < all ? lost->error(here, all) : here_error;
   // What comes nearer loses the more the nearer it is.
   const double until_ms = std::chrono::duration<double, std::milli>(ahead_at - at).count();
   const double ahead = until_ms > 0.0 ? std::pow(std::min(ms_since(at) / until_ms, 1.0), 2) : 0.0;
-  return psnr_of_error(found_.factor() * std::lerp(told_here_, told_ahead_, ahead));
+  return psnr_of_error(found_.factor() * std::lerp(here_error, ahead_error, ahead));
 }
 
 }  // namespace binosplat

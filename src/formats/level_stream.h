@@ -69,9 +69,16 @@ class LevelStream {
 
   /// Puts what was read meanwhile into the model that coarsest() made: no more than `most` Gaussians, nor
   /// more than a frame has time for with a look that was made for it and with uploading, but one part
-  /// at least unless the look took all of it. Where something is left after a look, the next frame makes
-  /// none. Throws what choosing or reading it threw; then nothing more is read.
+  /// at least unless the look took all of it; where something is left after a look, the next frame makes
+  /// none. Once take_ahead() was called only what that has put there, and then the frame makes no look.
+  /// Throws what choosing or reading it threw; then nothing more is read.
   ModelParts::Changes take(Model& model, std::size_t most);
+
+  /// Goes on putting Gaussians into the model in a thread of its own while a frame is drawn, as many as the
+  /// next one has time to upload, unless that is to look: its take() ends that and hands them over. A frame
+  /// is then take(), uploading that, want(), try_out(), take_ahead() and drawing. Until the next take(), or
+  /// the end of this, nobody else may read the model's Gaussians, nor parts(), nor call want().
+  void take_ahead(Model& model, std::size_t most);
 
   /// By dB: finds on a sample of parts what the levels truly lose, by pictures of the first of the views that
   /// were looked at last, in frames that neither look nor take anything; choices, and what is told, go by it.
@@ -81,7 +88,7 @@ class LevelStream {
   /// Whether the model has all that was wanted, and no more, and nothing is to be looked at again.
   bool settled() const;
   /// Gaussians of the model.
-  std::size_t gaussians() const { return parts_.gaussians(); }
+  std::size_t gaussians() const { return gaussians_; }
   const ModelParts& parts() const { return parts_; }
   /// What the views are taken to have now against the finest levels, in dB, with the levels that the model
   /// has now: of those that were looked at last, where they were and ahead of that, by how long ago it was.
@@ -89,6 +96,9 @@ class LevelStream {
   std::optional<double> predicted_psnr() const;
 
  private:
+  static constexpr double between_looks_ms = 100.0;
+  /// Of a frame's time, that a look or uploading is expected to take: either may take longer.
+  static constexpr double expected_share = 0.75;
   struct Wish {
     std::vector<shared::View> views;
     DetailSeen seen;
@@ -100,10 +110,19 @@ class LevelStream {
   };
   /// The finest levels of parts of a choice, and the view that they are tried out in, in four frames.
   struct Sample {
-    std::shared_ptr<const DetailChoice> choice;
+    std::shared_ptr<LevelsLost> lost;
     shared::View view;
     PartModels models;           // then those that were there
     bool waits_for_all = false;  // that was chosen, before it is tried out
+  };
+  /// What take_ahead() asked for, and what came of it.
+  struct Ahead {
+    Model* model = nullptr;
+    std::size_t most = 0;
+    Clock::time_point begin;
+    std::size_t taken = 0;
+    double took_ms = 0.0;
+    bool is_at_work = false, ends = false;
   };
   bool look_on(const Look& look);
   std::size_t here() const;
@@ -115,9 +134,16 @@ class LevelStream {
   bool works(double share_of_cores, const std::function<void()>& work);
   void sort_pieces();
   void free_used();
+  void take_now(Model& model, std::size_t most, double ms);
+  void take_on(const std::stop_token& stop);
+  void end_ahead();
+  bool looks_next() const;
+  void note_taken(std::size_t taken, double ms);
+  void note_uploaded();
   std::optional<std::size_t> take_some(Model& model, std::size_t most, bool is_first);
+  bool has_pieces() const { return !pieces_.empty() || !taken_.empty(); }
   bool is_idle() const {
-    return !wish_ && !chooses_ && !next_ && !next_sample_ && !reads_ && !sample_ && pieces_.empty();
+    return !wish_ && !chooses_ && !next_ && !next_sample_ && !reads_ && !sample_ && !has_pieces();
   }
   bool looks_again() const;
   bool tries_out() const;  // in this frame; under the lock
@@ -132,15 +158,17 @@ class LevelStream {
   bool by_db_ = false;
   std::vector<shared::View> wanted_;
   HeadMotion motion_;
-  bool is_due_ = false;                                  // to be wished
-  std::vector<std::size_t> drawn_;                       // places of the parts' levels, in the model
-  mutable std::shared_ptr<const DetailChoice> told_by_;  // predicted_psnr, the last time,
-  mutable double told_here_ = 0.0, told_ahead_ = 0.0;    // squared errors
+  bool is_due_ = false;             // to be wished
+  std::vector<std::size_t> drawn_;  // places of the parts' levels, in the model,
+  std::size_t gaussians_ = 0;       // which has so many, but for those taken ahead
   double brings_ms_ = brings_most_ms;
   double look_ms_ = 0.0;         // since the last take(),
   bool take_is_due_ = false;     // of what a look had left no time for
-  double taken_a_ms_ = 1 << 14;  // Gaussians, by the last ones;
-  std::size_t could_take_ = 0;   // since the last choice was wished, if one
+  double taken_a_ms_ = 1 << 14;  // Gaussians, by the last ones,
+  double uploaded_a_ms_ = 1 << 15;
+  std::size_t could_take_ = 0;  // since the last choice was wished, if one
+  std::size_t new_ = 0;         // Gaussians of the last take(),
+  Clock::time_point taken_at_;  // which ended then
   bool has_wished_ = false;
   // By dB:
   LevelsFound found_;
@@ -163,6 +191,7 @@ class LevelStream {
 
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
+  std::condition_variable_any came_;  // pieces, or somebody to take them, or the end of that
   std::optional<Wish> wish_;
   std::shared_ptr<const LevelsChosen> next_;    // to be read for
   std::optional<Sample> next_sample_, sample_;  // to be read, and to be tried out
@@ -170,7 +199,14 @@ class LevelStream {
   std::deque<StreamedSog::Piece> pieces_;
   std::vector<StreamedSog::Piece> used_;  // freed by the reader, since frames must not wait for that
   std::size_t gaussians_read_ = 0;        // of these
-  std::shared_ptr<const DetailChoice> choice_;
+  std::optional<Ahead> ahead_;
+  struct Taken {
+    std::size_t part = 0;
+    std::optional<std::size_t> level;
+    std::size_t count = 0;
+  };
+  std::vector<Taken> taken_;                       // since the last take()
+  std::shared_ptr<LevelsLost> lost_;               // by the last choice; what it follows is the frames'
   std::size_t here_ = 0;                           // of its views (Wish)
   Clock::time_point chosen_at_, chosen_ahead_at_;  // Wish.at, ahead_at
   double asked_db_ = 0.0;                          // that it is for,
@@ -178,7 +214,7 @@ class LevelStream {
   bool lingers_ = false;                           // LevelsChosen
   bool is_limited_ = false;                        // likewise
   std::exception_ptr trouble_;
-  std::jthread chooser_, reader_;  // last: they end first
+  std::jthread chooser_, reader_, taker_;  // last: they end first
 };
 
 /// What is left for levels of a frame that is due after so many ms, where drawing takes so long: 2.5 ms at

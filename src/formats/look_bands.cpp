@@ -7,11 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "base/frame_crew.h"
+
 namespace binosplat {
 
 namespace {
 
-constexpr double glance_ms = 4.5;   // that a frame may take for a look
 constexpr int bands_most = 12;      // each costs all that does not depend on pixels, too:
 constexpr double fixed_most = 0.9;  // of what the fastest one takes
 constexpr double nearly = 1.1;      // as fast as with more of them
@@ -49,14 +50,14 @@ double sum_until(double share, const std::vector<double>& edges, const std::vect
 
 }  // namespace
 
-void LookBands::begin(const shared::View& view) {
+void LookBands::begin(const shared::View& view, double band_ms) {
   view_ = view;
   constexpr std::size_t slices = 64;  // equally wide
   std::array<double, slices> ms{};    // for pixels
   const auto side = [](std::size_t k) { return static_cast<double>(k) / double{slices}; };
   for (std::size_t k = 0; k < slices; ++k) ms[k] = expected(view, side(k), side(k + 1));
   const double all_ms = std::accumulate(ms.begin(), ms.end(), 0.0);
-  const double enough_ms = std::max(glance_ms, nearly * (fixed_ms_ + all_ms / most_));
+  const double enough_ms = std::max(band_ms, nearly * (fixed_ms_ + all_ms / most_));
   int bands = 1;
   while (bands < most_ && fixed_ms_ + all_ms / bands > enough_ms) ++bands;
   edges_ = {0.0};
@@ -111,15 +112,18 @@ void LookBands::find_fixed(double all_ms) {
 }
 
 void add_band(const std::vector<SeenPart>& more, std::vector<SeenPart>& seen) {
-  for (std::size_t p = 0; p < seen.size(); ++p) {
-    const double area = seen[p].area + more[p].area;
-    if (more[p].area == 0.0) continue;
-    const double share = more[p].area / area;
-    seen[p].distance = seen[p].area == 0.0
-                           ? more[p].distance
-                           : std::pow(seen[p].distance, 1.0 - share) * std::pow(more[p].distance, share);
-    seen[p].area = area;
-  }
+  const auto add = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const double area = seen[p].area + more[p].area;
+      if (more[p].area == 0.0) continue;
+      const double share = more[p].area / area;
+      seen[p].distance = seen[p].area == 0.0
+                             ? more[p].distance
+                             : std::pow(seen[p].distance, 1.0 - share) * std::pow(more[p].distance, share);
+      seen[p].area = area;
+    }
+  };
+  frame_chunks(seen.size(), 1 << 12, add);
 }
 
 }  // namespace binosplat

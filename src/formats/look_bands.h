@@ -14,8 +14,8 @@ namespace binosplat {
 class LookBands {
  public:
   /// Before the first band of a picture: cuts it by what lay in these directions in the last two, in so many
-  /// that each takes what a frame has for it, or about the least that those take which are allowed.
-  void begin(const shared::View& view);
+  /// that each takes so long, or about the least that those take which are allowed.
+  void begin(const shared::View& view, double band_ms);
   /// That is looked at next.
   Band next() const { return {edges_[at_], edges_[at_ + 1]}; }
   /// Of a picture.

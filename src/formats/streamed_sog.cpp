@@ -151,7 +151,7 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
   }
 }
 
-// One that takes long holds up no other, but those after it are taken after it.
+// One that takes long holds up no other: of those that are in no hurry only what follows it.
 void StreamedSog::read_files(std::span<const std::size_t> files,
                              std::span<const SogLevels::TakenOfFile> taken, const Take& take,
                              const std::function<bool()>& goes_on) {
@@ -172,11 +172,12 @@ void StreamedSog::read_files(std::span<const std::size_t> files,
       take(std::move(piece));
     }
   };
+  const auto mode = goes_on ? tbb::filter_mode::serial_out_of_order : tbb::filter_mode::serial_in_order;
   tbb::parallel_pipeline(
       files_at_a_time,
       tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
           tbb::make_filter<std::size_t, std::vector<Piece>>(tbb::filter_mode::parallel, decode) &
-          tbb::make_filter<std::vector<Piece>, void>(tbb::filter_mode::serial_in_order, hand_over));
+          tbb::make_filter<std::vector<Piece>, void>(mode, hand_over));
 }
 
 std::vector<SogLevels::TakenOfFile> StreamedSog::to_read(bool shrinks) const {

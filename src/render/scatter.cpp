@@ -17,11 +17,12 @@ Scatter::Scatter(gl::Context& context)
 void Scatter::upload(
     const gl::Buffer& buffer, std::span<const std::uint32_t> places, std::size_t words,
     const std::function<void(std::span<const std::uint32_t>, std::span<std::uint32_t>)>& fill) {
+  const std::size_t all = static_cast<std::size_t>(buffer.bytes()) / (4 * words);
   while (!places.empty()) {
     const auto now = places.first(std::min(places.size(), records_at_once));
     const std::size_t word_count = now.size() * words;
     read_.wait();
-    const std::size_t room = std::bit_ceil(now.size());  // few sizes: making room takes long
+    const std::size_t room = std::min(std::bit_ceil(all), records_at_once);  // once: that takes long
     std::ranges::copy(now, places_.room<std::uint32_t>(room).begin());
     const auto records = records_.room<std::uint32_t>(room * words);
     const auto fill_some = [&](std::size_t begin, std::size_t end) {

@@ -16,8 +16,9 @@ namespace binosplat::render {
 /// takes a driver 10 us, whatever its size.
 class Scatter {
  public:
-  /// For which there is room on the GPU. More go there in turns, each of which waits for the one before.
-  static constexpr std::size_t records_at_once = 1 << 17;
+  /// For which there is room on the GPU, or as many as the buffer has. More go there in turns, each of which
+  /// waits for the one before.
+  static constexpr std::size_t records_at_once = 1 << 18;
 
   explicit Scatter(gl::Context& context);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/frame_crew.h"
 #include "render/stages.h"
 
 namespace binosplat::render {
@@ -61,14 +62,21 @@ Sight::Sight(std::shared_ptr<GpuModel> model)
 
 std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
                                                const FrameSettings& settings, const ModelParts& parts,
-                                               int shrink_most) {
-  return look(views, settings, parts, shrink_most, {});
+                                               std::optional<int> shrink_most) {
+  return look(views, settings, parts, shrink_most.value_or(shrink_usual()), {});
 }
 
 std::vector<SeenPart> Sight::look(const shared::View& view, Band band, const FrameSettings& settings,
                                   const ModelParts& parts) {
-  return std::move(look({&view, 1}, settings, parts, shrink_usual, band).front());
+  const int usual = shrink_usual();
+  const bool is_narrow = (band.end - band.begin) * usual * usual <= 1.0;
+  return std::move(look({&view, 1}, settings, parts, is_narrow ? 1 : usual, band).front());
 }
+
+// A GPU draws the tiles of more pixels at once, and ends sooner: the lists of the few tiles in which most of
+// a scene lies take the time, and smaller tiles have shorter ones. For the same reason a band is drawn at
+// whole size that has no more pixels then than the whole picture has.
+int Sight::shrink_usual() const { return frame_.model()->context().software() ? 4 : 2; }
 
 std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> views,
                                                const FrameSettings& settings, const ModelParts& parts,
@@ -132,12 +140,16 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
   refuse_cut(dispatcher_.context(), buffers.counters.read<shared::Counters>(1).front());
   const auto found = of_parts_.read<std::int64_t>(2 * parts.size() * views.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      const std::int64_t* const of = &found[2 * (v * parts.size() + p)];
-      if (of[0] == 0) continue;
-      const double area = static_cast<double>(of[0]);
-      seen[v][p] = {area / SEEN_SCALE * pixel_areas[v], std::exp2(static_cast<double>(of[1]) / area - 32.0)};
-    }
+    const auto read = [&](std::size_t begin, std::size_t end) {
+      for (std::size_t p = begin; p < end; ++p) {
+        const std::int64_t* const of = &found[2 * (v * parts.size() + p)];
+        if (of[0] == 0) continue;
+        const double area = static_cast<double>(of[0]);
+        seen[v][p] = {area / SEEN_SCALE * pixel_areas[v],
+                      std::exp2(static_cast<double>(of[1]) / area - 32.0)};
+      }
+    };
+    frame_chunks(parts.size(), 1 << 12, read);
   }
   return seen;
 }

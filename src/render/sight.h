@@ -2,6 +2,7 @@
 // What views show of the parts of a model: by it levels of detail are chosen (formats/detail.h).
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,11 +18,11 @@ class Sight {
   explicit Sight(std::shared_ptr<GpuModel> model);
 
   /// For each of the views what it shows of each part, which are the model's. Draws the views, smaller where
-  /// they are large: by up to `shrink_most` along each axis, to pictures of at least 512 px. Of the settings
-  /// count those of exact_of(), and the precision. Distances are means of the logarithm, over at most 2^32
-  /// world units. The same bits each time. Throws as Frame::draw() does.
+  /// they are large: by up to `shrink_most` along each axis, or what is fast, to pictures of at least 512 px.
+  /// Of the settings count those of exact_of(), and the precision. Distances are means of the logarithm, over
+  /// at most 2^32 world units. The same bits each time. Throws as Frame::draw() does.
   std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
-                                          const ModelParts& parts, int shrink_most = shrink_usual);
+                                          const ModelParts& parts, std::optional<int> shrink_most = {});
 
   /// The same of one view, and of its picture only what is in a band: areas of bands side by side add up to
   /// those of the picture, but for what is hidden, which counts in each.
@@ -32,7 +33,7 @@ class Sight {
   PartsTrial trial(const FrameSettings& settings);
 
  private:
-  static constexpr int shrink_usual = 4;
+  int shrink_usual() const;
   std::vector<std::vector<SeenPart>> look(std::span<const shared::View> views, const FrameSettings& settings,
                                           const ModelParts& parts, int shrink_most, Band band);
 

@@ -9,6 +9,12 @@
 
 namespace binosplat::render {
 
+namespace {
+
+constexpr std::uint32_t groups_most = 2048;  // of more pixels each sums up several: their sums are read back
+
+}  // namespace
+
 SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted, std::uint32_t levels)
     : dispatcher_(context),
       wanted_(context, "wanted colours"),
@@ -19,7 +25,6 @@ SquaredError::SquaredError(gl::Context& context, std::span<const Picture> wanted
     colours.insert(colours.end(), picture.colour.begin(), picture.colour.end());
   wanted_.upload(colours);
   pixels_ = static_cast<std::uint32_t>(colours.size());
-  sums_.reserve(static_cast<std::int64_t>(pixels_ / THREADS + 1) * 4);
 }
 
 SquaredError::SquaredError(gl::Context& context) : SquaredError(context, {}) {}
@@ -30,25 +35,27 @@ void SquaredError::add(const gl::Buffer& colours, std::uint32_t pixels) {
 
 void SquaredError::add_window(const gl::Buffer& colours, glm::uvec2 size, std::uint32_t first,
                               std::uint32_t pitch) {
-  constexpr std::int64_t each = sizeof(glm::vec4);
+  const std::uint32_t count = size.x * size.y;
   pixels_ = std::max(pixels_, first + (size.y - 1) * pitch + size.x);
-  wanted_.grow(pixels_ * each);
-  for (std::uint32_t row = 0; row < size.y; ++row) {
-    const std::int64_t from = std::int64_t{row} * size.x, to = first + std::int64_t{row} * pitch;
-    wanted_.copy(colours, from * each, size.x * each, to * each);
-  }
-  sums_.reserve(static_cast<std::int64_t>(pixels_ / THREADS + 1) * 4);
+  wanted_.grow(std::int64_t{pixels_} * static_cast<std::int64_t>(sizeof(glm::vec4)));
+  dispatcher_.begin_frame();
+  dispatcher_.begin_stage("keep");
+  dispatcher_.run(dispatcher_.context().program("keep_window.comp"), gl::Work::threads(count, THREADS),
+                  {{"Colours", colours}, {"Wanted", wanted_}},
+                  {{"pixel_count", count}, {"width", size.x}, {"first", first}, {"pitch", pitch}});
+  dispatcher_.end_frame();
 }
 
 double SquaredError::mean(const gl::Buffer& colours) {
+  const std::uint32_t groups = std::min<std::uint32_t>((pixels_ + THREADS - 1) / THREADS, groups_most);
+  sums_.reserve(std::int64_t{groups_most} * 4);
   dispatcher_.begin_frame();
   dispatcher_.begin_stage("squared error");
-  dispatcher_.run(dispatcher_.context().program("squared_error.comp"), gl::Work::threads(pixels_, THREADS),
+  dispatcher_.run(dispatcher_.context().program("squared_error.comp"), gl::Work::of_groups(groups),
                   {{"Colours", colours}, {"Wanted", wanted_}, {"Sums", sums_}},
-                  {{"pixel_count", pixels_}, {"levels", levels_}});
+                  {{"pixel_count", pixels_}, {"group_count", groups}, {"levels", levels_}});
   dispatcher_.end_frame();
-  dispatcher_.wait_and_time();
-  const auto parts = sums_.read<float>((pixels_ + THREADS - 1) / THREADS);
+  const auto parts = sums_.read<float>(groups);
   return std::accumulate(parts.begin(), parts.end(), 0.0) / (3.0 * pixels_);
 }
 

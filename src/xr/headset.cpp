@@ -25,13 +25,13 @@ constexpr milliseconds between_polls{10};            // while no frames are want
 
 class Viewer {
  public:
-  Viewer(const Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
+  Viewer(const Instance& instance, gl::Context& context, Model& model, const HeadsetSettings& settings,
          const Beside& beside)
       : instance_(instance),
         context_(context),
         settings_(settings),
         beside_(beside),
-        model_(std::move(model)),
+        model_(model),
         frame_(std::make_shared<render::GpuModel>(context, model_, settings.frame.precision)) {}
 
   /// False where the session was lost.
@@ -144,7 +144,7 @@ class Viewer {
   gl::Context& context_;
   const HeadsetSettings& settings_;
   const Beside& beside_;
-  Model model_;
+  Model& model_;
   stereo::FoveatedFrame frame_;
   std::optional<Walk> walk_;  // goes on where a session is lost
   std::optional<Budget> budget_;
@@ -177,9 +177,9 @@ stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor, const ste
   return stage;
 }
 
-void run(Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
+void run(Instance& instance, gl::Context& context, Model& model, const HeadsetSettings& settings,
          const Beside& beside) {
-  Viewer viewer(instance, context, std::move(model), settings, beside);
+  Viewer viewer(instance, context, model, settings, beside);
   std::size_t drawn = 0;
   for (int in_vain = 0; !viewer.run_session();) {
     in_vain = viewer.frames() > drawn ? 0 : in_vain + 1;

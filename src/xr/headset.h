@@ -43,7 +43,7 @@ stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor, const ste
 /// Draws with the OpenGL context that is current. A session that the runtime loses is followed by another, if
 /// the headset is there again within some seconds. Throws Error(no_gl) for what a runtime refuses or loses,
 /// and as render::Frame does.
-void run(Instance& instance, gl::Context& context, Model model, const HeadsetSettings& settings,
+void run(Instance& instance, gl::Context& context, Model& model, const HeadsetSettings& settings,
          const Beside& beside);
 
 }  // namespace binosplat::xr

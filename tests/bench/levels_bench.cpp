@@ -37,7 +37,7 @@ struct Plan {
   double rate = 90.0;  // a second
   int judged = 8;      // of the frames, evenly spread, against the finest
   int shrink = 1;
-  std::size_t gaussians_a_frame = 1 << 17;
+  std::size_t gaussians_a_frame = 1 << 18;
   std::size_t most = std::numeric_limits<std::size_t>::max();
   render::FrameSettings settings;
 };
@@ -131,9 +131,8 @@ class Flight {
                   need.most = most;
                   return need;
                 }),
-        model_(coarsest()),
         others_(context.allocated_bytes()),
-        gpu_model_(std::make_shared<render::GpuModel>(context, model_)),
+        gpu_model_(std::make_shared<render::GpuModel>(context, model_ = coarsest())),
         frame_(gpu_model_),
         sight_(gpu_model_),
         trial_(sight_.trial(plan.settings)),
@@ -183,26 +182,27 @@ class Flight {
 
   void settle(const Views& views) {
     do {
-      want(views);
       gpu_model_->reload(levels_.take(model_, plan_.gaussians_a_frame));
+      want(views);
       levels_.try_out(model_, trial_);
+      levels_.take_ahead(model_, plan_.gaussians_a_frame);
     } while (!levels_.settled());
   }
 
   void draw(const Views& views) {
     const auto begin = Clock::now();
+    const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
+    const double taken_ms = ms_since(begin);
+    gpu_model_->reload(changes);
+    numbers_.take_ms.push_back(ms_since(begin));
+    levels_.give_time(time_for_levels(1e3 / plan_.rate, report_.total_ms));
     const std::size_t looks = numbers_.look_ms.size();
     want(views);
     const bool looked = looks < numbers_.look_ms.size();
-    levels_.give_time(time_for_levels(1e3 / plan_.rate, report_.total_ms));
-    const auto taking = Clock::now();
-    const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
-    const double taken_ms = ms_since(taking);
-    gpu_model_->reload(changes);
-    numbers_.take_ms.push_back(ms_since(taking));
     const auto trying = Clock::now();
     levels_.try_out(model_, trial_);
     const double trial_ms = ms_since(trying);
+    levels_.take_ahead(model_, plan_.gaussians_a_frame);
     report_ = frame_.draw(views, settings());
     const double drawn_ms = report_.total_ms;
     numbers_.frame_ms.push_back(drawn_ms);
@@ -266,8 +266,9 @@ class Flight {
     before_.add(frame_.colours(), pixels_of(views));
     others_ += context_.allocated_bytes() - bytes;
     const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
-    if (changes.empty()) return;
+    if (changes.empty()) return levels_.take_ahead(model_, plan_.gaussians_a_frame);
     gpu_model_->reload(changes);
+    levels_.take_ahead(model_, plan_.gaussians_a_frame);
     frame_.draw(views, settings());
     numbers_.jump_db.push_back(before_.psnr(frame_.colours()));
   }
@@ -288,8 +289,8 @@ class Flight {
   gl::Context& context_;
   const Plan& plan_;
   const std::vector<Views>& path_;
-  LevelStream levels_;
   Model model_;
+  LevelStream levels_;   // ends before the model
   std::int64_t others_;  // bytes on the GPU, of what judges
   std::shared_ptr<render::GpuModel> gpu_model_;
   render::Frame frame_;
@@ -389,7 +390,7 @@ int main(int argc, char** argv) {
   app.add_option("--judged", plan.judged, "Frames that are compared with the finest levels (8)")
       ->check(CLI::Range(0, 1000));
   app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
-  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (131072)");
+  app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (262144)");
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scene/reduce.h"
+#include "base/random.h"
 #include "support/models.h"
 
 namespace binosplat {
@@ -94,11 +95,41 @@ TEST(LevelSample, HasRoom) {
 TEST(LevelSample, IsPredictedToLoseASum) {
   const DetailChoice choice = choice_of(4);
   const std::vector<std::size_t> levels = {1, 1, 0, 1}, sample = {1, 2, 3};
-  const SampleLoss loss = loss_of(choice, levels, sample, 0.7);
+  const SampleLoss loss = loss_of(choice, choice.error_of(levels, 0, 1), levels, sample, 0.7);
   EXPECT_DOUBLE_EQ(loss.predicted, 0.4);
   EXPECT_DOUBLE_EQ(loss.all, 0.4);
   EXPECT_EQ(loss.found, 0.7);
   EXPECT_EQ(loss.parts, 3u);
+}
+
+// However many change, and whatever views there are.
+TEST(LevelsLost, AreThoseOfTheLevelsFollowed) {
+  constexpr std::size_t parts = 40, levels_of_part = 3, views = 2;
+  Random random(3);
+  auto choice = std::make_shared<DetailChoice>();
+  choice->pixels = {10.0, 20.0};
+  choice->sphere_pixels = 1000.0;
+  choice->first = {0};
+  for (std::size_t p = 0; p < parts; ++p) {
+    for (std::size_t n = 0; n < (views + 1) * levels_of_part; ++n)
+      choice->errors.push_back(n % levels_of_part == 0 ? 0.0 : random.uniform(0.0, 1.0));
+    choice->first.push_back(choice->errors.size());
+  }
+  std::vector<std::size_t> levels(parts, 2);
+  LevelsLost lost(choice, levels);
+  const double at_first = lost.error(0, views);
+  for (std::size_t n = 0; n < 200; ++n) {
+    levels[n * 7 % parts] = n / 3 % levels_of_part;
+    if (n % 4 != 0) continue;
+    lost.follow(levels);
+    for (std::size_t v = 0; v < views; ++v)
+      EXPECT_NEAR(lost.error(v, v + 1), choice->error_of(levels, v, v + 1), 1e-12);
+    EXPECT_NEAR(lost.error(0, views), choice->error_of(levels, 0, views), 1e-12);
+  }
+  EXPECT_GT(std::abs(lost.error(0, views) - at_first), 0.01) << "planted: what it began with";
+  lost.follow(std::vector<std::size_t>(parts, 0));
+  EXPECT_GE(lost.error(0, views), 0.0);
+  EXPECT_NEAR(lost.error(0, views), 0.0, 1e-12);
 }
 
 TEST(LevelsFound, AreWhatSamplesOfAllLose) {

@@ -489,6 +489,123 @@ TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
   EXPECT_TRUE(takes_where_it_looked(0, LevelStream::brings_most_ms)) << "planted: a short one";
 }
 
+// A frame that takes what came while the one before it was drawn, looks where it took nothing, and then has
+// more put into the model beside it.
+struct FrameAhead {
+  LevelStream& stream;
+  Model& model;
+  int looks = 0;
+  std::size_t on_gpu = stream.gaussians();
+  std::size_t new_most = 0;
+
+  ModelParts::Changes step(const shared::View& view, std::size_t most, const PartsTrial* trial = nullptr) {
+    const std::size_t before = stream.gaussians();
+    EXPECT_EQ(before, on_gpu) << "before anybody takes them";
+    const ModelParts::Changes changes = stream.take(model, most);
+    on_gpu = stream.gaussians();
+    new_most = std::max(new_most, on_gpu - std::min(on_gpu, before));
+    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+      ++looks;
+      EXPECT_TRUE(changes.empty()) << "a frame has no time for both";
+      EXPECT_EQ(parts.gaussians(), on_gpu) << "what is on the GPU, and nothing that is on its way";
+      return std::vector(parts.size(), SeenPart{50.0, 30.0});
+    };
+    stream.want(std::vector{view}, look);
+    if (trial != nullptr) stream.try_out(model, *trial);
+    stream.take_ahead(model, most);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));  // it is drawn
+    return changes;
+  }
+
+  bool settles(const shared::View& view, std::size_t most, const PartsTrial* trial = nullptr) {
+    for (int n = 0; n < 10'000 && !stream.settled(); ++n) step(view, most, trial);
+    return stream.settled();
+  }
+};
+
+TEST(LevelStream, TakesAheadWhileAFrameIsDrawn) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  LevelStream stream(folder.path(), for_db(100.0));
+  Model model = stream.coarsest();
+  FrameAhead frame{stream, model};
+  shared::View view = before_all();
+  frame.step(view, 1);
+  EXPECT_TRUE(frame.settles(view, 1));
+  EXPECT_EQ(stream.gaussians(), 3000u);
+  EXPECT_GT(frame.looks, 0);
+  EXPECT_LE(frame.new_most, 200u) << "planted: more than one part at a time";
+  EXPECT_GT(frame.new_most, 0u);
+  // A head that moves: looks go on beside what comes.
+  frame.looks = 0;
+  for (int n = 0; n < 300; ++n) {
+    view.anchor.x += 0.02f;
+    frame.step(view, 100'000);
+  }
+  EXPECT_GT(frame.looks, 2);
+  EXPECT_TRUE(frame.settles(view, 100'000));
+  // What it holds is what one gets that takes nothing ahead.
+  LevelStream other(folder.path(), for_db(100.0));
+  Model same = other.coarsest();
+  const auto look = [](const shared::View&, Band, const ModelParts& parts) {
+    return std::vector(parts.size(), SeenPart{50.0, 30.0});
+  };
+  ASSERT_TRUE(frames_until(other, same, view, look, [&] { return other.settled(); }));
+  const auto sorted = [](const Model& of) {
+    std::vector<float> found;
+    for (std::size_t i = 0; i < of.count(); ++i)
+      if (of.opacity[i] > 0.0f) found.push_back(of.position[i].x);
+    std::ranges::sort(found);
+    return found;
+  };
+  EXPECT_EQ(sorted(model), sorted(same));
+}
+
+// A sample waits for what is under way, and while it is tried out nothing else comes.
+TEST(LevelStream, TakesNothingAheadBesideASample) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  LevelStream stream(folder.path(), for_db(24.0));
+  Model model = stream.coarsest();
+  std::optional<std::vector<float>> kept;
+  const auto positions = [&] {
+    std::vector<float> x;
+    for (const glm::vec3& p : model.position) x.push_back(p.x);
+    return x;
+  };
+  std::size_t parts = 0;
+  int tried = 0;
+  const PartsTrial trial = {.upload = [&](const ModelParts::Changes&) { ++parts; },
+                            .keep = [&](const shared::View&) { kept = positions(); },
+                            .differs =
+                                [&](const shared::View&) {
+                                  ++tried;
+                                  EXPECT_EQ(parts % 2, 1u) << "the sample is there, and is not put back yet";
+                                  EXPECT_NE(kept, positions());
+                                  return 0.01;
+                                }};
+  FrameAhead frame{stream, model};
+  shared::View view = before_all();
+  for (int n = 0; n < 200; ++n) {
+    view.anchor.x += n < 100 ? 0.02f : 0.0f;
+    frame.step(view, 1, &trial);
+    frame.on_gpu = stream.gaussians();  // with a sample
+  }
+  EXPECT_GT(tried, 0);
+}
+
+TEST(LevelStream, EndsWhileItTakesAhead) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  for (int n = 0; n < 20; ++n) {
+    Model model;
+    LevelStream stream(folder.path(), for_db(100.0));
+    model = stream.coarsest();
+    FrameAhead frame{stream, model};
+    for (int k = 0; k < n; ++k) frame.step(before_all(), 1);
+  }
+}
+
 TEST(LevelStream, HasWhatDrawingLeavesOfAFrame) {
   EXPECT_NEAR(time_for_levels(11.1, 5.9), 4.0, 1e-9);
   EXPECT_EQ(time_for_levels(11.1, 1.0), 6.0);

@@ -28,7 +28,7 @@ using Ms = std::function<double(const Band&)>;
 double look_once(LookBands& bands, const shared::View& view, const Ms& ms) {
   double longest = 0.0, end = 0.0;
   EXPECT_TRUE(bands.is_first());
-  bands.begin(view);
+  bands.begin(view, 4.5);
   for (bool is_last = false; !is_last;) {
     const Band band = bands.next();
     EXPECT_EQ(band.begin, end) << "side by side";
@@ -134,14 +134,14 @@ TEST(LookBands, StartAgain) {
   LookBands bands;
   bands.allow(4);
   look_once(bands, turned_by(0), [](const Band&) { return 20.0; });
-  bands.begin(turned_by(0));
+  bands.begin(turned_by(0), 4.5);
   ASSERT_EQ(bands.count(), 4);
   const Band first = bands.next();
   bands.note(1.0);
   EXPECT_FALSE(bands.is_first());
   bands.start_again();
   EXPECT_TRUE(bands.is_first());
-  bands.begin(turned_by(0));
+  bands.begin(turned_by(0), 4.5);
   EXPECT_EQ(bands.next().end, first.end);
 }
 

@@ -20,7 +20,7 @@ namespace binosplat::app {
 
 namespace {
 
-constexpr std::size_t gaussians_a_frame = 1 << 17;  // of levels that change: no frame waits for more
+constexpr std::size_t gaussians_a_frame = 1 << 18;  // of levels that change: no frame waits for more
 
 volatile std::sig_atomic_t signalled = 0;
 
@@ -94,19 +94,20 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   if (loaded.levels) {
     beside.levels = [&](Model& drawn, const std::shared_ptr<render::GpuModel>& gpu_model,
                         std::span<const shared::View> views, double frame_ms, double drawn_ms) {
+      gpu_model->reload(loaded.levels->take(drawn, gaussians_a_frame));
       loaded.levels->give_time(time_for_levels(frame_ms, drawn_ms));
       loaded.levels->want(views, [&](const shared::View& view, Band band, const ModelParts& parts) {
         if (!sight) sight.emplace(gpu_model);
         return sight->look(view, band, settings.frame, parts);
       });
-      gpu_model->reload(loaded.levels->take(drawn, gaussians_a_frame));
       if (sight) loaded.levels->try_out(drawn, sight->trial(settings.frame));
+      loaded.levels->take_ahead(drawn, gaussians_a_frame);
       return static_cast<float>(loaded.levels->left());
     };
   }
   if (mirror)
     beside.show = [&](const stereo::Target& left, const glm::ivec2& size) { mirror->show(left, size); };
-  xr::run(instance, context, std::move(model), settings, beside);
+  xr::run(instance, context, model, settings, beside);
 }
 
 }  // namespace binosplat::app
