@@ -195,6 +195,29 @@ TEST(Sight, OfBandsAddsUp) {
   }
 }
 
+// Narrow ones show what a picture that is not drawn smaller does.
+TEST(Sight, OfNarrowBandsIsThatOfWholeSize) {
+  const Model model = test::random_model(64, 3000, 0);
+  Indices indices(7);
+  for (std::uint32_t i = 0; i < 3000; ++i) indices[i % 7].push_back(i);
+  const Parted parted(model, indices);
+  Sight sight(parted.gpu_model);
+  const std::vector<shared::View> views = {make_view(test::front_camera(1024, 1024, 4.0 * focal))};
+  const auto small = sight.look(views, {}, parted.parts).at(0),
+             whole = sight.look(views, {}, parted.parts, 1).at(0);
+  constexpr int bands = 32;
+  std::vector<double> areas(7, 0.0);
+  for (int k = 0; k < bands; ++k) {
+    const auto band = sight.look(views[0], {double(k) / bands, double(k + 1) / bands}, {}, parted.parts);
+    for (std::size_t p = 0; p < 7; ++p) areas[p] += band[p].area;
+  }
+  for (std::size_t p = 0; p < 7; ++p) {
+    EXPECT_NEAR(areas[p], whole[p].area, 0.01 + 1e-6 * whole[p].area);
+    EXPECT_GT(std::abs(small[p].area - whole[p].area), 1e-5 * whole[p].area) << "planted: a smaller picture";
+    EXPECT_NEAR(small[p].area, whole[p].area, 0.05 * whole[p].area);
+  }
+}
+
 TEST(Sight, ForgetsWhatItSaw) {
   const Model model = test::random_model(98, 2000, 0);
   Indices indices(9);
