@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "scene/reduce.h"
 #include "base/random.h"
+#include "scene/reduce.h"
 #include "support/models.h"
 
 namespace binosplat {
