@@ -50,9 +50,9 @@ class LevelStream {
 
   /// Has read what these views need, which are those of one frame in the model's frame, instead of what
   /// others needed. By dB it calls `look` first, which tells what one of them shows of each part: for one
-  /// view in each call, since a frame has little time, or for a band of one, where that took longer than 4.5
-  /// ms the last time and frames come fast. For all of them no more than ten times a second; until then what
-  /// was wanted stays.
+  /// view in each call, since a frame has little time, or for a band of one, where that took longer than
+  /// three quarters of give_time() the last time and frames come fast. For all of them no more than ten times
+  /// a second; until then what was wanted stays.
   ///
   /// While the views move, the second half of them is looked at where they will be by the time that levels
   /// are there, a single view both here and there: levels come for all. No more is wanted than frames take
@@ -77,7 +77,8 @@ class LevelStream {
   /// Goes on putting Gaussians into the model in a thread of its own while a frame is drawn, as many as the
   /// next one has time to upload, unless that is to look: its take() ends that and hands them over. A frame
   /// is then take(), uploading that, want(), try_out(), take_ahead() and drawing. Until the next take(), or
-  /// the end of this, nobody else may read the model's Gaussians, nor parts(), nor call want().
+  /// the end of this, which the model must outlive, nobody else may read its Gaussians, nor parts(), nor call
+  /// want() or try_out().
   void take_ahead(Model& model, std::size_t most);
 
   /// By dB: finds on a sample of parts what the levels truly lose, by pictures of the first of the views that
@@ -163,7 +164,7 @@ class LevelStream {
   std::size_t gaussians_ = 0;       // which has so many, but for those taken ahead
   double brings_ms_ = brings_most_ms;
   double look_ms_ = 0.0;         // since the last take(),
-  bool take_is_due_ = false;     // of what a look had left no time for
+  bool take_is_due_ = false;     // instead of a look: in this frame, or of what one had left no time for
   double taken_a_ms_ = 1 << 14;  // Gaussians, by the last ones,
   double uploaded_a_ms_ = 1 << 15;
   std::size_t could_take_ = 0;  // since the last choice was wished, if one

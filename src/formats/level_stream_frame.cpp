@@ -44,6 +44,7 @@ ModelParts::Changes LevelStream::take(Model& model, std::size_t most) {
     all.swap(taken_);
     take_is_due_ = is_ahead ? !all.empty() : look_ms > 0.0 && !pieces_.empty();
   }
+  new_ = 0;
   if (all.empty()) return {};
   for (const Taken& taken : all) {
     if (taken.level) drawn_[taken.part] = *taken.level;
@@ -90,8 +91,9 @@ void LevelStream::take_ahead(Model& model, std::size_t most) {
   if (look_ms_ == 0.0 && looks_next()) return;
   const std::lock_guard lock(mutex_);
   if (trouble_ || tries_out()) return;
+  const auto uploads = static_cast<std::size_t>(expected_share * brings_ms_ * uploaded_a_ms_);
   ahead_ = {.model = &model,
-            .most = std::min(most, static_cast<std::size_t>(expected_share * brings_ms_ * uploaded_a_ms_)),
+            .most = std::min(most, std::max(uploads, taken_at_once)),  // or one would learn nothing any more
             .begin = Clock::now()};
   came_.notify_all();
 }
@@ -107,7 +109,7 @@ void LevelStream::take_on(const std::stop_token& stop) {
            (ahead_->taken == 0 || ahead_->taken < ahead_->most);
   };
   std::unique_lock lock(mutex_);
-  while (came_.wait(lock, stop, is_asked) && !trouble_) {
+  while (came_.wait(lock, stop, is_asked) && !stop.stop_requested() && !trouble_) {
     Ahead& ahead = *ahead_;
     ahead.is_at_work = true;
     lock.unlock();
@@ -124,7 +126,7 @@ void LevelStream::take_on(const std::stop_token& stop) {
     if (trouble) trouble_ = trouble;
     ahead.taken += some.value_or(0);
     ahead.took_ms += took_ms;
-    ahead.ends = ahead.ends || !some;  // what comes next is too much
+    ahead.ends = ahead.ends || (!some && !pieces_.empty());  // what comes next is too much
     ahead.is_at_work = false;
     came_.notify_all();
   }
@@ -171,7 +173,7 @@ std::optional<std::size_t> LevelStream::take_some(Model& model, std::size_t most
 // Nobody else changes a sample that is there.
 void LevelStream::try_out(Model& model, const PartsTrial& trial) {
   is_tried_out_ = true;
-  if (!std::exchange(may_try_, false)) return;
+  if (!std::exchange(may_try_, false) || look_ms_ > 0.0) return;
   Sample& sample = *sample_;
   switch (trial_) {
     case Trial::keeps:

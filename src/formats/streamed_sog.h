@@ -90,8 +90,8 @@ class StreamedSog {
   /// Reads the leaves whose level is another one than when they were read last, and hands them to `take`, one
   /// at a time, maybe in other threads; those that get fewer Gaussians first, then by dB those files that
   /// save the most error per Gaussian, else coarse levels before fine ones. Asks `goes_on` after some, where
-  /// it is not empty, and leaves out the rest if it does not. Throws Error where a file has become
-  /// unreadable.
+  /// it is not empty, and leaves out the rest if it does not; files then come as soon as they are decoded.
+  /// Throws Error where a file has become unreadable.
   void read(const Take& take, const std::function<bool()>& goes_on = {});
   /// Reads the finest levels of some leaves, which does not count as read.
   PartModels finest_of(std::span<const std::size_t> leaves) const;

@@ -74,11 +74,12 @@ void Frame::begin(std::span<const shared::View> views, const FrameSettings& sett
                   const Workings& workings, const std::optional<Probe>& probe) {
   check(workings, settings);
   const Model& model = model_->model();
-  const std::int64_t slots = std::max(
-      {static_cast<std::int64_t>(std::max(model.count(), model.room)), capacity_.slots, workings.slots});
+  const ModelSize& size = model_->size();
+  const std::int64_t slots =
+      std::max({static_cast<std::int64_t>(size.room), capacity_.slots, workings.slots});
   const std::uint64_t splats =
       static_cast<std::uint64_t>(slots) * (views.size() + 1);  // a probe is a view, too
-  shape_ = make_shape(views, settings, model, chosen_supertile_side(settings, workings, splats), probe);
+  shape_ = make_shape(views, settings, model, size, chosen_supertile_side(settings, workings, splats), probe);
   if (model_buffers_ && model_buffers_->precision != settings.precision) {
     model_buffers_.reset();  // first, since both together may not fit
     history_.forget_measured();
@@ -100,7 +101,7 @@ FrameReport Frame::draw_with_quality(std::span<const shared::View> views, const 
   } else {
     do {
       const Probe probe = tolerance_control_.next_probe(views, settings);
-      shape_ = make_shape(views, settings, model_->model(), shape_.supertile_side, probe);
+      shape_ = make_shape(views, settings, model_->model(), model_->size(), shape_.supertile_side, probe);
       shape_.settings.tolerance = tolerance_control_.next_tolerance();
       add(attempt(workings), report);
       tolerance_control_.measured(probed(shape_, counters_),

@@ -245,6 +245,7 @@ std::shared_ptr<ModelBuffers> GpuModel::in(int precision) {
     latest_ = found;
   } else {
     latest_.reset();  // first, since both together may not fit
+    size_ = size_of(model_);
     latest_ = std::make_shared<ModelBuffers>(context_, model_, precision, page_gaussians_);
     wanted = latest_;
   }
@@ -253,6 +254,7 @@ std::shared_ptr<ModelBuffers> GpuModel::in(int precision) {
 
 template <typename Upload>
 void GpuModel::upload_all(const Upload& upload) {
+  size_ = size_of(model_);
   const auto other_is_held = [&] {
     return !all_.at(static_cast<std::size_t>(1 - latest_->precision)).expired();
   };

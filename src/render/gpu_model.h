@@ -67,6 +67,8 @@ class GpuModel {
 
   gl::Context& context() const { return context_; }
   const Model& model() const { return model_; }
+  /// Of the model, as it was uploaded last: frames draw that, whatever became of it since.
+  const ModelSize& size() const { return size_; }
 
   /// The model in that precision: uploaded where no frame has it so. A precision stays on the GPU while a
   /// frame holds it, the last one asked for besides, until a reload of another one. Throws as the constructor
@@ -91,6 +93,7 @@ class GpuModel {
   const Model& model_;
   std::uint32_t page_gaussians_;
   int uploads_ = 0;
+  ModelSize size_;
   std::shared_ptr<ModelBuffers> latest_;
   std::array<std::weak_ptr<ModelBuffers>, 2> all_;  // by precision
 };

@@ -129,7 +129,7 @@ Perspective perspective_of(const FrameSettings& settings, const Model& model) {
 }
 
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                      int supertile_side, const std::optional<Probe>& probe) {
+                      const ModelSize& size, int supertile_side, const std::optional<Probe>& probe) {
   if (views.empty() || views.size() > MAX_VIEWS)
     fail("a frame has 1 to {} views, not {}", MAX_VIEWS, views.size());
   check(settings);
@@ -142,13 +142,13 @@ FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& 
   shape.kernel_px2 = model.kernel_px2;
   shape.antialiased = model.antialiased;
   shape.perspective = perspective_of(settings, model);
-  shape.gaussian_count = static_cast<std::uint32_t>(model.count());
+  shape.gaussian_count = static_cast<std::uint32_t>(size.gaussians);
   if (model.scaffold) {
     shape.offset_count = static_cast<std::uint32_t>(model.scaffold->offset_count);
     shape.views_per_decoding = settings.decode == DECODE_CYCLOPEAN ? 2 : 1;
     shape.anchor_bytes = anchor_bytes(*model.scaffold);
   }
-  shape.gaussian_room = std::max(shape.gaussian_count, static_cast<std::uint32_t>(model.room));
+  shape.gaussian_room = static_cast<std::uint32_t>(size.room);
   shape.slots = starting_slots(shape.gaussian_room);
   shape.asked = static_cast<std::uint32_t>(views.size());
   const auto part_of = [&](std::size_t v) { return settings.parts.empty() ? ViewPart{} : settings.parts[v]; };

@@ -1,6 +1,8 @@
 #pragma once
 // What a frame is made of before anything is drawn: its views with tiles and offsets, and who shares what.
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -86,10 +88,22 @@ struct FrameShape {
 /// What the settings ask for, and otherwise what the model was trained with.
 Perspective perspective_of(const FrameSettings& settings, const Model& model);
 
-/// Throws Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that
-/// contradict each other or the views.
+/// Gaussians of a model, and how many it has room for.
+struct ModelSize {
+  std::size_t gaussians = 0, room = 0;
+};
+inline ModelSize size_of(const Model& model) { return {model.count(), std::max(model.count(), model.room)}; }
+
+/// Of a model of this size, whatever the model says: somebody else may be at its Gaussians. Throws
+/// Error(bad_input) for no views, more than MAX_VIEWS, an empty or huge picture, and settings that contradict
+/// each other or the views.
 FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings, const Model& model,
-                      int supertile_side = 1, const std::optional<Probe>& probe = {});
+                      const ModelSize& size, int supertile_side = 1, const std::optional<Probe>& probe = {});
+inline FrameShape make_shape(std::span<const shared::View> views, const FrameSettings& settings,
+                             const Model& model, int supertile_side = 1,
+                             const std::optional<Probe>& probe = {}) {
+  return make_shape(views, settings, model, size_of(model), supertile_side, probe);
+}
 
 /// Keys of only so many bits as depths of Gaussians within `box` (world) need, in each order group.
 void limit_keys(FrameShape& shape, const Bounds& box);

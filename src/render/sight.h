@@ -25,7 +25,8 @@ class Sight {
                                           const ModelParts& parts, std::optional<int> shrink_most = {});
 
   /// The same of one view, and of its picture only what is in a band: areas of bands side by side add up to
-  /// those of the picture, but for what is hidden, which counts in each.
+  /// those of the picture, but for what is hidden, which counts in each, and as far as they are drawn at its
+  /// size: narrow ones are larger.
   std::vector<SeenPart> look(const shared::View& view, Band band, const FrameSettings& settings,
                              const ModelParts& parts);
 

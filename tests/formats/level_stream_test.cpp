@@ -526,8 +526,9 @@ struct FrameAhead {
 TEST(LevelStream, TakesAheadWhileAFrameIsDrawn) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
+  Model model;
   LevelStream stream(folder.path(), for_db(100.0));
-  Model model = stream.coarsest();
+  model = stream.coarsest();
   FrameAhead frame{stream, model};
   shared::View view = before_all();
   frame.step(view, 1);
@@ -564,34 +565,51 @@ TEST(LevelStream, TakesAheadWhileAFrameIsDrawn) {
 // A sample waits for what is under way, and while it is tried out nothing else comes.
 TEST(LevelStream, TakesNothingAheadBesideASample) {
   const test::TempFolder folder;
-  write_levels(folder, 3000);
-  LevelStream stream(folder.path(), for_db(24.0));
-  Model model = stream.coarsest();
-  std::optional<std::vector<float>> kept;
+  write_levels(folder, 50'000);  // more than come in so many frames
+  Model model;
+  LevelStream stream(folder.path(), for_db(100.0));
+  model = stream.coarsest();
   const auto positions = [&] {
     std::vector<float> x;
-    for (const glm::vec3& p : model.position) x.push_back(p.x);
+    for (std::size_t i = 0; i < model.count(); ++i)
+      if (model.opacity[i] > 0.0f) x.push_back(model.position[i].x);
+    std::ranges::sort(x);
     return x;
   };
-  std::size_t parts = 0;
+  std::vector<float> kept;
+  bool is_there = false;  // the sample, or about to be
   int tried = 0;
-  const PartsTrial trial = {.upload = [&](const ModelParts::Changes&) { ++parts; },
-                            .keep = [&](const shared::View&) { kept = positions(); },
+  const PartsTrial trial = {.upload =
+                                [&](const ModelParts::Changes& changes) {
+                                  EXPECT_FALSE(changes.empty());
+                                  if (tried % 2 == 0) return;
+                                  EXPECT_EQ(positions(), kept) << "put back, and nothing else has come";
+                                  is_there = false;
+                                  ++tried;
+                                },
+                            .keep =
+                                [&](const shared::View&) {
+                                  EXPECT_EQ(stream.parts().gaussians(), stream.gaussians())
+                                      << "planted: what was taken ahead is not on the GPU";
+                                  kept = positions();
+                                  is_there = true;
+                                },
                             .differs =
                                 [&](const shared::View&) {
+                                  EXPECT_NE(positions(), kept) << "planted: no sample";
                                   ++tried;
-                                  EXPECT_EQ(parts % 2, 1u) << "the sample is there, and is not put back yet";
-                                  EXPECT_NE(kept, positions());
                                   return 0.01;
                                 }};
   FrameAhead frame{stream, model};
   shared::View view = before_all();
-  for (int n = 0; n < 200; ++n) {
-    view.anchor.x += n < 100 ? 0.02f : 0.0f;
-    frame.step(view, 1, &trial);
+  for (int n = 0; n < 300; ++n) {
+    view.anchor.x += n < 200 ? 0.02f : 0.0f;
+    const bool was_there = is_there;
+    const ModelParts::Changes changes = frame.step(view, 1, &trial);
+    EXPECT_FALSE(was_there && !changes.empty()) << "beside a sample";
     frame.on_gpu = stream.gaussians();  // with a sample
   }
-  EXPECT_GT(tried, 0);
+  EXPECT_GT(tried, 1);
 }
 
 TEST(LevelStream, EndsWhileItTakesAhead) {

@@ -1,6 +1,7 @@
 // A model on the GPU that several frames draw.
 
 #include "render/support.h"
+#include "scene/reduce.h"
 
 namespace binosplat {
 namespace {
@@ -99,6 +100,23 @@ TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
 }
 
 // Growing by a few blocks, within room that was made at once and beyond it, with a frame in between.
+// Levels are put into a model while what is on the GPU of it is drawn.
+TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
+  const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
+  Frame frame(gpu_model);
+  const std::uint32_t visible = frame.draw(views).visible;
+  const Picture before = frame.read_pictures()[0];
+  const Model more = test::random_model(95, 5000, 2);
+  model.room = 40'000;
+  append(model, more, 0, more.count());
+  EXPECT_EQ(frame.draw(views).visible, visible);
+  EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], before));
+  EXPECT_EQ(frame.shape().gaussian_count, 20'000u);
+  gpu_model->reload();
+  EXPECT_GT(frame.draw(views).visible, visible) << "planted: nothing more";
+  EXPECT_EQ(frame.shape().gaussian_count, 25'000u);
+}
+
 TEST(ModelOfParts, GrowsUnderFrames) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
   Model model;

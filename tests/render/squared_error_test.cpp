@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/frame.h"
 #include "scene/camera.h"
@@ -29,6 +30,24 @@ TEST(SquaredError, OfWhatStaysOnTheGpuIsThatOfPicturesReadBack) {
   EXPECT_GT(read.mean(other_frame.colours()), 1e-4);
   EXPECT_EQ(kept.mean(other_frame.colours()), read.mean(other_frame.colours()));
   EXPECT_NE(half.mean(other_frame.colours()), read.mean(other_frame.colours())) << "planted: half of each";
+}
+
+// More pixels than there are invocations, each of which sums up several.
+TEST(SquaredError, OfLargePicturesIsTheMean) {
+  Picture wanted(1100, 1000);
+  std::vector<glm::vec4> colours(wanted.colour.size(), glm::vec4(0.5f));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    wanted.colour[i] = glm::vec4(0.5f + 0.25f * static_cast<float>(i % 7) / 7.0f);
+    sum += 3.0 * std::pow(static_cast<double>(wanted.colour[i].x) - 0.5, 2);
+  }
+  colours.back() = glm::vec4(5.0f);  // clamped
+  sum += 3.0 * (std::pow(1.0 - static_cast<double>(wanted.colour.back().x), 2) -
+                std::pow(static_cast<double>(wanted.colour.back().x) - 0.5, 2));
+  gl::Buffer drawn(test::gl_context(), "drawn");
+  drawn.upload(colours);
+  const double mean = sum / (3.0 * static_cast<double>(colours.size()));
+  EXPECT_NEAR(SquaredError(test::gl_context(), std::vector{wanted}).mean(drawn), mean, 1e-6 * mean);
 }
 
 TEST(SquaredError, OfWindowsIsThatOfTheWholePictures) {
