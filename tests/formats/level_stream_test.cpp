@@ -501,7 +501,7 @@ struct FrameAhead {
   ModelParts::Changes step(const shared::View& view, std::size_t most, const PartsTrial* trial = nullptr) {
     const std::size_t before = stream.gaussians();
     EXPECT_EQ(before, on_gpu) << "before anybody takes them";
-    const ModelParts::Changes changes = stream.take(model, most);
+    ModelParts::Changes changes = stream.take(model, most);
     on_gpu = stream.gaussians();
     new_most = std::max(new_most, on_gpu - std::min(on_gpu, before));
     const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
