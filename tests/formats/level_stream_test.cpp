@@ -51,6 +51,16 @@ std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dv
   return counts;
 }
 
+/// Along x, of all Gaussians that are drawn, in order.
+std::vector<float> positions(const Model& model) {
+  std::vector<float> found;
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    if (model.opacity[i] > 0.0f) found.push_back(model.position[i].x);
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
 /// Of all parts, in a picture of 100 x 100 px.
 shared::View before_all() {
   shared::View view = at({0, 0, -30});
@@ -107,20 +117,12 @@ TEST(LevelStream, EndsWithWhatWasWantedLast) {
   REQUIRE_FIXTURES(folder);
   const fs::path path = folder / "sog/st-lod";
   const std::vector<glm::dvec3> places = {far_away, beside_first, beside_last, {-8, 0, 4}, {0, 0, 12}};
-  const auto sorted = [](const Model& model) {
-    std::vector<float> found;
-    for (std::size_t i = 0; i < model.count(); ++i) {
-      if (model.opacity[i] > 0.0f) found.push_back(model.position[i].x);
-    }
-    std::ranges::sort(found);
-    return found;
-  };
   std::vector<std::vector<float>> alone;
   for (const glm::dvec3& place : places) {
     LevelStream stream(path, coarse_to_30_px);
     Model model = stream.coarsest();
     follow(stream, model, place, 1);
-    alone.push_back(sorted(model));
+    alone.push_back(positions(model));
   }
   std::mt19937 random(5);
   LevelStream stream(path, coarse_to_30_px);
@@ -135,8 +137,8 @@ TEST(LevelStream, EndsWithWhatWasWantedLast) {
     }
     if (n % 5 != 0) continue;
     follow(stream, model, places[place], 1);
-    ASSERT_EQ(sorted(model), alone[place]) << n;
-    met.insert(sorted(model));
+    ASSERT_EQ(positions(model), alone[place]) << n;
+    met.insert(positions(model));
   }
   EXPECT_GE(met.size(), 3u);
 }
@@ -517,8 +519,8 @@ struct FrameAhead {
     return changes;
   }
 
-  bool settles(const shared::View& view, std::size_t most, const PartsTrial* trial = nullptr) {
-    for (int n = 0; n < 10'000 && !stream.settled(); ++n) step(view, most, trial);
+  bool settles(const shared::View& view, std::size_t most) {
+    for (int n = 0; n < 10'000 && !stream.settled(); ++n) step(view, most);
     return stream.settled();
   }
 };
@@ -552,14 +554,7 @@ TEST(LevelStream, TakesAheadWhileAFrameIsDrawn) {
     return std::vector(parts.size(), SeenPart{50.0, 30.0});
   };
   ASSERT_TRUE(frames_until(other, same, view, look, [&] { return other.settled(); }));
-  const auto sorted = [](const Model& of) {
-    std::vector<float> found;
-    for (std::size_t i = 0; i < of.count(); ++i)
-      if (of.opacity[i] > 0.0f) found.push_back(of.position[i].x);
-    std::ranges::sort(found);
-    return found;
-  };
-  EXPECT_EQ(sorted(model), sorted(same));
+  EXPECT_EQ(positions(model), positions(same));
 }
 
 // A sample waits for what is under way, and while it is tried out nothing else comes.
@@ -569,13 +564,6 @@ TEST(LevelStream, TakesNothingAheadBesideASample) {
   Model model;
   LevelStream stream(folder.path(), for_db(100.0));
   model = stream.coarsest();
-  const auto positions = [&] {
-    std::vector<float> x;
-    for (std::size_t i = 0; i < model.count(); ++i)
-      if (model.opacity[i] > 0.0f) x.push_back(model.position[i].x);
-    std::ranges::sort(x);
-    return x;
-  };
   std::vector<float> kept;
   bool is_there = false;  // the sample, or about to be
   int tried = 0;
@@ -583,7 +571,7 @@ TEST(LevelStream, TakesNothingAheadBesideASample) {
                                 [&](const ModelParts::Changes& changes) {
                                   EXPECT_FALSE(changes.empty());
                                   if (tried % 2 == 0) return;
-                                  EXPECT_EQ(positions(), kept) << "put back, and nothing else has come";
+                                  EXPECT_EQ(positions(model), kept) << "put back, and nothing else has come";
                                   is_there = false;
                                   ++tried;
                                 },
@@ -591,12 +579,12 @@ TEST(LevelStream, TakesNothingAheadBesideASample) {
                                 [&](const shared::View&) {
                                   EXPECT_EQ(stream.parts().gaussians(), stream.gaussians())
                                       << "planted: what was taken ahead is not on the GPU";
-                                  kept = positions();
+                                  kept = positions(model);
                                   is_there = true;
                                 },
                             .differs =
                                 [&](const shared::View&) {
-                                  EXPECT_NE(positions(), kept) << "planted: no sample";
+                                  EXPECT_NE(positions(model), kept) << "planted: no sample";
                                   ++tried;
                                   return 0.01;
                                 }};

@@ -99,7 +99,6 @@ TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {
   }
 }
 
-// Growing by a few blocks, within room that was made at once and beyond it, with a frame in between.
 // Levels are put into a model while what is on the GPU of it is drawn.
 TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
@@ -117,6 +116,7 @@ TEST_F(SharedModel, IsDrawnAsItWasUploaded) {
   EXPECT_EQ(frame.shape().gaussian_count, 25'000u);
 }
 
+// Growing by a few blocks, within room that was made at once and beyond it, with a frame in between.
 TEST(ModelOfParts, GrowsUnderFrames) {
   const std::vector<shared::View> views = {make_view(test::front_camera(60, 50, 60))};
   Model model;

@@ -46,6 +46,13 @@ Indices each(std::size_t count) {
   return indices;
 }
 
+/// So many Gaussians, dealt out to parts in turn.
+Indices dealt(std::size_t count, std::size_t parts) {
+  Indices indices(parts);
+  for (std::uint32_t i = 0; i < count; ++i) indices[i % parts].push_back(i);
+  return indices;
+}
+
 shared::View front() { return make_view(test::front_camera(side, side, focal)); }
 
 /// A wall 2 units ahead, balls in front of it and behind it, and one behind the eye.
@@ -173,9 +180,7 @@ TEST(Sight, OfSeveralViewsAndOfSmallerPictures) {
 // Whatever the width: bands end between cells.
 TEST(Sight, OfBandsAddsUp) {
   const Model model = test::random_model(64, 3000, 0);
-  Indices indices(7);
-  for (std::uint32_t i = 0; i < 3000; ++i) indices[i % 7].push_back(i);
-  const Parted parted(model, indices);
+  const Parted parted(model, dealt(model.count(), 7));
   Sight sight(parted.gpu_model);
   for (const int width : {200, static_cast<int>(2 * BLEND_CELL + 1)}) {
     const std::vector<shared::View> views = {make_view(test::front_camera(width, 90, focal))};
@@ -198,9 +203,7 @@ TEST(Sight, OfBandsAddsUp) {
 // Narrow ones show what a picture that is not drawn smaller does.
 TEST(Sight, OfNarrowBandsIsThatOfWholeSize) {
   const Model model = test::random_model(64, 3000, 0);
-  Indices indices(7);
-  for (std::uint32_t i = 0; i < 3000; ++i) indices[i % 7].push_back(i);
-  const Parted parted(model, indices);
+  const Parted parted(model, dealt(model.count(), 7));
   Sight sight(parted.gpu_model);
   const std::vector<shared::View> views = {make_view(test::front_camera(1024, 1024, 4.0 * focal))};
   const auto small = sight.look(views, {}, parted.parts).at(0),
@@ -220,8 +223,7 @@ TEST(Sight, OfNarrowBandsIsThatOfWholeSize) {
 
 TEST(Sight, ForgetsWhatItSaw) {
   const Model model = test::random_model(98, 2000, 0);
-  Indices indices(9);
-  for (std::uint32_t i = 0; i < model.count(); ++i) indices[i % 9].push_back(i);
+  const Indices indices = dealt(model.count(), 9);
   const Parted parted(model, indices);
   Camera beside = test::front_camera(side, side, focal);
   beside.position.x += 0.2;
@@ -246,8 +248,7 @@ TEST(Sight, ForgetsWhatItSaw) {
 
 TEST(Sight, InHalfPrecision) {
   const Model model = test::random_model(97, 2000, 1);
-  Indices indices(3);
-  for (std::uint32_t i = 0; i < model.count(); ++i) indices[i % 3].push_back(i);
+  const Indices indices = dealt(model.count(), 3);
   const auto full = Parted(model, indices).look({front()}).at(0);
   const auto half =
       Parted(model, indices, 0, PRECISION_HALF).look({front()}, {.precision = PRECISION_HALF}).at(0);
