@@ -62,6 +62,9 @@ void main() {
         stage(i, splat);
       }
       reached[i] = bits;
+#if SUMS == SUMS_SEEN
+      batch_measured[i] = 0;
+#endif
     }
     barrier();
     if (self < BLOCKS) list_own(self);
@@ -75,7 +78,16 @@ void main() {
       }
     }
     cut = cut || (!are_done() && next < count);
+#if SUMS == SUMS_SEEN
+    barrier();
+    for (uint k = 0u; k < ROUND / INVOCATIONS; ++k) {
+      uint i = k * INVOCATIONS + self;
+      if (batch + i < end) pass_on(values[batch + i], batch_measured[i]);
+    }
+#endif
   }
   if (cut || batch < end) atomicAdd(counters.loop_cut, 1u);
+#if SUMS == SUMS_NONE  // the picture stays
   write_pixels();
+#endif
 }

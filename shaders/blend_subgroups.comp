@@ -9,7 +9,8 @@
 #if LOSSY  // whose blocks are those of docs/method.md 5.2
 #define ROUND LOSSY_STEP
 #else
-#define ROUND (LISTS == LISTS_LONG ? 128 : 64)  // splats at a time: with more in shared memory there is room for fewer groups
+// Splats at a time: with more in shared memory there is room for fewer groups. A look waits for its longest list.
+#define ROUND (LISTS == LISTS_SHORT ? 64 : SUMS == SUMS_SEEN ? 256 : 128)
 #endif
 #define WORDS (ROUND / 32)
 #define BATCH (ROUND + 1)  // and one that leaves no mark
@@ -56,12 +57,19 @@ void main() {
   if (self == 0u) blocks_done = 0u;
   bool ended = false;  // of the block
   uint next = value_at(begin + self);
+#if SUMS == SUMS_SEEN
+  uint at_hand = 0u;  // the splat that this invocation took to the batch
+#endif
 #if LISTS == LISTS_LONG  // few groups, which wait for memory: they read the next splats while these are blended
   Splat next_splat = SPLAT(next);
   next = value_at(begin + ROUND + self);
 #endif
   for (uint batch = begin; batch < end; batch += ROUND) {
     if (self < ROUND) {
+#if SUMS == SUMS_SEEN
+      at_hand = value_at(batch + self);
+      batch_measured[self] = 0;
+#endif
 #if LISTS == LISTS_LONG
       Splat splat = next_splat;
       next_splat = SPLAT(next);
@@ -88,9 +96,15 @@ void main() {
 #endif
       if (ended && lane == 0u) atomicAdd(blocks_done, 1u);
     }
+#if SUMS == SUMS_SEEN
+    barrier();
+    if (self < ROUND) pass_on(at_hand, batch_measured[self]);
+#endif
     if (batch + ROUND >= end) break;
     barrier();
     if (blocks_done == BLOCKS) break;
   }
+#if SUMS == SUMS_NONE  // the picture stays
   write_pixels();
+#endif
 }

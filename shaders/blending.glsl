@@ -51,7 +51,8 @@ layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat, 
 #define MEASURED uint
 shared uint batch_measured[BATCH];
 #elif SUMS != SUMS_NONE
-layout(std430, binding = 7) buffer Measured { uint measured[]; };  // by splat and channel (seen: one), 64 bits, low first
+// By splat and channel, 64 bits, low first. Seen: by splat, SEEN_LOW_BITS and those above.
+layout(std430, binding = 7) buffer Measured { uint measured[]; };
 #if SUMS == SUMS_TRANSPOSED
 uniform uint scale;  // bits of a float
 #endif
@@ -132,22 +133,25 @@ float median_depth(uint at[AHEAD], float weights[AHEAD], float light) {
 }
 
 // What a tile measured of a splat, to the buffer.
-#if SUMS != SUMS_NONE
-void add_to(uint place, int sum) {
-  if (sum == 0) return;
-  uint at = 2u * place;
-  uint before = atomicAdd(measured[at], uint(sum));
-  uint above = (sum < 0 ? 0xffffffffu : 0u) + (before + uint(sum) < before ? 1u : 0u);
-  if (above != 0u) atomicAdd(measured[at + 1u], above);
-}
-
 #if SUMS == SUMS_SEEN
-void pass_on(uint splat, int sum) { add_to(splat, sum); }
-#else
-void pass_on(uint splat, ivec4 sums) {
-  for (uint c = 0u; c < 4u; ++c) add_to(4u * splat + c, sums[c]);
+// In two parts without a carry, for which one would wait: there is room for 2^26 px, and for 2^18 tiles, in a look that is
+// half as large as a picture or less.
+void pass_on(uint splat, int sum) {
+  uint low = uint(sum) & ((1u << SEEN_LOW_BITS) - 1u), high = uint(sum) >> SEEN_LOW_BITS;
+  if (low != 0u) atomicAdd(measured[2u * splat], low);
+  if (high != 0u) atomicAdd(measured[2u * splat + 1u], high);
 }
-#endif
+#elif SUMS != SUMS_NONE
+void pass_on(uint splat, ivec4 sums) {
+  for (uint c = 0u; c < 4u; ++c) {
+    int sum = sums[c];
+    if (sum == 0) continue;
+    uint at = 2u * (4u * splat + c);
+    uint before = atomicAdd(measured[at], uint(sum));
+    uint above = (sum < 0 ? 0xffffffffu : 0u) + (before + uint(sum) < before ? 1u : 0u);
+    if (above != 0u) atomicAdd(measured[at + 1u], above);
+  }
+}
 #elif RECORDS
 void pass_on(uint splat, uint most) {
   if (most != 0u) atomicMax(measured[splat], most);

@@ -12,7 +12,7 @@ layout(local_size_x = THREADS) in;
 layout(std430, binding = 0) readonly buffer Views { View views[]; };
 layout(std430, binding = 2) readonly buffer Arguments { DispatchArguments arguments[]; };
 layout(std430, binding = 3) readonly buffer Indices { uint indices[]; };    // Gaussian of each slot
-layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat, 64 bits, low first
+layout(std430, binding = 4) buffer Sums { uvec2 sums[]; };              // by splat, SEEN_LOW_BITS and those above
 layout(std430, binding = 5) readonly buffer Owners { uint owners[]; };      // part by block of Gaussians
 layout(std430, binding = 6) buffer OfParts { uint of_parts[]; };            // (view, part), two of 64 bits
 uniform uint part_count;
@@ -37,8 +37,10 @@ void main() {
   uint part = owners[indices[slot] / block_size];
   for (uint v = view_begin; v < view_end; ++v) {
     uint from = splat_of(slot, v);
-    uvec2 area = sums[from];
-    if (area != uvec2(0)) sums[from] = uvec2(0);  // for the next look
+    uvec2 sum = sums[from];
+    if (sum != uvec2(0)) sums[from] = uvec2(0);  // for the next look
+    uint low = sum.x + (sum.y << SEEN_LOW_BITS);
+    uvec2 area = uvec2(low, (sum.y >> (32 - SEEN_LOW_BITS)) + (low < sum.x ? 1u : 0u));
     if (area.y == 0u) area.x = max(area.x, hidden);
     uint at = 4u * (v * part_count + part);
     add(at, area);

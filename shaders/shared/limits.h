@@ -65,6 +65,7 @@
 // show no more than half of its square.
 #define SEEN_SCALE 1048576.0
 #define SEEN_LEAST 0.01
+#define SEEN_LOW_BITS 14  // of a sum over a tile: summed up apart from those above
 // What a blend that draws no picture sums over the pixels of each splat.
 #define SUMS_NONE 0
 #define SUMS_TRANSPOSED 1

@@ -41,8 +41,9 @@ LevelStream::LevelStream(const std::filesystem::path& path, Need need)
 
 Model LevelStream::coarsest(std::span<const shared::View> views) {
   const DetailNeed need = need_(scene_, views);
-  asked_by_db_ = need.db.has_value();
-  shares_ = need.shares && scene_.has_errors();
+  shows_all_ = scene_.finest() <= std::min(need.all_up_to, need.most);
+  asked_by_db_ = need.db && !shows_all_;
+  shares_ = need.shares && scene_.has_errors() && !shows_all_;
   by_db_ = asked_by_db_ || (shares_ && together_db_ > 0.0);
   scene_.choose({}, need);
   Model model = scene_.like();
@@ -198,7 +199,9 @@ void LevelStream::choose_on(const std::stop_token& stop) {
 }
 
 void LevelStream::choose(const Wish& wish) {
-  DetailNeed need = scene_.sharing(need_(scene_, wish.views), wish.together_db);
+  DetailNeed need = need_(scene_, wish.views);
+  if (shows_all_) need.db.reset();
+  if (shares_) need = scene_.sharing(need, wish.together_db);
   need.stays_s = stays_s;
   need.found = wish.found;
   auto chosen = scene_.chooser().choose(wish.views, need, wish.seen);

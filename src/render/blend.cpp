@@ -25,11 +25,11 @@ enum class Lists { of_short, of_long };
 enum class Size { small, large };
 constexpr double large_tiles = 8.0;  // that a splat touches
 
-// Who measures or sums up has the tile's splats before all its pixels; what tests nothing shows what tests
-// lose; and other sizes of tiles are for comparing. A software renderer draws some invocations by one of its
-// own, and its loads take the time.
+// Who measures or sums up has the tile's splats before all its pixels, but for what is seen, for which frames
+// wait; what tests nothing shows what tests lose; and other sizes of tiles are for comparing. A software
+// renderer draws some invocations by one of its own, and its loads take the time.
 std::string name_of_program(const gl::Context& context, const FrameShape& shape, const Variant& variant) {
-  const bool plain = !variant.records && variant.sums == SUMS_NONE && variant.show == SHOW_PICTURE;
+  const bool plain = variant.draws() ? !variant.records : variant.sums == SUMS_SEEN;
   const bool usual = shape.settings.tiles != TILES_ALL && shape.settings.tile_size == TILE_SIZE_DEFAULT;
   if (!plain || !usual) return "blend.comp";
   if (context.limits().subgroups_of_32) return "blend_subgroups.comp";

@@ -42,7 +42,7 @@ class Sight {
 
   Frame frame_;
   gl::Dispatcher dispatcher_;
-  gl::Buffer sums_;    // by splat, 64 bits of alpha T^2, low first
+  gl::Buffer sums_;    // by splat, alpha T^2: SEEN_LOW_BITS of what tiles have, and those above
   gl::Buffer owners_;  // uint by block
   gl::Buffer
       of_parts_;       // (view, part): 64 bits of alpha T^2, and of that times the logarithm of the distance

@@ -53,8 +53,8 @@ void blend_transposed(gl::Dispatcher& dispatcher, const FrameShape& shape, Frame
 void blend_changes(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
                    const gl::Buffer& sums);
 
-/// Adds alpha T^2, while T is SEEN_LEAST at least, over the pixels of each splat to `sums`, 64 bits by splat
-/// and low first, in multiples of 1 / SEEN_SCALE.
+/// Adds alpha T^2, while T is SEEN_LEAST at least, over the pixels of each splat to `sums`, in multiples of
+/// 1 / SEEN_SCALE: by splat, SEEN_LOW_BITS of what each tile has, and those above.
 void blend_seen(gl::Dispatcher& dispatcher, const FrameShape& shape, FrameBuffers& buffers,
                 const gl::Buffer& sums);
 

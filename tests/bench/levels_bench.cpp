@@ -39,6 +39,7 @@ struct Plan {
   int shrink = 1;
   std::size_t gaussians_a_frame = 1 << 18;
   std::size_t most = std::numeric_limits<std::size_t>::max();
+  std::size_t all_up_to = few_gaussians;
   render::FrameSettings settings;
 };
 
@@ -126,9 +127,10 @@ class Flight {
         plan_(plan),
         path_(path),
         levels_(plan.scene,
-                [need = need_of(detail), most = plan.most](const StreamedSog&,
-                                                           std::span<const shared::View>) mutable {
+                [need = need_of(detail), most = plan.most, up_to = plan.all_up_to](
+                    const StreamedSog&, std::span<const shared::View>) mutable {
                   need.most = most;
+                  need.all_up_to = up_to;
                   return need;
                 }),
         others_(context.allocated_bytes()),
@@ -392,6 +394,7 @@ int main(int argc, char** argv) {
   app.add_option("--rate", plan.rate, "Frames a second (90)")->check(CLI::Range(1.0, 1000.0));
   app.add_option("--a-frame", plan.gaussians_a_frame, "Gaussians that may be new in a frame (262144)");
   app.add_option("--most", plan.most, "Gaussians of the model, at most");
+  app.add_option("--all-up-to", plan.all_up_to, "By dB: Gaussians of which all are drawn (524288)");
   app.add_option("--quality", plan.settings.quality, "dB, as of `render`");
   app.add_option("--json", plan.json, "Append the rows to this file, a line each");
   app.add_option("--timeline", plan.timeline,

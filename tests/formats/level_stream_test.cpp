@@ -491,6 +491,54 @@ TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
   EXPECT_TRUE(takes_where_it_looked(0, LevelStream::brings_most_ms)) << "planted: a short one";
 }
 
+// What looks take is more than what levels of few Gaussians save: all are shown.
+TEST(LevelStream, LooksAtNothingWhereFewGaussiansAreAll) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  const auto looks = [&](DetailNeed need, double together_db) {
+    LevelStream stream(folder.path(),
+                       [need](const StreamedSog&, std::span<const shared::View>) { return need; });
+    stream.share(together_db);
+    Model model = stream.coarsest();
+    bool looked = false;
+    const auto look = [&](const shared::View&, Band, const ModelParts& parts) {
+      looked = true;
+      return std::vector(parts.size(), SeenPart{50.0, 30.0});
+    };
+    EXPECT_TRUE(frames_until(stream, model, before_all(), look, [&] { return stream.settled(); }))
+        << "it hangs";
+    if (!looked) {
+      EXPECT_EQ(stream.gaussians(), 3000u);
+      EXPECT_FALSE(stream.predicted_psnr()) << "nothing is lost";
+      EXPECT_EQ(stream.left(), together_db);
+    }
+    return looked;
+  };
+  EXPECT_FALSE(looks({.db = 40.0, .all_up_to = 3000}, 0.0));
+  EXPECT_FALSE(looks({.shares = true, .all_up_to = 3000}, 40.0));
+  EXPECT_TRUE(looks({.db = 40.0, .all_up_to = 2999}, 0.0)) << "planted: too many";
+  EXPECT_TRUE(looks({.most = 2999, .db = 40.0, .all_up_to = 3000}, 0.0)) << "planted: there is no room";
+}
+
+// A window that grows leaves less room: then as many as fit, and nobody goes by dB in the midst of it.
+TEST(LevelStream, GoesOnWithoutLooksWhereRoomGrowsLess) {
+  const test::TempFolder folder;
+  write_levels(folder, 3000);
+  LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View> views) {
+    return DetailNeed{.most = views.empty() ? 3000u : 2000u, .db = 40.0, .all_up_to = 3000};
+  });
+  Model model = stream.coarsest();
+  const auto look = [](const shared::View&, Band, const ModelParts& parts) {
+    ADD_FAILURE() << "it looks";
+    return std::vector<SeenPart>(parts.size());
+  };
+  EXPECT_TRUE(frames_until(stream, model, before_all(), look, [&] { return stream.settled(); }))
+      << "it hangs";
+  EXPECT_LE(stream.gaussians(), 2000u);
+  EXPECT_GT(stream.gaussians(), 1000u);
+  EXPECT_FALSE(stream.predicted_psnr());
+}
+
 // A frame that takes what came while the one before it was drawn, looks where it took nothing, and then has
 // more put into the model beside it.
 struct FrameAhead {

@@ -65,6 +65,15 @@ TEST_F(SubgroupShaders, Compile) {
         defines.insert(defines.end(), tiles.begin(), tiles.end());
         expect_compiles("blend_subgroups.comp", defines, std::string(lists) + supertile_side + half);
       }
+      for (const auto& [lists, column] : {std::array{"0", "2"}, {"0", "4"}, {"1", "1"}}) {
+        Defines defines = {{"COLUMN", column}, {"AHEAD", *lists == '1' ? "8" : "4"},
+                           {"LISTS", lists},   {"RECORDS", "0"},
+                           {"SUMS", "3"},      {"SHOW", "0"},
+                           {"DEPTH", "0"},     {"LOSSY", "0"},
+                           {"CANVASES", "0"}};
+        defines.insert(defines.end(), tiles.begin(), tiles.end());
+        expect_compiles("blend_subgroups.comp", defines, std::string("seen ") + lists + column);
+      }
     }
   }
   for (const char* name : {"pairs.comp", "project_count_tall.comp"}) {

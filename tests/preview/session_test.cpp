@@ -10,8 +10,10 @@
 #include "formats/model_file.h"
 #include "formats/pose_file.h"
 #include "measure/metrics.h"
+#include "support/broken.h"
 #include "support/fixtures.h"
 #include "support/gl.h"
+#include "support/level_errors.h"
 #include "support/models.h"
 #include "support/program.h"
 
@@ -93,6 +95,29 @@ TEST(Session, OtherLevelsTakeThePlaceOfThoseThatAreThere) {
   session->choices.show = SHOW_PICTURE;
   session->change_show();
   EXPECT_EQ(apart(picture(*session), of_finest), 0.0);
+}
+
+TEST(Session, LevelsGoByWhatItShows) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  const test::Copy scene(fixtures / "sog/st-lod");
+  test::add_level_errors(scene);
+  const auto gaussians_for = [&](double db) {
+    const auto need = [db](const StreamedSog&, std::span<const shared::View>) {
+      return DetailNeed{.db = db};
+    };
+    LevelStream levels(scene.path(), need);
+    Session session(test::gl_context(), levels.coarsest(),
+                    {look_at({0, -1, -20}, {0, -1, 0}, {0, -1, 0}, 60, 64, 40)}, glm::dvec3(0, -1, 0), {},
+                    folder.path());
+    session.resize({128, 40});
+    do session.follow(levels);
+    while (!levels.settled());
+    EXPECT_GT(levels.predicted_psnr(), db);
+    return levels.gaussians();
+  };
+  EXPECT_EQ(gaussians_for(60.0), 1000u);
+  EXPECT_LT(gaussians_for(5.0), 1000u);
 }
 
 TEST(Session, SmallerPicturesAreDrawnWhileFramesAreLate) {

@@ -2,6 +2,7 @@
 
 #include "render/sight.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <numeric>
@@ -147,6 +148,45 @@ TEST(Sight, IsWhatTheReferenceSees) {
   EXPECT_GT(differing(0), model.count() / 10);
 }
 
+// Tiles of the usual size are drawn block by block, others as a whole; some lists are long, and most of each
+// is needed. A few Gaussians at the brink of what can be seen are in some tiles' lists only, and count as
+// hidden.
+TEST(Sight, IsTheSameWhateverSummedItUp) {
+  Model model = test::random_model(94, 60000, 0);
+  for (float& opacity : model.opacity) opacity = 0.004f + 0.01f * opacity;
+  const Parted parted(model, dealt(model.count(), 100));
+  const std::vector<shared::View> views = {make_view(test::front_camera(96, 64, 96))};
+  const auto usual = parted.look(views).at(0);
+  const auto is_usual = [&](int tile_size) {
+    const auto other = parted.look(views, {.tile_size = tile_size}).at(0);
+    const double unnoticed = tile_size == TILE_SIZE_DEFAULT ? 0.0 : 1e-4;
+    const auto same = [&](const SeenPart& a, const SeenPart& b) {
+      return std::abs(a.area - b.area) <= unnoticed && std::abs(a.distance - b.distance) <= unnoticed;
+    };
+    return std::ranges::equal(usual, other, same);
+  };
+  EXPECT_TRUE(is_usual(32));
+  gl::Context& context = test::gl_context();
+  context.use_subgroups(false);
+  EXPECT_TRUE(is_usual(TILE_SIZE_DEFAULT));
+  context.use_subgroups(true);
+  const auto misses = [&](const std::string& shader, const std::string& what, const std::string& instead) {
+    const test::FaultyShaders faulty(shader, what, instead);
+    return !is_usual(TILE_SIZE_DEFAULT);
+  };
+  if (context.software()) {
+    EXPECT_TRUE(misses("blend_blocks.comp", "batch_measured[i] = 0;", ""));
+    EXPECT_TRUE(misses("blend_blocks.comp", "pass_on(values[batch + i], batch_measured[i])",
+                       "pass_on(values[begin + i], batch_measured[i])"));
+  } else if (context.limits().subgroups_of_32) {
+    EXPECT_TRUE(misses("blend_subgroups.comp", "batch_measured[self] = 0;", ""));
+    EXPECT_TRUE(misses("blend_subgroups.comp", "at_hand = value_at(batch + self)",
+                       "at_hand = value_at(begin + self)"));
+  }
+  const test::FaultyShaders faulty("blending.glsl", "atomicAdd(measured[2u * splat + 1u], high)", "high");
+  EXPECT_FALSE(is_usual(32));
+}
+
 // Eyes of one order and of two, at once and by themselves; a smaller picture tells nearly the same.
 TEST(Sight, OfSeveralViewsAndOfSmallerPictures) {
   const Model model = test::random_model(96, 3000, 0);
@@ -242,7 +282,7 @@ TEST(Sight, ForgetsWhatItSaw) {
     return all_same;
   };
   EXPECT_TRUE(same());
-  const test::FaultyShaders faulty("parts_seen.comp", "if (area != uvec2(0)) sums[from] = uvec2(0);", "");
+  const test::FaultyShaders faulty("parts_seen.comp", "if (sum != uvec2(0)) sums[from] = uvec2(0);", "");
   EXPECT_FALSE(same());
 }
 
