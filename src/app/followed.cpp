@@ -7,7 +7,6 @@
 #include "app/detail.h"
 #include "app/load_scene.h"
 #include "base/clock.h"
-#include "formats/level_stream.h"
 #include "formats/model_file.h"
 #include "measure/metrics.h"
 #include "scene/camera.h"
@@ -30,7 +29,6 @@ std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> v
 DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
                        const StreamedSog& scene, std::span<const shared::View> views) {
   DetailNeed need = options.detail.value_or(DetailNeed{.shares = true});
-  need.all_up_to = few_gaussians;
   if (options.gpu_memory) {
     const std::vector<shared::View> pair(
         2, make_view(look_at({0, 0, -1}, {0, 0, 0}, {0, -1, 0}, 60, 1280, 720)));

@@ -33,9 +33,6 @@ struct DetailNeed {
   double stays_s = 0.0;
   double found = 1.0;  // by dB: what levels were found to lose, of what is predicted (formats/level_sample.h)
   bool shares = false;  // nothing was asked for: levels may lose a part of what frames may
-  /// By dB, for frames that follow one another (LevelStream): a scene of no more Gaussians than these is
-  /// shown at its finest levels.
-  std::size_t all_up_to = 0;
 };
 
 // Levels and what a frame leaves out of them (FrameSettings::quality) share a budget where their squared

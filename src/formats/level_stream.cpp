@@ -36,12 +36,12 @@ bool same(std::span<const shared::View> a, std::span<const shared::View> b) {
 
 }  // namespace
 
-LevelStream::LevelStream(const std::filesystem::path& path, Need need)
-    : scene_(path), need_(std::move(need)), parts_(scene_.parts()) {}
+LevelStream::LevelStream(const std::filesystem::path& path, Need need, std::size_t all_up_to)
+    : scene_(path), need_(std::move(need)), parts_(scene_.parts()), all_up_to_(all_up_to) {}
 
 Model LevelStream::coarsest(std::span<const shared::View> views) {
   const DetailNeed need = need_(scene_, views);
-  shows_all_ = scene_.finest() <= std::min(need.all_up_to, need.most);
+  shows_all_ = scene_.finest() <= std::min(all_up_to_, need.most);
   asked_by_db_ = need.db && !shows_all_;
   shares_ = need.shares && scene_.has_errors() && !shows_all_;
   by_db_ = asked_by_db_ || (shares_ && together_db_ > 0.0);

@@ -21,8 +21,8 @@
 
 namespace binosplat {
 
-/// DetailNeed::all_up_to that serves: of so few, coarser levels save less of a moving head's frames (0.1 to
-/// 0.3 ms on an H200) than looks (0.3 in the mean) and samples (0.15) take.
+/// Of so few, coarser levels save less of a moving head's frames (0.1 to 0.3 ms on an H200) than looks (0.3
+/// in the mean) and samples (0.15) take.
 inline constexpr std::size_t few_gaussians = 1 << 19;
 
 /// A streamed SOG whose levels are chosen by one thread and read by another. The parts of its model that are
@@ -33,8 +33,9 @@ class LevelStream {
   /// What views of a frame need; called by the thread that chooses.
   using Need = std::function<DetailNeed(const StreamedSog& scene, std::span<const shared::View> views)>;
 
-  /// Throws Error as StreamedSog does.
-  LevelStream(const std::filesystem::path& path, Need need);
+  /// Where it would go by dB, a scene of `all_up_to` Gaussians or fewer is shown at its finest levels, if
+  /// there is room at first. Throws Error as StreamedSog does.
+  LevelStream(const std::filesystem::path& path, Need need, std::size_t all_up_to = 0);
   /// Waits for what is being decoded.
   ~LevelStream() = default;
   LevelStream(const LevelStream&) = delete;
@@ -158,7 +159,8 @@ class LevelStream {
   StreamedSog scene_;  // the reading thread's, once there is one, and its chooser that of the other
   Need need_;
   ModelParts parts_;
-  bool shows_all_ = false;                     // DetailNeed::all_up_to
+  std::size_t all_up_to_;
+  bool shows_all_ = false;                     // the finest levels
   bool asked_by_db_ = false, shares_ = false;  // as the need says, but then
   double together_db_ = 0.0;
   bool by_db_ = false;

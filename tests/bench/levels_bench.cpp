@@ -126,13 +126,14 @@ class Flight {
       : context_(context),
         plan_(plan),
         path_(path),
-        levels_(plan.scene,
-                [need = need_of(detail), most = plan.most, up_to = plan.all_up_to](
-                    const StreamedSog&, std::span<const shared::View>) mutable {
-                  need.most = most;
-                  need.all_up_to = up_to;
-                  return need;
-                }),
+        levels_(
+            plan.scene,
+            [need = need_of(detail), most = plan.most](const StreamedSog&,
+                                                       std::span<const shared::View>) mutable {
+              need.most = most;
+              return need;
+            },
+            plan.all_up_to),
         others_(context.allocated_bytes()),
         gpu_model_(std::make_shared<render::GpuModel>(context, model_ = coarsest())),
         frame_(gpu_model_),
@@ -268,9 +269,9 @@ class Flight {
     before_.add(frame_.colours(), pixels_of(views));
     others_ += context_.allocated_bytes() - bytes;
     const ModelParts::Changes changes = levels_.take(model_, plan_.gaussians_a_frame);
-    if (changes.empty()) return levels_.take_ahead(model_, plan_.gaussians_a_frame);
     gpu_model_->reload(changes);
     levels_.take_ahead(model_, plan_.gaussians_a_frame);
+    if (changes.empty()) return;
     frame_.draw(views, settings());
     numbers_.jump_db.push_back(before_.psnr(frame_.colours()));
   }

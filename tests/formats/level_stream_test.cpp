@@ -495,9 +495,9 @@ TEST(LevelStream, TakesWhatALookLeavesTimeFor) {
 TEST(LevelStream, LooksAtNothingWhereFewGaussiansAreAll) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
-  const auto looks = [&](DetailNeed need, double together_db) {
-    LevelStream stream(folder.path(),
-                       [need](const StreamedSog&, std::span<const shared::View>) { return need; });
+  const auto looks = [&](DetailNeed need, std::size_t all_up_to, double together_db) {
+    LevelStream stream(
+        folder.path(), [need](const StreamedSog&, std::span<const shared::View>) { return need; }, all_up_to);
     stream.share(together_db);
     Model model = stream.coarsest();
     bool looked = false;
@@ -514,19 +514,20 @@ TEST(LevelStream, LooksAtNothingWhereFewGaussiansAreAll) {
     }
     return looked;
   };
-  EXPECT_FALSE(looks({.db = 40.0, .all_up_to = 3000}, 0.0));
-  EXPECT_FALSE(looks({.shares = true, .all_up_to = 3000}, 40.0));
-  EXPECT_TRUE(looks({.db = 40.0, .all_up_to = 2999}, 0.0)) << "planted: too many";
-  EXPECT_TRUE(looks({.most = 2999, .db = 40.0, .all_up_to = 3000}, 0.0)) << "planted: there is no room";
+  EXPECT_FALSE(looks({.db = 40.0}, 3000, 0.0));
+  EXPECT_FALSE(looks({.shares = true}, 3000, 40.0));
+  EXPECT_TRUE(looks({.db = 40.0}, 2999, 0.0)) << "planted: too many";
+  EXPECT_TRUE(looks({.most = 2999, .db = 40.0}, 3000, 0.0)) << "planted: there is no room";
 }
 
 // A window that grows leaves less room: then as many as fit, and nobody goes by dB in the midst of it.
 TEST(LevelStream, GoesOnWithoutLooksWhereRoomGrowsLess) {
   const test::TempFolder folder;
   write_levels(folder, 3000);
-  LevelStream stream(folder.path(), [](const StreamedSog&, std::span<const shared::View> views) {
-    return DetailNeed{.most = views.empty() ? 3000u : 2000u, .db = 40.0, .all_up_to = 3000};
-  });
+  const auto need = [](const StreamedSog&, std::span<const shared::View> views) {
+    return DetailNeed{.most = views.empty() ? 3000u : 2000u, .db = 40.0};
+  };
+  LevelStream stream(folder.path(), need, 3000);
   Model model = stream.coarsest();
   const auto look = [](const shared::View&, Band, const ModelParts& parts) {
     ADD_FAILURE() << "it looks";

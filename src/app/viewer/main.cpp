@@ -70,7 +70,7 @@ preview::Loaded load(const SceneOptions& scene, const render::FrameSettings& set
   const auto need = [scene, settings](const StreamedSog& levels, std::span<const shared::View> views) {
     return detail_need(scene, settings, levels, views);
   };
-  auto levels = std::make_unique<LevelStream>(scene.name, need);
+  auto levels = std::make_unique<LevelStream>(scene.name, need, few_gaussians);
   levels->share(settings.quality);
   Model model = levels->coarsest();
   set_as_asked(scene, model);
