@@ -15,13 +15,25 @@ namespace binosplat::app {
 
 namespace {
 
-// Parts by which it is found what levels lose: of a picture, or of each of a turning head's.
-constexpr std::size_t sample_of_one = 96, sample_of_many = 12;
+// Gaussians by whose finest levels it is found what levels lose: of a picture, or of each of a turning
+// head's.
+constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
+// Samples of a picture: levels that one finds to miss what was asked for by more than this become finer.
+constexpr int samples_most = 6;
+constexpr double misses_db = 1.0;
 
 std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views,
                            const render::FrameSettings& settings) {
   frame.draw(views, render::exact_of(settings));
   return frame.read_pictures();
+}
+
+/// Takes of `other` what shows more than `seen` does.
+void show_more(DetailSeen& seen, const DetailSeen& other) {
+  for (std::size_t v = 0; v < seen.by_view.size(); ++v) {
+    for (std::size_t p = 0; p < seen.by_view[v].size(); ++p)
+      if (other.by_view[v][p].area > seen.by_view[v][p].area) seen.by_view[v][p] = other.by_view[v][p];
+  }
 }
 
 }  // namespace
@@ -82,35 +94,62 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
   };
   if (!heads_turn_) {
     scene_.choose({}, {});
-    if (sight || choose(nullptr, views, settings)) forget(model);
+    if (sight || scene_.choose(views, need(views))) forget(model);
     if (sight && scene_.choose({}, {})) change();  // what is looked at is the coarsest
   }
-  const auto choose_and_change = [&](int looks) {
-    for (int look = 0; look < looks; ++look) {
-      if (!choose(sight ? &*sight : nullptr, views, settings)) break;
-      change();
-    }
-  };
-  choose_and_change(sight ? looks_most : 1);
+  for (int look = 0; look < (sight ? looks_most : 1); ++look) {
+    const DetailSeen seen = sight ? look_at(*sight, views, settings) : DetailSeen();
+    if (!scene_.choose(views, need(views), seen)) break;
+    change();
+  }
+  lost_ = 0.0;
   if (!sight || views.empty()) return switched;
-  const PartsTrial trial = sight->trial(settings);
-  try_sample(model, views.front(), trial);
-  choose_and_change(1);
-  try_sample(model, views.front(), trial);  // those of the first are no longer there by chance
+  for (int sample = 1; sample <= samples_most; ++sample) {
+    const DetailSeen seen = try_sample(model, *sight, views, settings);
+    const bool keeps = sample > 1 && told_psnr() > *need(views).db - misses_db;
+    if (keeps || seen.drawn.empty() || sample == samples_most) break;
+    if (!scene_.choose(views, need(views), seen)) break;
+    change();
+  }
   return switched;
 }
 
-void FollowedLevels::try_sample(Model& model, const shared::View& view, const PartsTrial& trial) {
-  const auto parts =
-      sample_of(*scene_.choice(), scene_.chosen(), heads_turn_ ? sample_of_many : sample_of_one, samples_++);
-  PartModels finest = scene_.finest_of(parts);
+// Where the sample is all that is not at its finest, a part counts as seen as much as in the picture that
+// shows more of it: it may hide others, or reach into the picture, at one of both levels only, and what is
+// lost there would be predicted to be nothing. Of fewer parts that would be told too often of those in the
+// sample.
+DetailSeen FollowedLevels::try_sample(Model& model, render::Sight& sight, std::span<const shared::View> views,
+                                      const render::FrameSettings& settings) {
+  const std::vector<std::size_t> levels = scene_.chosen();
+  const std::size_t most = (heads_turn_ ? sample_of_many : sample_of_one) * scene_.parts() / scene_.finest();
+  PartModels finest =
+      scene_.finest_of(sample_of(*scene_.choice(), levels, std::max<std::size_t>(most, 1), samples_++));
   if (options_.gpu_memory) keep_what_fits(finest, model, parts_);
-  if (finest.parts.empty()) return;
-  trial.keep(view);
+  if (finest.parts.empty()) return {};
+  const PartsTrial trial = sight.trial(settings);
+  trial.keep(views.front());
+  DetailSeen seen = look_at(sight, views, settings);
   const PartModels before = exchange(finest, model, parts_, trial);
-  const double all = scene_.choice()->error_of(scene_.chosen(), 0, 1);
-  found_.note(loss_of(*scene_.choice(), all, scene_.chosen(), finest.parts, trial.differs(view)));
+  lost_ = trial.differs(views.front());
+  const auto finest_already = static_cast<std::size_t>(std::ranges::count(levels, 0u));
+  if (finest.parts.size() + finest_already == levels.size()) show_more(seen, look_at(sight, views, settings));
   exchange(before, model, parts_, trial);
+  LevelsChosen chosen = *scene_.chooser().choose(views, need(views), seen);
+  chosen.levels = levels;
+  scene_.choose(std::make_shared<LevelsChosen>(std::move(chosen)));
+  const DetailChoice& choice = *scene_.choice();
+  found_.note(loss_of(choice, choice.error_of(levels, 0, 1), levels, finest.parts, lost_));
+  return seen;
+}
+
+std::optional<double> FollowedLevels::told_psnr() const {
+  const auto predicted = scene_.predicted_psnr(found_.factor());
+  return predicted && lost_ > 0.0 ? std::min(*predicted, psnr_of_error(lost_)) : predicted;
+}
+
+DetailSeen FollowedLevels::look_at(render::Sight& sight, std::span<const shared::View> views,
+                                   const render::FrameSettings& settings) const {
+  return {sight.look(views, settings, parts_), scene_.chosen()};
 }
 
 void FollowedLevels::read(Model& model) {
@@ -127,16 +166,6 @@ void FollowedLevels::forget(Model& model) {
   model.resize(0);
 }
 
-bool FollowedLevels::choose(render::Sight* sight, std::span<const shared::View> views,
-                            const render::FrameSettings& settings) {
-  DetailSeen seen;
-  if (sight != nullptr) seen = {sight->look(views, settings, parts_), scene_.chosen()};
-  DetailNeed needed = need(views);
-  needed.heads_turn = heads_turn_;
-  needed.found = found_.factor();
-  return scene_.choose(views, needed, seen);
-}
-
 ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Show& show,
                                   std::span<const shared::View> views,
                                   const render::FrameSettings& settings) {
@@ -151,7 +180,7 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
     levels.switched = settle(model, frame.model(), views, settings, changing);
   if (!before.empty()) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
   levels.gaussians = parts_.gaussians();
-  levels.predicted_psnr = scene_.predicted_psnr(found_.factor());
+  levels.predicted_psnr = told_psnr();
   levels.left = settings.quality;
   if (settings.quality > 0.0f && levels.predicted_psnr)
     levels.left = left_of(settings.quality, *levels.predicted_psnr, *levels.predicted_psnr);

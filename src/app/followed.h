@@ -37,7 +37,8 @@ DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings&
 
 class FollowedLevels {
  public:
-  /// Opens the scene, for frames of such settings: levels share their quality where no --detail is asked for.
+  /// Opens the scene, for frames of such settings: levels share their quality where no --detail is asked for
+  /// and there are more than a few_gaussians, or little memory: a sample would read as many as there are.
   /// With `report` it says what a switch changes, in pictures
   /// before `background`. Shots are those of a head that turns, or single pictures, which do not depend on
   /// those before them. Throws Error where it is no streamed SOG.
@@ -49,7 +50,8 @@ class FollowedLevels {
         background_(background),
         heads_turn_(heads_turn),
         scene_(options.name),
-        parts_(scene_.parts()) {}
+        parts_(scene_.parts()),
+        shares_(scene_.finest() > few_gaussians || options.gpu_memory) {}
 
   /// The coarsest levels, by which cameras are made up where there are none.
   Model coarsest();
@@ -74,10 +76,15 @@ class FollowedLevels {
 
  private:
   DetailNeed need(std::span<const shared::View> views) const {
-    return scene_.sharing(detail_need(options_, settings_, scene_, views), settings_.quality);
+    DetailNeed need = detail_need(options_, settings_, scene_, views);
+    if (shares_) need = scene_.sharing(need, settings_.quality);
+    need.heads_turn = heads_turn_;
+    need.found = found_.to_choose_by();
+    return need;
   }
   bool goes_by_db() const {
-    return options_.detail ? options_.detail->db.has_value() : settings_.quality > 0.0f && has_errors();
+    return options_.detail ? options_.detail->db.has_value()
+                           : shares_ && settings_.quality > 0.0f && has_errors();
   }
   /// Brings the model, and what there is of it on the GPU (by dB it must be there), to what the views need;
   /// whether that was other levels. `changing` is called before the first of them is read.
@@ -86,14 +93,17 @@ class FollowedLevels {
               std::span<const shared::View> views, const render::FrameSettings& settings,
               const Changing& changing);
   void read(Model& model);
-  /// Finds by a sample what the levels of the last choice lose.
-  void try_sample(Model& model, const shared::View& view, const PartsTrial& trial);
+  /// Finds what the levels chosen lose in the first view, by a picture with a sample of parts at their
+  /// finest. What it returns is what both pictures show; of no parts where none was tried out.
+  DetailSeen try_sample(Model& model, render::Sight& sight, std::span<const shared::View> views,
+                        const render::FrameSettings& settings);
+  /// What the views are taken to have: never more than the last sample alone lost. None where no dB are gone
+  /// by.
+  std::optional<double> told_psnr() const;
+  DetailSeen look_at(render::Sight& sight, std::span<const shared::View> views,
+                     const render::FrameSettings& settings) const;
   /// As if there were nothing yet.
   void forget(Model& model);
-  /// Whether the views need other levels, by what they show of those that there are; no `sight`: for no dB.
-  bool choose(render::Sight* sight, std::span<const shared::View> views,
-              const render::FrameSettings& settings);
-
   SceneOptions options_;
   render::FrameSettings settings_;
   bool report_;
@@ -101,8 +111,10 @@ class FollowedLevels {
   bool heads_turn_;
   StreamedSog scene_;
   ModelParts parts_;
+  bool shares_;  // levels and frames a quality, where no --detail was asked for
   LevelsFound found_;
   unsigned samples_ = 0;
+  double lost_ = 0.0;                       // by the last sample, squared and meaned
   std::vector<shared::View> brought_;       // what bring() was for, until the first shot
   double read_ms_ = 0.0, upload_ms_ = 0.0;  // since the last shot
   std::optional<Model> finest_;

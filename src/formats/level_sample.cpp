@@ -15,8 +15,8 @@ namespace {
 // another are wrong alike. 0.6 to 1.0 dB, in headset pictures of the city, from street and air, and of
 // taebak.
 const double together = std::pow(10.0, 0.08);
-constexpr double fades = 0.9;  // what was found counts so much beside what is found next
-constexpr double factor_most = 8.0;
+constexpr double fades = 0.9;      // what was found counts so much beside what is found next
+constexpr double nothing = 1e-20;  // squared error of a picture
 
 }  // namespace
 
@@ -30,7 +30,7 @@ std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const s
   for (std::size_t p = 0; p < levels.size(); ++p) {
     if (levels[p] == 0) continue;
     const double lost = choice.lost(0, p, levels[p]);
-    if (lost > 0.0) keys.emplace_back(std::log(random.uniform(1e-12, 1.0)) / std::sqrt(lost), p);
+    keys.emplace_back(std::log(random.uniform(1e-12, 1.0)) / std::sqrt(std::max(lost, nothing)), p);
   }
   const std::size_t count = std::min(keys.size(), most);
   std::ranges::partial_sort(keys, keys.begin() + static_cast<std::ptrdiff_t>(count), std::greater<>());
@@ -74,10 +74,16 @@ void LevelsFound::note(const SampleLoss& loss) {
   const bool is_all = left < 0.01;  // then nothing is up to chance
   const double keeps = is_all ? 0.0 : fades;
   const double parts = static_cast<double>(loss.parts) / (is_all ? 1.0 : left);
+  prior_ *= keeps;
   parts_ = keeps * parts_ + parts;
-  found_ = keeps * found_ + parts * loss.found / loss.predicted * std::pow(together, left);
+  predicted_ = keeps * predicted_ + parts * loss.predicted;
+  found_ = keeps * found_ + parts * loss.found * std::pow(together, left);
 }
 
-double LevelsFound::factor() const { return std::clamp(found_ / parts_, 1.0 / factor_most, factor_most); }
+double LevelsFound::factor() const {
+  if (parts_ == 0.0) return 1.0;
+  const double as_predicted = prior_ * predicted_ / parts_;
+  return (as_predicted + found_) / (as_predicted + predicted_);
+}
 
 }  // namespace binosplat

@@ -2,6 +2,7 @@
 // What levels of detail truly lose, by a sample of parts: what is predicted is known of each part by itself,
 // and in the mean of a scene, but not of what a view shows of it.
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,7 +17,8 @@ namespace binosplat {
 inline constexpr std::size_t sample_of_rest = 24;
 
 /// So many parts, or fewer, that are not at their finest level, each as likely as the root of what the first
-/// view is predicted to lose by it is large. The same seed draws the same parts.
+/// view is predicted to lose by it is large; those that are predicted to lose nothing come last, since that
+/// may be wrong, too. The same seed draws the same parts.
 std::vector<std::size_t> sample_of(const DetailChoice& choice, std::span<const std::size_t> levels,
                                    std::size_t most, unsigned seed);
 
@@ -44,17 +46,19 @@ PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, c
 SampleLoss loss_of(const DetailChoice& choice, double all, std::span<const std::size_t> levels,
                    std::span<const std::size_t> parts, double found);
 
-/// How many times what is predicted levels are found to lose: what was found first counts less and less, and
-/// nothing once all that is lost was in a sample.
+/// How many times what is predicted levels are found to lose: what samples lost over what they were predicted
+/// to lose. What was found first counts less and less, and nothing once all that is lost was in a sample.
 class LevelsFound {
  public:
   void note(const SampleLoss& loss);
   double factor() const;
+  /// The same, but levels that seem to lose nothing are not made as coarse as that allows: a sample of other
+  /// parts would find them wrong.
+  double to_choose_by() const { return std::max(factor(), 1.0 / 8.0); }
 
  private:
-  static constexpr double prior = 8.0;  // parts of which nothing is known but what is predicted
-
-  double parts_ = prior, found_ = prior;  // and times what is predicted, with what was found before
+  double prior_ = 8.0;  // parts of which nothing is known but what is predicted
+  double parts_ = 0.0, predicted_ = 0.0, found_ = 0.0;  // of samples, each times its parts
 };
 
 }  // namespace binosplat

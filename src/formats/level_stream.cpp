@@ -108,7 +108,7 @@ void LevelStream::want(std::span<const shared::View> views, const Look& look) {
             *looked_at_,
             ahead_at_,
             together_db_,
-            found_.factor(),
+            found_.to_choose_by(),
             next_sample(),
             !moves_};
     ++looks_;

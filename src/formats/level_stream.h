@@ -21,10 +21,6 @@
 
 namespace binosplat {
 
-/// Of so few, coarser levels save less of a moving head's frames (0.1 to 0.3 ms on an H200) than looks (0.3
-/// in the mean) and samples (0.15) take.
-inline constexpr std::size_t few_gaussians = 1 << 19;
-
 /// A streamed SOG whose levels are chosen by one thread and read by another. The parts of its model that are
 /// there stay until others have been read, and then change places with them a few at a time, so that no frame
 /// waits for more.

@@ -15,6 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_levels = 100;
 constexpr std::uint64_t most_gaussians = std::uint64_t{1} << 32;
+// Of what levels lose and of pixels' widths: products of such numbers are still finite.
+constexpr double most_lost = 1e20;
 
 glm::dvec3 corner(const JsonValue& value) {
   const JsonValue three = value.list_of(3);
@@ -27,6 +29,7 @@ std::vector<double> widths_of(const JsonValue& value) {
   for (std::size_t i = 0; i < value.size(); ++i) {
     const double width = value.at(i).number(), before = widths.empty() ? 0.0 : widths.back();
     if (width <= before) value.at(i).fail_here("expected a width above {}, found {}", before, width);
+    if (width > most_lost) value.at(i).fail_here("expected at most {}, found {}", most_lost, width);
     widths.push_back(width);
   }
   return widths;
@@ -41,9 +44,20 @@ std::vector<double> by_direction(const JsonValue& value, std::size_t widths) {
     for (std::size_t i = 0; i < widths; ++i) {
       numbers.push_back(list.at(i).number());
       if (numbers.back() < 0.0) list.at(i).fail_here("expected 0 or more, found {}", numbers.back());
+      if (numbers.back() > most_lost)
+        list.at(i).fail_here("expected at most {}, found {}", most_lost, numbers.back());
     }
   }
   return numbers;
+}
+
+/// Whether a leaf says what it loses of each pixel that shows it: not where its finest level shows nothing,
+/// and another one does.
+bool knows_errors(const DetailPart& leaf) {
+  return std::ranges::all_of(leaf.levels, [&](const DetailPart::Level& level) {
+    return std::ranges::equal(level.errors, leaf.seen,
+                              [](double error, double seen) { return error <= most_lost * seen; });
+  });
 }
 
 // Calls see(node) for every node of the tree that has Gaussians, always in one order.
@@ -130,6 +144,7 @@ std::vector<DetailPart> SogLevels::leaves(const nlohmann::json& json) const {
       }
       if (is_there[place.file]) leaf.levels.push_back(std::move(level));
     }
+    if (!knows_errors(leaf)) leaf.pixels.clear();
     result.push_back(std::move(leaf));
   });
   return result;

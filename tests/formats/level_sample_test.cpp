@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -41,14 +42,16 @@ TEST(LevelSample, HasWhatLosesMoreMoreOften) {
     ASSERT_EQ(parts.size(), 1u);
     ++times[parts[0]];
   }
-  EXPECT_EQ(times[0], 0) << "it loses nothing";
+  EXPECT_EQ(times[0], 0) << "it is predicted to lose nothing";
   EXPECT_EQ(times[9], 0) << "it is at its finest";
   for (int p = 1; p < 9; ++p) {
     const double expected = samples * std::sqrt(p) / roots;
     EXPECT_NEAR(times[static_cast<std::size_t>(p)], expected, 5.0 * std::sqrt(expected)) << p;
   }
   const auto all = sample_of(choice, levels, 100, 1);
-  EXPECT_EQ(std::set(all.begin(), all.end()), (std::set<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(std::set(all.begin(), all.end()), (std::set<std::size_t>{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+  const auto most = sample_of(choice, levels, 8, 1);
+  EXPECT_EQ(std::ranges::count(most, 0u), 0) << "what is predicted to lose nothing comes last";
   EXPECT_EQ(sample_of(choice, levels, 3, 5), sample_of(choice, levels, 3, 5));
   EXPECT_NE(sample_of(choice, levels, 3, 5), sample_of(choice, levels, 3, 6));
 }
@@ -143,10 +146,20 @@ TEST(LevelsFound, AreWhatSamplesOfAllLose) {
   EXPECT_DOUBLE_EQ(found.factor(), 3.0) << "that is known, whatever was thought before";
   found.note({.predicted = 1e-5, .found = 2e-5, .all = 1e-5, .parts = 1});
   EXPECT_DOUBLE_EQ(found.factor(), 2.0) << "planted: more parts had been found to lose something else";
-  for (int k = 0; k < 200; ++k) found.note({.predicted = 1e-4, .found = 0.5e-4, .all = 1e-4, .parts = 8});
-  EXPECT_NEAR(found.factor(), 0.5, 0.02) << "what was found first is forgotten";
-  for (int k = 0; k < 200; ++k) found.note({.predicted = 1e-4, .found = 1e-2, .all = 1e-4, .parts = 8});
-  EXPECT_EQ(found.factor(), 8.0);
+  found.note({.predicted = 8e-8, .found = 8e-4, .all = 8e-8, .parts = 8});
+  EXPECT_NEAR(found.factor(), 1e4, 1e-6) << "planted: 8 times at most, 31 dB less than was told";
+  found.note({.predicted = 1e-4, .found = 1e-7, .all = 1e-4, .parts = 8});
+  EXPECT_NEAR(found.factor(), 1e-3, 1e-9);
+  EXPECT_EQ(found.to_choose_by(), 0.125);
+}
+
+// By the sums of both: what one of them was hardly predicted to lose does not count many times over.
+TEST(LevelsFound, AreWhatAllSamplesLose) {
+  LevelsFound found;
+  for (int k = 0; k < 200; ++k) found.note({.predicted = 5e-5, .found = 2.5e-5, .all = 1e-4, .parts = 8});
+  EXPECT_NEAR(10.0 * std::log10(found.factor()), -3.0 + 0.4, 0.1) << "what was thought first is forgotten";
+  found.note({.predicted = 1e-9, .found = 1e-6, .all = 1e-4, .parts = 8});
+  EXPECT_LT(found.factor(), 1.0) << "planted: a mean of what samples lose by what they were predicted to";
 }
 
 // 0.8 dB, as pictures of the city and of taebak have it.

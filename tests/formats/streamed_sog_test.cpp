@@ -236,6 +236,22 @@ TEST(StreamedSog, ByErrorsThatItsFileTells) {
   EXPECT_EQ(behind.read().count(), 250u);
 }
 
+// Its finest level shows nothing, they say, and another does: nobody knows what that loses of a picture.
+TEST(StreamedSog, WhatIsNotKnownIsRefined) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  for (const double seen : {4000.0, 1e-20, 0.0}) {
+    copy.edit("lod-meta.json", [&](nlohmann::json& meta) {
+      teach(meta);
+      for (nlohmann::json& of : meta["tree"]["children"][0]["seen"]) of[1] = seen;
+    });
+    StreamedSog scene(copy.path());
+    scene.choose(std::vector{ahead(far_away)}, {.db = 40.0});
+    EXPECT_EQ(scene.chosen()[0] == 0, seen < 1.0) << seen;
+    EXPECT_NE(scene.chosen()[1], 0u);
+  }
+}
+
 /// What the view shows of each part: so many px, a thousand at most, and 21 units away.
 DetailSeen showing(const StreamedSog& scene, const std::vector<double>& areas) {
   DetailSeen seen{{std::vector<SeenPart>(scene.parts())}, scene.chosen()};
@@ -319,6 +335,7 @@ TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
                                     {Json::array(), "': expected one width at least"},
                                     {{0.0, 1.0}, "[0]': expected a width above 0, found 0"},
                                     {{0.5, 0.5}, "[1]': expected a width above 0.5, found 0.5"},
+                                    {{0.5, 1e21}, "[1]': expected at most 1e+20, found 1e+21"},
                                     {{0.5, "x"}, "[1]': expected a finite number"}}) {
     EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["pixels"] = wrong; }, {leaf_key + "pixels" + text}))
         << wrong;
@@ -335,6 +352,7 @@ TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
                                     {with(5, {1.0}), "[5]': expected 2 values, found 1"},
                                     {with(0, {1, 2, 3}), "[0]': expected 2 values, found 3"},
                                     {with(1, {1.0, -1.0}), "[1][1]': expected 0 or more, found -1"},
+                                    {with(4, {1e308, 1.0}), "[4][0]': expected at most 1e+20, found 1e+308"},
                                     {with(1, {nullptr, 1.0}), "[1][0]': expected a finite number"},
                                     {with(1, {1.0, "x"}), "[1][1]': expected a finite number"}}) {
     EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["lods"]["1"]["errors"] = wrong; },
