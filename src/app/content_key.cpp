@@ -11,6 +11,8 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "formats/files_of_model.h"
+#include "formats/model_file.h"
 
 namespace binosplat::app {
 
@@ -34,32 +36,6 @@ class Hash {
   std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
 };
 
-// Not what programs leave beside models.
-bool is_of_a_model(const fs::path& file) {
-  const std::string name = file.filename();
-  if (name == "meta.json" || name == "lod-meta.json") return true;
-  for (const char* ending :
-       {".ply", ".webp", ".pt", ".sog", ".spz", ".splat", ".ksplat", ".glb", ".gltf", ".bin"})
-    if (file.extension() == ending) return true;
-  return false;
-}
-
-bool is_of_networks(const fs::path& file) { return file.extension() == ".pt"; }
-
-bool is_any(const fs::path&) { return true; }
-
-/// The files of a folder that belong, and with a recursive iterator of those in it.
-template <typename Iterator>
-std::vector<fs::path> files_in(const fs::path& folder, bool (*belongs)(const fs::path& file)) {
-  std::error_code error, ignored;
-  std::vector<fs::path> files;
-  for (auto at = Iterator(folder, error); !error && at != end(at); at.increment(error)) {
-    if (at->is_regular_file(ignored) && belongs(at->path())) files.push_back(at->path());
-  }
-  if (error) fail("{}: {}", folder.string(), error.message());
-  return files;
-}
-
 std::string key_of(const fs::path& folder, std::vector<fs::path> files) {
   std::sort(files.begin(), files.end());
   Hash hash;
@@ -74,23 +50,19 @@ std::string key_of(const fs::path& folder, std::vector<fs::path> files) {
 }  // namespace
 
 std::string content_key(const fs::path& path) {
-  std::error_code ignored;
-  const fs::path whole = fs::absolute(path, ignored);
-  if (fs::is_directory(whole, ignored))
-    return key_of(whole, files_in<fs::recursive_directory_iterator>(whole, is_of_a_model));
-  const fs::path folder = whole.parent_path();
-  const bool names_others = whole.extension() == ".json" || whole.extension() == ".gltf";
-  std::vector<fs::path> files = names_others
-                                    ? files_in<fs::recursive_directory_iterator>(folder, is_of_a_model)
-                                    : files_in<fs::directory_iterator>(folder, is_of_networks);
-  if (std::find(files.begin(), files.end(), whole) == files.end()) files.push_back(whole);
-  return key_of(folder, files);
+  return key_of(file_of(path).parent_path(), files_of_model(path));
 }
 
 std::string file_key(const fs::path& file) { return key_of(file.parent_path(), {file}); }
 
 std::string pictures_key(const fs::path& folder) {
-  return key_of(folder, files_in<fs::directory_iterator>(folder, is_any));
+  std::error_code error, ignored;
+  std::vector<fs::path> files;
+  for (auto at = fs::directory_iterator(folder, error); !error && at != end(at); at.increment(error)) {
+    if (at->is_regular_file(ignored)) files.push_back(at->path());
+  }
+  if (error) fail("{}: {}", folder.string(), error.message());
+  return key_of(folder, files);
 }
 
 std::string content_key(std::span<const Camera> cameras) {

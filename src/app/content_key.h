@@ -9,9 +9,8 @@
 
 namespace binosplat::app {
 
-/// 32 hexadecimal digits (XXH3) that change with any byte of a model: of its file and the networks (*.pt)
-/// beside it, or, where it is a folder or a JSON file that names others, of all files of models in its
-/// folder. Throws Error for what cannot be read.
+/// 32 hexadecimal digits (XXH3) that change with any byte of the files that a model is read from
+/// (files_of_model), and with no others. Throws Error for what cannot be read.
 std::string content_key(const std::filesystem::path& path);
 
 /// The same of one file by itself.

@@ -1,18 +1,21 @@
 #include "formats/gltf.h"
 
+#include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "base/log.h"
+#include "base/numbers.h"
 #include "formats/gltf_document.h"
+#include "formats/gltf_nodes.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
 #include "formats/spz.h"
+#include "scene/transform.h"
 
 namespace binosplat {
 
@@ -24,64 +27,47 @@ constexpr const char* packed_names[] = {"KHR_gaussian_splatting_compression_spz_
                                         "KHR_spz_gaussian_splats_compression", "KHR_spz_compression"};
 constexpr std::uint64_t most = std::uint64_t{1} << 40;
 
-/// A node's own transform: a matrix, or translation, rotation and scale.
-glm::dmat4 transform_of(const JsonValue& node) {
-  const auto numbers = [&](const char* key, std::size_t n, auto* to) {
-    if (!node.has(key)) return;
-    const JsonValue list = node.at(key).list_of(n);
-    for (std::size_t i = 0; i < n; ++i) to[i] = list.at(i).number();
-  };
-  glm::dmat4 matrix(1.0);
-  numbers("matrix", 16, glm::value_ptr(matrix));
-  if (node.has("matrix")) return matrix;
-  glm::dvec3 translation(0.0), scale(1.0);
-  double xyzw[] = {0, 0, 0, 1};
-  numbers("translation", 3, &translation.x);
-  numbers("rotation", 4, xyzw);
-  numbers("scale", 3, &scale.x);
-  const glm::dquat q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
-  matrix = glm::mat4_cast(glm::normalize(q));
-  for (int c = 0; c < 3; ++c) matrix[c] *= scale[c];
-  matrix[3] = glm::dvec4(translation, 1.0);
-  return matrix;
+/// What this reader does as it is asked to: a file that requires anything else must not be drawn.
+constexpr const char* also_known[] = {extension, "EXT_mesh_gpu_instancing", "KHR_node_visibility",
+                                      "KHR_mesh_quantization"};
+
+bool is_known(const std::string& name) {
+  const auto is = [&](const char* known) { return name == known; };
+  return std::ranges::any_of(also_known, is) || std::ranges::any_of(packed_names, is);
+}
+
+/// Two whole numbers with a point between, as in "2.0".
+std::pair<unsigned, unsigned> version_in(const JsonValue& value) {
+  const std::string text = value.text();
+  const auto numbers = two_numbers(text, '.');
+  if (!numbers) value.fail_here("expected a version as in 2.0, found '{}'", text);
+  return *numbers;
+}
+
+/// Throws Error for what asks for more than this reader knows.
+void check_asset(const JsonValue& root) {
+  const JsonValue asset = root.at("asset");
+  const bool has_least = asset.has("minVersion");
+  const JsonValue version = has_least ? asset.at("minVersion") : asset.at("version");
+  // All of 2.x can be read by readers of 2.0, unless a file says that it cannot.
+  const auto [major, minor] = version_in(version);
+  if (major != 2 || (has_least && minor > 0))
+    version.fail_here("glTF of version {}.{} is not known; 2.0 is", major, minor);
+  if (!root.has("extensionsRequired")) return;
+  const JsonValue required = root.at("extensionsRequired");
+  for (std::size_t i = 0; i < required.size(); ++i) {
+    const std::string name = required.at(i).text();
+    if (!is_known(name)) {
+      required.at(i).fail_here(
+          "the file cannot be drawn without the extension '{}', which is not known; export it without", name);
+    }
+  }
 }
 
 /// Moves Gaussians by a node's transform in the world of the scene.
 void move(const JsonValue& node, const glm::dmat4& matrix, Model& model) {
-  const glm::dmat3 linear(matrix);
-  const double determinant = glm::determinant(linear);
-  if (!(determinant > 0.0 && std::isfinite(determinant)))
-    node.fail_here("its transform mirrors, or flattens, what is in it");
-  const double scale = std::cbrt(determinant);
-  const glm::dmat3 rotation = linear / scale, square = glm::transpose(rotation) * rotation;
-  double uneven = 0.0, turned = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      uneven = std::max(uneven, std::abs(square[i][j] - (i == j ? 1.0 : 0.0)));
-      turned = std::max(turned, std::abs(rotation[i][j] - (i == j ? 1.0 : 0.0)));
-    }
-  }
-  if (uneven > 1e-4) node.fail_here("it scales its axes differently, which Gaussians in it cannot follow");
-  const bool turns = turned > 1e-6;
-  if (turns && model.degree > 0) {
-    node.fail_here(
-        "it turns harmonics of degree {}, which is not supported; apply the rotation when exporting",
-        model.degree);
-  }
-  // As exact as the matrix, whose axes may be uneven by the bound above, is not exact enough.
-  const glm::dquat turn = glm::normalize(glm::quat_cast(rotation));
-  for (std::size_t i = 0; i < model.count(); ++i) {
-    model.position[i] = glm::dvec3(matrix * glm::dvec4(model.position[i], 1.0));
-    model.scale[i] = glm::dvec3(model.scale[i]) * scale;
-    for (const glm::vec3& v : {model.position[i], model.scale[i]}) {
-      if (!glm::all(glm::lessThan(glm::abs(v), glm::vec3(std::numeric_limits<float>::infinity()))))
-        node.fail_here("its transform, or one above it, moves Gaussians beyond the largest number");
-    }
-    if (!turns) continue;
-    const glm::vec4& q = model.rotation[i];
-    const glm::dquat turned_q = turn * glm::dquat(q.x, q.y, q.z, q.w);
-    model.rotation[i] = glm::vec4(glm::dvec4(turned_q.w, turned_q.x, turned_q.y, turned_q.z));
-  }
+  if (!transform(model, matrix))
+    node.fail_here("its transform, or one above it, moves Gaussians beyond the largest number");
 }
 
 /// Adds the Gaussians of `part`; harmonics that one of the two does not have are 0.
@@ -121,38 +107,17 @@ class GltfReader {
       : path_(path), document_(path, bytes) {}
 
   Model read() {
-    const JsonValue& root = document_.root();
-    const JsonValue nodes = root.at("nodes");
-    std::vector<bool> seen(nodes.size());
-    std::vector<std::pair<std::size_t, glm::dmat4>> open;
-    const auto enter = [&](const JsonValue& list, const glm::dmat4& matrix) {
-      for (std::size_t i = 0; i < list.size(); ++i) {
-        const std::size_t index = list.at(i).whole(most);
-        if (index >= seen.size() || seen[index])
-          list.at(i).fail_here("node {} is not there, or has two parents", index);
-        seen[index] = true;
-        open.emplace_back(index, matrix);
-      }
-    };
-    const std::size_t scene = root.has("scene") ? root.at("scene").whole(most) : 0;
-    enter(root.at("scenes").at(scene).at("nodes"), glm::dmat4(1.0));
-    std::vector<Shown> shown;
-    while (!open.empty()) {
-      const auto [index, parent] = open.back();
-      open.pop_back();
-      const JsonValue node = nodes.at(index);
-      const glm::dmat4 matrix = parent * transform_of(node);
-      if (node.has("mesh")) {
-        const std::size_t mesh = node.at("mesh").whole(most);
-        shown.push_back({node, matrix, mesh});
-        ++meshes_[mesh].left;
-      }
-      if (node.has("children")) enter(node.at("children"), matrix);
-    }
-    for (const Shown& node : shown) show(node);
+    check_asset(document_.root());
+    const std::vector<GltfNode> nodes = nodes_shown(document_.root());
+    for (const GltfNode& node : nodes) ++meshes_[node.mesh].left;
+    for (const GltfNode& node : nodes) show(node);
     if (model_.count() == 0 && model_.left_out == 0) {
-      fail("{} is a glTF scene without Gaussians ({}): {} meshes, {} points", path_.string(), extension,
-           others_, points_);
+      fail("{} is a glTF scene without Gaussians ({}) that are to be seen: {} meshes, {} points",
+           path_.string(), extension, others_, points_);
+    }
+    if (others_ + points_ > 0) {
+      log_warning("{}: only its Gaussians are drawn, and not {} meshes and {} points", path_.string(),
+                  others_, points_);
     }
     model_.format = packed_ ? "glTF with spz" : "glTF";
     model_.axes = "LUF";
@@ -160,35 +125,53 @@ class GltfReader {
   }
 
  private:
-  /// A node with a mesh.
-  struct Shown {
-    JsonValue node;
-    glm::dmat4 matrix;  // in the world of the scene
-    std::size_t mesh;
-  };
-
   /// What any number of nodes may share is read once: nodes times primitives may be far more than the file
   /// has bytes.
   struct Mesh {
     std::size_t left = 0;  // nodes that are still to show it
     bool known = false;
+    bool morphs = false;  // Gaussians, by weights
     Model model;
     std::size_t others = 0, points = 0;  // primitives that are no Gaussians
   };
 
-  void show(const Shown& shown) {
+  void show(const GltfNode& shown) {
     Mesh& mesh = meshes_[shown.mesh];
     if (!mesh.known) read_mesh(shown, mesh);
     others_ += mesh.others;
     points_ += mesh.points;
-    read_ += mesh.model.count() + mesh.model.left_out;
-    check_copies(shown.node, read_);
-    Model part = --mesh.left > 0 ? mesh.model : std::move(mesh.model);
-    move(shown.node, shown.matrix, part);
-    append(model_, std::move(part));
+    const std::size_t of_one = mesh.model.count() + mesh.model.left_out;
+    --mesh.left;
+    if (of_one == 0) return;
+    check_still(shown, mesh);
+    const MeshPlaces places(document_, shown.node);
+    check_copies(shown.node, of_one, places.count());
+    read_ += of_one * places.count();
+    for (std::size_t i = 0; i < places.count(); ++i) {
+      const glm::dmat4 matrix = shown.matrix * places.at(i);
+      // So files hide things, by a scale of 0.
+      if (glm::dmat3(matrix) == glm::dmat3(0.0)) continue;
+      const bool is_last = mesh.left == 0 && i + 1 == places.count();
+      Model part = is_last ? std::move(mesh.model) : mesh.model;
+      move(shown.node, matrix, part);
+      append(model_, std::move(part));
+    }
   }
 
-  void read_mesh(const Shown& shown, Mesh& mesh) {
+  /// Throws Error where a node moves Gaussians by other means than its place.
+  void check_still(const GltfNode& shown, const Mesh& mesh) const {
+    if (shown.node.has("skin"))
+      shown.node.at("skin").fail_here("it moves Gaussians by joints, which cannot be drawn");
+    const JsonValue of_mesh = document_.root().at("meshes").at(shown.mesh);
+    const JsonValue& holder = shown.node.has("weights") ? shown.node : of_mesh;
+    if (!mesh.morphs || !holder.has("weights")) return;
+    const JsonValue weights = holder.at("weights");
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      if (weights.at(i).number() != 0.0)
+        weights.at(i).fail_here("it moves Gaussians by morph targets, which cannot be drawn");
+  }
+
+  void read_mesh(const GltfNode& shown, Mesh& mesh) {
     const JsonValue primitives = document_.root().at("meshes").at(shown.mesh).at("primitives");
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       const JsonValue primitive = primitives.at(i);
@@ -198,35 +181,49 @@ class GltfReader {
         continue;
       }
       const JsonValue splatting = primitive.at("extensions").at(extension);
-      check(splatting);
+      check(primitive, splatting);
+      mesh.morphs = mesh.morphs || primitive.has("targets");
       const auto packed = packed_view(primitive, splatting);
       Model part = packed ? load_spz(fmt::format("{}: its spz data", path_.string()), document_.view(*packed))
                           : read_points(primitive.at("attributes"));
       part.perspective = read_perspective(splatting, {.order = ORDER_DISTANCE});  // glTF's default
       packed_ = packed_ || packed.has_value();
-      check_copies(shown.node,
-                   read_ + mesh.model.count() + mesh.model.left_out + part.count() + part.left_out);
+      check_copies(shown.node, mesh.model.count() + mesh.model.left_out + part.count() + part.left_out, 1);
       append(mesh.model, std::move(part));
     }
     mesh.known = true;
   }
 
-  void check_copies(const JsonValue& node, std::size_t count) const {
+  /// Before memory is taken for so many more Gaussians.
+  void check_copies(const JsonValue& node, std::size_t count, std::size_t copies) const {
     // Nodes may share a mesh, and meshes their numbers: a few bytes each, however many Gaussians they add.
-    if (count > most_gaussians_in(document_.size())) {
+    const std::size_t most_here = most_gaussians_in(document_.size());
+    if (count == 0) return;
+    if (copies > (most_here - std::min(most_here, read_)) / count) {
       node.fail_here(
-          "its mesh makes that {} Gaussians of a file of {} bytes, by showing the same ones many times{}",
-          count, document_.size(), more_may_be_allowed);
+          "with it there are more than {} Gaussians in a file of {} bytes, the same ones shown many times{}",
+          most_here, document_.size(), more_may_be_allowed);
     }
   }
 
-  void check(const JsonValue& splatting) {
+  void check(const JsonValue& primitive, const JsonValue& splatting) {
+    if (primitive.has("indices"))
+      primitive.at("indices").fail_here("Gaussians with indices cannot be read; export them without");
+    unknown_.clear();
+    for (const JsonValue& holder : {primitive, splatting}) note_unknown(holder);
     if (splatting.has("kernel") && splatting.at("kernel").text() != "ellipse")
       splatting.at("kernel").fail_here("'{}' is not known; 'ellipse' is", splatting.at("kernel").text());
     if (splatting.has("colorSpace") && splatting.at("colorSpace").text().starts_with("lin")) {
       log_warning("{}: its colours are linear light, which is drawn as if it were display values: too dark",
                   path_.string());
     }
+  }
+
+  /// An extension that is not known may have another kernel, or numbers of its own in place of attributes.
+  void note_unknown(const JsonValue& holder) {
+    if (!holder.has("extensions")) return;
+    for (const auto& [name, value] : holder.at("extensions").value().items())
+      if (!is_known(name)) unknown_ = name;
   }
 
   std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonValue& splatting) const {
@@ -241,7 +238,23 @@ class GltfReader {
 
   std::vector<float> attribute(const JsonValue& attributes, const std::string& name, std::size_t components,
                                std::size_t count) {
-    return document_.read(attributes.at(name).whole(most), components, count);
+    const std::size_t accessor = attributes.at(name).whole(most);
+    if (!unknown_.empty() && !document_.has_numbers(accessor)) {
+      attributes.at(name).fail_here(
+          "its numbers are in the extension '{}', which is not known; export it without", unknown_);
+    }
+    return document_.read(accessor, components, count);
+  }
+
+  /// Drafts of the extension have logarithms of the scales, which then are not all above 0, as scales must
+  /// be.
+  void undo_logarithms(std::vector<float>& scales) const {
+    constexpr std::ptrdiff_t few = 100;  // one in so many may be damaged
+    const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
+    if (below <= std::ssize(scales) / few) return;
+    log_warning("{}: its scales are taken for logarithms, as they were in drafts: {} are below 0",
+                path_.string(), below);
+    for (float& s : scales) s = std::exp(s);
   }
 
   Model read_points(const JsonValue& attributes) {
@@ -252,7 +265,8 @@ class GltfReader {
     const std::size_t n = document_.count(attributes.at("POSITION").whole(most));
     const std::vector<float> positions = attribute(attributes, "POSITION", 3, n);
     const std::vector<float> rotations = attribute(attributes, name("ROTATION"), 4, n);
-    const std::vector<float> scales = attribute(attributes, name("SCALE"), 3, n);
+    std::vector<float> scales = attribute(attributes, name("SCALE"), 3, n);
+    undo_logarithms(scales);
     std::vector<float> opacities;
     std::vector<std::vector<float>> harmonics;
     Model model;
@@ -269,7 +283,11 @@ class GltfReader {
       const auto coefficient = [&](int degree, int m) {
         return fmt::format("{}:SH_DEGREE_{}_COEF_{}", extension, degree, m);
       };
-      while (model.degree < 3 && attributes.has(coefficient(model.degree + 1, 0))) ++model.degree;
+      // Of degrees up to the highest there is, all coefficients must be there.
+      for (int degree = 1; degree <= 3; ++degree) {
+        for (int m = 0; m <= 2 * degree; ++m)
+          if (attributes.has(coefficient(degree, m))) model.degree = degree;
+      }
       for (int degree = 0; degree <= model.degree; ++degree) {
         for (int m = 0; m <= 2 * degree; ++m)
           harmonics.push_back(attribute(attributes, coefficient(degree, m), 3, n));
@@ -292,6 +310,7 @@ class GltfReader {
   GltfDocument document_;
   Model model_;
   bool packed_ = false;
+  std::string unknown_;  // an extension of the primitive that is read, which this reader does not know
   std::map<std::size_t, Mesh> meshes_;
   std::size_t read_ = 0;                 // Gaussians, of all nodes
   std::size_t others_ = 0, points_ = 0;  // primitives that are no Gaussians
@@ -300,11 +319,17 @@ class GltfReader {
 }  // namespace
 
 bool is_gltf(const nlohmann::json& root) {
-  return root.is_object() && root.contains("asset") && root.contains("buffers");
+  // Other files of 3D Tiles have an asset, too.
+  return root.is_object() && root.contains("asset") && (root.contains("buffers") || root.contains("meshes"));
 }
 
 Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   return GltfReader(path, bytes).read();
+}
+
+std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path,
+                                                 std::span<const std::byte> bytes) {
+  return GltfDocument(path, bytes).files();
 }
 
 }  // namespace binosplat

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <vector>
 
 #include "scene/model.h"
 
@@ -14,11 +15,16 @@ namespace binosplat {
 /// Whether a JSON file is one.
 bool is_gltf(const nlohmann::json& root);
 
-/// Reads the Gaussians of all nodes of the scene, with the nodes' translations, uniform scales and, where
-/// there are no harmonics above degree 0, rotations. Throws Error naming the key where something is damaged,
-/// missing or cannot be drawn: nodes that mirror, scale unevenly or turn harmonics, other kernels, meshopt. A
-/// file without Gaussians is named for what it holds. Colours that are linear light are drawn as they are,
-/// with a warning.
+/// Reads the Gaussians of all nodes of the scene that are not hidden (KHR_node_visibility), as often as
+/// EXT_mesh_gpu_instancing shows them, moved by their transforms, of whatever kind (scene/transform.h).
+/// Throws Error naming the key where something is damaged, missing or cannot be drawn: extensions that are
+/// required and not known, other kernels, data that are only there compressed by meshopt, skins, morph
+/// targets. A file without Gaussians is named for what it holds. Colours that are linear light are drawn as
+/// they are, with a warning.
 Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
+/// The files that it names besides itself, whether they are there or not.
+std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path,
+                                                 std::span<const std::byte> bytes);
 
 }  // namespace binosplat

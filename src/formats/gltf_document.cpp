@@ -4,7 +4,8 @@
 
 #include "formats/bytes.h"
 #include "formats/content.h"
-#include "formats/zip_file.h"
+#include "formats/plausible.h"
+#include "formats/uri.h"
 
 namespace binosplat {
 
@@ -54,22 +55,14 @@ float load_component(const std::byte* at, int type, bool normalized) {
   }
 }
 
-std::vector<std::byte> decode_base64(const JsonValue& uri, std::string_view text) {
-  std::vector<std::byte> bytes;
-  std::uint32_t bits = 0;
-  int filled = 0;
-  while (text.ends_with('=')) text.remove_suffix(1);
-  for (const char c : text) {
-    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::size_t digit = digits.find(c);
-    if (digit == std::string_view::npos) uri.fail_here("{} is no digit of base64", quoted({&c, 1}));
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    filled += 6;
-    if (filled < 8) continue;
-    filled -= 8;
-    bytes.push_back(static_cast<std::byte>(bits >> filled & 0xff));
-  }
-  return bytes;
+constexpr const char* meshopt_names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+/// Whether a buffer has no bytes because they are another one's, compressed.
+bool is_stand_in(const JsonValue& buffer) {
+  return std::any_of(std::begin(meshopt_names), std::end(meshopt_names), [&](const char* name) {
+    return buffer.has("extensions") && buffer.at("extensions").has(name) &&
+           buffer.at("extensions").at(name).has("fallback");
+  });
 }
 
 std::size_t optional_size(const JsonValue& value, const char* key) {
@@ -98,40 +91,58 @@ void GltfDocument::open_binary(std::span<const std::byte> bytes) {
     fail("{} is cut short: its header says {} bytes, at byte 8, and {} are there; fetch or export it again",
          name, length, bytes.size());
   }
-  const auto json_length = load_number<std::uint32_t>(&bytes[12]);
-  if (load_number<std::uint32_t>(&bytes[16]) != json_chunk || json_length % 4 != 0 ||
-      json_length > bytes.size() - 20) {
+  if (length < 20) fail("{}: its header says {} bytes, at byte 8; a .glb begins with 20", name, length);
+  const auto chunks = bytes.first(length);
+  const auto json_length = load_number<std::uint32_t>(&chunks[12]);
+  if (load_number<std::uint32_t>(&chunks[16]) != json_chunk || json_length % 4 != 0 ||
+      json_length > chunks.size() - 20) {
     fail("{}: the first chunk, {} bytes at byte 12, is no JSON that fits the file", name, json_length);
   }
-  json_ = parse_json(name, as_text(bytes.subspan(20, json_length)));
-  const auto rest = bytes.subspan(20 + json_length);
-  if (rest.size() < 8 || load_number<std::uint32_t>(&rest[4]) != binary_chunk) return;
-  const auto binary_length = load_number<std::uint32_t>(rest.data());
-  if (binary_length > rest.size() - 8) {
-    fail("{} is cut short: its binary chunk has {} bytes, and {} are there", name, binary_length,
-         rest.size() - 8);
+  // Some programs fill up by zeros, where the format has blanks.
+  std::string_view json = as_text(chunks.subspan(20, json_length));
+  while (json.ends_with('\0')) json.remove_suffix(1);
+  json_ = parse_json(name, json);
+  // Chunks of other types are passed over, as the format asks for.
+  for (auto rest = chunks.subspan(20 + json_length); rest.size() >= 8;) {
+    const std::size_t size = load_number<std::uint32_t>(rest.data());
+    const bool is_binary = load_number<std::uint32_t>(&rest[4]) == binary_chunk;
+    rest = rest.subspan(8);
+    if (size > rest.size()) {
+      fail("{} is cut short: its {}chunk has {} bytes, and {} are there", name, is_binary ? "binary " : "",
+           size, rest.size());
+    }
+    if (is_binary) {
+      binary_ = rest.first(size);
+      return;
+    }
+    rest = rest.subspan(size);
   }
-  binary_ = rest.subspan(8, binary_length);
 }
 
 std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
   const JsonValue buffer = root().at("buffers").at(index);
+  const auto bytes = bytes_of(index, buffer);
+  if (const std::size_t length = optional_size(buffer, "byteLength"); length > bytes.size()) {
+    buffer.fail_here(
+        "it is cut short: its byteLength is {}, and {} bytes are there; fetch or export it again", length,
+        bytes.size());
+  }
+  return bytes;
+}
+
+std::span<const std::byte> GltfDocument::bytes_of(std::size_t index, const JsonValue& buffer) {
   if (!buffer.has("uri")) {
+    if (is_stand_in(buffer))
+      buffer.fail_here("it is compressed with meshopt, which cannot be read; export the model without");
     if (index != 0 || binary_.empty()) buffer.fail_here("it has no uri, and the file no binary chunk for it");
     return binary_;
   }
   // A URI may hold megabytes of data, and any number of views may ask for them.
   if (const auto known = buffers_.find(index); known != buffers_.end()) return known->second;
   const JsonValue uri = buffer.at("uri");
-  const std::string text = uri.text();
-  if (text.starts_with("data:")) {
-    const std::size_t comma = text.find(";base64,");
-    if (comma == std::string::npos) uri.fail_here("expected base64 in a data: URI");
-    return buffers_[index] = decode_base64(uri, std::string_view(text).substr(comma + 8));
-  }
-  const std::filesystem::path file = (path_.parent_path() / text).lexically_normal();
+  if (has_data(uri)) return buffers_[index] = data_in(uri);
+  const std::filesystem::path file = file_named(path_.parent_path(), uri);
   std::error_code ignored;
-  if (!stays_below(text)) uri.fail_here("a buffer must lie beside the file or below; it is named '{}'", text);
   if (!std::filesystem::is_regular_file(file, ignored))
     uri.fail_here("{} is missing; fetch or export it again", file.string());
   // Buffers may share a file, which is kept once.
@@ -143,12 +154,20 @@ std::span<const std::byte> GltfDocument::buffer(std::size_t index) {
   return known->bytes();
 }
 
-std::span<const std::byte> GltfDocument::view(std::size_t index) {
-  const JsonValue view = root().at("bufferViews").at(index);
-  if (view.has("extensions") && (view.at("extensions").has("EXT_meshopt_compression") ||
-                                 view.at("extensions").has("KHR_meshopt_compression"))) {
-    view.fail_here("it is compressed with meshopt, which cannot be read; export the model without");
+std::vector<std::filesystem::path> GltfDocument::files() const {
+  std::vector<std::filesystem::path> files;
+  const std::size_t count = root().has("buffers") ? root().at("buffers").size() : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const JsonValue buffer = root().at("buffers").at(i);
+    if (buffer.has("uri") && !has_data(buffer.at("uri")))
+      files.push_back(file_named(path_.parent_path(), buffer.at("uri")));
   }
+  return files;
+}
+
+std::span<const std::byte> GltfDocument::view(std::size_t index) {
+  // A view that is compressed with meshopt has its bytes as they are, too, unless that is required.
+  const JsonValue view = root().at("bufferViews").at(index);
   const auto bytes = buffer(view.at("buffer").whole(most));
   const std::size_t offset = optional_size(view, "byteOffset"), length = view.at("byteLength").whole(most);
   if (offset > bytes.size() || length > bytes.size() - offset) {
@@ -161,19 +180,43 @@ std::size_t GltfDocument::count(std::size_t accessor) const {
   return root().at("accessors").at(accessor).at("count").whole(most);
 }
 
-std::vector<float> GltfDocument::read(std::size_t index, std::size_t components, std::size_t count) {
+bool GltfDocument::has_numbers(std::size_t accessor) const {
+  const JsonValue value = root().at("accessors").at(accessor);
+  return value.has("bufferView") || value.has("sparse");
+}
+
+std::vector<float> GltfDocument::read(std::size_t index, std::size_t components, std::size_t count,
+                                      const char* like) {
   const JsonValue accessor = root().at("accessors").at(index);
   constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
   if (accessor.at("type").text() != types[components])
     accessor.at("type").fail_here("expected {}, found {}", types[components], accessor.at("type").text());
   if (accessor.at("count").whole(most) != count)
-    accessor.at("count").fail_here("expected {}, as the positions have", count);
+    accessor.at("count").fail_here("expected {}, as {} have", count, like);
   const int type = static_cast<int>(accessor.at("componentType").whole(65535));
   const std::size_t size = components * size_of_component(type);
   if (size == 0)
     accessor.at("componentType")
         .fail_here("{} is none that can be read (floats, bytes and shorts are)", type);
   const bool normalized = accessor.has("normalized") && accessor.at("normalized").value() == true;
+  std::vector<float> values = accessor.has("bufferView")
+                                  ? read_dense(accessor, components, count, type, normalized)
+                                  : zeros(accessor, components, count);
+  if (accessor.has("sparse")) read_sparse(accessor.at("sparse"), components, type, normalized, values);
+  return values;
+}
+
+std::vector<float> GltfDocument::zeros(const JsonValue& accessor, std::size_t components,
+                                       std::size_t count) const {
+  if (count > most_gaussians_in(size()))
+    accessor.at("count").fail_here("{} elements without a bufferView, in a file of {} bytes{}", count, size(),
+                                   more_may_be_allowed);
+  return std::vector<float>(count * components);
+}
+
+std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size_t components,
+                                            std::size_t count, int type, bool normalized) {
+  const std::size_t size = components * size_of_component(type);
   const std::size_t view_index = accessor.at("bufferView").whole(most);
   const auto bytes = view(view_index);
   std::size_t stride = optional_size(root().at("bufferViews").at(view_index), "byteStride");
@@ -190,7 +233,6 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
     for (std::size_t c = 0; c < components; ++c)
       values[i * components + c] = load_component(at + c * (size / components), type, normalized);
   }
-  if (accessor.has("sparse")) read_sparse(accessor.at("sparse"), components, type, normalized, values);
   return values;
 }
 

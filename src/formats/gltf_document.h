@@ -22,13 +22,22 @@ class GltfDocument {
 
   const JsonValue& root() const { return *root_; }
 
-  /// The bytes of a buffer view. Throws Error naming the key where it leaves its buffer, or is compressed.
+  /// The bytes of a buffer view. Throws Error naming the key where it leaves its buffer, or where that is
+  /// missing, cut short, or only there compressed.
   std::span<const std::byte> view(std::size_t index);
 
   /// The numbers of the accessor `index`, `components` each element one after the other, integers brought to
-  /// 0 to 1 or -1 to 1 where it says `normalized`. Throws Error naming the key where it leaves its view, or
-  /// has another number of components or elements than asked for, or a type that is not float, byte or short.
-  std::vector<float> read(std::size_t index, std::size_t components, std::size_t count);
+  /// 0 to 1 or -1 to 1 where it says `normalized`; zeros where it has no view, but for those that `sparse`
+  /// replaces. Throws Error naming the key where it leaves its view, or has another number of components or
+  /// elements than asked for, as those have that `like` names, or a type that is not float, byte or short.
+  std::vector<float> read(std::size_t index, std::size_t components, std::size_t count,
+                          const char* like = "the positions");
+
+  /// Whether any of an accessor's numbers are in the file, and not zeros for want of others.
+  bool has_numbers(std::size_t accessor) const;
+
+  /// The files that its buffers name, whether they are there or not.
+  std::vector<std::filesystem::path> files() const;
 
   /// Bytes of the file and of the buffers that were read so far.
   std::size_t size() const { return size_; }
@@ -39,6 +48,10 @@ class GltfDocument {
  private:
   void open_binary(std::span<const std::byte> bytes);
   std::span<const std::byte> buffer(std::size_t index);
+  std::span<const std::byte> bytes_of(std::size_t index, const JsonValue& buffer);
+  std::vector<float> zeros(const JsonValue& accessor, std::size_t components, std::size_t count) const;
+  std::vector<float> read_dense(const JsonValue& accessor, std::size_t components, std::size_t count,
+                                int type, bool normalized);
   void read_sparse(const JsonValue& sparse, std::size_t components, int type, bool normalized,
                    std::vector<float>& values);
 

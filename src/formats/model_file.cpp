@@ -61,26 +61,6 @@ bool is_named_as_model(const fs::path& path) {
   return false;
 }
 
-/// The file to read where a folder is named.
-fs::path file_of(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::is_directory(path, ignored)) return path;
-  const std::vector<fs::path> found = models_in(path);
-  if (found.size() == 1) return found[0];
-  if (found.empty()) {
-    fail(
-        "{} is a folder without a model: no file of one, no lod-meta.json or meta.json of a SOG, and no "
-        "point_cloud.ply, also not in point_cloud/ or point_cloud/iteration_N/, nor gsplat's "
-        "ply/point_cloud_N.ply or nerfstudio's exports/splat/splat.ply",
-        path.string());
-  }
-  std::string names;
-  constexpr std::size_t shown = 8;
-  for (std::size_t i = 0; i < std::min(shown, found.size()); ++i) names += "\n  " + found[i].string();
-  if (found.size() > shown) names += fmt::format("\n  and {} more", found.size() - shown);
-  fail("{} is a folder with {} models; name one of them:{}", path.string(), found.size(), names);
-}
-
 void refuse_level(const fs::path& path, const ModelOptions& options) {
   if (options.budget)
     fail("--gpu-memory: {} has no levels of detail to choose from; a streamed SOG's lod-meta.json has",
@@ -162,6 +142,25 @@ std::vector<fs::path> models_in(const fs::path& folder) {
   const fs::path exported = folder / "exports/splat/splat.ply";
   if (found.empty() && fs::is_regular_file(exported, ignored)) return {exported};
   return found;
+}
+
+fs::path file_of(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return path;
+  const std::vector<fs::path> found = models_in(path);
+  if (found.size() == 1) return found[0];
+  if (found.empty()) {
+    fail(
+        "{} is a folder without a model: no file of one, no lod-meta.json or meta.json of a SOG, and no "
+        "point_cloud.ply, also not in point_cloud/ or point_cloud/iteration_N/, nor gsplat's "
+        "ply/point_cloud_N.ply or nerfstudio's exports/splat/splat.ply",
+        path.string());
+  }
+  std::string names;
+  constexpr std::size_t shown = 8;
+  for (std::size_t i = 0; i < std::min(shown, found.size()); ++i) names += "\n  " + found[i].string();
+  if (found.size() > shown) names += fmt::format("\n  and {} more", found.size() - shown);
+  fail("{} is a folder with {} models; name one of them:{}", path.string(), found.size(), names);
 }
 
 Model load_model(const fs::path& path, const ModelOptions& options) {

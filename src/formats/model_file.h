@@ -23,6 +23,9 @@ struct ModelOptions {
 /// (nerfstudio).
 std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder);
 
+/// The file itself, or the model that a folder stands for. Throws Error for a folder with none or several.
+std::filesystem::path file_of(const std::filesystem::path& path);
+
 /// Reads a trained model: INRIA's ply and PlayCanvas' compressed one (formats/ply.h), Scaffold-GS's with the
 /// networks beside it (formats/scaffold_file.h), SOG as a folder, a .sog archive, or streamed
 /// (formats/sog.h), spz, .splat, .ksplat, and glTF with Gaussians. `path` may be a folder

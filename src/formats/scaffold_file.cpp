@@ -11,6 +11,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t direction = 3;
+constexpr const char *opacity_name = "opacity_mlp.pt", *covariance_name = "cov_mlp.pt",
+                     *colour_name = "color_mlp.pt", *appearance_name = "embedding_appearance.pt",
+                     *bank_name = "feature_bank_mlp.pt";
 
 fs::path beside(const fs::path& ply, const char* name) { return ply.parent_path() / name; }
 
@@ -59,7 +62,7 @@ Network load_plain(const fs::path& path, std::size_t features, std::size_t outpu
 
 // The colour network, with the appearances where it takes one.
 void load_colour(const fs::path& ply, Scaffold& scaffold) {
-  const fs::path path = beside(ply, "color_mlp.pt");
+  const fs::path path = beside(ply, colour_name);
   scaffold.colour = load_network(path, 3 * scaffold.offset_count);
   Network& network = scaffold.colour;
   const std::size_t least = scaffold.feature_count + direction;
@@ -69,7 +72,7 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
   const std::size_t more = network.inputs - least;
   network.distance = more == 1;
   if (more <= 1) return;
-  const fs::path rows = beside(ply, "embedding_appearance.pt");
+  const fs::path rows = beside(ply, appearance_name);
   std::error_code ignored;
   if (!fs::exists(rows, ignored)) {
     fail("{} is missing: {} takes {} inputs beyond features and direction, an appearance's", rows.string(),
@@ -85,7 +88,7 @@ void load_colour(const fs::path& ply, Scaffold& scaffold) {
 }
 
 void load_bank(const fs::path& ply, Scaffold& scaffold) {
-  const fs::path path = beside(ply, "feature_bank_mlp.pt");
+  const fs::path path = beside(ply, bank_name);
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
   Network network = load_network(path, 3);
@@ -110,11 +113,18 @@ std::shared_ptr<Scaffold> load_scaffold(const fs::path& ply) {
   load_anchors(ply, *scaffold);
   const std::size_t features = scaffold->feature_count;
   const std::size_t k = scaffold->offset_count;
-  scaffold->opacity = load_plain(beside(ply, "opacity_mlp.pt"), features, k);
-  scaffold->covariance = load_plain(beside(ply, "cov_mlp.pt"), features, 7 * k);
+  scaffold->opacity = load_plain(beside(ply, opacity_name), features, k);
+  scaffold->covariance = load_plain(beside(ply, covariance_name), features, 7 * k);
   load_colour(ply, *scaffold);
   load_bank(ply, *scaffold);
   return scaffold;
+}
+
+std::vector<fs::path> files_of_networks(const fs::path& ply) {
+  std::vector<fs::path> files;
+  for (const char* name : {opacity_name, covariance_name, colour_name, appearance_name, bank_name})
+    files.push_back(beside(ply, name));
+  return files;
 }
 
 }  // namespace binosplat

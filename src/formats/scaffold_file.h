@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "formats/ply_header.h"
 #include "scene/scaffold.h"
@@ -24,5 +25,8 @@ bool is_scaffold(const PlyHeader& header);
 /// Error naming the file, and what was expected: a network missing or of other sizes than K and F ask for, a
 /// ply cut short or of other types, no anchors.
 std::shared_ptr<Scaffold> load_scaffold(const std::filesystem::path& ply);
+
+/// The networks that belong beside such a ply file, also those that not every model has.
+std::vector<std::filesystem::path> files_of_networks(const std::filesystem::path& ply);
 
 }  // namespace binosplat

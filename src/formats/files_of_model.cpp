@@ -1,0 +1,83 @@
+#include "formats/files_of_model.h"
+
+#include <set>
+
+#include "base/mapped_file.h"
+#include "formats/content.h"
+#include "formats/gltf.h"
+#include "formats/json_file.h"
+#include "formats/model_file.h"
+#include "formats/ply.h"
+#include "formats/scaffold_file.h"
+#include "formats/sog.h"
+#include "formats/sog_levels.h"
+#include "formats/streamed_sog.h"
+#include "formats/zip_file.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Files = std::vector<fs::path>;
+
+/// The pictures that a SOG's meta.json names.
+Files pictures_of(const fs::path& meta, const nlohmann::json& json) {
+  const JsonValue root(meta.string(), json);
+  Files files;
+  for (const char* item : {"means", "scales", "quats", "sh0", "shN"}) {
+    if (!root.has(item)) continue;
+    const JsonValue names = root.at(item).at("files");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string name = names.at(i).text();
+      if (stays_below(name)) files.push_back(meta.parent_path() / name);
+    }
+  }
+  return files;
+}
+
+Files files_of_levels(const fs::path& lod_meta, const nlohmann::json& json) {
+  const SogLevels levels(lod_meta, json);
+  Files files = levels.files();
+  if (levels.environment()) files.push_back(*levels.environment());
+  return files;
+}
+
+/// What a file names besides itself.
+Files named_by(const fs::path& path) {
+  const MappedFile file(path);
+  switch (content_of(file.bytes())) {
+    case Content::ply:
+      if (is_scaffold(read_ply_header(path, file.bytes()))) return files_of_networks(path);
+      return {};
+    case Content::glb:
+      return files_of_gltf(path, file.bytes());
+    case Content::json: {
+      const nlohmann::json json = parse_json(path.string(), as_text(file.bytes()));
+      if (is_sog_levels(json)) return files_of_levels(path, json);
+      if (is_sog_meta(json)) return pictures_of(path, json);
+      if (is_gltf(json)) return files_of_gltf(path, file.bytes());
+      return {};
+    }
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+Files files_of_model(const fs::path& path) {
+  std::set<fs::path> found = {file_of(path)};
+  Files open(found.begin(), found.end());
+  while (!open.empty()) {
+    const fs::path next = std::move(open.back());
+    open.pop_back();
+    for (const fs::path& file : named_by(next)) {
+      std::error_code ignored;
+      if (fs::is_regular_file(file, ignored) && found.insert(file).second) open.push_back(file);
+    }
+  }
+  return {found.begin(), found.end()};
+}
+
+}  // namespace binosplat

@@ -1,0 +1,128 @@
+#include "formats/gltf_nodes.h"
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <optional>
+#include <utility>
+
+namespace binosplat {
+
+namespace {
+
+constexpr std::uint64_t most = std::uint64_t{1} << 40;
+
+/// Whether a node has an extension, and what it says.
+std::optional<JsonValue> extension_of(const JsonValue& node, const char* name) {
+  if (!node.has("extensions") || !node.at("extensions").has(name)) return std::nullopt;
+  return node.at("extensions").at(name);
+}
+
+/// Translation, rotation as x y z w, and scale, in the order in which glTF applies them: scale first.
+glm::dmat4 composed(const JsonValue& where, const glm::dvec3& translation, const glm::dvec4& rotation,
+                    const glm::dvec3& scale) {
+  if (!(glm::length(rotation) > 0.0)) where.fail_here("a rotation is a quaternion of length 0");
+  const glm::dvec4 q = glm::normalize(rotation);
+  glm::dmat4 matrix = glm::mat4_cast(glm::dquat(q.w, q.x, q.y, q.z));
+  for (int c = 0; c < 3; ++c) matrix[c] *= scale[c];
+  matrix[3] = glm::dvec4(translation, 1.0);
+  return matrix;
+}
+
+/// A node's own transform: a matrix, or translation, rotation and scale.
+glm::dmat4 transform_of(const JsonValue& node) {
+  const auto numbers = [&](const char* key, std::size_t n, double* to) {
+    if (!node.has(key)) return;
+    const JsonValue list = node.at(key).list_of(n);
+    for (std::size_t i = 0; i < n; ++i) to[i] = list.at(i).number();
+  };
+  if (node.has("matrix")) {
+    glm::dmat4 matrix(1.0);
+    numbers("matrix", 16, glm::value_ptr(matrix));
+    if (glm::transpose(matrix)[3] != glm::dvec4(0, 0, 0, 1))
+      node.at("matrix").fail_here("its last row is not 0 0 0 1, so that it is no place of a node");
+    return matrix;
+  }
+  glm::dvec3 translation(0.0), scale(1.0);
+  glm::dvec4 rotation(0, 0, 0, 1);
+  numbers("translation", 3, &translation.x);
+  numbers("rotation", 4, &rotation.x);
+  numbers("scale", 3, &scale.x);
+  return composed(node, translation, rotation, scale);
+}
+
+bool is_visible(const JsonValue& node) {
+  const auto visibility = extension_of(node, "KHR_node_visibility");
+  if (!visibility || !visibility->has("visible")) return true;
+  const JsonValue visible = visibility->at("visible");
+  if (!visible.value().is_boolean()) visible.fail_here("expected true or false");
+  return visible.value().get<bool>();
+}
+
+}  // namespace
+
+std::vector<GltfNode> nodes_shown(const JsonValue& root) {
+  struct Open {
+    std::size_t node;
+    glm::dmat4 parent;
+    bool visible;
+  };
+  std::vector<bool> seen(root.has("nodes") ? root.at("nodes").size() : 0);
+  std::vector<Open> open;
+  const auto enter = [&](const JsonValue& list, const glm::dmat4& matrix, bool visible) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::size_t index = list.at(i).whole(most);
+      if (index >= seen.size() || seen[index])
+        list.at(i).fail_here("node {} is not there, or has two parents", index);
+      seen[index] = true;
+      open.push_back({index, matrix, visible});
+    }
+  };
+  const std::size_t number = root.has("scene") ? root.at("scene").whole(most) : 0;
+  const JsonValue scene = root.at("scenes").at(number);
+  if (scene.has("nodes")) enter(scene.at("nodes"), glm::dmat4(1.0), true);
+  std::vector<GltfNode> shown;
+  while (!open.empty()) {
+    const Open next = open.back();
+    open.pop_back();
+    const JsonValue node = root.at("nodes").at(next.node);
+    const glm::dmat4 matrix = next.parent * transform_of(node);
+    const bool visible = next.visible && is_visible(node);
+    if (visible && node.has("mesh")) shown.push_back({node, matrix, node.at("mesh").whole(most)});
+    if (node.has("children")) enter(node.at("children"), matrix, visible);
+  }
+  return shown;
+}
+
+MeshPlaces::MeshPlaces(GltfDocument& document, const JsonValue& node) : attributes_(node) {
+  const auto instancing = extension_of(node, "EXT_mesh_gpu_instancing");
+  if (!instancing) return;
+  attributes_ = instancing->at("attributes");
+  std::optional<std::size_t> count;
+  for (const auto& [name, value] : attributes_.value().items()) {
+    const JsonValue accessor = attributes_.at(name);
+    const std::size_t of_this = document.count(accessor.whole(most));
+    if (count && of_this != *count)
+      accessor.fail_here("it has {} values, and another attribute of these copies {}", of_this, *count);
+    count = of_this;
+  }
+  if (!count) attributes_.fail_here("expected TRANSLATION, ROTATION or SCALE, which say how many copies");
+  count_ = *count;
+  const auto read = [&](const char* name, std::size_t components) {
+    if (!attributes_.has(name)) return std::vector<float>();
+    return document.read(attributes_.at(name).whole(most), components, count_, "the other attributes");
+  };
+  translations_ = read("TRANSLATION", 3);
+  rotations_ = read("ROTATION", 4);
+  scales_ = read("SCALE", 3);
+}
+
+glm::dmat4 MeshPlaces::at(std::size_t i) const {
+  glm::dvec3 translation(0.0), scale(1.0);
+  glm::dvec4 rotation(0, 0, 0, 1);
+  if (!translations_.empty()) translation = glm::make_vec3(&translations_[3 * i]);
+  if (!rotations_.empty()) rotation = glm::make_vec4(&rotations_[4 * i]);
+  if (!scales_.empty()) scale = glm::make_vec3(&scales_[3 * i]);
+  return composed(attributes_, translation, rotation, scale);
+}
+
+}  // namespace binosplat

@@ -1,0 +1,105 @@
+#include "scene/transform.h"
+
+#include <Eigen/SVD>
+#include <atomic>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+
+#include "base/parallel.h"
+#include "scene/harmonics.h"
+
+namespace binosplat {
+
+namespace {
+
+// Of a map that was written as floats, what is so little is rounding.
+constexpr double even_enough = 1e-6;
+
+Eigen::JacobiSVD<Eigen::Matrix3d> decomposed(const glm::dmat3& m) {
+  Eigen::Matrix3d matrix;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) matrix(r, c) = m[c][r];
+  }
+  return Eigen::JacobiSVD<Eigen::Matrix3d>(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+}
+
+glm::dmat3 from_eigen(const Eigen::Matrix3d& matrix) {
+  glm::dmat3 m;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) m[c][r] = matrix(r, c);
+  }
+  return m;
+}
+
+double farthest(const glm::dmat3& a, const glm::dmat3& b) {
+  double most = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) most = std::max(most, std::abs(a[c][r] - b[c][r]));
+  }
+  return most;
+}
+
+bool all_finite(const glm::dmat3& m) {
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r)
+      if (!std::isfinite(m[c][r])) return false;
+  }
+  return true;
+}
+
+glm::dquat quaternion(const glm::vec4& wxyz) { return {wxyz.x, wxyz.y, wxyz.z, wxyz.w}; }
+
+glm::vec4 wxyz(const glm::dquat& q) { return glm::dvec4(q.w, q.x, q.y, q.z); }
+
+/// A rotation's axes, of which one may have another sense: an ellipsoid is the same then.
+glm::dquat turn_of(const glm::dmat3& orthogonal) {
+  return glm::normalize(glm::quat_cast(glm::determinant(orthogonal) < 0.0 ? -orthogonal : orthogonal));
+}
+
+/// The ellipsoid M C C^T M^T of M and C = R diag(scale): with M C = U diag(s) V^T its axes are U, and s along
+/// them. Not by way of the covariance itself, which squares what thin Gaussians have of digits.
+void map_ellipsoid(const glm::dmat3& linear, glm::vec4& rotation, glm::vec3& scale) {
+  glm::dmat3 axes = linear * glm::mat3_cast(quaternion(rotation));
+  for (int c = 0; c < 3; ++c) axes[c] *= scale[c];
+  const auto svd = decomposed(axes);
+  for (int k = 0; k < 3; ++k) scale[k] = static_cast<float>(svd.singularValues()[k]);
+  rotation = wxyz(turn_of(from_eigen(svd.matrixU())));
+}
+
+}  // namespace
+
+bool transform(Model& model, const glm::dmat4& map) {
+  const glm::dmat3 linear(map);
+  if (!all_finite(linear)) return false;
+  const auto svd = decomposed(linear);
+  const double largest = svd.singularValues()[0], smallest = svd.singularValues()[2];
+  glm::dmat3 q = from_eigen(svd.matrixU() * svd.matrixV().transpose());
+  // What flattens has no side of its own.
+  if (smallest <= even_enough * largest && glm::determinant(q) < 0.0)
+    q = from_eigen(svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
+  const bool even = largest - smallest <= even_enough * largest;
+  const bool turns = farthest(q, glm::dmat3(1.0)) > even_enough;
+  const glm::dquat turn = turn_of(q);
+  const double size = svd.singularValues()[1];
+  std::optional<HarmonicsTurn> harmonics;  // which takes as long as many a small model
+  if (turns && model.degree > 0) harmonics.emplace(q);
+  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+  std::atomic<bool> good = true;
+  const auto move = [&](std::size_t i) {
+    model.position[i] = glm::dvec3(map * glm::dvec4(model.position[i], 1.0));
+    if (!even) {
+      map_ellipsoid(linear, model.rotation[i], model.scale[i]);
+    } else {
+      model.scale[i] = glm::dvec3(model.scale[i]) * size;
+      if (turns) model.rotation[i] = wxyz(turn * quaternion(model.rotation[i]));
+    }
+    if (harmonics) harmonics->apply(&model.sh[i * values], model.degree);
+    for (const glm::vec3& v : {model.position[i], model.scale[i]})
+      if (!glm::all(glm::lessThan(glm::abs(v), glm::vec3(INFINITY)))) good = false;
+  };
+  parallel_for(model.count(), move, 2048);
+  return good;
+}
+
+}  // namespace binosplat

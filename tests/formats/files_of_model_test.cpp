@@ -1,0 +1,135 @@
+// Which files a model is read from: with them alone it is read, and without any of them it is not.
+
+#include "formats/files_of_model.h"
+
+#include <gtest/gtest.h>
+
+#include "support/fixtures.h"
+#include "support/gltf.h"
+#include "support/models.h"
+#include "support/scaffold_files.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+/// By their names in a folder.
+Names files_of(const fs::path& path, const fs::path& folder) {
+  Names names;
+  for (const fs::path& file : files_of_model(path)) names.insert(file.lexically_relative(folder).string());
+  return names;
+}
+
+/// Whether a model in `folder` is read from these files, and from nothing else.
+testing::AssertionResult is_read_from(const fs::path& folder, const std::string& model,
+                                      const Names& expected) {
+  const fs::path path = model.empty() ? folder : folder / model;
+  const Names names = files_of(path, folder);
+  if (names != expected)
+    return testing::AssertionFailure() << "others are told: " << testing::PrintToString(names);
+  const Model whole = load_model(path);
+  const test::TempFolder copies;
+  for (const std::string& name : names) {
+    fs::create_directories((copies / name).parent_path());
+    fs::copy(folder / name, copies / name);
+  }
+  const fs::path copy = model.empty() ? copies.path() : copies / model;
+  if (load_model(copy).position != whole.position) return testing::AssertionFailure() << "another model";
+  for (const std::string& name : names) {
+    fs::rename(copies / name, copies / "away");
+    try {
+      load_model(copy);
+      return testing::AssertionFailure() << "it is read without " << name << ", too";
+    } catch (const Error&) {
+    }
+    fs::rename(copies / "away", copies / name);
+  }
+  return testing::AssertionSuccess();
+}
+
+TEST(FilesOfModel, OfOneFileAreThatFile) {
+  const test::TempFolder folder;
+  test::write_text(folder / "m.glb", test::gltf_of(test::random_model(1, 5, 0)).bytes());
+  test::write_text(folder / "other.bin", "not of it");
+  test::write_text(folder / "color_mlp.pt", "not of it");
+  EXPECT_TRUE(is_read_from(folder.path(), "m.glb", {"m.glb"}));
+  EXPECT_EQ(files_of_model(folder.path()), files_of_model(folder / "m.glb"));  // what the folder stands for
+  EXPECT_TRUE(test::fails_saying([&] { files_of_model(folder / "none.glb"); }, {"none.glb"}));
+  test::write_text(folder / "broken.gltf", "{\"asset\": 1, \"buffers\"");
+  EXPECT_TRUE(test::fails_saying([&] { files_of_model(folder / "broken.gltf"); }, {"not valid JSON"}));
+}
+
+TEST(FilesOfModel, OfGltfAreItsBuffers) {
+  const test::TempFolder folder;
+  test::Glb glb = test::gltf_of(test::random_model(2, 5, 0));
+  const std::size_t half = glb.root["bufferViews"][2]["byteOffset"];
+  for (std::size_t i = 2; i < glb.root["bufferViews"].size(); ++i) {
+    nlohmann::json& view = glb.root["bufferViews"][i];
+    view["byteOffset"] = view["byteOffset"].get<std::size_t>() - half;
+    view["buffer"] = 1;
+  }
+  glb.root["buffers"] = {{{"uri", "my%20model.dat"}, {"byteLength", half}},
+                         {{"uri", "sub/second"}, {"byteLength", glb.binary.size() - half}}};
+  fs::create_directory(folder / "sub");
+  test::write_text(folder / "my model.dat", glb.binary.substr(0, half));
+  test::write_text(folder / "sub/second", glb.binary.substr(half));
+  test::write_text(folder / "sub/third.bin", "not of it");
+  test::write_text(folder / "other.ply", "not of it");
+  test::write_text(folder / "m.gltf", glb.root.dump());
+  EXPECT_TRUE(is_read_from(folder.path(), "m.gltf", {"m.gltf", "my model.dat", "sub/second"}));
+  // Data in the JSON, and a buffer that is not there, which no view may need.
+  glb.root["buffers"].push_back({{"uri", "data:,abc"}, {"byteLength", 3}});
+  glb.root["buffers"].push_back({{"uri", "missing.bin"}, {"byteLength", 3}});
+  test::write_text(folder / "m.gltf", glb.root.dump());
+  EXPECT_TRUE(is_read_from(folder.path(), "m.gltf", {"m.gltf", "my model.dat", "sub/second"}));
+}
+
+TEST(FilesOfModel, OfSogAreItsPictures) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  fs::copy(fixtures / "sog/st-lod/0_0", folder.path());
+  for (const char* other : {"notes.webp", "other.ply"}) test::write_text(folder / other, "not of it");
+  const Names names = {"meta.json",   "means_l.webp", "means_u.webp",       "quats.webp",
+                       "scales.webp", "sh0.webp",     "shN_centroids.webp", "shN_labels.webp"};
+  EXPECT_TRUE(is_read_from(folder.path(), "meta.json", names));
+  EXPECT_EQ(files_of(folder.path(), folder.path()), names);
+}
+
+TEST(FilesOfModel, OfStreamedSogAreThoseOfAllLevels) {
+  REQUIRE_FIXTURES(fixtures);
+  const test::TempFolder folder;
+  fs::copy(fixtures / "sog/st-lod", folder.path(), fs::copy_options::recursive);
+  for (const char* other : {"0_0/notes.webp", "meta.webp"}) test::write_text(folder / other, "not of it");
+  fs::copy(folder / "0_0", folder / "2_0");  // that no level has
+  Names names = {"lod-meta.json"};
+  for (const char* level : {"0_0/", "1_0/"}) {
+    for (const char* name : {"meta.json", "means_l.webp", "means_u.webp", "quats.webp", "scales.webp",
+                             "sh0.webp", "shN_centroids.webp", "shN_labels.webp"})
+      names.insert(std::string(level) + name);
+  }
+  EXPECT_EQ(files_of(folder.path(), folder.path()), names);
+  EXPECT_EQ(files_of(folder / "lod-meta.json", folder.path()), names);
+  // A level that is not there, as where it is still being fetched.
+  fs::remove_all(folder / "0_0");
+  std::erase_if(names, [](const std::string& name) { return name.starts_with("0_0/"); });
+  EXPECT_TRUE(is_read_from(folder.path(), "", names));
+}
+
+TEST(FilesOfModel, OfScaffoldAreItsNetworks) {
+  const test::TempFolder folder;
+  const fs::path latest = folder / "point_cloud/iteration_20";
+  for (const fs::path& of : {folder / "point_cloud/iteration_7", latest}) {
+    fs::create_directories(of);
+    test::write_scaffold(of, test::random_scaffold(1, {.anchors = 20, .appearances = 3}));
+  }
+  test::write_text(latest / "optimizer.pt", "not of it");
+  EXPECT_TRUE(is_read_from(
+      latest, "point_cloud.ply",
+      {"point_cloud.ply", "opacity_mlp.pt", "cov_mlp.pt", "color_mlp.pt", "embedding_appearance.pt"}));
+  EXPECT_EQ(files_of_model(folder.path()), files_of_model(latest / "point_cloud.ply"));
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,263 @@
+// glTF as files: containers, buffers and their URIs, versions and extensions, a rule a test.
+
+#include <gtest/gtest.h>
+
+#include "base/text.h"
+#include "support/gltf.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::json;
+using test::Glb;
+using test::little;
+using test::load_gltf_bytes;
+using test::refuses_gltf;
+
+struct GltfFiles : testing::Test {
+  const Model model = test::random_model(13, 10, 0);
+  Glb glb = test::gltf_of(model);
+  const test::TempFolder folder;
+
+  json& buffer(std::size_t i = 0) { return glb.root["buffers"][i]; }
+  /// What is read of a .gltf beside files that may be there already.
+  Model load() const {
+    test::write_text(folder / "a.gltf", glb.root.dump());
+    return load_model(folder / "a.gltf");
+  }
+  bool is_right(const Model& found) const { return found.position == model.position && found.sh == model.sh; }
+  testing::AssertionResult refuses(std::initializer_list<std::string> parts) const {
+    return test::fails_saying([&] { load(); }, parts);
+  }
+};
+
+TEST_F(GltfFiles, ChunksOfOtherTypesArePassedOver) {
+  const std::string other = Glb::chunk("MORE", "of another kind", 'x');
+  const std::string json = glb.json_chunk(), binary = glb.binary_chunk();
+  for (const std::string& chunks :
+       {json + binary, json + binary + other, json + other + binary, json + other + other + binary + other})
+    EXPECT_TRUE(is_right(load_gltf_bytes(Glb::whole(chunks))));
+  EXPECT_TRUE(refuses_gltf(Glb::whole(json + other), {"key 'buffers[0]'", "no binary chunk"}));
+  EXPECT_TRUE(refuses_gltf(Glb::whole(other + json + binary), {"the first chunk", "no JSON"}));
+  EXPECT_TRUE(refuses_gltf(Glb::whole(binary + json), {"the first chunk", "no JSON"}));
+  EXPECT_TRUE(refuses_gltf(Glb::whole(json + other.substr(0, 12) + "cut"),
+                           {"cut short: its chunk has 16 bytes, and 7 are there"}));
+}
+
+TEST_F(GltfFiles, ChunksMayBeFilledUp) {
+  std::string text = glb.root.dump();
+  text += std::string(4 - text.size() % 4, '\0');
+  EXPECT_TRUE(is_right(load_gltf_bytes(Glb::whole(Glb::chunk("JSON", text, ' ') + glb.binary_chunk()))));
+  // What comes behind the length in the header is not of the file.
+  EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes() + "more")));
+  std::string low = glb.bytes();
+  low.replace(8, 4, little(std::uint32_t{12}));
+  EXPECT_TRUE(refuses_gltf(low, {"its header says 12 bytes"}));
+  low.replace(8, 4, little(static_cast<std::uint32_t>(low.size() - 400)));
+  EXPECT_TRUE(refuses_gltf(low, {"cut short: its binary chunk"}));
+}
+
+// A chunk has up to 3 bytes more than its buffer, never fewer.
+TEST_F(GltfFiles, BuffersAreAsLongAsTheySay) {
+  const std::size_t length = glb.binary.size();
+  for (const std::size_t more : {1u, 3u, 40u}) {
+    Glb longer = glb;
+    longer.binary += std::string(more, '\0');
+    EXPECT_TRUE(is_right(load_gltf_bytes(longer.bytes()))) << more;
+  }
+  buffer()["byteLength"] = length + 40;
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'buffers[0]'", "cut short", "byteLength is"}));
+  buffer()["uri"] = "b.bin";
+  test::write_text(folder / "b.bin", glb.binary);
+  EXPECT_TRUE(refuses({"key 'buffers[0]'", "cut short"}));
+  test::write_text(folder / "b.bin", glb.binary + std::string(40, 'x'));
+  EXPECT_TRUE(is_right(load()));
+  test::write_text(folder / "b.bin", "");
+  EXPECT_TRUE(refuses({"key 'buffers[0]'", "cut short", "0 bytes are there"}));
+}
+
+TEST_F(GltfFiles, BuffersMayBeSeveral) {
+  // The binary chunk, a file beside, and data in the JSON.
+  const std::vector<json> views = glb.root["bufferViews"];
+  const auto bytes_of = [&](std::size_t i) {
+    return glb.binary.substr(views[i]["byteOffset"], views[i]["byteLength"]);
+  };
+  for (const std::size_t i : {1u, 2u}) {
+    glb.root["bufferViews"][i]["byteOffset"] = 0;
+    glb.root["bufferViews"][i]["buffer"] = i;
+  }
+  glb.root["buffers"].push_back({{"byteLength", bytes_of(1).size()}, {"uri", "b.bin"}});
+  glb.root["buffers"].push_back({{"byteLength", bytes_of(2).size()},
+                                 {"uri", "data:application/octet-stream;base64," + base64(bytes_of(2))}});
+  test::write_text(folder / "b.bin", bytes_of(1));
+  test::write_text(folder / "a.glb", glb.bytes());
+  EXPECT_TRUE(is_right(load_model(folder / "a.glb")));
+  buffer(1).erase("uri");
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'buffers[1]'", "no uri"}));
+}
+
+TEST_F(GltfFiles, BuffersMayBeInDataUris) {
+  std::string percents, some;
+  for (const char c : glb.binary) {
+    const std::string encoded = fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    percents += encoded;
+    some += c >= 'a' && c <= 'z' ? std::string(1, c) : encoded;
+  }
+  std::string coded = base64(glb.binary), escaped;
+  for (const char c : coded) escaped += c == '+' ? "%2B" : c == '/' ? "%2f" : std::string(1, c);
+  for (const std::string& uri :
+       {"data:application/octet-stream;base64," + coded, "data:application/gltf-buffer;base64," + coded,
+        "data:;base64," + coded, "data:text/plain;charset=utf-8;base64," + coded, "DATA:;BASE64," + coded,
+        "data:;base64," + escaped, "data:," + percents, "data:application/octet-stream," + some}) {
+    buffer()["uri"] = uri;
+    EXPECT_TRUE(is_right(load())) << uri.substr(0, 60);
+  }
+  while (coded.ends_with('=')) coded.pop_back();
+  buffer()["uri"] = "data:;base64," + coded;
+  EXPECT_TRUE(is_right(load()));
+  buffer()["uri"] = "data:;base64," + coded.substr(0, 40);
+  EXPECT_TRUE(refuses({"key 'buffers[0]'", "cut short"}));
+  buffer()["uri"] = "data:;base64,AA?A";
+  EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "'?' is no digit of base64"}));
+  buffer()["uri"] = "data:;base64";
+  EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "a comma"}));
+}
+
+TEST_F(GltfFiles, UrisArePercentDecoded) {
+  struct Case {
+    const char *uri, *file;
+  };
+  const Case cases[] = {
+      {"b.bin", "b.bin"},
+      {"my%20model.bin", "my model.bin"},
+      {"my model.bin", "my model.bin"},
+      {"m%C3%B6del.bin",
+       "m\xc3\xb6"
+       "del.bin"},
+      {"m%c3%b6del.bin",
+       "m\xc3\xb6"
+       "del.bin"},
+      {"m\xc3\xb6"
+       "del.bin",
+       "m\xc3\xb6"
+       "del.bin"},
+      {"a%23b%3Fc%25d.bin", "a#b?c%d.bin"},
+      {"%E7%AB%8B.bin", "\xe7\xab\x8b.bin"},
+      {"sub/b.bin", "sub/b.bin"},
+      {"./sub/./b.bin", "sub/b.bin"},
+      {"sub%2Fb.bin", "sub/b.bin"},
+      // Names that other programs do not encode.
+      {"100% done.bin", "100% done.bin"},
+      {"a%2.bin", "a%2.bin"},
+      {"my%20model.bin", "my%20model.bin"},
+      {"a#b.bin", "a#b.bin"},
+  };
+  for (const Case& c : cases) {
+    const test::TempFolder other;
+    std::filesystem::create_directories((other / c.file).parent_path());
+    test::write_text(other / c.file, glb.binary);
+    buffer()["uri"] = c.uri;
+    test::write_text(other / "a.gltf", glb.root.dump());
+    EXPECT_TRUE(is_right(load_model(other / "a.gltf"))) << c.uri << " " << c.file;
+  }
+  // The decoded name first.
+  test::write_text(folder / "my model.bin", glb.binary);
+  test::write_text(folder / "my%20model.bin", std::string(glb.binary.size(), 'x'));
+  buffer()["uri"] = "my%20model.bin";
+  EXPECT_TRUE(is_right(load()));
+}
+
+TEST_F(GltfFiles, UrisNameFilesBeside) {
+  const auto refuses_uri = [&](const char* uri, const char* part) {
+    buffer()["uri"] = uri;
+    return refuses({"a.gltf, key 'buffers[0].uri'", part});
+  };
+  EXPECT_TRUE(refuses_uri("missing.bin", "missing.bin is missing; fetch or export it again"));
+  EXPECT_TRUE(refuses_uri("miss%20ing.bin", "miss ing.bin is missing"));
+  for (const char* elsewhere : {"../b.bin", "%2E%2E/b.bin", "sub/%2e%2e/%2e%2e/b.bin", "/etc/passwd",
+                                "%2Fetc%2Fpasswd", "b%00.bin", "..%5Cb.bin", ""})
+    EXPECT_TRUE(refuses_uri(elsewhere, "must lie beside")) << elsewhere;
+  for (const char* far : {"https://example.org/b.bin", "file:///tmp/b.bin"})
+    EXPECT_TRUE(refuses_uri(far, "no file beside this one")) << far;
+  buffer()["uri"] = 7;
+  EXPECT_TRUE(refuses({"key 'buffers[0].uri'", "text in quotes"}));
+}
+
+TEST_F(GltfFiles, VersionsAreRead) {
+  const auto with = [&](const json& asset) {
+    glb.root["asset"] = asset;
+    return glb.bytes();
+  };
+  for (const json& asset :
+       {json{{"version", "2.0"}}, json{{"version", "2.1"}}, json{{"version", "2.1"}, {"minVersion", "2.0"}}})
+    EXPECT_TRUE(is_right(load_gltf_bytes(with(asset))));
+  EXPECT_TRUE(refuses_gltf(with({{"version", "1.0"}}), {"key 'asset.version'", "version 1.0 is not known"}));
+  EXPECT_TRUE(refuses_gltf(with({{"version", "3.0"}}), {"key 'asset.version'", "version 3.0 is not known"}));
+  EXPECT_TRUE(refuses_gltf(with({{"version", "2.1"}, {"minVersion", "2.1"}}),
+                           {"key 'asset.minVersion'", "version 2.1 is not known; 2.0 is"}));
+  EXPECT_TRUE(refuses_gltf(with({{"version", "two"}}), {"key 'asset.version'", "as in 2.0, found 'two'"}));
+  EXPECT_TRUE(refuses_gltf(with(json::object()), {"asset.version' is missing"}));
+}
+
+TEST_F(GltfFiles, RequiredExtensionsAreKnown) {
+  const auto with = [&](const std::vector<std::string>& names) {
+    glb.root["extensionsRequired"] = names;
+    return glb.bytes();
+  };
+  EXPECT_TRUE(is_right(load_gltf_bytes(with({}))));
+  EXPECT_TRUE(is_right(load_gltf_bytes(with({"KHR_gaussian_splatting", "KHR_node_visibility",
+                                             "EXT_mesh_gpu_instancing", "KHR_mesh_quantization"}))));
+  for (const char* name : {"VENDOR_unknown", "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                           "KHR_meshopt_compression", "KHR_materials_unlit"}) {
+    EXPECT_TRUE(refuses_gltf(with({"KHR_gaussian_splatting", name}),
+                             {"key 'extensionsRequired[1]'", std::string("'") + name + "'", "not known"}));
+    // One that is only used is passed over.
+    glb.root["extensionsRequired"] = json::array();
+    glb.root["extensionsUsed"] = {"KHR_gaussian_splatting", name};
+    EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes())));
+  }
+  glb.root["extensionsRequired"] = {7};
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'extensionsRequired[0]'", "text in quotes"}));
+  glb.root["extensionsRequired"] = "KHR_gaussian_splatting";
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'extensionsRequired'", "expected a list"}));
+}
+
+// A view that is compressed, too, is read as it is; without such bytes it cannot be.
+TEST_F(GltfFiles, MeshoptIsReadWhereItIsNotNeeded) {
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    glb = test::gltf_of(model);
+    json& view = glb.root["bufferViews"][1];
+    view["extensions"][name] = {{"buffer", 0}, {"byteLength", 4}, {"byteStride", 16}, {"count", 10}};
+    EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes())));
+    view["buffer"] = 1;
+    view["byteOffset"] = 0;
+    glb.root["buffers"].push_back({{"byteLength", 160}, {"extensions", {{name, {{"fallback", true}}}}}});
+    EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'buffers[1]'", "compressed with meshopt"}));
+  }
+}
+
+TEST_F(GltfFiles, AreToldFromOthers) {
+  const auto refuses_json = [&](const json& root, const char* part) {
+    return test::fails_saying([&] { load_gltf_bytes(root.dump(), "a.gltf"); }, {"a.gltf", part});
+  };
+  EXPECT_TRUE(refuses_json({{"asset", {{"version", "1.0"}}}, {"root", json::object()}, {"geometricError", 1}},
+                           "no glTF"));  // of 3D Tiles
+  // Without buffers all numbers are zeros, and no rotation is one.
+  glb.root.erase("buffers");
+  for (json& accessor : glb.root["accessors"]) accessor.erase("bufferView");
+  EXPECT_TRUE(refuses_json(glb.root, "zero quaternions"));
+}
+
+// Meshes and points are no Gaussians; nobody should look for them in vain.
+TEST_F(GltfFiles, WhatIsNotDrawnIsSaid) {
+  json& primitives = glb.root["meshes"][0]["primitives"];
+  primitives.push_back({{"attributes", json::object()}});
+  primitives.push_back({{"attributes", json::object()}, {"mode", 0}});
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(is_right(load_gltf_bytes(glb.bytes())));
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("not 1 meshes and 1 points"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,327 @@
+// glTF's nodes: where they put Gaussians, which of them are hidden, and how often a mesh is shown.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "support/gltf.h"
+#include "support/models.h"
+#include "support/moved.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::json;
+using test::apart;
+using test::follows;
+using test::Glb;
+using test::load_gltf_bytes;
+using test::refuses_gltf;
+
+json list(const glm::dmat4& matrix) {
+  return std::vector<double>(glm::value_ptr(matrix), glm::value_ptr(matrix) + 16);
+}
+
+struct GltfNodes : testing::Test {
+  const Model model = test::random_model(11, 20, 3);
+  Glb glb = test::gltf_of(model);
+
+  Model load() const { return load_gltf_bytes(glb.bytes()); }
+  /// Whether Gaussians `first` and following are the model moved by `map`.
+  bool follows_at(const Model& found, std::size_t first, const glm::dmat4& map,
+                  const glm::dmat3& turn) const {
+    return found.count() >= first + model.count() && follows(apart(model, found, map, turn, first));
+  }
+};
+
+const glm::dmat3 quarter(glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1));  // about z
+
+TEST_F(GltfNodes, AreReadAsTheyAre) {
+  const Model found = load();
+  EXPECT_EQ(found.position, model.position);
+  EXPECT_EQ(found.sh, model.sh);
+  EXPECT_EQ(found.axes, "LUF");
+}
+
+TEST_F(GltfNodes, TurnWhatIsInThem) {
+  const double half = std::sqrt(0.5);
+  glb.node()["rotation"] = {0, 0, half, half};
+  glb.node()["translation"] = {1, 2, 3};
+  glb.node()["scale"] = {2, 2, 2};
+  glm::dmat4 map(2.0 * quarter);
+  map[3] = glm::dvec4(1, 2, 3, 1);
+  const Model found = load();
+  EXPECT_TRUE(follows_at(found, 0, map, quarter));
+  // Planted faults: turned the other way, and not at all.
+  EXPECT_FALSE(follows_at(found, 0, map, glm::transpose(quarter)));
+  EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));
+  glb.node() = {{"mesh", 0}, {"matrix", list(map)}};
+  EXPECT_TRUE(follows_at(load(), 0, map, quarter));
+}
+
+// Scale first, then rotation, then translation; a parent's after its child's.
+TEST_F(GltfNodes, ApplyTransformsInOrder) {
+  const double half = std::sqrt(0.5);
+  glb.node() = {{"children", {1}}, {"rotation", {0, 0, half, half}}, {"translation", {0, 0, 5}}};
+  glb.root["nodes"].push_back({{"mesh", 0}, {"scale", {1, 2, 3}}, {"translation", {1, 0, 0}}});
+  glm::dmat4 parent(quarter), child(1.0);
+  parent[3] = glm::dvec4(0, 0, 5, 1);
+  for (int c = 0; c < 3; ++c) child[c] *= c + 1.0;
+  child[3] = glm::dvec4(1, 0, 0, 1);
+  const Model found = load();
+  EXPECT_TRUE(follows_at(found, 0, parent * child, quarter));
+  EXPECT_FALSE(follows_at(found, 0, child * parent, quarter));  // planted fault
+}
+
+TEST_F(GltfNodes, MayMirrorAndShear) {
+  glb.node()["scale"] = {1, 1, -2};
+  glm::dmat3 mirror(1.0);
+  mirror[2][2] = -1.0;
+  glm::dmat4 map(1.0);
+  map[2][2] = -2.0;
+  EXPECT_TRUE(follows_at(load(), 0, map, mirror));
+  EXPECT_FALSE(follows_at(load(), 0, map, glm::dmat3(1.0)));  // planted fault: harmonics not mirrored
+  // Uneven scales above a turn shear: a matrix of its own cannot, nodes together can.
+  glb.node() = {{"children", {1}}, {"scale", {1, 3, 1}}};
+  glb.root["nodes"].push_back({{"mesh", 0}, {"rotation", {0, 0, std::sin(0.3), std::cos(0.3)}}});
+  const glm::dmat3 turned(glm::rotate(glm::dmat4(1.0), 0.6, glm::dvec3(0, 0, 1)));
+  glm::dmat3 stretch(1.0);
+  stretch[1][1] = 3.0;
+  // Of S R the orthogonal factor is R, and the other one R^T S R.
+  EXPECT_TRUE(follows_at(load(), 0, glm::dmat4(stretch * turned), turned));
+}
+
+TEST_F(GltfNodes, OfNoSizeShowNothing) {
+  glb.root["scenes"][0]["nodes"] = {0, 1};
+  glb.root["nodes"].push_back({{"scale", {0, 0, 0}}, {"children", {2}}});
+  glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {1, 0, 0}}});
+  EXPECT_EQ(load().count(), model.count());
+  glb.root["scenes"][0]["nodes"] = {1};
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"without Gaussians", "that are to be seen"}));
+  glb.root["nodes"][1]["scale"] = {1, 0, 1};  // flat
+  EXPECT_EQ(load().count(), model.count());
+}
+
+TEST_F(GltfNodes, OfTheSceneAreShown) {
+  glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {9, 0, 0}}});  // in no scene
+  EXPECT_EQ(load().count(), model.count());
+  glb.root["scenes"].push_back({{"nodes", {1}}});
+  EXPECT_EQ(load().position, model.position);  // the first, where none is named
+  glb.root["scene"] = 1;
+  EXPECT_EQ(load().position[3], model.position[3] + glm::vec3(9, 0, 0));
+  glb.root["scenes"].push_back(json::object());
+  glb.root["scene"] = 2;
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"without Gaussians"}));
+  glb.root["scene"] = 9;
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'scenes'", "more than 9 values"}));
+  glb.root.erase("scene");
+  glb.root.erase("scenes");
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"'scenes' is missing"}));
+}
+
+TEST_F(GltfNodes, MakeATree) {
+  const auto refuses = [&](std::initializer_list<std::string> parts) {
+    return refuses_gltf(glb.bytes(), parts);
+  };
+  glb.node()["children"] = {0};
+  EXPECT_TRUE(refuses({"key 'nodes[0].children[0]'", "node 0 is not there, or has two parents"}));
+  glb.node()["children"] = {1};
+  glb.root["nodes"].push_back({{"children", {0}}});
+  EXPECT_TRUE(refuses({"key 'nodes[1].children[0]'", "two parents"}));
+  glb.root["nodes"][1] = json::object();
+  glb.root["scenes"][0]["nodes"] = {0, 1};
+  EXPECT_TRUE(refuses({"node 1 is not there, or has two parents"}));
+  glb.root["scenes"][0]["nodes"] = {0, 0};
+  EXPECT_TRUE(refuses({"node 0 is not there, or has two parents"}));
+  glb.root["scenes"][0]["nodes"] = {7};
+  EXPECT_TRUE(refuses({"node 7 is not there"}));
+  // The same where nothing is to be seen.
+  glb.root["scenes"][0]["nodes"] = {0};
+  glb.node()["extensions"]["KHR_node_visibility"]["visible"] = false;
+  glb.node()["children"] = {1, 1};
+  EXPECT_TRUE(refuses({"node 1 is not there, or has two parents"}));
+}
+
+TEST_F(GltfNodes, HaveTransformsThatAreSome) {
+  const auto refuses = [&](const char* key, const json& value, std::initializer_list<std::string> parts) {
+    Glb broken = glb;
+    broken.node()[key] = value;
+    return refuses_gltf(broken.bytes(), parts);
+  };
+  EXPECT_TRUE(refuses("rotation", {0, 0, 0, 0}, {"key 'nodes[0]'", "quaternion of length 0"}));
+  EXPECT_TRUE(refuses("rotation", {0, 0, 1}, {"key 'nodes[0].rotation'", "expected 4 values, found 3"}));
+  EXPECT_TRUE(refuses("scale", {1, 1, "x"}, {"key 'nodes[0].scale[2]'", "finite number"}));
+  glm::dmat4 projective(1.0);
+  projective[2][3] = 0.5;
+  EXPECT_TRUE(refuses("matrix", list(projective), {"key 'nodes[0].matrix'", "last row is not 0 0 0 1"}));
+  EXPECT_TRUE(refuses("scale", {1e90, 1, 1}, {"key 'nodes[0]'", "beyond the largest number"}));
+  EXPECT_TRUE(refuses("mesh", 4, {"key 'meshes'", "more than 4 values"}));
+  EXPECT_TRUE(refuses("skin", 0, {"key 'nodes[0].skin'", "joints"}));
+}
+
+TEST_F(GltfNodes, MoveGaussiansByMorphTargetsOnlyInVain) {
+  glb.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
+  EXPECT_EQ(load().position, model.position);
+  glb.root["meshes"][0]["weights"] = {0.5};
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'meshes[0].weights[0]'", "morph targets"}));
+  glb.node()["weights"] = {0.0};  // in place of the mesh's
+  EXPECT_EQ(load().position, model.position);
+}
+
+// KHR_node_visibility: false hides a node and all below it.
+TEST_F(GltfNodes, MayBeHidden) {
+  glb.root["scenes"][0]["nodes"] = {0, 1};
+  glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 7}}, {"children", {2}}});
+  glb.root["nodes"].push_back({{"mesh", 0}, {"translation", {1, 0, 0}}});
+  const std::size_t n = model.count();
+  EXPECT_EQ(load().count(), 3 * n);
+  const auto visible = [&](std::size_t node, const json& is) {
+    glb.node(node)["extensions"]["KHR_node_visibility"] = {{"visible", is}};
+  };
+  visible(1, false);
+  EXPECT_EQ(load().position, model.position);
+  visible(2, true);  // for nothing, below one that is hidden
+  EXPECT_EQ(load().position, model.position);
+  visible(1, true);
+  EXPECT_EQ(load().count(), 3 * n);
+  visible(2, false);
+  EXPECT_EQ(load().count(), 2 * n);
+  visible(2, nullptr);
+  EXPECT_EQ(load().count(), 3 * n);  // true where it is not said
+  visible(2, 0);
+  EXPECT_TRUE(
+      refuses_gltf(glb.bytes(), {"key 'nodes[2].extensions.KHR_node_visibility.visible'", "true or false"}));
+  visible(2, false);
+  visible(1, false);
+  visible(0, false);
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"without Gaussians", "that are to be seen"}));
+  glb.root["extensionsRequired"] = {"KHR_node_visibility"};
+  visible(0, true);
+  EXPECT_EQ(load().position, model.position);
+}
+
+struct GltfInstances : GltfNodes {
+  json& attributes() { return glb.node()["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]; }
+  void add(const char* name, const char* type, const std::vector<float>& values) {
+    const std::size_t n = values.size() / (type == std::string("VEC4") ? 4 : 3);
+    attributes()[name] = glb.add_accessor(test::packed<float>(values), n, type);
+  }
+};
+
+// EXT_mesh_gpu_instancing: the node's own transform after that of each copy.
+TEST_F(GltfInstances, AreShownInThePlaceOfTheMesh) {
+  glb.node()["scale"] = {2, 2, 2};
+  add("TRANSLATION", "VEC3", {0, 0, 0, 1, 0, 0, 0, 2, 0});
+  const Model found = load();
+  ASSERT_EQ(found.count(), 3 * model.count());
+  const glm::dvec3 at[] = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    glm::dmat4 map(glm::dmat3(2.0));
+    map[3] = glm::dvec4(2.0 * at[i], 1.0);
+    EXPECT_TRUE(follows_at(found, i * model.count(), map, glm::dmat3(1.0))) << i;
+    map[3] = glm::dvec4(at[i], 1.0);  // planted fault: not scaled by the node
+    EXPECT_EQ(follows_at(found, i * model.count(), map, glm::dmat3(1.0)), i == 0) << i;
+  }
+  // What hangs below the node is there once.
+  glb.root["nodes"].push_back({{"mesh", 0}});
+  glb.node()["children"] = {1};
+  EXPECT_EQ(load().count(), 4 * model.count());
+  glb.node()["extensions"]["KHR_node_visibility"]["visible"] = false;
+  EXPECT_TRUE(refuses_gltf(glb.bytes(), {"that are to be seen"}));
+}
+
+TEST_F(GltfInstances, AreTurnedAndScaled) {
+  const float half = std::sqrt(0.5f);
+  add("TRANSLATION", "VEC3", {1, 2, 3, 0, 0, 0});
+  add("ROTATION", "VEC4", {0, 0, half, half, 0, 0, 0, 1});
+  add("SCALE", "VEC3", {1, 2, 4, 0.5, 0.5, 0.5});
+  const Model found = load();
+  glm::dmat4 map(quarter);
+  for (int c = 0; c < 3; ++c) map[c] *= std::exp2(c);
+  map[3] = glm::dvec4(1, 2, 3, 1);
+  EXPECT_TRUE(follows_at(found, 0, map, quarter));
+  EXPECT_TRUE(follows_at(found, model.count(), glm::dmat4(glm::dmat3(0.5)), glm::dmat3(1.0)));
+  EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));  // planted fault
+  // Turned by less exact numbers: bytes and shorts, brought to length 1.
+  attributes().erase("TRANSLATION");
+  attributes().erase("SCALE");
+  const std::vector<int> bytes = {0, 0, 90, 90, 0, 0, 0, 127}, shorts = {0, 0, 23170, 23170, 0, 0, 0, 32767};
+  for (const bool wide : {false, true}) {
+    attributes()["ROTATION"] = wide ? glb.add_accessor(test::packed<std::int16_t>(shorts), 2, "VEC4",
+                                                       test::gltf_int16, {{"normalized", true}})
+                                    : glb.add_accessor(test::packed<std::int8_t>(bytes), 2, "VEC4",
+                                                       test::gltf_int8, {{"normalized", true}});
+    EXPECT_TRUE(follows_at(load(), 0, glm::dmat4(quarter), quarter)) << wide;
+    EXPECT_EQ(load().count(), 2 * model.count());
+  }
+}
+
+TEST_F(GltfInstances, MayHaveAnyAttributes) {
+  attributes()["_ID"] = glb.add_accessor(test::packed<float>(std::vector<float>{1, 2}), 2, "SCALAR");
+  EXPECT_EQ(load().count(), 2 * model.count());  // two copies in one place
+  // An accessor without a view moves nothing.
+  glb.root["accessors"].push_back({{"count", 2}, {"type", "VEC3"}, {"componentType", 5126}});
+  attributes()["TRANSLATION"] = glb.root["accessors"].size() - 1;
+  EXPECT_EQ(load().position[model.count() + 3], model.position[3]);
+  add("SCALE", "VEC3", {1, 1, 1, 0, 0, 0});  // so one copy is hidden
+  EXPECT_EQ(load().count(), model.count());
+  // Where there is no mesh, the extension says nothing.
+  glb.root["nodes"].push_back({{"children", {0}}, {"extensions", glb.node()["extensions"]}});
+  glb.root["scenes"][0]["nodes"] = {1};
+  EXPECT_EQ(load().count(), model.count());
+}
+
+TEST_F(GltfInstances, AreChecked) {
+  const auto refuses = [&](std::initializer_list<std::string> parts) {
+    return refuses_gltf(glb.bytes(), parts);
+  };
+  attributes() = json::object();
+  EXPECT_TRUE(refuses({"EXT_mesh_gpu_instancing.attributes'", "expected TRANSLATION, ROTATION or SCALE"}));
+  add("TRANSLATION", "VEC3", {0, 0, 0, 1, 0, 0});
+  add("SCALE", "VEC3", {1, 1, 1});
+  EXPECT_TRUE(refuses({"EXT_mesh_gpu_instancing.attributes.TRANSLATION'", "2 values", "another attribute"}));
+  attributes().erase("SCALE");
+  add("ROTATION", "VEC4", {0, 0, 0, 0, 0, 0, 0, 1});
+  EXPECT_TRUE(refuses({"EXT_mesh_gpu_instancing.attributes'", "quaternion of length 0"}));
+  attributes()["ROTATION"] = attributes()["TRANSLATION"];
+  EXPECT_TRUE(refuses({".type'", "expected VEC4, found VEC3"}));
+  attributes().erase("ROTATION");
+  add("TRANSLATION", "VEC3", {INFINITY, 0, 0});
+  EXPECT_TRUE(refuses({"key 'nodes[0]'", "beyond the largest number"}));
+  attributes()["TRANSLATION"] = 99;
+  EXPECT_TRUE(refuses({"key 'accessors'", "more than 99 values"}));
+  glb.node()["extensions"]["EXT_mesh_gpu_instancing"].erase("attributes");
+  EXPECT_TRUE(refuses({"EXT_mesh_gpu_instancing.attributes' is missing"}));
+}
+
+// A few bytes may ask for any number of copies: none is made before they are counted.
+TEST_F(GltfInstances, HaveALimit) {
+  const std::clock_t start = std::clock();
+  for (const double count : {60000.0, 1e6, 1e9, 1e12}) {
+    glb.root["accessors"].push_back({{"count", count}, {"type", "VEC3"}, {"componentType", 5126}});
+    attributes() = {{"_ID", glb.root["accessors"].size() - 1}};
+    EXPECT_TRUE(refuses_gltf(glb.bytes(), {"key 'nodes[0]'", "shown many times"})) << count;
+    attributes() = {{"TRANSLATION", glb.root["accessors"].size() - 1}};
+    EXPECT_TRUE(refuses_gltf(glb.bytes(), {"--max-memory MB allows more"})) << count;
+  }
+  EXPECT_LT(std::clock() - start, 10 * CLOCKS_PER_SEC);
+}
+
+// Nodes that show what others show, too.
+TEST_F(GltfNodes, ShareMeshesUpToALimit) {
+  glb = test::gltf_of(test::random_model(14, 1000, 0));
+  const auto copies = [&](std::size_t n) {
+    glb.root["nodes"] = json(n, json{{"mesh", 0}});
+    json& nodes = glb.root["scenes"][0]["nodes"] = json::array();
+    for (std::size_t i = 0; i < n; ++i) nodes.push_back(i);
+    return glb.bytes();
+  };
+  EXPECT_EQ(load_gltf_bytes(copies(50)).count(), 50000u);
+  EXPECT_TRUE(refuses_gltf(copies(2000), {"key 'nodes[", "the same ones shown many times"}));
+}
+
+}  // namespace
+}  // namespace binosplat
