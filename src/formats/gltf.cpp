@@ -209,8 +209,13 @@ class GltfReader {
   void check(const JsonValue& primitive, const JsonValue& splatting) {
     if (primitive.has("indices"))
       primitive.at("indices").fail_here("Gaussians with indices cannot be read; export them without");
-    unknown_.clear();
-    for (const JsonValue& holder : {primitive, splatting}) note_unknown(holder);
+    unknown_ = unknown_in(splatting);
+    if (unknown_.empty()) {
+      unknown_ = unknown_in(primitive);
+    } else {
+      log_warning("{}: its Gaussians are drawn without the extension '{}', which is not known",
+                  path_.string(), unknown_);
+    }
     if (splatting.has("kernel") && splatting.at("kernel").text() != "ellipse")
       splatting.at("kernel").fail_here("'{}' is not known; 'ellipse' is", splatting.at("kernel").text());
     if (splatting.has("colorSpace") && splatting.at("colorSpace").text().starts_with("lin")) {
@@ -219,11 +224,12 @@ class GltfReader {
     }
   }
 
-  /// An extension that is not known may have another kernel, or numbers of its own in place of attributes.
-  void note_unknown(const JsonValue& holder) {
-    if (!holder.has("extensions")) return;
+  /// An extension that is not known, which may have numbers of its own in place of attributes.
+  static std::string unknown_in(const JsonValue& holder) {
+    if (!holder.has("extensions")) return {};
     for (const auto& [name, value] : holder.at("extensions").value().items())
-      if (!is_known(name)) unknown_ = name;
+      if (!is_known(name)) return name;
+    return {};
   }
 
   std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonValue& splatting) const {

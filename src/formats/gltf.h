@@ -19,8 +19,9 @@ bool is_gltf(const nlohmann::json& root);
 /// EXT_mesh_gpu_instancing shows them, moved by their transforms, of whatever kind (scene/transform.h).
 /// Throws Error naming the key where something is damaged, missing or cannot be drawn: extensions that are
 /// required and not known, other kernels, data that are only there compressed by meshopt, skins, morph
-/// targets. A file without Gaussians is named for what it holds. Colours that are linear light are drawn as
-/// they are, with a warning.
+/// targets. A file without Gaussians is named for what it holds. With a warning, colours that are linear
+/// light are drawn as they are, scales below 0 are taken for logarithms, as drafts had them, and other meshes
+/// are left out.
 Model load_gltf(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// The files that it names besides itself, whether they are there or not.

@@ -72,7 +72,10 @@ TEST_F(GltfAccessors, WithoutAViewMayBeInAnExtension) {
   EXPECT_TRUE(refuses({"attributes.POSITION'", "in the extension 'KHR_draco_mesh_compression'"}));
   primitive["extensions"].erase("KHR_draco_mesh_compression");
   primitive["extensions"][test::splatting]["extensions"]["EXT_packed_somehow"] = json::object();
+  testing::internal::CaptureStderr();
   EXPECT_TRUE(refuses({"in the extension 'EXT_packed_somehow'"}));
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("drawn without the extension 'EXT_packed_somehow'"),
+            std::string::npos);
 }
 
 struct GltfSparse : GltfAccessors {
