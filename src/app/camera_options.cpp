@@ -26,17 +26,17 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
   };
   sub.option_defaults()->group("Cameras");
   sub.add_option("--cameras", o.file,
-                 "cameras.json, transforms.json or the folder of a COLMAP reconstruction;\ndefault: what "
-                 "lies beside the model")
+                 "cameras.json, transforms.json, camera_path.json or the folder of a\nCOLMAP reconstruction; "
+                 "default: what lies beside the model")
       ->type_name("FILE|DIR");
   sub.add_option("--view", o.views,
                  "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
                  "NAME_right")
       ->type_name("NAME");
-  sub.add_option("--path", o.path,
-                 "cameras.json of one path: of keys, as `view` saves them, or of its\nframes; each frame "
-                 "goes by what "
-                 "the last one measured")
+  sub.add_option(
+         "--path", o.path,
+         "cameras.json or nerfstudio's camera_path.json of one path: of keys, as\n`view` saves them, or "
+         "of its frames; each frame goes by what the last\none measured")
       ->type_name("FILE");
   three("--eye", o.eye, "Camera position instead, in world units");
   three("--at", o.at, "What it looks at");

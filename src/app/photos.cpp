@@ -74,6 +74,7 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
                                          const Lens& lens, const CameraList& list) {
   const std::vector<std::string>& without = choice.without;
   const bool named = !choice.views.empty();
+  if (!photos.empty()) check_photos_apart(photos, list.cameras);
   std::vector<Camera> cameras = chosen_cameras(choice.views, lens, list);
   std::erase_if(cameras, [&](const Camera& camera) {
     return std::find(without.begin(), without.end(), camera.name) != without.end() ||

@@ -134,9 +134,10 @@ struct Work {
   std::optional<FollowedLevels> followed;
 };
 
-// Of those that are drawn, before the model is read.
+// Of those that are drawn, before the model is read; and that each has a photo of its own.
 void check_photo_sizes(const RenderOptions& o, const Work& work) {
   if (work.photos.empty() || !work.list.listed) return;
+  check_photos_apart(work.photos, work.list.cameras);
   std::vector<Camera> cameras = chosen_cameras(o.camera.views, o.camera.lens, work.list);
   if (o.camera.views.empty() && !work.list.path) cameras.resize(1);
   check_photos(work.photos, cameras);

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "formats/cameras_file.h"
 #include "formats/dataparser.h"
+#include "formats/distortion.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 
@@ -128,8 +129,9 @@ void learn(const CameraList& list, const CameraOptions& camera, Known& known) {
 }
 
 // In the model's world, which may not be the cameras' own.
-std::vector<Camera> cameras_for(const std::string& scene, const std::string& file) {
-  std::vector<Camera> cameras = load_cameras(file);
+std::vector<Camera> cameras_for(const std::string& scene, const std::string& file,
+                                const std::optional<double>& fov = {}) {
+  std::vector<Camera> cameras = load_cameras(file, fov);
   const auto dataparser = is_built_in(scene) ? std::nullopt : find_dataparser(scene);
   if (dataparser && move_into_training(*dataparser, file, cameras))
     log_info("{}: moved into the world that the model was trained in, by {}", file, dataparser->string());
@@ -145,6 +147,24 @@ void learn_beside(const std::string& scene, const CameraOptions& camera, Known& 
     learn({found->string(), cameras_for(scene, found->string())}, camera, known);
   } catch (const Error& error) {
     log_warning("{}; cameras are made up without them", error.what());
+  }
+}
+
+// Those of the file that an option names or that lies beside the model, or the built-in ones. Where nothing
+// asks for those beside it, and none of their lenses can be drawn, there are none.
+CameraList camera_list(const SceneOptions& scene, const CameraOptions& camera,
+                       const std::vector<Camera>& built_in) {
+  const std::string named = camera.path.empty() ? camera.file : camera.path;
+  if (!named.empty()) return {named, cameras_for(scene.name, named, camera.fov)};
+  const auto found = built_in.empty() ? find_cameras(scene.name) : std::nullopt;
+  if (!found) return {scene.name, built_in};
+  note_input(*found);
+  try {
+    return {found->string(), cameras_for(scene.name, found->string(), camera.fov)};
+  } catch (const UndrawableLens& error) {
+    if (!camera.views.empty() || camera.along_path()) throw;
+    log_warning("{}; a camera is made up instead", error.what());
+    return {scene.name, {}};
   }
 }
 
@@ -187,16 +207,7 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
     if (built_in.empty() && !(camera.eye && camera.up)) learn_beside(scene.name, camera, known);
     return {.known = known};
   }
-  std::string file = camera.path.empty() ? camera.file : camera.path;
-  if (file.empty() && built_in.empty()) {
-    const auto found = find_cameras(scene.name);
-    if (found) {
-      file = found->string();
-      note_input(*found);
-    }
-  }
-  CameraList list =
-      file.empty() ? CameraList{scene.name, built_in} : CameraList{file, cameras_for(scene.name, file)};
+  CameraList list = camera_list(scene, camera, built_in);
   list.listed = !list.cameras.empty();
   list.path = camera.along_path();
   list.known = known;
@@ -204,7 +215,8 @@ CameraList listed_cameras(const SceneOptions& scene, const CameraOptions& camera
   if (built_in.empty() && camera.lens.vr180() && !(camera.path + camera.file).empty())
     learn_beside(scene.name, camera, list.known);
   if (built_in.empty()) learn(list, camera, list.known);
-  if (list.listed && ((camera.up && !camera.lens.vr180()) || camera.fov)) {
+  const bool takes_fov = list.listed && camera.fov && built_in.empty() && lacks_lenses(list.source);
+  if (list.listed && ((camera.up && !camera.lens.vr180()) || (camera.fov && !takes_fov))) {
     fail(
         "--up and --fov are for cameras that are made up: {} has cameras; use --eye and --at, or --orbit, "
         "with them",

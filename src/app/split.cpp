@@ -36,6 +36,7 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
         "{} needs the cameras that the pictures are of, and there are none beside {}: name their file with "
         "--cameras",
         command, o.scene.name);
+  if (!o.photos.empty()) check_photos_apart(o.photos, list.cameras);
   check_photos(o.photos, chosen_cameras({}, o.camera.lens, list));
   return list;
 }

@@ -8,13 +8,18 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/text.h"
 #include "formats/colmap.h"
 #include "formats/content.h"
+#include "formats/distortion.h"
 #include "formats/json_file.h"
 #include "formats/lens.h"
+#include "formats/model_file.h"
+#include "formats/nerfstudio.h"
+#include "formats/ply_camera.h"
 #include "formats/transforms.h"
+#include "scene/framing.h"
 
 namespace binosplat {
 
@@ -102,7 +107,21 @@ class CameraReader {
 std::vector<Camera> load_list(const std::filesystem::path& path, const json& root) {
   if (root.empty()) fail("{} holds no cameras", path.string());
   std::vector<Camera> cameras;
-  for (const json& object : root) cameras.push_back(CameraReader(path, cameras.size(), object).read());
+  DrawnLenses drawn(path.string());
+  for (std::size_t i = 0; i < root.size(); ++i) {
+    const std::string where = fmt::format("{}, camera {} (counted from 0)", path.string(), i);
+    const JsonValue object(where, root[i]);
+    const KeyOf key = [&](const char* name) {
+      return object.has(name) ? std::optional(object.at(name)) : std::nullopt;
+    };
+    if (const std::string fault = undrawable_lens(key); !fault.empty()) {
+      drawn.leave_out(fmt::format("{}, {}", where, fault));
+      continue;
+    }
+    cameras.push_back(CameraReader(path, i, root[i]).read());
+    drawn.add(cameras.back(), read_distortion(key));
+  }
+  drawn.finish();
   return cameras;
 }
 
@@ -118,19 +137,36 @@ std::optional<std::filesystem::path> cameras_in(const std::filesystem::path& fol
   return std::nullopt;
 }
 
-std::vector<Camera> load_any(const std::filesystem::path& named) {
+std::vector<Camera> load_any(const std::filesystem::path& named, const std::optional<double>& fov_degrees) {
   std::error_code ignored;
   const std::filesystem::path path = resolve_cameras(named);
   if (std::filesystem::is_directory(path, ignored)) return load_colmap(path);
   const MappedFile file(path);
+  if (content_of(file.bytes()) == Content::ply) return {load_ply_camera(path, file.bytes())};
   const json root = parse_json(path.string(), as_text(file.bytes()));
   if (is_transforms(root)) return load_transforms(path, root);
+  if (is_camera_path(root)) return load_camera_path(path, root);
+  if (is_pose_list(root)) return load_pose_list(path, root, fov_degrees.value_or(default_fov_degrees));
   if (root.is_array()) return load_list(path, root);
   fail(
-      "{}: expected a list of cameras as INRIA's cameras.json, or an object with 'frames' as "
-      "transforms.json, but "
-      "its root is of type {}",
+      "{}: expected a list of cameras as INRIA's cameras.json, or an object with 'frames' as transforms.json "
+      "or 'camera_path' as nerfstudio's paths, but its root is of type {}",
       path.string(), root.type_name());
+}
+
+void check_names(const std::filesystem::path& path, const std::vector<Camera>& cameras) {
+  std::set<std::string> names;
+  for (const Camera& camera : cameras) {
+    // They become names of files, and stand on terminals.
+    if (std::any_of(camera.name.begin(), camera.name.end(),
+                    [](unsigned char c) { return std::iscntrl(c) != 0; }))
+      fail("{}: the name {:?} has a control character; take it out", path.string(), camera.name);
+    if (!names.insert(camera.name).second)
+      fail(
+          "{}: two cameras are called '{}': photos and pictures are told apart by names, so give each its "
+          "own",
+          path.string(), camera.name);
+  }
 }
 
 }  // namespace
@@ -150,18 +186,18 @@ std::filesystem::path resolve_cameras(const std::filesystem::path& path) {
   return of_colmap ? path.parent_path() : path;
 }
 
-std::vector<Camera> load_cameras(const std::filesystem::path& path) {
-  std::vector<Camera> cameras = load_any(path);
-  std::set<std::string> names;
-  for (const Camera& camera : cameras) {
-    // They become names of files, and stand on terminals.
-    if (std::any_of(camera.name.begin(), camera.name.end(),
-                    [](unsigned char c) { return std::iscntrl(c) != 0; }))
-      fail("{}: the name {:?} has a control character; take it out", path.string(), camera.name);
-    if (!names.insert(camera.name).second)
-      log_warning("{}: the name '{}' occurs twice", path.string(), camera.name);
-  }
+std::vector<Camera> load_cameras(const std::filesystem::path& path,
+                                 const std::optional<double>& fov_degrees) {
+  std::vector<Camera> cameras = load_any(path, fov_degrees);
+  check_names(path, cameras);
   return cameras;
+}
+
+bool lacks_lenses(const std::filesystem::path& path) {
+  const std::filesystem::path file = resolve_cameras(path);
+  if (lowered_ending(file) != ".json") return false;
+  const MappedFile mapped(file);
+  return is_pose_list(parse_json(file.string(), as_text(mapped.bytes())));
 }
 
 void fail_no_camera(const std::string& asked, const std::string& source, std::span<const Camera> cameras) {
@@ -187,7 +223,10 @@ std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& m
   namespace fs = std::filesystem;
   std::error_code ignored;
   const fs::path path = fs::absolute(model);
-  const fs::path folder = fs::is_directory(path, ignored) ? path : path.parent_path();
+  const bool is_folder = fs::is_directory(path, ignored);
+  const std::vector<fs::path> models = is_folder ? models_in(path) : std::vector{path};
+  if (models.size() == 1 && has_ply_camera(models[0])) return models[0];
+  const fs::path folder = is_folder ? path : path.parent_path();
   if (auto found = cameras_in(folder)) return found;
   if (folder.filename() == "point_cloud") return cameras_in(folder.parent_path());
   if (!folder.filename().string().starts_with("iteration_")) return std::nullopt;

@@ -1,11 +1,12 @@
 #pragma once
-// Cameras from files: INRIA's cameras.json, COLMAP's reconstructions (formats/colmap.h) and transforms.json
-// (formats/transforms.h).
+// Cameras from files: INRIA's cameras.json, COLMAP's reconstructions (formats/colmap.h), transforms.json
+// (formats/transforms.h), nerfstudio's paths and poses (formats/nerfstudio.h), and the camera in a model's
+// ply (formats/ply_camera.h).
 //
 // cameras.json is a list of objects: img_name, width, height (px), position (x, y, z), rotation (three rows
 // of three; its COLUMNS are the camera's axes x right, y down, z forward in the world, so it is
-// camera-to-world), fx, fy (px). Optional: cx, cy (px; the middle of the picture where missing) and time (s).
-// Other keys are ignored.
+// camera-to-world), fx, fy (px). Optional: cx, cy (px; the middle of the picture where missing), time (s) and
+// the keys of lenses that are no pinholes (formats/distortion.h). Other keys are ignored.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -18,15 +19,21 @@
 
 namespace binosplat {
 
-/// What load_cameras() reads: a JSON file, or the folder of a COLMAP reconstruction. `path` may be that, a
-/// folder that holds it, or a file of a reconstruction. Throws Error for a folder without cameras.
+/// What load_cameras() reads: a JSON file, a ply, or the folder of a COLMAP reconstruction. `path` may be
+/// that, a folder that holds it, or a file of a reconstruction. Throws Error for a folder without cameras.
 std::filesystem::path resolve_cameras(const std::filesystem::path& path);
 
 /// Reads all cameras, at least one, of a file or of a folder that holds such files, also in sparse/0 below
 /// it. In file order, COLMAP's by name. Rotations must be orthonormal within 1e-3 with determinant +1 and are
-/// kept to the digit. Names that occur twice are kept with a warning. Throws Error naming the file, the
-/// camera's number in the list and its key; for broken JSON the line and byte.
-std::vector<Camera> load_cameras(const std::filesystem::path& path);
+/// kept to the digit. Of a file that lacks_lenses() pictures are `fov_degrees` high, or 60. Throws
+/// UndrawableLens (formats/distortion.h) where no camera's lens can be drawn, and Error naming the file, the
+/// camera's number in the list and its key; for broken JSON the line and byte; for a name that two cameras
+/// have, since photos and pictures are told apart by it, the name.
+std::vector<Camera> load_cameras(const std::filesystem::path& path,
+                                 const std::optional<double>& fov_degrees = {});
+
+/// Whether a file tells where cameras are, but nothing of their lenses (formats/nerfstudio.h).
+bool lacks_lenses(const std::filesystem::path& path);
 
 /// Throws Error: `source` has no camera of the name that was `asked` for, and names some that it has.
 [[noreturn]] void fail_no_camera(const std::string& asked, const std::string& source,
@@ -35,9 +42,9 @@ std::vector<Camera> load_cameras(const std::filesystem::path& path);
 /// A camera as an object of such a list, with its principal point, and its time (0 where it has none).
 nlohmann::ordered_json camera_json(const Camera& camera);
 
-/// The cameras that belong to a model, a file or its folder: cameras.json, transforms.json or a COLMAP
-/// reconstruction in that folder or, for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and
-/// MODEL/point_cloud/NAME.ply, in MODEL.
+/// The cameras that belong to a model, a file or its folder: the model itself, where it is a ply that has one
+/// (formats/ply_camera.h), else cameras.json, transforms.json or a COLMAP reconstruction in that folder or,
+/// for INRIA's MODEL/point_cloud/iteration_N/NAME.ply and MODEL/point_cloud/NAME.ply, in MODEL.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& model);
 
 /// The folder of the photos that cameras were found from: `images` or `photos` beside their file, or beside

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "formats/colmap_records.h"
+#include "formats/distortion.h"
 #include "formats/lens.h"
 
 namespace binosplat {
@@ -19,21 +21,63 @@ bool is_there(const fs::path& path) {
   return fs::is_regular_file(path, ignored);
 }
 
-[[noreturn]] void fail_lens(const fs::path& file, const ColmapLens& lens) {
-  const std::string_view name = colmap_model_name(lens.model);
-  if (name.empty())
-    fail("{}: camera {} has the model {}, which is not known (0 to 17 are)", file.string(), lens.id,
-         lens.model);
-  fail(
-      "{}: camera {} has a lens of the model {}; only SIMPLE_PINHOLE and PINHOLE can be drawn. Undistort "
-      "pictures and "
-      "cameras: colmap image_undistorter --image_path IMAGES --input_path {} --output_path OUT",
-      file.string(), lens.id, name, file.parent_path().string());
+/// How much of a lens's parameters a pinhole has, too, and what the others do: src/colmap/sensor/models.h in
+/// COLMAP. Nothing for lenses that no plane holds. A fisheye without distortion is none that a plane holds
+/// either: it has equal angles at equal distances.
+struct PlaneLens {
+  std::size_t focal_lengths;
+  Distortion distortion;
+};
+
+/// Fitzgibbon's: a ray goes through what is drawn at u / (1 + k u^2).
+Distortion division(double k) {
+  if (k == 0.0) return {};
+  return [k](const glm::dvec2& at) { return 2.0 / (1.0 + std::sqrt(1.0 - 4.0 * k * glm::dot(at, at))) * at; };
 }
 
-Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLens& lens) {
-  constexpr int simple_pinhole = 0, pinhole = 1;
-  if (lens.model != simple_pinhole && lens.model != pinhole) fail_lens(file, lens);
+/// Devernay's and Faugeras's: as far out as the angle is wide.
+Distortion field_of_view(double omega) {
+  if (omega == 0.0) return {};
+  return [omega](const glm::dvec2& at) {
+    const double r = glm::length(at);
+    return r > 0.0 ? std::atan(2.0 * r * std::tan(0.5 * omega)) / (r * omega) * at : at;
+  };
+}
+
+/// The enhanced unified model of Khomutenko.
+Distortion unified(double alpha, double beta) {
+  if (alpha == 0.0 || beta == 0.0) return {};
+  return [alpha, beta](const glm::dvec2& at) {
+    return at / (alpha * std::sqrt(beta * glm::dot(at, at) + 1.0) + 1.0 - alpha);
+  };
+}
+
+std::optional<PlaneLens> plane_lens(const ColmapLens& lens) {
+  const std::string_view name = colmap_model_name(lens.model);
+  const auto last = [&](std::size_t from_end) { return lens.parameters[lens.parameters.size() - from_end]; };
+  if (name == "SIMPLE_PINHOLE") return PlaneLens{1, {}};
+  if (name == "PINHOLE") return PlaneLens{2, {}};
+  if (name == "SIMPLE_RADIAL") return PlaneLens{1, distortion_of({.k = {last(1)}})};
+  if (name == "RADIAL") return PlaneLens{1, distortion_of({.k = {last(2), last(1)}})};
+  if (name == "OPENCV")
+    return PlaneLens{2, distortion_of({.k = {last(4), last(3)}, .p1 = last(2), .p2 = last(1)})};
+  if (name == "FULL_OPENCV")
+    return PlaneLens{2, distortion_of({.k = {last(8), last(7), last(4)},
+                                       .below = {last(3), last(2), last(1)},
+                                       .p1 = last(6),
+                                       .p2 = last(5)})};
+  if (name == "FOV") return PlaneLens{2, field_of_view(last(1))};
+  if (name == "SIMPLE_DIVISION") return PlaneLens{1, division(last(1))};
+  if (name == "DIVISION") return PlaneLens{2, division(last(1))};
+  if (name == "EUCM") return PlaneLens{2, unified(last(2), last(1))};
+  return std::nullopt;
+}
+
+Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLens& lens,
+                 std::size_t focal_lengths) {
+  const std::string where = fmt::format("{}: camera {}", file.string(), lens.id);
+  if (!std::ranges::all_of(lens.parameters, [](double value) { return std::isfinite(value); }))
+    fail("{}: its parameters must be finite", where);
   const auto pixels = [](std::uint64_t n) {
     return static_cast<int>(std::min<std::uint64_t>(n, std::numeric_limits<int>::max()));
   };
@@ -41,12 +85,12 @@ Camera camera_of(const fs::path& file, const ColmapImage& image, const ColmapLen
   camera.name = image.name;
   camera.width = pixels(lens.width);
   camera.height = pixels(lens.height);
-  const std::size_t second = lens.model == pinhole ? 1 : 0;
+  const std::size_t second = focal_lengths - 1;
   camera.fx = lens.parameters[0];
   camera.fy = lens.parameters[second];
   camera.cx = lens.parameters[second + 1];
   camera.cy = lens.parameters[second + 2];
-  check_lens(fmt::format("{}: camera {}", file.string(), lens.id), camera);
+  check_lens(where, camera);
 
   // World to camera is R(q) p + t: the rows of R are the camera's axes.
   const glm::dvec4& q = image.rotation;
@@ -71,15 +115,28 @@ std::vector<Camera> load_colmap(const fs::path& folder) {
   const fs::path image_file = folder / (binary ? "images.bin" : "images.txt");
   const std::map<std::uint32_t, ColmapLens> lenses =
       binary ? colmap_lenses(lens_file) : colmap_lenses_text(lens_file);
+  const std::string undistorting = fmt::format(
+      "colmap image_undistorter --image_path IMAGES --input_path {} --output_path OUT", folder.string());
   std::vector<Camera> cameras;
+  DrawnLenses drawn(lens_file.string(), ". Undistort pictures and cameras: " + undistorting);
   for (const ColmapImage& image : binary ? colmap_images(image_file) : colmap_images_text(image_file)) {
     const auto lens = lenses.find(image.lens);
     if (lens == lenses.end()) {
       fail("{}: image {} was taken with camera {}, which {} does not have", image_file.string(), image.id,
            image.lens, lens_file.string());
     }
-    cameras.push_back(camera_of(lens_file, image, lens->second));
+    const auto plane = plane_lens(lens->second);
+    if (!plane) {
+      drawn.leave_out(
+          fmt::format("{}: camera {} has a lens of the model {}, which is no pinhole's. Undistort pictures "
+                      "and cameras: {}",
+                      lens_file.string(), lens->first, colmap_model_name(lens->second.model), undistorting));
+      continue;
+    }
+    cameras.push_back(camera_of(lens_file, image, lens->second, plane->focal_lengths));
+    drawn.add(cameras.back(), plane->distortion);
   }
+  drawn.finish();
   if (cameras.empty()) fail("{} holds no images", image_file.string());
   std::sort(cameras.begin(), cameras.end(), [](const Camera& a, const Camera& b) { return a.name < b.name; });
   return cameras;

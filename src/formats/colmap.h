@@ -13,9 +13,10 @@ namespace binosplat {
 bool is_colmap(const std::filesystem::path& folder);
 
 /// Reads all cameras of a folder, sorted by the names of their pictures; binary files where both are there.
-/// Lenses must be pinholes (SIMPLE_PINHOLE, PINHOLE): others end in an Error that names them and what
-/// undistorts them. Throws Error naming the file, and the image or line in it, for what is damaged, cut short
-/// or missing.
+/// Lenses are drawn as DrawnLenses (formats/distortion.h) says: those that project as a pinhole does and then
+/// bend the picture without the bend, with a warning that names what undistorts them; fisheyes and panoramas
+/// not at all. Throws Error naming the file, and the image or line in it, for what is damaged, cut short or
+/// missing.
 std::vector<Camera> load_colmap(const std::filesystem::path& folder);
 
 }  // namespace binosplat

@@ -104,14 +104,16 @@ class Cursor {
 /// The lines of a text, numbered from 1.
 class Lines {
  public:
-  Lines(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {}
+  Lines(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {
+    if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;  // a mark of UTF-8, as editors leave it
+  }
 
-  /// The next line, whatever is in it; false at the end.
+  /// The next line, whatever is in it, without blanks at its end; false at the end.
   bool next(std::string_view& line) {
     if (at_ >= text_.size()) return false;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     line = text_.substr(at_, end - at_);
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
     at_ = end + 1;
     ++number_;
     return true;
@@ -135,10 +137,13 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-std::vector<std::string_view> words_of(std::string_view line) {
+/// What stands between blanks; the last of `most` words is all that is left, with the blanks in it.
+std::vector<std::string_view> words_of(std::string_view line,
+                                       std::size_t most = std::numeric_limits<std::size_t>::max()) {
   std::vector<std::string_view> words;
   for (std::size_t at = line.find_first_not_of(" \t"); at < line.size();) {
-    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+    const bool all = words.size() + 1 == most;
+    const std::size_t end = all ? line.size() : std::min(line.find_first_of(" \t", at), line.size());
     words.push_back(line.substr(at, end - at));
     at = line.find_first_not_of(" \t", end);
   }
@@ -152,6 +157,19 @@ T number(const Lines& lines, std::string_view word, const char* what) {
   if (error != std::errc() || end != word.data() + word.size())
     fail("{}: {} is no {}", lines.where(), quoted(word), what);
   return value;
+}
+
+/// Whether a line has points that an image shows, or none: X Y POINT3D_ID of each.
+bool are_points(std::string_view line) {
+  const auto is_number = [](std::string_view word, auto value) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size();
+  };
+  const std::vector<std::string_view> words = words_of(line);
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (!(k % 3 == 2 ? is_number(words[k], std::int64_t{}) : is_number(words[k], 0.0))) return false;
+  }
+  return words.size() % 3 == 0;
 }
 
 void add(std::map<std::uint32_t, ColmapLens>& lenses, const std::string& where, ColmapLens lens) {
@@ -241,7 +259,8 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
   Lines lines(path, as_text(file.bytes()));
   std::vector<ColmapImage> images;
   for (std::string_view line; lines.next_record(line);) {
-    const std::vector<std::string_view> words = words_of(line);
+    // The name is all that is left: cameras call photos "IMG (1).jpg".
+    const std::vector<std::string_view> words = words_of(line, 10);
     if (words.size() < 10) fail("{}: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", lines.where());
     ColmapImage& image = images.emplace_back();
     image.id = number<std::uint32_t>(lines, words[0], "image's number");
@@ -255,7 +274,7 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
     image.name = std::string(words[9]);
     // Where an image was observed; an empty line is one, too.
     std::string_view observations;
-    if (lines.next(observations) && words_of(observations).size() % 3 != 0) {
+    if (lines.next(observations) && !are_points(observations)) {
       fail("{}: expected the points seen in image {} (X Y POINT3D_ID ...), or an empty line", lines.where(),
            image.id);
     }

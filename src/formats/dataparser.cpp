@@ -30,6 +30,8 @@ Similarity applied(const fs::path& cameras, bool& is_moved) {
   const fs::path cameras_file = resolve_cameras(cameras);
   if (fs::is_directory(cameras_file, ignored)) return {};
   const MappedFile file(cameras_file);
+  is_moved = content_of(file.bytes()) != Content::ply;  // of the model's own
+  if (!is_moved) return {};
   const nlohmann::json root = parse_json(cameras_file.string(), as_text(file.bytes()));
   is_moved = is_transforms(root);
   if (!is_moved) return {};

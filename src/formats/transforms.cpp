@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/log.h"
+#include "formats/distortion.h"
 #include "formats/image_file.h"
 #include "formats/lens.h"
 
@@ -33,30 +33,13 @@ class Frame {
     return camera;
   }
 
-  bool is_distorted() const {
-    constexpr const char* keys[] = {"k1", "k2", "k3", "k4", "p1", "p2"};
-    return std::any_of(std::begin(keys), std::end(keys),
-                       [&](const char* key) { return number(key).value_or(0.0) != 0.0; });
-  }
-
-  /// Throws for lenses that no plane holds.
-  void check_model() const {
-    const auto model = value("camera_model");
-    const std::string name = model ? model->text() : "";
-    const auto fisheye = value("is_fisheye");
-    if ((fisheye && fisheye->value() == true) || name.find("FISHEYE") != std::string::npos ||
-        name.find("EQUIRECT") != std::string::npos || name.find("ORTHO") != std::string::npos) {
-      (model ? *model : *fisheye).fail_here("only pinhole lenses can be drawn; undistort the pictures first");
-    }
-  }
-
- private:
   std::optional<JsonValue> value(const char* key) const {
     if (frame_.has(key)) return frame_.at(key);
     if (root_.has(key)) return root_.at(key);
     return std::nullopt;
   }
 
+ private:
   std::optional<double> number(const char* key) const {
     const auto found = value(key);
     return found ? std::optional(found->number()) : std::nullopt;
@@ -97,12 +80,7 @@ class Frame {
     camera.fy = fy.value_or(camera.fx);
   }
 
-  void read_pose(Camera& camera) const {
-    const auto [axes, position] = read_rows(frame_.at("transform_matrix"));
-    // OpenGL's y is up and its z backwards.
-    camera.rotation = glm::dmat3(axes[0], -axes[1], -axes[2]);
-    camera.position = position;
-  }
+  void read_pose(Camera& camera) const { place_as_opengl(camera, read_rows(frame_.at("transform_matrix"))); }
 
   const fs::path& path_;
   const JsonValue& root_;
@@ -125,6 +103,11 @@ RigidTransform read_rows(const JsonValue& rows) {
   return to;
 }
 
+void place_as_opengl(Camera& camera, const RigidTransform& pose) {
+  camera.rotation = glm::dmat3(pose.rotation[0], -pose.rotation[1], -pose.rotation[2]);
+  camera.position = pose.shift;
+}
+
 bool is_transforms(const nlohmann::json& root) { return root.is_object() && root.contains("frames"); }
 
 std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& json) {
@@ -132,19 +115,19 @@ std::vector<Camera> load_transforms(const fs::path& path, const nlohmann::json& 
   const JsonValue frames = root.at("frames");
   if (frames.size() == 0) frames.fail_here("there are no cameras in it");
   std::vector<Camera> cameras;
-  bool distorted = false;
+  DrawnLenses drawn(path.string());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const JsonValue value = frames.at(i);
     const Frame frame(path, root, value);
-    frame.check_model();
-    distorted = distorted || frame.is_distorted();
+    const KeyOf key = [&](const char* name) { return frame.value(name); };
+    if (const std::string fault = undrawable_lens(key); !fault.empty()) {
+      drawn.leave_out(fmt::format("{}, frame {} (counted from 0), {}", path.string(), i, fault));
+      continue;
+    }
     cameras.push_back(frame.read());
+    drawn.add(cameras.back(), read_distortion(key));
   }
-  if (distorted) {
-    log_warning(
-        "{}: lenses are distorted (k1 ... p2), which is not drawn: pictures fit undistorted photos only",
-        path.string());
-  }
+  drawn.finish();
   return cameras;
 }
 

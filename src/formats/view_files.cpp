@@ -1,8 +1,10 @@
 #include "formats/view_files.h"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
 
+#include "base/error.h"
 #include "base/text.h"
 
 namespace binosplat {
@@ -28,6 +30,18 @@ std::optional<fs::path> find_view_photo(const fs::path& folder, const std::strin
     }
   }
   return std::nullopt;
+}
+
+void check_photos_apart(const fs::path& folder, std::span<const Camera> views) {
+  std::map<fs::path, std::string> taken;
+  for (const Camera& view : views) {
+    const auto photo = find_view_photo(folder, view.name);
+    if (!photo) continue;
+    const auto [other, is_new] = taken.emplace(fs::canonical(*photo), view.name);
+    if (!is_new)
+      fail("{} would be the photo of both views '{}' and '{}': name photos as their views, with the ending",
+           photo->string(), other->second, view.name);
+  }
 }
 
 }  // namespace binosplat

@@ -1,0 +1,164 @@
+#include "formats/nerfstudio.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+#include <limits>
+#include <optional>
+
+#include "base/log.h"
+#include "formats/distortion.h"
+#include "formats/image_file.h"
+#include "formats/lens.h"
+#include "formats/transforms.h"
+
+namespace binosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A list of 16, or the text of one.
+std::array<double, 16> sixteen_numbers(const JsonValue& value) {
+  std::array<double, 16> numbers{};
+  if (!value.value().is_string()) {
+    value.list_of(16);
+    for (std::size_t i = 0; i < 16; ++i) numbers[i] = value.at(i).number();
+    return numbers;
+  }
+  const nlohmann::json list = nlohmann::json::parse(value.text(), nullptr, false);
+  const bool good = list.is_array() && list.size() == 16 &&
+                    std::all_of(list.begin(), list.end(), [](const auto& one) { return one.is_number(); });
+  if (!good) value.fail_here("expected a list of 16 numbers");
+  for (std::size_t i = 0; i < 16; ++i) numbers[i] = list[i].get<double>();
+  return numbers;
+}
+
+/// Turns and moves a camera to where a camera-to-world matrix with OpenGL's axes has it: y is up there and z
+/// backwards. A row, or in a matrix of columns a column, of 0 0 0 1 is the last; of keyframes it tells the
+/// order of the numbers, and where it does not, quotes do.
+void place(Camera& camera, const JsonValue& value, bool is_keyframe) {
+  const std::array<double, 16> n = sixteen_numbers(value);
+  const auto is_last = [&](std::size_t first, std::size_t step) {
+    bool good = true;
+    for (std::size_t k = 0; k < 4; ++k)
+      good = good && std::abs(n[first + k * step] - (k == 3 ? 1.0 : 0.0)) < 1e-6;
+    return good;
+  };
+  const bool rows = is_last(12, 1), columns = is_last(3, 4);
+  const bool by_rows = is_keyframe && rows != columns ? rows : !value.value().is_string();
+  if (!(by_rows ? rows : columns))
+    value.fail_here("expected a camera-to-world matrix, row by row, the last of which is 0 0 0 1");
+  const glm::dmat4 stored = glm::make_mat4(n.data()), matrix = by_rows ? glm::transpose(stored) : stored;
+  const glm::dmat3 axes(matrix);
+  if (const std::string fault = rotation_fault(axes); !fault.empty()) value.fail_here("{}", fault);
+  place_as_opengl(camera, {axes, matrix[3]});
+}
+
+double above_zero(const JsonValue& value) {
+  if (!(value.number() > 0.0)) value.fail_here("expected a number above 0");
+  return value.number();
+}
+
+void set_vertical_fov(Camera& camera, double degrees) {
+  camera.fx = camera.fy = 0.5 * camera.height / std::tan(0.5 * glm::radians(degrees));
+  camera.cx = 0.5 * camera.width;
+  camera.cy = 0.5 * camera.height;
+}
+
+/// Seconds from one frame to the next, where the path tells.
+std::optional<double> seconds_a_frame(const JsonValue& root, std::size_t frames) {
+  if (root.has("seconds")) return above_zero(root.at("seconds")) / static_cast<double>(frames);
+  if (root.has("fps")) return 1.0 / above_zero(root.at("fps"));
+  return std::nullopt;
+}
+
+/// Seconds from the keyframe before, where the path tells.
+std::optional<double> transition(const JsonValue& root, const JsonValue& keyframe) {
+  const bool overrides = keyframe.has("override_transition_enabled") &&
+                         keyframe.at("override_transition_enabled").value() == true;
+  if (overrides) return above_zero(keyframe.at("override_transition_sec"));
+  if (root.has("default_transition_sec")) return above_zero(root.at("default_transition_sec"));
+  return std::nullopt;
+}
+
+Camera frame_of(const fs::path& path, const JsonValue& root, const JsonValue& frame, bool is_keyframe) {
+  Camera camera;
+  const auto pixels = [&](const char* key) {
+    return static_cast<int>(root.at(key).whole(std::numeric_limits<int>::max()));
+  };
+  camera.width = pixels("render_width");
+  camera.height = pixels("render_height");
+  const JsonValue fov = frame.at("fov");
+  if (!(fov.number() > 0.0 && fov.number() < 180.0)) fov.fail_here("expected degrees between 0 and 180");
+  set_vertical_fov(camera, fov.number());
+  check_lens(path.string(), camera);
+  place(camera, frame.at(is_keyframe ? "matrix" : "camera_to_world"), is_keyframe);
+  return camera;
+}
+
+/// A view's photo, as such a list names it: from its own folder on, or from the root.
+std::optional<glm::ivec2> photo_size(const fs::path& list, const std::string& file_path) {
+  const fs::path photo = list.parent_path() / file_path;
+  std::error_code ignored;
+  return fs::is_regular_file(photo, ignored) ? picture_size(photo) : std::nullopt;
+}
+
+}  // namespace
+
+bool is_camera_path(const nlohmann::json& root) {
+  return root.is_object() && (root.contains("camera_path") || root.contains("keyframes"));
+}
+
+std::vector<Camera> load_camera_path(const fs::path& path, const nlohmann::json& json) {
+  const JsonValue root(path.string(), json);
+  const std::string fault = undrawable_lens(
+      [&](const char* key) { return root.has(key) ? std::optional(root.at(key)) : std::nullopt; });
+  if (!fault.empty()) throw UndrawableLens(fmt::format("{}, {}", path.string(), fault));
+  const bool by_keys =
+      !root.has("camera_path") || (root.at("camera_path").size() == 0 && root.has("keyframes"));
+  const JsonValue frames = root.at(by_keys ? "keyframes" : "camera_path");
+  if (frames.size() == 0) frames.fail_here("there are no cameras in it");
+  const std::optional<double> pace = by_keys ? std::nullopt : seconds_a_frame(root, frames.size());
+  std::vector<Camera> cameras;
+  std::optional<double> time = 0.0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const JsonValue frame = frames.at(i);
+    const std::optional<double> step = by_keys ? transition(root, frame) : pace;
+    if (!step) time.reset();
+    if (time) *time = by_keys ? *time + (i > 0 ? *step : 0.0) : static_cast<double>(i) * *step;
+    Camera& camera = cameras.emplace_back(frame_of(path, root, frame, by_keys));
+    camera.name = by_keys ? fmt::format("key_{:03}", i) : fmt::format("{:05}", i);
+    camera.time = time;
+  }
+  return cameras;
+}
+
+bool is_pose_list(const nlohmann::json& root) {
+  return root.is_array() && !root.empty() && root[0].is_object() && root[0].contains("transform");
+}
+
+std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& json, double fov_degrees) {
+  const JsonValue root(path.string(), json);
+  log_info(
+      "{}: tells poses and no lenses: views are {} degrees high (--fov), in the size of their photos or {} x "
+      "{} px "
+      "(--size)",
+      path.string(), fov_degrees, pose_width, pose_height);
+  std::vector<Camera> cameras;
+  for (std::size_t i = 0; i < root.size(); ++i) {
+    const JsonValue value = root.at(i);
+    Camera& camera = cameras.emplace_back();
+    camera.name = value.at("file_path").text();
+    const glm::ivec2 size = photo_size(path, camera.name).value_or(glm::ivec2(pose_width, pose_height));
+    camera.width = size.x;
+    camera.height = size.y;
+    set_vertical_fov(camera, fov_degrees);
+    check_lens(fmt::format("{}: '{}'", path.string(), camera.name), camera);
+    place_as_opengl(camera, read_rows(value.at("transform")));
+  }
+  return cameras;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,208 @@
+#include "formats/ply_camera.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "formats/bytes.h"
+#include "formats/content.h"
+#include "formats/lens.h"
+#include "formats/ply_header.h"
+
+namespace binosplat {
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+/// Goes to an element's first row, and reads rows of one number.
+class Rows {
+ public:
+  Rows(const std::filesystem::path& path, std::span<const std::byte> bytes, const PlyHeader& header)
+      : path_(path), bytes_(bytes), header_(header) {}
+
+  /// The numbers of the element and its property `name`; none where there is no such element.
+  std::optional<Numbers> read(const char* name) const {
+    constexpr std::size_t most = 16;  // that any of them has
+    const PlyElement* element = header_.find(name);
+    if (element == nullptr || element->find(name) == nullptr) return std::nullopt;
+    if (element->properties.size() != 1 || element->has_list() || element->count > most)
+      fail(*element, "expected at most 16 rows of one number");
+    Numbers numbers = header_.format == PlyFormat::ascii ? read_text(*element) : read_binary(*element);
+    for (const double number : numbers) {
+      if (!std::isfinite(number)) fail(*element, "expected finite numbers");
+    }
+    return numbers;
+  }
+
+  [[noreturn]] void fail(const PlyElement& element, const std::string& what) const {
+    binosplat::fail("{}, element '{}' (a camera's): {}", path_.string(), element.name, what);
+  }
+  [[noreturn]] void fail(const char* name, const std::string& what) const { fail(*header_.find(name), what); }
+
+ private:
+  Numbers read_binary(const PlyElement& wanted) const {
+    std::size_t at = header_.data;
+    for (const PlyElement& element : header_.elements) {
+      if (&element == &wanted) break;
+      if (element.has_list()) fail(wanted, "expected before it elements without lists");
+      const std::size_t row = element.row_bytes();
+      if (row != 0 && element.count > (bytes_.size() - at) / row)
+        fail(wanted, "the file is cut short before it");
+      at += element.count * row;
+    }
+    const PlyType type = wanted.properties[0].type;
+    if (wanted.count > (bytes_.size() - at) / size_of(type)) fail(wanted, "the file is cut short within it");
+    Numbers numbers;
+    for (std::size_t i = 0; i < wanted.count; ++i)
+      numbers.push_back(load(type, bytes_.subspan(at + i * size_of(type), size_of(type))));
+    return numbers;
+  }
+
+  double load(PlyType type, std::span<const std::byte> stored) const {
+    std::vector<std::byte> bytes(stored.begin(), stored.end());
+    if (header_.format == PlyFormat::big_endian) std::reverse(bytes.begin(), bytes.end());
+    switch (type) {
+      case PlyType::int8:
+        return load_number<std::int8_t>(bytes.data());
+      case PlyType::uint8:
+        return load_number<std::uint8_t>(bytes.data());
+      case PlyType::int16:
+        return load_number<std::int16_t>(bytes.data());
+      case PlyType::uint16:
+        return load_number<std::uint16_t>(bytes.data());
+      case PlyType::int32:
+        return load_number<std::int32_t>(bytes.data());
+      case PlyType::uint32:
+        return load_number<std::uint32_t>(bytes.data());
+      case PlyType::float32:
+        return load_number<float>(bytes.data());
+      case PlyType::float64:
+        break;
+    }
+    return load_number<double>(bytes.data());
+  }
+
+  Numbers read_text(const PlyElement& wanted) const {
+    const std::string_view text = as_text(bytes_);
+    std::size_t at = header_.data;
+    // The next line that is not blank.
+    const auto next = [&] {
+      while (at < text.size()) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string_view line = text.substr(at, end - at);
+        at = end + 1;
+        const std::size_t first = line.find_first_not_of(" \t\r");
+        if (first != std::string_view::npos)
+          return line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
+      }
+      fail(wanted, "the file is cut short before its end");
+    };
+    for (const PlyElement& element : header_.elements) {
+      if (&element == &wanted) break;
+      for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) next();
+    }
+    Numbers numbers;
+    for (std::uint64_t i = 0; i < wanted.count; ++i) {
+      const std::string_view word = next();
+      const auto [end, error] =
+          std::from_chars(word.data(), word.data() + word.size(), numbers.emplace_back());
+      if (error != std::errc() || end != word.data() + word.size())
+        fail(wanted, "expected rows of one number");
+    }
+    return numbers;
+  }
+
+  const std::filesystem::path& path_;
+  std::span<const std::byte> bytes_;
+  const PlyHeader& header_;
+};
+
+int pixels(const Rows& rows, const char* element, double value) {
+  if (!(value >= 1.0 && value <= 2147483647.0) || value != std::floor(value))
+    rows.fail(element, fmt::format("{} is no number of pixels", value));
+  return static_cast<int>(value);
+}
+
+void set_lens(const Rows& rows, const Numbers& intrinsic, Camera& camera) {
+  const auto size = rows.read("image_size");
+  if (!size) {
+    if (intrinsic.size() != 4)
+      rows.fail("intrinsic",
+                fmt::format("{} numbers; expected 4, or 9 and an element image_size", intrinsic.size()));
+    camera.width = pixels(rows, "intrinsic", intrinsic[2]);
+    camera.height = pixels(rows, "intrinsic", intrinsic[3]);
+    camera.fx = intrinsic[0];
+    camera.fy = intrinsic[1];
+    camera.cx = 0.5 * camera.width;
+    camera.cy = 0.5 * camera.height;
+    return;
+  }
+  if (size->size() != 2)
+    rows.fail("image_size", fmt::format("{} numbers; expected width and height", size->size()));
+  if (intrinsic.size() != 9)
+    rows.fail("intrinsic", fmt::format("{} numbers; expected the 9 of a matrix", intrinsic.size()));
+  camera.width = pixels(rows, "image_size", (*size)[0]);
+  camera.height = pixels(rows, "image_size", (*size)[1]);
+  camera.fx = intrinsic[0];
+  camera.fy = intrinsic[4];
+  camera.cx = intrinsic[2];
+  camera.cy = intrinsic[5];
+}
+
+void set_pose(const Rows& rows, Camera& camera) {
+  const auto extrinsic = rows.read("extrinsic");
+  if (!extrinsic) return;
+  const bool first_version = extrinsic->size() == 12;
+  if (!first_version && extrinsic->size() != 16)
+    rows.fail("extrinsic", fmt::format("{} numbers; expected the 16 of a matrix (or 12)", extrinsic->size()));
+  // Row by row, of what takes the world to the camera: glm's columns are those rows, which are the axes.
+  glm::dmat3 axes;
+  glm::dvec3 shift;
+  for (int row = 0; row < 3; ++row) {
+    const auto at = [&](int column) { return (*extrinsic)[static_cast<std::size_t>(4 * row + column)]; };
+    axes[row] = {at(0), at(1), at(2)};
+    shift[row] = at(3);
+  }
+  if (first_version) axes = glm::transpose(axes);
+  if (const std::string fault = rotation_fault(axes); !fault.empty()) rows.fail("extrinsic", fault);
+  camera.rotation = axes;
+  camera.position = -(axes * shift);
+}
+
+}  // namespace
+
+bool has_ply_camera(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  try {
+    const MappedFile file(path);
+    if (content_of(file.bytes()) != Content::ply) return false;
+    const PlyHeader header = read_ply_header(path, file.bytes());
+    const PlyElement* element = header.find("intrinsic");
+    return element != nullptr && element->find("intrinsic") != nullptr;
+  } catch (const Error&) {
+    return false;  // who reads the model says what is wrong
+  }
+}
+
+Camera load_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  const PlyHeader header = read_ply_header(path, bytes);
+  const Rows rows(path, bytes, header);
+  const auto intrinsic = rows.read("intrinsic");
+  if (!intrinsic)
+    fail("{} is a model that tells no camera: it has no element 'intrinsic', as SHARP writes it",
+         path.string());
+  Camera camera;
+  camera.name = ply_camera_name;
+  set_lens(rows, *intrinsic, camera);
+  check_lens(fmt::format("{}, element 'intrinsic' (a camera's)", path.string()), camera);
+  set_pose(rows, camera);
+  return camera;
+}
+
+}  // namespace binosplat

@@ -1,0 +1,208 @@
+// Files of cameras as users have them: what is drawn of each, whose photo it is compared with, and what
+// stops.
+
+#include "app/scene.h"
+
+namespace binosplat {
+namespace {
+
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::write_text;
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct CameraFiles : test::SceneTest {
+  const std::string report = folder / "r.json";
+
+  /// A reconstruction with a lens of COLMAP's, of views 0.3 apart that look along z.
+  void save_colmap(const std::string& lens, const std::vector<std::string>& names) const {
+    fs::create_directories(folder / "sparse/0");
+    write_text(folder / "sparse/0/cameras.txt", "1 " + lens + "\n");
+    std::string images;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      images += fmt::format("{} 1 0 0 0 {} 0 0 1 {}\n\n", i + 1, 0.3 * static_cast<double>(i), names[i]);
+    write_text(folder / "sparse/0/images.txt", images);
+  }
+
+  /// Photos in `images`: what the views themselves show.
+  void take_photos() const { ASSERT_TRUE(good(mono({"--view", "all", "-o", folder / "images"}))); }
+
+  Outcome mono(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--mono", "--json", report});
+    if (std::find(arguments.begin(), arguments.end(), "-o") == arguments.end())
+      arguments.insert(arguments.end(), {"-o", out});
+    return render(arguments);
+  }
+
+  /// The PSNR of each view against its photo; nothing where they are alike.
+  std::vector<std::optional<double>> photo_psnr() const {
+    std::vector<std::optional<double>> all;
+    for (const json& view : json::parse(test::read_text(report)).at("views")) {
+      const json& db = view.at("photo_psnr_db");
+      all.push_back(db.is_null() ? std::nullopt : std::optional(db.get<double>()));
+    }
+    return all;
+  }
+
+  /// The one picture of a run, in a folder that is then gone.
+  std::string picture(std::vector<std::string> arguments) const {
+    EXPECT_TRUE(good(mono(std::move(arguments))));
+    std::string bytes;
+    for (const auto& entry : fs::directory_iterator(out)) {
+      if (entry.path().extension() == ".png") bytes += test::read_text(entry.path());
+    }
+    fs::remove_all(out);
+    return bytes;
+  }
+};
+
+const std::string pinhole = "PINHOLE 72 48 60 60 36 24";
+const std::string fisheye = "OPENCV_FISHEYE 72 48 60 60 36 24 0 0 0 0";
+
+TEST_F(CameraFiles, NamesWithBlanksHavePhotosOfTheirOwn) {
+  save_colmap(pinhole, {"IMG.png", "IMG (1).png", "IMG (2).png"});
+  take_photos();
+  ASSERT_TRUE(good(mono({"--view", "all", "--photos", "beside"})));
+  EXPECT_EQ(photo_psnr(), std::vector(3, std::optional<double>()));
+  // Planted fault: one view's photo in the place of another's.
+  fs::copy(folder / "images/IMG.png", folder / "images/IMG (1).png", fs::copy_options::overwrite_existing);
+  ASSERT_TRUE(good(mono({"--view", "all", "--photos", "beside"})));
+  std::size_t others = 0;
+  for (const auto& db : photo_psnr()) others += db && *db < 60.0 ? 1 : 0;
+  EXPECT_EQ(others, 1u);
+}
+
+TEST_F(CameraFiles, FoldersAndEndingsTellViewsApart) {
+  save_colmap(pinhole, {"left/1.png", "right/1.png", "left_1.png"});
+  ASSERT_TRUE(good(mono({"--view", "all"})));
+  // All three are written, and as photos under their own names each is its view's.
+  ASSERT_EQ(test::Outcome(mono({"--view", "all", "-o", folder / "drawn"})).code, 0);
+  fs::create_directories(folder / "images/left");
+  fs::create_directories(folder / "images/right");
+  const json views = json::parse(test::read_text(report)).at("views");
+  ASSERT_EQ(views.size(), 3u);
+  std::set<std::string> files;
+  for (const json& view : views) {
+    const std::string file = view.at("files").at(0);
+    EXPECT_TRUE(files.insert(file).second) << file;
+    fs::copy(file, folder / "images" / view.at("name").get<std::string>());
+  }
+  ASSERT_TRUE(good(mono({"--view", "all", "--photos", "beside"})));
+  EXPECT_EQ(photo_psnr(), std::vector(3, std::optional<double>()));
+}
+
+TEST_F(CameraFiles, TwoViewsOfOnePhotoStopAllThatMeasuresByPhotos) {
+  save_colmap(pinhole, {"a.png", "b.png", "c.png", "d.png"});
+  take_photos();
+  const std::string photos = folder / "images";
+  save_colmap(pinhole, {"a.png", "b.png", "c.png", "a.jpg"});
+  const auto stops = [](const Outcome& outcome) {
+    return ended(outcome, 2, "a.png would be the photo of both views 'a.jpg' and 'a.png'");
+  };
+  EXPECT_TRUE(stops(mono({"--view", "all", "--photos", "beside"})));
+  EXPECT_TRUE(stops(mono({"--view", "a.jpg", "--photos", photos}))) << "though only one is drawn";
+  for (const char* command : {"trim", "calibrate"}) {
+    EXPECT_TRUE(stops(test::run_program({command, model, "--photos", photos, "--max-drop", "1", "-o",
+                                         folder / (std::string(command) == "trim" ? "t.ply" : "t.json")})))
+        << command;
+  }
+  EXPECT_TRUE(stops(test::run_program({"refit", model, "--photos", photos, "-o", folder / "t.ply"})));
+  // Names that are the same stop whatever is asked for.
+  save_colmap(pinhole, {"a.png", "b.png", "a.png"});
+  EXPECT_TRUE(ended(mono({"--view", "all"}), 2, "two cameras are called 'a.png'"));
+  EXPECT_TRUE(ended(mono({}), 2, "two cameras are called 'a.png'"));
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST_F(CameraFiles, LensesThatCannotBeDrawnAreAWarningWhereOthersWillDo) {
+  save_colmap(fisheye, {"a.jpg", "b.jpg"});
+  const char* what = "lens of the model OPENCV_FISHEYE, which is no pinhole's";
+  EXPECT_TRUE(ended(mono({"--size", "36x24"}), 0, what));
+  EXPECT_TRUE(ended(mono({"--size", "36x24", "--eye", "0,0,0", "--at", "0,0,4"}), 0, what));
+  write_text(folder / "other.json", json{test::camera_json("front", 0.0)}.dump());
+  EXPECT_EQ(mono({"--cameras", folder / "other.json"}).code, 0);
+  // Where they are asked for, they are an error.
+  EXPECT_TRUE(ended(mono({"--view", "a.jpg"}), 2, what));
+  EXPECT_TRUE(ended(mono({"--view", "all"}), 2, what));
+  EXPECT_TRUE(ended(mono({"--tour", "walk"}), 2, what));
+  EXPECT_TRUE(ended(mono({"--cameras", folder / "sparse/0"}), 2, what));
+  EXPECT_EQ(mono({"--photos", folder.path()}).code, 2);
+}
+
+TEST_F(CameraFiles, DistortionOfZeroIsDrawnAndMoreIsDrawnWithAWarning) {
+  save_colmap(pinhole, {"a.jpg"});
+  const std::string expected = picture({});
+  save_colmap("FULL_OPENCV 72 48 60 60 36 24 0 0 0 0 0 0 0 0", {"a.jpg"});
+  EXPECT_EQ(mono({}).err.find("distorted"), std::string::npos);
+  fs::remove_all(out);
+  EXPECT_TRUE(picture({}) == expected);
+  save_colmap("SIMPLE_RADIAL 72 48 60 36 24 0.1", {"a.jpg"});
+  // r = 43.27 px of 60: 43.27 * 0.1 * 0.52.
+  EXPECT_TRUE(ended(mono({}), 0, "It moves the farthest corner of a picture by 2.25 px"));
+  fs::remove_all(out);
+  EXPECT_TRUE(picture({}) == expected);
+}
+
+/// What a camera at the origin that looks along z is with OpenGL's axes.
+const json opengl_rows = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+
+TEST_F(CameraFiles, PathsOfNerfstudioAreViewsAndPaths) {
+  write_text(folder / "front.json", json{test::camera_json("front", 0.0)}.dump());
+  const std::string expected = picture({"--cameras", folder / "front.json"});
+  json path = {{"render_width", 72},
+               {"render_height", 48},
+               {"fps", 24},
+               {"seconds", 0.125},
+               {"keyframes", json::array()}};
+  for (const double x : {0.0, 0.1, 0.2}) {
+    json frame = {
+        {"camera_to_world", opengl_rows}, {"fov", 2 * 180 / M_PI * std::atan(0.4)}, {"aspect", 1.5}};
+    frame["camera_to_world"][3] = x;
+    path["camera_path"].push_back(frame);
+  }
+  const std::string file = folder / "camera_path.json";
+  write_text(file, path.dump());
+  EXPECT_TRUE(picture({"--cameras", file}) == expected);
+  EXPECT_TRUE(picture({"--cameras", file, "--view", "00001"}) != expected)
+      << "the planted fault: another frame";
+  ASSERT_TRUE(good(mono({"--path", file})));
+  for (const char* name : {"00000", "00001", "00002"}) EXPECT_TRUE(fs::exists(out + "/" + name + ".png"));
+  EXPECT_TRUE(test::read_text(out + "/00000.png") == expected);
+}
+
+TEST_F(CameraFiles, PosesTakeTheLensThatIsAskedFor) {
+  write_text(folder / "front.json", json{test::camera_json("front", 0.0)}.dump());
+  const std::string expected = picture({"--cameras", folder / "front.json"});
+  const std::string file = folder / "poses.json";
+  write_text(file,
+             R"([{"file_path": "images/a.png", "transform": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0]]}])");
+  const std::string fov = fmt::format("{}", 2 * 180 / M_PI * std::atan(0.4));
+  EXPECT_TRUE(picture({"--cameras", file, "--fov", fov, "--size", "72x48"}) == expected);
+  EXPECT_TRUE(picture({"--cameras", file, "--size", "72x48"}) != expected) << "60 degrees";
+  EXPECT_TRUE(ended(mono({"--cameras", file, "--size", "72x48"}), 0, "tells poses and no lenses"));
+  EXPECT_TRUE(
+      ended(mono({"--cameras", folder / "front.json", "--fov", "50"}), 2, "--up and --fov are for cameras"));
+}
+
+TEST_F(CameraFiles, TheCameraInAModelsPlyIsItsFirstView) {
+  add_cameras();
+  const std::string expected = picture({"--view", "side"});
+  test::PlyFile file = test::small_model();
+  const auto add = [&](const char* name, const std::vector<double>& numbers) {
+    file.header_after += fmt::format("element {0} {1}\nproperty float {0}\n", name, numbers.size());
+    for (const double number : numbers) test::append_value(file.data_after, file.format, "float", number);
+  };
+  add("extrinsic", {1, 0, 0, -0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  add("intrinsic", {60, 0, 36, 0, 60, 24, 0, 0, 1});
+  add("image_size", {72, 48});
+  write_text(model, to_bytes(file));
+  EXPECT_TRUE(picture({}) == expected);
+  EXPECT_TRUE(picture({"--cameras", folder / "cameras.json"}) != expected)
+      << "the planted fault: another camera";
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,200 @@
+// Lenses that are no pinholes: the same rule for every file of cameras.
+
+#include "formats/distortion.h"
+
+#include <gtest/gtest.h>
+
+#include "formats/cameras_file.h"
+#include "support/broken.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::json;
+using test::TempFolder;
+using test::write_text;
+
+/// What is said of a file's lenses as it is read; of an error its text, behind "error: ".
+struct Read {
+  std::vector<Camera> cameras;
+  std::string said;
+};
+
+Read read(const TempFolder& folder) {
+  Read read;
+  testing::internal::CaptureStderr();
+  try {
+    read.cameras = load_cameras(folder.path());
+    read.said = testing::internal::GetCapturedStderr();
+  } catch (const UndrawableLens& error) {
+    read.said = testing::internal::GetCapturedStderr() + "error: " + error.what();
+  }
+  return read;
+}
+
+/// One camera of COLMAP's of 200 x 100 px, in the middle of which it looks, with a focal length of 100 px.
+Read read_colmap(const std::string& model, const std::string& parameters) {
+  const TempFolder folder;
+  write_text(folder / "cameras.txt", "1 " + model + " 200 100 " + parameters + "\n");
+  write_text(folder / "images.txt", "1 1 0 0 0 0 0 0 1 a.jpg\n\n");
+  return read(folder);
+}
+
+/// The number in "by 12.3 px".
+double shift_of(const std::string& said) {
+  const std::size_t at = said.find(" picture by ");
+  return at == std::string::npos ? -1.0 : std::stod(said.substr(at + 12));
+}
+
+const std::string one = "100 100 50", two = "100 100 100 50";
+
+TEST(Distortion, OfZeroIsAPinhole) {
+  for (const auto& [model, parameters] :
+       std::map<std::string, std::string>{{"SIMPLE_PINHOLE", one},
+                                          {"PINHOLE", two},
+                                          {"SIMPLE_RADIAL", one + " 0"},
+                                          {"RADIAL", one + " 0 0"},
+                                          {"OPENCV", two + " 0 0 0 -0.0"},
+                                          {"FULL_OPENCV", two + " 0 0 0 0 0 0 0 0"},
+                                          {"FOV", two + " 0"},
+                                          {"SIMPLE_DIVISION", one + " 0"},
+                                          {"DIVISION", two + " 0"},
+                                          {"EUCM", two + " 0 1"}}) {
+    const Read found = read_colmap(model, parameters);
+    ASSERT_EQ(found.cameras.size(), 1u) << model << found.said;
+    EXPECT_EQ(found.said, "") << model;
+    const Camera& c = found.cameras[0];
+    EXPECT_EQ(glm::dvec4(c.fx, c.fy, c.cx, c.cy), glm::dvec4(100, 100, 100, 50)) << model;
+  }
+}
+
+TEST(Distortion, IsSaidInPixelsOfTheFarthestCorner) {
+  // The corner is at (1, 0.5) there, r^2 = 1.25.
+  const double r = std::sqrt(1.25);
+  const struct {
+    const char *model, *parameters;
+    double shift;  // px
+  } cases[] = {
+      {"SIMPLE_RADIAL", "100 100 50 0.1", 100 * r * 0.1 * 1.25},
+      {"RADIAL", "100 100 50 0.1 -0.02", 100 * r * (0.125 - 0.02 * 1.5625)},
+      // p1 shifts (2 p1 u v, p1 (r^2 + 2 v^2)) and p2 (p2 (r^2 + 2 u^2), 2 p2 u v): farthest where they add
+      // up.
+      {"OPENCV", "100 100 100 50 0 0 0.01 0", 100 * 0.01 * std::hypot(1.0, 1.75)},
+      {"OPENCV", "100 100 100 50 0 0 0 0.01", 100 * 0.01 * std::hypot(3.25, 1.0)},
+      {"FULL_OPENCV", "100 100 100 50 0 0 0 0 0.1 0 0 0", 100 * r * 0.1 * 1.953125},
+      {"FULL_OPENCV", "100 100 100 50 0 0 0 0 0 0.1 0 0", 100 * r * (1 - 1 / 1.125)},
+      {"FULL_OPENCV", "100 100 100 50 0 0 0 0 0 0 0 0.1", 100 * r * (1 - 1 / 1.1953125)},
+      // A lens whose field of view it is: 2 tan(omega / 2) = 1 bends a radius to its angle, over omega.
+      {"FOV", "100 100 100 50 0.9272952180016122", 100 * (r - std::atan(r) / 0.9272952180016122)},
+      // Twice the tangent of half the angle: the stereographic projection.
+      {"EUCM", "100 100 100 50 0.5 1", 100 * (r - 2 * std::tan(0.5 * std::atan(r)))},
+      // u / (1 + k u^2) with u = 0.9: where k makes that the corner.
+      {"DIVISION", "100 100 100 50 -0.2407599", 100 * (r - 0.9)},
+      {"SIMPLE_DIVISION", "100 100 50 -0.2407599", 100 * (r - 0.9)},
+  };
+  for (const auto& c : cases) {
+    const Read found = read_colmap(c.model, c.parameters);
+    ASSERT_EQ(found.cameras.size(), 1u) << c.model << found.said;
+    EXPECT_NE(found.said.find("cameras.txt: lenses are distorted, which is not drawn"), std::string::npos);
+    EXPECT_NEAR(shift_of(found.said), c.shift, 0.006 * c.shift) << c.model << " " << found.said;
+    // The planted fault: the shift in units of the focal length.
+    EXPECT_GT(std::abs(shift_of(found.said) - c.shift / 100), 0.006 * c.shift);
+  }
+  // Off the middle, the farthest corner is farther away.
+  const Read askew = read_colmap("SIMPLE_RADIAL", "100 0 0 0.1");
+  EXPECT_NEAR(shift_of(askew.said), 100 * std::sqrt(5.0) * 0.5, 0.6);
+  EXPECT_NE(read_colmap("DIVISION", two + " 1").said.find("out of its reach"), std::string::npos);
+}
+
+TEST(Distortion, FisheyesAndPanoramasAreRefusedEvenWithoutAny) {
+  for (const auto& [model, parameters] :
+       std::map<std::string, std::string>{{"OPENCV_FISHEYE", two + " 0 0 0 0"},
+                                          {"SIMPLE_RADIAL_FISHEYE", one + " 0"},
+                                          {"RADIAL_FISHEYE", one + " 0 0"},
+                                          {"THIN_PRISM_FISHEYE", two + " 0 0 0 0 0 0 0 0"},
+                                          {"RAD_TAN_THIN_PRISM_FISHEYE", two + " 0 0 0 0 0 0 0 0 0 0 0 0"},
+                                          {"SIMPLE_FISHEYE", one},
+                                          {"FISHEYE", two},
+                                          {"EQUIRECTANGULAR", "200 100"}}) {
+    const Read found = read_colmap(model, parameters);
+    EXPECT_TRUE(found.cameras.empty());
+    EXPECT_NE(found.said.find("error: "), std::string::npos) << model;
+    EXPECT_NE(found.said.find("lens of the model " + model + ", which is no pinhole's"), std::string::npos)
+        << found.said;
+  }
+}
+
+/// The same lens as transforms.json has it, for all frames or for one, and as cameras.json does.
+std::vector<Read> read_json(const json& lens) {
+  const json rows = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+  json root = {
+      {"w", 200}, {"h", 100}, {"fl_x", 100}, {"frames", {{{"file_path", "a"}, {"transform_matrix", rows}}}}};
+  json of_frame = root;
+  root.update(lens);
+  of_frame["frames"][0].update(lens);
+  json list = {{{"img_name", "a"},
+                {"width", 200},
+                {"height", 100},
+                {"fx", 100},
+                {"fy", 100},
+                {"position", {0, 0, 0}},
+                {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}};
+  list[0].update(lens);
+  std::vector<Read> found;
+  for (const auto& [name, file] : {std::pair{"transforms.json", root}, std::pair{"transforms.json", of_frame},
+                                   std::pair{"cameras.json", list}}) {
+    const TempFolder folder;
+    write_text(folder / name, file.dump());
+    found.push_back(read(folder));
+  }
+  return found;
+}
+
+TEST(Distortion, OfJsonIsUnderTheSameRule) {
+  const double r = std::sqrt(1.25);
+  for (const json& zero : {json{{"k1", 0}, {"k2", 0.0}, {"p1", 0}}, json{{"camera_model", "OPENCV"}},
+                           json{{"is_fisheye", false}}, json{{"distortion_params", {0, 0, 0, 0, 0, 0}}}}) {
+    for (const Read& found : read_json(zero)) {
+      EXPECT_EQ(found.cameras.size(), 1u) << zero;
+      EXPECT_EQ(found.said, "") << zero;
+    }
+  }
+  for (const auto& [lens, shift] : std::vector<std::pair<json, double>>{
+           {{{"k1", 0.1}}, 100 * r * 0.125},
+           {{{"k4", 0.1}}, 100 * r * 0.1 * std::pow(1.25, 4)},
+           {{{"k4", 0.1}, {"k5", 0}, {"k6", 0}}, 100 * r * (1 - 1 / 1.125)},
+           {{{"camera_model", "OPENCV"}, {"p2", 0.01}}, std::hypot(3.25, 1.0)},
+           {{{"distortion_params", {0, 0, 0.1, 0, 0, 0}}}, 100 * r * 0.1 * std::pow(1.25, 3)},
+           {{{"distortion_params", {0, 0, 0, 0, 0.01, 0}}}, std::hypot(1.0, 1.75)}}) {
+    for (const Read& found : read_json(lens)) {
+      EXPECT_EQ(found.cameras.size(), 1u) << lens << found.said;
+      EXPECT_NEAR(shift_of(found.said), shift, 0.006 * shift) << lens << found.said;
+    }
+  }
+  for (const json& other :
+       {json{{"camera_model", "OPENCV_FISHEYE"}, {"k1", 0}}, json{{"camera_model", "FISHEYE624"}},
+        json{{"camera_model", "EQUIRECTANGULAR"}}, json{{"camera_model", "VR180_L"}},
+        json{{"camera_model", "OMNIDIRECTIONALSTEREO_R"}}, json{{"camera_model", "ORTHOPHOTO"}},
+        json{{"is_fisheye", true}}, json{{"ftheta_p0", 0.1}}}) {
+    for (const Read& found : read_json(other)) {
+      EXPECT_TRUE(found.cameras.empty());
+      EXPECT_NE(found.said.find("error: "), std::string::npos) << other << found.said;
+      EXPECT_NE(found.said.find("only pinhole lenses can be drawn"), std::string::npos) << found.said;
+    }
+  }
+}
+
+TEST(Distortion, CamerasThatCannotBeDrawnAreLeftOutOfOthers) {
+  const TempFolder folder;
+  write_text(folder / "cameras.txt",
+             "1 OPENCV_FISHEYE 200 100 " + two + " 0 0 0 0\n2 PINHOLE 200 100 " + two + "\n");
+  write_text(folder / "images.txt", "1 1 0 0 0 0 0 0 1 a.jpg\n\n2 1 0 0 0 0 0 0 2 b.jpg\n\n");
+  const Read found = read(folder);
+  ASSERT_EQ(found.cameras.size(), 1u);
+  EXPECT_EQ(found.cameras[0].name, "b.jpg");
+  EXPECT_NE(found.said.find("1 of 2 cameras are left out"), std::string::npos) << found.said;
+}
+
+}  // namespace
+}  // namespace binosplat

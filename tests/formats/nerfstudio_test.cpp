@@ -1,0 +1,212 @@
+// nerfstudio's camera paths and exported poses.
+
+#include "formats/nerfstudio.h"
+
+#include <gtest/gtest.h>
+
+#include "formats/cameras_file.h"
+#include "formats/dataparser.h"
+#include "formats/image_file.h"
+#include "scene/key_path.h"
+#include "support/broken.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::TempFolder;
+using test::write_text;
+
+/// OpenGL's camera at (1, 2, 3) that looks along world x, with world z up: its right is -y.
+const json rows = {0, 0, -1, 1, -1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};
+const json columns = {0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 2, 3, 1};
+
+bool looks_as_meant(const Camera& c) {
+  return c.position == glm::dvec3(1, 2, 3) && c.rotation[0] == glm::dvec3(0, -1, 0) &&
+         c.rotation[1] == glm::dvec3(0, 0, -1) && c.rotation[2] == glm::dvec3(1, 0, 0);
+}
+
+json path_of(int frames) {
+  json path = {{"camera_type", "perspective"},
+               {"render_height", 120},
+               {"render_width", 160},
+               {"fps", 24},
+               {"seconds", 2},
+               {"is_cycle", false},
+               {"smoothness_value", 0.5},
+               {"keyframes", json::array()}};
+  for (int i = 0; i < frames; ++i)
+    path["camera_path"].push_back({{"camera_to_world", rows}, {"fov", 90}, {"aspect", 1.0}});
+  return path;
+}
+
+std::vector<Camera> load(const json& root) {
+  const TempFolder folder;
+  write_text(folder / "camera_path.json", root.dump());
+  return load_cameras(folder / "camera_path.json");
+}
+
+testing::AssertionResult refuses(const json& root, std::initializer_list<std::string> parts) {
+  if (auto named = test::fails_saying([&] { load(root); }, {"camera_path.json"}); !named) return named;
+  return test::fails_saying([&] { load(root); }, parts);
+}
+
+TEST(CameraPath, FramesAreViews) {
+  json path = path_of(4);
+  path["camera_path"][1]["fov"] = 2 * 180 / M_PI * std::atan(0.5);
+  const std::vector<Camera> cameras = load(path);
+  ASSERT_EQ(cameras.size(), 4u);
+  EXPECT_EQ(cameras[0].name, "00000");
+  EXPECT_EQ(cameras[3].name, "00003");
+  for (const Camera& camera : cameras) {
+    EXPECT_TRUE(looks_as_meant(camera));
+    EXPECT_EQ(glm::ivec2(camera.width, camera.height), glm::ivec2(160, 120));
+    EXPECT_EQ(glm::dvec2(camera.cx, camera.cy), glm::dvec2(80, 60));
+    EXPECT_EQ(camera.fx, camera.fy);
+  }
+  // The angle is the picture's height, whatever `aspect` says.
+  EXPECT_NEAR(cameras[0].fx, 60, 1e-9);
+  EXPECT_NEAR(cameras[1].fx, 120, 1e-9);
+  EXPECT_EQ(cameras[3].time, 1.5);
+  // Planted fault: the numbers taken column by column.
+  Camera faulty = cameras[0];
+  faulty.rotation = glm::transpose(faulty.rotation);
+  EXPECT_FALSE(looks_as_meant(faulty));
+
+  path.erase("seconds");
+  EXPECT_EQ(load(path)[3].time, 3.0 / 24);
+  EXPECT_FALSE(are_keys(load(path)));
+  path.erase("fps");
+  EXPECT_EQ(load(path)[3].time, std::nullopt);
+}
+
+TEST(CameraPath, WithoutFramesIsItsKeyframes) {
+  json path = path_of(0);
+  path["camera_path"] = json::array();
+  path["default_transition_sec"] = 0.5;
+  const json list = {{"matrix", rows}, {"fov", 90}, {"aspect", 1.5}};
+  json by_columns = list, in_quotes = list, slow = list;
+  by_columns["matrix"] = columns;
+  in_quotes["matrix"] = columns.dump();
+  slow.update({{"override_transition_enabled", true}, {"override_transition_sec", 2}});
+  path["keyframes"] = {list, by_columns, in_quotes, slow};
+  const std::vector<Camera> cameras = load(path);
+  ASSERT_EQ(cameras.size(), 4u);
+  for (const Camera& camera : cameras) EXPECT_TRUE(looks_as_meant(camera)) << camera.name;
+  EXPECT_EQ(cameras[3].name, "key_003");
+  EXPECT_EQ(cameras[0].time, 0.0);
+  EXPECT_EQ(cameras[2].time, 1.0);
+  EXPECT_EQ(cameras[3].time, 3.0);
+  EXPECT_TRUE(are_keys(cameras));
+  // Where the camera is at the origin, its last row does not tell: quotes do.
+  json turned = rows, turned_in_quotes = columns;
+  for (const int i : {3, 7, 11}) turned[i] = 0;
+  for (const int i : {12, 13, 14}) turned_in_quotes[i] = 0;
+  path["keyframes"] = {list, list};
+  path["keyframes"][0]["matrix"] = turned;
+  path["keyframes"][1]["matrix"] = turned_in_quotes.dump();
+  path.erase("camera_path");
+  path.erase("default_transition_sec");
+  for (const Camera& camera : load(path)) {
+    EXPECT_EQ(camera.rotation[2], glm::dvec3(1, 0, 0)) << camera.name;
+    EXPECT_EQ(camera.time, std::nullopt);
+  }
+}
+
+TEST(CameraPath, ErrorsNameTheKeyAndWhatWasExpected) {
+  const auto with = [](auto edit) {
+    json path = path_of(2);
+    edit(path, path["camera_path"][1]);
+    return path;
+  };
+  EXPECT_TRUE(
+      refuses(with([](json& p, json&) { p["camera_path"] = json::array(); }), {"'keyframes'", "no cameras"}));
+  EXPECT_TRUE(
+      refuses(with([](json& p, json&) { p["camera_path"] = 3; }), {"'camera_path'", "expected a list"}));
+  for (const char* key : {"camera_to_world", "fov"})
+    EXPECT_TRUE(refuses(with([&](json&, json& f) { f.erase(key); }),
+                        {fmt::format("'camera_path[1].{}' is missing", key)}));
+  for (const char* key : {"render_width", "render_height"}) {
+    EXPECT_TRUE(refuses(with([&](json& p, json&) { p.erase(key); }), {fmt::format("'{}' is missing", key)}));
+    EXPECT_TRUE(refuses(with([&](json& p, json&) { p[key] = 0.5; }), {key, "expected a whole number"}));
+    EXPECT_TRUE(refuses(with([&](json& p, json&) { p[key] = 0; }), {"from 1 px"}));
+  }
+  for (const json& fov : {json(0), json(180), json(-5)})
+    EXPECT_TRUE(refuses(with([&](json&, json& f) { f["fov"] = fov; }),
+                        {"'camera_path[1].fov'", "degrees between 0 and 180"}));
+  EXPECT_TRUE(
+      refuses(with([](json&, json& f) { f["fov"] = "50"; }), {"camera_path[1].fov", "finite number"}));
+  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"].erase(0); }),
+                      {"camera_path[1].camera_to_world", "expected 16 values, found 15"}));
+  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"][5] = "x"; }),
+                      {"camera_path[1].camera_to_world[5]", "finite number"}));
+  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"] = columns; }),
+                      {"camera_path[1].camera_to_world", "row by row, the last of which is 0 0 0 1"}));
+  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"][2] = -2; }),
+                      {"camera_path[1].camera_to_world", "orthogonal"}));
+  EXPECT_TRUE(
+      refuses(with([](json&, json& f) { f["camera_to_world"][2] = 1; }), {"camera_to_world", "mirrors"}));
+  EXPECT_TRUE(refuses(with([](json& p, json&) { p["seconds"] = 0; }), {"'seconds'", "above 0"}));
+  EXPECT_TRUE(refuses(with([](json& p, json&) {
+                        p.erase("camera_path");
+                        p["keyframes"] = {{{"matrix", "[1, 2]"}, {"fov", 50}}};
+                      }),
+                      {"'keyframes[0].matrix'", "a list of 16 numbers"}));
+  for (const char* type : {"fisheye", "equirectangular", "omnidirectional", "VR180"})
+    EXPECT_TRUE(refuses(with([&](json& p, json&) { p["camera_type"] = type; }),
+                        {"key 'camera_type'", type, "only pinhole lenses can be drawn"}));
+}
+
+json poses() {
+  json list;
+  for (const char* name : {"images/a.png", "images/b.png"})
+    list.push_back({{"file_path", name}, {"transform", {{0, 0, -1, 1}, {-1, 0, 0, 2}, {0, 1, 0, 3}}}});
+  return list;
+}
+
+TEST(Poses, HaveTheLensThatIsAskedFor) {
+  const TempFolder folder;
+  write_text(folder / "transforms_train.json", poses().dump());
+  fs::create_directories(folder / "images");
+  save_png(folder / "images/b.png", Image(80, 60, 3));
+  EXPECT_EQ(find_cameras(folder / "model.ply"), folder / "transforms_train.json");
+  EXPECT_TRUE(lacks_lenses(folder.path()));
+  const std::vector<Camera> cameras = load_cameras(folder.path());
+  ASSERT_EQ(cameras.size(), 2u);
+  EXPECT_EQ(cameras[0].name, "images/a.png");
+  for (const Camera& camera : cameras) EXPECT_TRUE(looks_as_meant(camera));
+  EXPECT_EQ(glm::ivec2(cameras[0].width, cameras[0].height), glm::ivec2(pose_width, pose_height));
+  EXPECT_NEAR(cameras[0].fy, 0.5 * pose_height * std::sqrt(3.0), 1e-9) << "60 degrees";
+  EXPECT_EQ(glm::ivec2(cameras[1].width, cameras[1].height), glm::ivec2(80, 60)) << "as its photo";
+  EXPECT_NEAR(load_cameras(folder.path(), 90.0)[1].fx, 30, 1e-9);
+  EXPECT_FALSE(lacks_lenses((write_text(folder / "p.json", path_of(1).dump()), folder / "p.json")));
+}
+
+TEST(Poses, ErrorsNameTheKeyAndWhatWasExpected) {
+  const auto with = [](auto edit) {
+    json list = poses();
+    edit(list[1]);
+    return list;
+  };
+  EXPECT_TRUE(refuses(with([](json& p) { p.erase("file_path"); }), {"'[1].file_path' is missing"}));
+  EXPECT_TRUE(refuses(with([](json& p) { p.erase("transform"); }), {"'[1].transform' is missing"}));
+  EXPECT_TRUE(refuses(with([](json& p) { p["transform"].erase(0); }), {"'[1].transform'", "3 or 4 rows"}));
+  EXPECT_TRUE(refuses(with([](json& p) { p["transform"][0][2] = 1; }), {"'[1].transform'", "mirrors"}));
+}
+
+TEST(Poses, AreInTheModelsWorldAlready) {
+  const TempFolder folder;
+  write_text(folder / "dataparser_transforms.json",
+             R"({"transform": [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]], "scale": 2})");
+  for (const json& root : {poses(), path_of(1)}) {
+    write_text(folder / "c.json", root.dump());
+    std::vector<Camera> cameras = load_cameras(folder / "c.json");
+    EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", folder / "c.json", cameras));
+    EXPECT_TRUE(looks_as_meant(cameras[0]));
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,153 @@
+// The camera in a ply of SHARP.
+
+#include "formats/ply_camera.h"
+
+#include <gtest/gtest.h>
+
+#include "formats/cameras_file.h"
+#include "formats/dataparser.h"
+#include "formats/ply.h"
+#include "support/errors.h"
+#include "support/ply.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using test::PlyFile;
+using test::TempFolder;
+using test::write_text;
+using Numbers = std::vector<double>;
+
+struct Element {
+  std::string name, type;
+  Numbers numbers;
+};
+
+/// A model with elements of one number a row behind its vertices.
+PlyFile with_elements(const std::vector<Element>& elements,
+                      const std::string& format = "binary_little_endian") {
+  PlyFile file = test::inria_file(0, 5);
+  file.format = format;
+  for (const Element& e : elements) {
+    file.header_after +=
+        fmt::format("element {} {}\nproperty {} {}\n", e.name, e.numbers.size(), e.type, e.name);
+    for (const double number : e.numbers) {
+      if (e.type == "uint" && format != "ascii")
+        test::append_bytes(file.data_after, static_cast<std::uint32_t>(number),
+                           format == "binary_big_endian");
+      else
+        test::append_value(file.data_after, format, e.type == "uint" ? "double" : e.type, number);
+      if (format == "ascii") file.data_after += "\n";
+    }
+  }
+  return file;
+}
+
+const Numbers intrinsic = {500, 0, 320.5, 0, 510, 200.25, 0, 0, 1};
+/// World to camera, row by row: right along -y, down along -z, forward along x, from (1, 2, 3).
+const Numbers extrinsic = {0, -1, 0, 2, 0, 0, -1, 3, 1, 0, 0, -1, 0, 0, 0, 1};
+
+/// As SHARP's version 1.5 writes them.
+std::vector<Element> sharp() {
+  return {{"extrinsic", "float", extrinsic},  {"intrinsic", "float", intrinsic},
+          {"image_size", "uint", {640, 400}}, {"frame", "int", {}},
+          {"disparity", "float", {0.1, 0.9}}, {"color_space", "uchar", {0}},
+          {"version", "uchar", {1, 5, 0}}};
+}
+
+bool as_meant(const Camera& c) {
+  return c.position == glm::dvec3(1, 2, 3) && c.rotation[0] == glm::dvec3(0, -1, 0) &&
+         c.rotation[1] == glm::dvec3(0, 0, -1) && c.rotation[2] == glm::dvec3(1, 0, 0);
+}
+
+struct PlyCamera : testing::Test {
+  TempFolder folder;
+  const fs::path model = folder / "photo of mine.ply";
+
+  Camera load(const std::vector<Element>& elements,
+              const std::string& format = "binary_little_endian") const {
+    write_text(model, to_bytes(with_elements(elements, format)));
+    return load_cameras(model).at(0);
+  }
+  testing::AssertionResult refuses(const Element& element, std::initializer_list<std::string> parts) const {
+    std::vector<Element> elements = sharp();
+    for (Element& one : elements) {
+      if (one.name == element.name) one = element;
+    }
+    if (auto named = test::fails_saying([&] { load(elements); }, {model.string()}); !named) return named;
+    return test::fails_saying([&] { load(elements); }, parts);
+  }
+};
+
+TEST_F(PlyCamera, IsWhatTheModelWasMadeFrom) {
+  for (const char* format : {"binary_little_endian", "binary_big_endian", "ascii"}) {
+    const Camera camera = load(sharp(), format);
+    EXPECT_TRUE(as_meant(camera)) << format;
+    EXPECT_EQ(glm::ivec2(camera.width, camera.height), glm::ivec2(640, 400)) << format;
+    EXPECT_EQ(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy), glm::dvec4(500, 510, 320.5, 200.25));
+    EXPECT_EQ(load_ply(model).count(), 5u) << format;
+    // Planted fault: camera-to-world.
+    Camera faulty = camera;
+    faulty.rotation = glm::transpose(camera.rotation);
+    EXPECT_FALSE(as_meant(faulty));
+  }
+  // It comes before what lies beside.
+  write_text(folder / "cameras.json", "[]");
+  EXPECT_EQ(find_cameras(model), model);
+  EXPECT_EQ(find_cameras(folder.path()), model);
+  write_text(model, to_bytes(test::inria_file(0, 5)));
+  EXPECT_EQ(find_cameras(model), folder / "cameras.json");
+  EXPECT_TRUE(test::fails_saying([&] { load_cameras(model); }, {"tells no camera", "'intrinsic'"}));
+}
+
+TEST_F(PlyCamera, OfTheFirstVersion) {
+  const Numbers transposed = {0, 0, 1, 2, -1, 0, 0, 3, 0, -1, 0, -1};
+  const Camera camera =
+      load({{"extrinsic", "float", transposed}, {"intrinsic", "float", {500, 510, 640, 400}}});
+  EXPECT_TRUE(as_meant(camera));
+  EXPECT_EQ(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy), glm::dvec4(500, 510, 320, 200));
+  // At the origin where nothing says another place.
+  const Camera there = load({{"intrinsic", "float", {500, 510, 640, 400}}});
+  EXPECT_EQ(there.position, glm::dvec3(0));
+  EXPECT_EQ(there.rotation, glm::dmat3(1.0));
+}
+
+TEST_F(PlyCamera, StaysWhereADataparserIs) {
+  load(sharp());
+  write_text(folder / "dataparser_transforms.json",
+             R"({"transform": [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]], "scale": 2})");
+  std::vector<Camera> cameras = load_cameras(model);
+  EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", model, cameras));
+}
+
+TEST_F(PlyCamera, ErrorsNameTheElementAndWhatWasExpected) {
+  EXPECT_TRUE(
+      refuses({"intrinsic", "float", {500, 510, 640, 400}}, {"'intrinsic'", "4 numbers; expected the 9"}));
+  EXPECT_TRUE(
+      refuses({"intrinsic", "float", {-500, 0, 320, 0, 510, 200, 0, 0, 1}}, {"'intrinsic'", "above 0"}));
+  EXPECT_TRUE(
+      refuses({"intrinsic", "float", {NAN, 0, 320, 0, 510, 200, 0, 0, 1}}, {"'intrinsic'", "finite"}));
+  EXPECT_TRUE(refuses({"intrinsic", "float", Numbers(17, 1.0)}, {"'intrinsic'", "at most 16 rows"}));
+  EXPECT_TRUE(
+      refuses({"image_size", "uint", {640}}, {"'image_size'", "1 numbers; expected width and height"}));
+  EXPECT_TRUE(refuses({"image_size", "uint", {640, 0}}, {"'image_size'", "0 is no number of pixels"}));
+  EXPECT_TRUE(refuses({"extrinsic", "float", {1, 2, 3}}, {"'extrinsic'", "3 numbers; expected the 16"}));
+  EXPECT_TRUE(refuses({"extrinsic", "float", Numbers(16, 1.0)}, {"'extrinsic'", "orthogonal"}));
+  EXPECT_TRUE(test::fails_saying(
+      [&] {
+        load({{"intrinsic", "float", intrinsic}});
+      },
+      {"9 numbers; expected 4"}));
+  // Cut at every byte of what stands behind the vertices.
+  const std::string whole = to_bytes(with_elements({sharp()[0], sharp()[1], sharp()[2]}));
+  const std::size_t behind = 4 * (16 + 9 + 2);
+  for (std::size_t end = whole.size() - behind; end < whole.size(); ++end) {
+    write_text(model, whole.substr(0, end));
+    EXPECT_TRUE(test::fails_saying([&] { load_cameras(model); }, {"cut short"})) << end;
+  }
+}
+
+}  // namespace
+}  // namespace binosplat
