@@ -142,7 +142,8 @@ bool is_pose_list(const nlohmann::json& root) {
 std::vector<Camera> load_pose_list(const fs::path& path, const nlohmann::json& json, double fov_degrees) {
   const JsonValue root(path.string(), json);
   log_info(
-      "{}: tells poses and no lenses: views are {} degrees high (--fov), in the size of their photos or {} x "
+      "{}: tells poses and no lenses: views are {:.4g} degrees high (--fov), in the size of their photos or "
+      "{} x "
       "{} px "
       "(--size)",
       path.string(), fov_degrees, pose_width, pose_height);

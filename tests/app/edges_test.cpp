@@ -81,7 +81,7 @@ TEST_F(Edges, NamesOfViewsArePlain) {
 TEST_F(Edges, EveryViewHasAFileOfItsOwn) {
   nlohmann::json cameras;
   for (const char* name :
-       {"a_left", "a_right", "a", "a", "a_2", "a.png", "A", "b/c", "b_c", "b_c_2", ".", ".."})
+       {"a_left", "a_right", "a", "a.jpg", "a_2", "a.png", "A", "b/c", "b_c", "b_c_2", ".", ".."})
     cameras.push_back(test::camera_json(name, 0.1 * static_cast<double>(cameras.size())));
   write_text(folder / "cameras.json", cameras.dump());
   const auto files = [&](std::vector<std::string> arguments) {
