@@ -29,9 +29,8 @@ constexpr std::uint32_t bit_field(std::uint32_t word, int low, int bits) {
   return (word >> low) & ((1u << bits) - 1u);
 }
 
-/// A half float (IEEE 754 binary16); every one fits a float exactly.
-inline float load_half(const std::byte* at) {
-  const auto h = load_number<std::uint16_t>(at);
+/// A half float (IEEE 754 binary16) by its bits; every one fits a float exactly.
+inline float half_of(std::uint16_t h) {
   const std::uint32_t sign = (h & 0x8000u) << 16, exponent = (h >> 10) & 31u, fraction = h & 1023u;
   if (exponent == 0) {
     const float small = static_cast<float>(fraction) * 0x1p-24f;
@@ -40,5 +39,7 @@ inline float load_half(const std::byte* at) {
   const std::uint32_t wide = exponent == 31 ? 255u : exponent + 112u;
   return std::bit_cast<float>(sign | (wide << 23) | (fraction << 13));
 }
+
+inline float load_half(const std::byte* at) { return half_of(load_number<std::uint16_t>(at)); }
 
 }  // namespace binosplat

@@ -12,6 +12,7 @@
 #include "base/mapped_file.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "formats/bytes.h"
 #include "formats/compressed_ply.h"
 #include "formats/content.h"
 #include "formats/perspective.h"
@@ -24,8 +25,8 @@ namespace {
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
 /// A number as it is stored; every type of ply fits a double exactly.
-template <typename T, typename Bits>
-double load_as(const std::byte* at, bool swapped) {
+template <typename Bits>
+Bits load_bits(const std::byte* at, bool swapped) {
   Bits bits;
   std::memcpy(&bits, at, sizeof(bits));
   if constexpr (sizeof(Bits) > 1) {
@@ -35,7 +36,12 @@ double load_as(const std::byte* at, bool swapped) {
       bits = std::bit_cast<Bits>(bytes);
     }
   }
-  return static_cast<double>(std::bit_cast<T>(bits));
+  return bits;
+}
+
+template <typename T, typename Bits>
+double load_as(const std::byte* at, bool swapped) {
+  return static_cast<double>(std::bit_cast<T>(load_bits<Bits>(at, swapped)));
 }
 
 double load(PlyType type, const std::byte* at, bool swapped) {
@@ -52,6 +58,8 @@ double load(PlyType type, const std::byte* at, bool swapped) {
       return load_as<std::int32_t, std::uint32_t>(at, swapped);
     case PlyType::uint32:
       return load_as<std::uint32_t, std::uint32_t>(at, swapped);
+    case PlyType::float16:
+      return half_of(load_bits<std::uint16_t>(at, swapped));
     case PlyType::float32:
       return load_as<float, std::uint32_t>(at, swapped);
     case PlyType::float64:
@@ -190,8 +198,7 @@ class PlyReader {
   RawGaussian gather(const std::byte* row, const std::vector<std::size_t>& offsets) const {
     RawGaussian raw;
     for (std::size_t k = 0; k < layout_.sources.size(); ++k) {
-      const std::size_t property = layout_.sources[k];
-      const PlyType type = layout_.vertices->properties[property].type;
+      const auto& [property, type, as_bits] = layout_.sources[k];
       raw[k] = static_cast<float>(load(type, row + offsets[property], swapped_));
     }
     return raw;
@@ -211,8 +218,7 @@ class PlyReader {
       if (!gaussians) continue;
       parse_row(element, i, line, values);
       RawGaussian raw;
-      for (std::size_t k = 0; k < layout_.sources.size(); ++k)
-        raw[k] = static_cast<float>(values[layout_.sources[k]]);
+      for (std::size_t k = 0; k < layout_.sources.size(); ++k) raw[k] = value_of(layout_.sources[k], values);
       keep(i, raw);
       if (i % 4096 == 0) progress_.update(i);
     }
@@ -252,6 +258,16 @@ class PlyReader {
       fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(), line_,
            element.name, row, element.properties.size());
     }
+  }
+
+  /// A number of a Gaussian, as text has it.
+  float value_of(const PlyLayout::Source& source, const std::vector<double>& values) const {
+    const double value = values[source.property];
+    if (!source.as_bits) return static_cast<float>(value);
+    if (value >= 0.0 && value <= 65535.0 && value == std::floor(value))
+      return half_of(static_cast<std::uint16_t>(value));
+    fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535",
+         path_.string(), line_, layout_.vertices->properties[source.property].name, value);
   }
 
   double parse_value(const PlyElement& element, std::uint64_t row, const PlyProperty& property,

@@ -8,6 +8,10 @@
 // + k], and coefficient-major in Model::sh. Text and binary of either byte order, any scalar type, any order
 // of properties, CRLF in the header, other elements and properties: all are read or skipped as ply defines.
 //
+// A number of a Gaussian that is declared as ushort is a half (IEEE 754 binary16), of which ply has no type:
+// some exporters write them so, and other viewers read them so. In text it is the whole number of its bits.
+// The types half and float16, which are no part of ply either, are read as what they say.
+//
 // Two relatives are read as well: `red green blue` (uchar) in f_dc's place are base colours (Nerfstudio), and
 // `filter_3D` is folded into scales and opacities (Mip-Splatting, Yu 2024). PlayCanvas' compressed ply
 // (formats/compressed_ply.h) is read as well.

@@ -18,12 +18,12 @@ struct TypeName {
   PlyType type;
 };
 constexpr TypeName type_names[] = {
-    {"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
-    {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
-    {"ushort", PlyType::uint16},  {"uint16", PlyType::uint16},   {"int", PlyType::int32},
-    {"int32", PlyType::int32},    {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
-    {"float", PlyType::float32},  {"float32", PlyType::float32}, {"double", PlyType::float64},
-    {"float64", PlyType::float64}};
+    {"char", PlyType::int8},       {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
+    {"uint8", PlyType::uint8},     {"short", PlyType::int16},     {"int16", PlyType::int16},
+    {"ushort", PlyType::uint16},   {"uint16", PlyType::uint16},   {"int", PlyType::int32},
+    {"int32", PlyType::int32},     {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
+    {"half", PlyType::float16},    {"float16", PlyType::float16}, {"float", PlyType::float32},
+    {"float32", PlyType::float32}, {"double", PlyType::float64},  {"float64", PlyType::float64}};
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
@@ -100,7 +100,7 @@ class HeaderReader {
     for (const TypeName& known : type_names) {
       if (known.name == word) return known.type;
     }
-    fail_here("{} is no type of a property (char, uchar, short, ushort, int, uint, float, double)",
+    fail_here("{} is no type of a property (char, uchar, short, ushort, int, uint, half, float, double)",
               quoted(word));
   }
 
@@ -131,7 +131,7 @@ class HeaderReader {
     PlyProperty property;
     if (words.size() == 5 && words[1] == "list") {
       property.count_type = read_type(words[2]);
-      if (*property.count_type == PlyType::float32 || *property.count_type == PlyType::float64) {
+      if (*property.count_type >= PlyType::float16) {
         fail_here("the length of a list must be an integer type, not '{}'", words[2]);
       }
     } else if (words.size() != 3) {

@@ -12,11 +12,11 @@
 
 namespace binosplat {
 
-enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float16, float32, float64 };
 enum class PlyFormat { ascii, little_endian, big_endian };
 
 constexpr std::size_t size_of(PlyType type) {
-  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+  constexpr std::size_t sizes[] = {1, 1, 2, 2, 4, 4, 2, 4, 8};
   return sizes[static_cast<int>(type)];
 }
 

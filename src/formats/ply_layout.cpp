@@ -60,7 +60,10 @@ class Finder {
     if (property->count_type) {
       fail("{}: property '{}' of element 'vertex' is a list; expected one number", path_.string(), name);
     }
-    layout_.sources.push_back(static_cast<std::size_t>(property - layout_.vertices->properties.data()));
+    // ply has no halves. Exporters declare them as ushort, and no whole numbers describe a Gaussian.
+    const bool halves = property->type == PlyType::uint16;
+    layout_.sources.push_back({static_cast<std::size_t>(property - layout_.vertices->properties.data()),
+                               halves ? PlyType::float16 : property->type, halves});
   }
 
  private:
@@ -114,6 +117,8 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   layout.filter_3d = layout.vertices->find("filter_3D") != nullptr;
   if (layout.filter_3d) finder.add("filter_3D");
   layout.antialiased = is_antialiased(header, layout.filter_3d);
+  if (std::ranges::any_of(layout.sources, &PlyLayout::Source::as_bits))
+    log_info("{}: its properties of type ushort are taken as halves (16-bit floats)", path.string());
   return layout;
 }
 

@@ -15,12 +15,18 @@ namespace binosplat {
 using RawGaussian = std::array<float, 11 + 3 * sh_count(3) + 1>;
 
 struct PlyLayout {
+  /// Where a number of a RawGaussian comes from.
+  struct Source {
+    std::size_t property = 0;  // of the vertices
+    PlyType type = PlyType::float32;
+    bool as_bits = false;  // declared as ushort: in text, too, a half is the whole number of its bits
+  };
+
   const PlyElement* vertices = nullptr;
   int degree = 0;
-  std::vector<std::size_t>
-      sources;             // for each number of a RawGaussian, the vertex property that it comes from
-  bool rgb = false;        // the first three coefficients are base colours of 0 to 255 (Nerfstudio)
-  bool filter_3d = false;  // the last number is Mip-Splatting's filter (world units)
+  std::vector<Source> sources;  // for each number of a RawGaussian
+  bool rgb = false;             // the first three coefficients are base colours of 0 to 255 (Nerfstudio)
+  bool filter_3d = false;       // the last number is Mip-Splatting's filter (world units)
   bool antialiased = false;
 };
 

@@ -2,8 +2,10 @@
 // Writes ply files for tests: any format, any types, any properties.
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -15,7 +17,8 @@ namespace binosplat::test {
 
 struct PlyFile {
   std::string format = "binary_little_endian";
-  std::string type = "float";  // of every column
+  std::string type = "float";                // of every column
+  std::map<std::string, std::string> types;  // of columns that have another
   std::string newline = "\n";
   std::string comments;                    // whole header lines, before the elements
   std::string header_before, data_before;  // of other elements
@@ -31,6 +34,10 @@ struct PlyFile {
   }
   double& at(std::size_t row, const std::string& name) { return rows[row][column(name)]; }
   double at(std::size_t row, const std::string& name) const { return rows[row][column(name)]; }
+  const std::string& type_of(const std::string& name) const {
+    const auto other = types.find(name);
+    return other == types.end() ? type : other->second;
+  }
 };
 
 template <typename T>
@@ -41,15 +48,35 @@ void append_bytes(std::string& out, T value, bool big_endian) {
   for (std::size_t i = 0; i < sizeof(T); ++i) out += bytes[swap ? sizeof(T) - 1 - i : i];
 }
 
-/// One number as `format` and `type` store it, a blank behind it in text.
+/// The bits of the half nearest to a number.
+inline std::uint16_t half_bits(double value) {
+  const int sign = std::signbit(value) ? 0x8000 : 0;
+  if (std::isnan(value)) return static_cast<std::uint16_t>(sign | 0x7e00);
+  const double size = std::abs(value);
+  if (size >= 65520.0) return static_cast<std::uint16_t>(sign | 0x7c00);
+  if (size < 0x1p-14) return static_cast<std::uint16_t>(sign + std::lround(size * 0x1p24));
+  int exponent = 0;
+  const double fraction = 2.0 * std::frexp(size, &exponent) - 1.0;
+  return static_cast<std::uint16_t>(sign + (exponent + 14) * 1024 + std::lround(fraction * 1024));
+}
+
+/// One number as `format` and `type` store it, a blank behind it in text; of ushort the bits of a half.
 inline void append_value(std::string& out, const std::string& format, const std::string& type, double value) {
   const bool big = format == "binary_big_endian";
-  if (format == "ascii") {
+  if (type == "ushort" || type == "uint16") {
+    if (format == "ascii") {
+      out += fmt::format("{} ", half_bits(value));
+    } else {
+      append_bytes(out, half_bits(value), big);
+    }
+  } else if (format == "ascii") {
     out += type == "double" ? fmt::format("{} ", value) : fmt::format("{} ", static_cast<float>(value));
   } else if (type == "double") {
     append_bytes(out, value, big);
   } else if (type == "float") {
     append_bytes(out, static_cast<float>(value), big);
+  } else if (type == "half" || type == "float16") {
+    append_bytes(out, half_bits(value), big);
   } else if (type == "short") {
     append_bytes(out, static_cast<std::int16_t>(value), big);
   } else if (type == "uchar") {
@@ -62,7 +89,8 @@ inline void append_value(std::string& out, const std::string& format, const std:
 inline std::string header_of(const PlyFile& file) {
   std::string text = "ply\nformat " + file.format + " 1.0\n" + file.comments + file.header_before +
                      fmt::format("element vertex {}\n", file.rows.size());
-  for (const std::string& column : file.columns) text += "property " + file.type + " " + column + "\n";
+  for (const std::string& column : file.columns)
+    text += "property " + file.type_of(column) + " " + column + "\n";
   text += file.header_after + "end_header\n";
   std::string out;
   for (const char c : text) out += c == '\n' ? file.newline : std::string(1, c);
@@ -72,7 +100,8 @@ inline std::string header_of(const PlyFile& file) {
 inline std::string to_bytes(const PlyFile& file) {
   std::string out = header_of(file) + file.data_before;
   for (const std::vector<double>& row : file.rows) {
-    for (const double value : row) append_value(out, file.format, file.type, value);
+    for (std::size_t k = 0; k < row.size(); ++k)
+      append_value(out, file.format, file.type_of(file.columns[k]), row[k]);
     if (file.format == "ascii") out += file.newline;
   }
   return out + file.data_after;
