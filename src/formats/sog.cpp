@@ -1,6 +1,8 @@
 #include "formats/sog.h"
 
-#include <mutex>
+#include <algorithm>
+#include <iterator>
+#include <map>
 
 #include "base/error.h"
 #include "base/mapped_file.h"
@@ -12,6 +14,74 @@
 namespace binosplat {
 
 namespace {
+
+namespace fs = std::filesystem;
+
+/// A .sog archive by the names that its meta.json gives, which may lie in a folder of it with its pictures.
+class Archive {
+ public:
+  explicit Archive(const fs::path& path)
+      : file_(path),
+        zip_(path.string(), file_.bytes()),
+        most_(file_.bytes().size() + (std::size_t{1} << 18)) {
+    for (const std::string& name : zip_.names()) {
+      const std::string below = plain(name);
+      if (below.starts_with("__MACOSX/")) continue;  // what macOS keeps beside the files
+      const auto [entry, is_new] = names_.emplace(below, name);
+      if (!is_new && name_of(below) == meta_name) fail_many(path, entry->second, name);
+    }
+    folder_ = folder_of_meta(path);
+  }
+
+  /// Pictures are packed already: deflate takes hardly anything off those that are no bombs.
+  std::vector<std::byte> read(const std::string& name) const {
+    const std::string below = plain((folder_ / name).string());
+    const auto entry = names_.find(below);
+    return zip_.read(entry == names_.end() ? below : entry->second, most_);
+  }
+
+ private:
+  /// Without what some programs write: "\\" for "/", and "./" or "/" before all.
+  static std::string plain(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    return fs::path(name).lexically_normal().relative_path().generic_string();
+  }
+
+  static std::string name_of(const std::string& below) { return fs::path(below).filename().string(); }
+
+  [[noreturn]] static void fail_many(const fs::path& path, const std::string& a, const std::string& b) {
+    fail("{} holds several SOG models, {} and {}: an archive holds one; unpack it, and name the one to read",
+         path.string(), binosplat::quoted(a), binosplat::quoted(b));
+  }
+
+  /// Of the meta.json that lies least deep.
+  fs::path folder_of_meta(const fs::path& path) const {
+    std::vector<fs::path> found;
+    for (const auto& [below, name] : names_) {
+      if (name_of(below) == meta_name) found.emplace_back(below);
+      if (name_of(below) != "lod-meta.json") continue;
+      fail("{} holds a streamed SOG, {}, which is read from a folder: unpack it, and name its lod-meta.json",
+           path.string(), binosplat::quoted(name));
+    }
+    if (found.empty()) {
+      fail("{} is a zip archive without a meta.json, so it is no SOG model; it holds {}", path.string(),
+           zip_.list());
+    }
+    const auto depth = [](const fs::path& meta) { return std::distance(meta.begin(), meta.end()); };
+    std::ranges::stable_sort(found, {}, depth);
+    if (found.size() > 1 && depth(found[0]) == depth(found[1]))
+      fail_many(path, found[0].string(), found[1].string());
+    return found[0].parent_path();
+  }
+
+  static constexpr const char* meta_name = "meta.json";
+
+  MappedFile file_;
+  ZipFile zip_;
+  std::size_t most_;                          // bytes of a file in it
+  std::map<std::string, std::string> names_;  // plain ones, and as they stand in the archive
+  fs::path folder_;
+};
 
 Model load_whole(const std::filesystem::path& path, const SogSource& source) {
   Model model;
@@ -50,24 +120,14 @@ Model load_sog(const std::filesystem::path& meta, const nlohmann::json& root) {
   return load_whole(meta, sog_in_folder(meta, root));
 }
 
-Model load_sog(const std::filesystem::path& archive) {
-  const MappedFile file(archive);
-  const ZipFile zip(archive.string(), file.bytes());
-  if (!zip.has("meta.json")) {
-    fail("{} is a zip archive without a meta.json at its root, so it is no SOG model; it holds {}",
-         archive.string(), zip.list());
-  }
-  // Pictures are packed already: deflate takes hardly anything off those that are no bombs.
-  const std::size_t most = file.bytes().size() + (std::size_t{1} << 18);
-  const std::vector<std::byte> meta = zip.read("meta.json", most);
+SogSource sog_in_archive(const std::filesystem::path& archive) {
+  const std::vector<std::byte> meta = Archive(archive).read("meta.json");
   const nlohmann::json root = parse_json(archive.string() + ": meta.json", as_text(meta));
-  // The library is not made for several threads.
-  std::mutex reading;
-  const SogSource source(archive.string(), root, [&](const std::string& name) {
-    const std::lock_guard<std::mutex> lock(reading);
-    return zip.read(name, most);
-  });
-  return load_whole(archive, source);
+  // Opened anew for each file: the library is not made for several threads, and of a streamed SOG's many
+  // archives none is held open.
+  return {archive.string(), root, [archive](const std::string& name) { return Archive(archive).read(name); }};
 }
+
+Model load_sog(const std::filesystem::path& archive) { return load_whole(archive, sog_in_archive(archive)); }
 
 }  // namespace binosplat

@@ -14,6 +14,7 @@ namespace binosplat {
 
 SogSource open_part(const std::filesystem::path& path) {
   const MappedFile file(path);
+  if (content_of(file.bytes()) == Content::zip) return sog_in_archive(path);
   return sog_in_folder(path, parse_json(path.string(), as_text(file.bytes())));
 }
 

@@ -14,7 +14,7 @@ namespace binosplat {
 /// In place of the number of a level (SogLevels::taken).
 inline constexpr int no_level = -1;
 
-/// By its meta.json. Throws Error as load_sog does.
+/// By its meta.json, or a .sog archive. Throws Error as load_sog does.
 SogSource open_part(const std::filesystem::path& path);
 
 std::vector<SogSource::Range> ranges_of(const SogLevels::TakenOfFile& taken);

@@ -93,4 +93,8 @@ class SogSource {
 /// The SOG of a meta.json, whose pictures lie in its folder.
 SogSource sog_in_folder(const std::filesystem::path& meta, const nlohmann::json& root);
 
+/// The SOG in a .sog archive, whose meta.json may lie in a folder of it, beside its pictures. Throws Error
+/// where there is none or more than one.
+SogSource sog_in_archive(const std::filesystem::path& archive);
+
 }  // namespace binosplat

@@ -1,6 +1,6 @@
 #pragma once
-// Streamed SOG: several SOGs and a lod-meta.json, which says which of their Gaussians are which part of the
-// model at which level of detail. Frame: the trainer's (RDF).
+// Streamed SOG: several SOGs, folders or .sog archives, and a lod-meta.json, which says which of their
+// Gaussians are which part of the model at which level of detail. Frame: the trainer's (RDF).
 
 #include <filesystem>
 #include <functional>

@@ -300,8 +300,7 @@ TEST(SogErrors, Archives) {
        at = bomb.find("PK\x01\x02", at + 4))
     bomb = test::patched(bomb, at + 20, test::little(std::uint32_t{0xf0000000}));
   EXPECT_TRUE(with(bomb, {"stored.sog", "promises 4026531840 compressed bytes in an archive of"}));
-  EXPECT_TRUE(with(test::zipped({{"model/meta.json", "{}"}}),
-                   {"without a meta.json at its root", "'model/meta.json'"}));
+  EXPECT_TRUE(with(test::zipped({{"model/meta.txt", "{}"}}), {"without a meta.json", "'model/meta.txt'"}));
   EXPECT_TRUE(with(test::zipped({{"meta.json", "{"}}), {"stored.sog: meta.json is not valid JSON"}));
   EXPECT_TRUE(
       with(test::zipped({{"meta.json", R"({"version": 2, "count": 5, "means": {"files": ["a", "b"]}})"}}),

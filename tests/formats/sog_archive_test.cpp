@@ -1,0 +1,150 @@
+// Where the files of a SOG may lie in an archive, and archives in the place of a streamed SOG's folders.
+
+#include <gtest/gtest.h>
+
+#include "formats/model_file.h"
+#include "formats/streamed_sog.h"
+#include "scene/reduce.h"
+#include "support/broken.h"
+#include "support/fixtures.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::Copy;
+using Files = std::vector<std::pair<std::string, std::string>>;
+
+bool equal(const Model& a, const Model& b) {
+  return a.position == b.position && a.scale == b.scale && a.rotation == b.rotation &&
+         a.opacity == b.opacity && a.sh == b.sh && a.degree == b.degree;
+}
+
+/// The files of a folder, their names after `before`.
+Files files_of(const fs::path& folder, const std::string& before = "") {
+  Files files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    files.emplace_back(before + entry.path().filename().string(), test::read_text(entry.path()));
+  return files;
+}
+
+void add(Files& files, const Files& more) { files.insert(files.end(), more.begin(), more.end()); }
+
+struct SogArchive : testing::Test {
+  Model load(const Files& files, bool deflated = false) const {
+    test::write_text(folder / "m.sog", test::zipped(files, deflated));
+    return load_model(folder / "m.sog");
+  }
+  bool refused(const Files& files, std::initializer_list<std::string> parts) const {
+    return test::fails_saying([&] { load(files); }, parts);
+  }
+  const test::TempFolder folder;
+};
+
+TEST_F(SogArchive, FilesMayLieInAFolderOfIt) {
+  REQUIRE_FIXTURES(fixtures);
+  const fs::path sog = fixtures / "sog/playbot-lod6";
+  const Model whole = load_model(sog);
+  for (const char* before : {"", "./", "scene/", "./scene/", "a/b/c d/", "scene\\", ".\\a\\b\\", "/scene/"}) {
+    for (const bool deflated : {false, true})
+      EXPECT_TRUE(equal(load(files_of(sog, before), deflated), whole)) << before;
+    // Planted fault: the pictures of another folder.
+    Files files = files_of(sog, before);
+    for (auto& [name, bytes] : files) {
+      if (!name.ends_with("json")) name = "other/" + name;
+    }
+    EXPECT_TRUE(refused(files, {"m.sog: there is no file", ".webp' in the archive"})) << before;
+  }
+}
+
+TEST_F(SogArchive, MayHoldMoreThanItsModel) {
+  REQUIRE_FIXTURES(fixtures);
+  const fs::path sog = fixtures / "sog/playbot-lod6";
+  const Model whole = load_model(sog);
+  Files files = {{"__MACOSX/scene/._meta.json", "x"}, {"__MACOSX/meta.json", "x"}, {"read me.txt", "x"}};
+  add(files, files_of(sog, "scene/"));
+  EXPECT_TRUE(equal(load(files), whole));
+  // The one that lies least deep, wherever it stands.
+  add(files, {{"scene/old/meta.json", "x"}, {"a/b/meta.json", "x"}});
+  EXPECT_TRUE(equal(load(files), whole));
+  files.emplace_back("other/meta.json", "x");
+  EXPECT_TRUE(refused(files, {"m.sog holds several SOG models", "'other/meta.json'", "'scene/meta.json'"}));
+}
+
+TEST_F(SogArchive, OfNoneOrOfSeveralModelsIsRefused) {
+  EXPECT_TRUE(refused({{"meta.json.txt", "x"}}, {"m.sog is a zip archive without a meta.json"}));
+  EXPECT_TRUE(refused({{"__MACOSX/meta.json", "x"}}, {"m.sog is a zip archive without a meta.json"}));
+  EXPECT_TRUE(refused({{"meta.json", "x"}, {"./meta.json", "x"}}, {"m.sog holds several SOG models"}));
+  EXPECT_TRUE(refused({{"a/meta.json", "x"}, {"a\\meta.json", "x"}}, {"m.sog holds several SOG models"}));
+  EXPECT_TRUE(
+      refused({{"lod-meta.json", "{}"}, {"0_0/meta.json", "{}"}}, {"holds a streamed SOG", "unpack"}));
+}
+
+/// Packs the SOG in each folder of a streamed one, and names the archives in its place.
+void pack(const Copy& copy, const std::string& before) {
+  copy.edit("lod-meta.json", [&](json& meta) {
+    const auto packed = [&](json& name) {
+      const fs::path chunk = copy.path() / fs::path(name.get<std::string>()).parent_path();
+      const std::string archive = chunk.filename().string() + ".sog";
+      if (fs::exists(chunk)) {
+        copy.write(test::zipped(files_of(chunk, before)), archive);
+        fs::remove_all(chunk);
+      }
+      name = archive;
+    };
+    for (json& name : meta["filenames"]) packed(name);
+    if (meta.contains("environment")) packed(meta["environment"]);
+  });
+}
+
+TEST(StreamedSogArchives, AreTheSameAsFolders) {
+  REQUIRE_FIXTURES(fixtures);
+  const Copy folders(fixtures / "sog/st-lod");
+  folders.edit("lod-meta.json", [&](json& meta) { meta["environment"] = "around/meta.json"; });
+  fs::copy(fixtures / "sog/playbot-lod6", folders.path() / "around");
+  for (const char* before : {"", "inside/"}) {
+    const Copy archives(folders.path());
+    pack(archives, before);
+    EXPECT_FALSE(fs::exists(archives.path() / "0_0")) << before;
+    for (const int lod : {0, 1}) {
+      const Model model = load_model(folders.path(), {.lod = lod});
+      EXPECT_TRUE(equal(load_model(archives.path(), {.lod = lod}), model)) << before;
+      // Planted fault: the other level.
+      EXPECT_FALSE(equal(load_model(archives.path(), {.lod = 1 - lod}), model)) << before;
+    }
+    const DetailBudget budget{[](int) { return std::size_t{2500}; }, {}};
+    EXPECT_TRUE(equal(load_model(archives.path(), {.budget = budget}),
+                      load_model(folders.path(), {.budget = budget})));
+    // As it is read while frames are drawn.
+    const auto read = [](const fs::path& path) {
+      StreamedSog scene(path);
+      scene.choose({}, {});
+      Model all = scene.like();
+      scene.read([&](const StreamedSog::Piece& piece) { append(all, piece.model, 0, piece.model.count()); });
+      return all;
+    };
+    EXPECT_TRUE(is_streamed_sog(archives.path()));
+    EXPECT_TRUE(equal(read(archives.path()), read(folders.path()))) << before;
+  }
+}
+
+TEST(StreamedSogArchives, ThatAreDamagedAreNamed) {
+  REQUIRE_FIXTURES(fixtures);
+  const Copy copy(fixtures / "sog/st-lod");
+  pack(copy, "");
+  const std::string good = copy.read("0_0.sog");
+  const auto with = [&](const std::string& bytes, std::initializer_list<std::string> parts) {
+    copy.write(bytes, "0_0.sog");
+    return test::fails_saying([&] { load_model(copy.path()); }, parts) &&
+           test::fails_saying([&] { StreamedSog scene(copy.path()); }, parts);
+  };
+  EXPECT_TRUE(with(good.substr(0, good.size() / 2), {"0_0.sog: the zip archive is damaged or cut short"}));
+  EXPECT_TRUE(with(test::zipped({{"a", "b"}}), {"0_0.sog is a zip archive without a meta.json"}));
+  EXPECT_TRUE(with("\x89PNG\r\n\x1a\n", {"0_0.sog", "it looks like a PNG picture"}));
+  fs::remove(copy.path() / "0_0.sog");
+  EXPECT_EQ(load_model(copy.path()).count(), 250u);  // the coarser level is there
+}
+
+}  // namespace
+}  // namespace binosplat
