@@ -151,7 +151,9 @@ void add_quiet(CLI::App& sub) {
       "--quiet", [] { set_quiet(true); }, "Say nothing but results, warnings and errors");
 }
 
-void spare_full_disk() {
+void settle_shader_caches() {
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && !fs::path(cache).is_absolute()) unsetenv("XDG_CACHE_HOME");
   const fs::path folder = folder_there(gl::ProgramCache::default_folder());
   std::error_code error;
   const fs::space_info space = fs::space(folder, error);

@@ -25,9 +25,11 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
 /// `name` is the command's whole name, to which that of the sub-command comes where the mistake is its own.
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error);
 
-/// Where the disk of the user's caches is full, drivers are told to keep no shaders there: they write into
-/// mapped files, and SIGBUS would end the program. Says so. Call it before any context is made.
-void spare_full_disk();
+/// A relative XDG_CACHE_HOME is taken out of the environment: its specification has it ignored, and drivers
+/// make a folder below the working one instead. Where the disk of the user's caches is full, drivers are told
+/// to keep no shaders there: they write into mapped files, and SIGBUS would end the program; says so. Call it
+/// before any context is made.
+void settle_shader_caches();
 
 /// --max-memory for a sub-command that reads a model: how much of it is believed of a file that is small
 /// (formats/plausible.h).

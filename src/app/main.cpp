@@ -96,7 +96,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Writing beyond a limit of file size then fails like a full disk, with an error that can be reported.
   std::signal(SIGXFSZ, SIG_IGN);
-  binosplat::app::spare_full_disk();
+  binosplat::app::settle_shader_caches();
   binosplat::app::end_cleanly_on_signals();
   binosplat::end_cleanly_on_cut_files();
 

@@ -29,8 +29,10 @@ ProgramCache::ProgramCache(std::filesystem::path folder, std::string driver)
     : folder_(std::move(folder)), driver_(std::move(driver)) {}
 
 std::filesystem::path ProgramCache::default_folder() {
+  // XDG's specification has relative paths ignored: they would mean another place in every folder.
   const char* cache = std::getenv("XDG_CACHE_HOME");
-  if (cache != nullptr && *cache != '\0') return std::filesystem::path(cache) / "binosplat" / "programs";
+  if (cache != nullptr && std::filesystem::path(cache).is_absolute())
+    return std::filesystem::path(cache) / "binosplat" / "programs";
   const char* home = std::getenv("HOME");
   if (home != nullptr && *home != '\0')
     return std::filesystem::path(home) / ".cache" / "binosplat" / "programs";

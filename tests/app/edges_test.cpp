@@ -113,6 +113,22 @@ TEST_F(Edges, AFullDiskKeepsNoShaders) {
   EXPECT_EQ(render({"--view", "front", "--mono", "-o", out}).err.find("the disk is full"), std::string::npos);
 }
 
+// Neither by the program nor by the driver, which has a cache of its own there.
+TEST_F(Edges, ARelativeFolderOfCachesIsIgnored) {
+  const test::TempFolder here, home;
+  test::Surroundings caching{.folder = here.path()};
+  caching.variables["HOME"] = home.path().string();
+  for (const char* relative : {"caches", "./caches", ""}) {
+    caching.variables["XDG_CACHE_HOME"] = relative;
+    ASSERT_TRUE(good(render({"--view", "front", "--mono", "-o", out}, caching)));
+    EXPECT_TRUE(here.names().empty()) << relative;
+  }
+  EXPECT_TRUE(std::filesystem::exists(home / ".cache/binosplat/programs"));
+  caching.variables["XDG_CACHE_HOME"] = here / "caches";
+  ASSERT_TRUE(good(render({"--view", "front", "--mono", "-o", out}, caching)));
+  EXPECT_TRUE(std::filesystem::exists(here / "caches/binosplat/programs"));
+}
+
 TEST_F(Edges, AFolderInPlaceOfACachedProgramIsNoProgram) {
   test::Surroundings caching;
   caching.variables["XDG_CACHE_HOME"] = (folder / "cache").string();

@@ -167,7 +167,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
-  binosplat::app::spare_full_disk();
+  binosplat::app::settle_shader_caches();
   binosplat::end_cleanly_on_cut_files();
   return binosplat::app::run(argc, argv);
 }
