@@ -11,6 +11,7 @@
 #include <ImfThreading.h>
 #include <half.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -122,6 +123,11 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   const bool alpha = has("A") && !has(coverage_name);
   if (has("R") && has("G") && has("B")) {
     wanted = {"R", "G", "B"};
+  } else if (has("Y") && (has("RY") || has("BY"))) {
+    fail(
+        "{}: its colours are stored beside its luminance (Y, RY, BY), which cannot be read; convert it to "
+        "RGB",
+        path.string());
   } else if (has("Y") && !alpha) {
     wanted = {"Y"};
   } else if (has("Y")) {
@@ -142,27 +148,39 @@ std::vector<std::string> wanted_channels(const std::filesystem::path& path,
   return wanted;
 }
 
-/// Reads the wanted channels as they are stored, and whether they are display values.
-Image read_channels(const std::filesystem::path& path, bool& display) {
-  Imf::InputFile file(path.c_str());
-  const Imath::Box2i window = file.header().dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const auto* encoding = file.header().findTypedAttribute<Imf::StringAttribute>(encoding_name);
-  display = encoding != nullptr && encoding->value() == "display";
-  if (Imf::hasMultiView(file.header()) && Imf::multiView(file.header()).size() > 1) {
-    const Imf::StringVector& views = Imf::multiView(file.header());
-    log_info("{} has {} views; this reads the default one, {}", path.string(), views.size(), views[0]);
-  }
+/// Px of a window that OpenEXR has found to be in order.
+glm::ivec2 size_of(const Imath::Box2i& window) {
+  return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+}
 
-  const std::vector<std::string> wanted = wanted_channels(path, file.header().channels());
-  Image image(static_cast<int>(width), static_cast<int>(height), static_cast<int>(wanted.size()));
+/// The part of a picture of the data window that lies in the display window, and 0 around it.
+Image in_display_window(const Image& stored, const Imath::Box2i& data, const Imath::Box2i& display) {
+  const glm::ivec2 size = size_of(display);
+  Image image(size.x, size.y, stored.channels);
+  const auto place = [](const Image& of, int x, int y) {
+    return (static_cast<std::size_t>(y) * of.width + x) * of.channels;
+  };
+  const Imath::Box2i both({std::max(data.min.x, display.min.x), std::max(data.min.y, display.min.y)},
+                          {std::min(data.max.x, display.max.x), std::min(data.max.y, display.max.y)});
+  for (int y = both.min.y; !both.isEmpty() && y <= both.max.y; ++y) {
+    const float* from = &stored.data[place(stored, both.min.x - data.min.x, y - data.min.y)];
+    const std::size_t count = static_cast<std::size_t>(size_of(both).x) * stored.channels;
+    std::copy_n(from, count, &image.data[place(image, both.min.x - display.min.x, y - display.min.y)]);
+  }
+  return image;
+}
+
+/// Reads the wanted channels of the data window as they are stored.
+Image read_channels(Imf::InputFile& file, const std::vector<std::string>& wanted) {
+  const Imath::Box2i window = file.header().dataWindow();
+  const glm::ivec2 size = size_of(window);
+  Image image(size.x, size.y, static_cast<int>(wanted.size()));
   const std::size_t step = sizeof(float) * wanted.size();
   // OpenEXR fills one slice a channel; of Y that stands for R, G and B the others are copied below.
   Imf::FrameBuffer frame;
   for (std::size_t c = 0; c < wanted.size(); ++c) {
     frame.insert(wanted[c], Imf::Slice::Make(Imf::FLOAT, &image.data[c], window, step,
-                                             step * static_cast<std::size_t>(width)));
+                                             step * static_cast<std::size_t>(size.x)));
   }
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
@@ -171,6 +189,41 @@ Image read_channels(const std::filesystem::path& path, bool& display) {
       image.data[i] = image.data[i + 1] = image.data[i + 2];
   }
   return image;
+}
+
+/// Reads the first line and the last one, of which one stands at the end of the file.
+void read_ends(Imf::InputFile& file, const std::vector<std::string>& wanted) {
+  const Imath::Box2i window = file.header().dataWindow();
+  std::vector<float> line(static_cast<std::size_t>(size_of(window).x));
+  char* const base =
+      reinterpret_cast<char*>(line.data()) - std::ptrdiff_t{window.min.x} * std::ptrdiff_t{sizeof(float)};
+  Imf::FrameBuffer frame;
+  for (const std::string& name : wanted) frame.insert(name, Imf::Slice(Imf::FLOAT, base, sizeof(float), 0));
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y);
+  file.readPixels(window.max.y);
+}
+
+/// Whether pixels are stored as display values.
+bool is_display(const Imf::Header& header) {
+  const auto* encoding = header.findTypedAttribute<Imf::StringAttribute>(encoding_name);
+  return encoding != nullptr && encoding->value() == "display";
+}
+
+/// What is read of a file, with OpenEXR's errors in the place of which ours name it.
+template <typename Read>
+auto read_file(const std::filesystem::path& path, const Read& read) {
+  use_all_cores();
+  try {
+    Imf::InputFile file(path.c_str());
+    return read(file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail("{}: broken OpenEXR: {}", path.string(), error.what());
+  }
 }
 
 }  // namespace
@@ -232,17 +285,20 @@ Image load_exr(const std::filesystem::path& path, std::span<const std::byte> byt
                const PictureLimit& limit) {
   check_exr_header(path, bytes, limit);
   bool display = false;
-  Image image;
-  use_all_cores();
-  try {
-    image = read_channels(path, display);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    fail("{}: broken OpenEXR: {}", path.string(), error.what());
-  }
+  Image image = read_file(path, [&](Imf::InputFile& file) {
+    const Imf::Header& header = file.header();
+    display = is_display(header);
+    if (Imf::hasMultiView(header) && Imf::multiView(header).size() > 1) {
+      const Imf::StringVector& views = Imf::multiView(header);
+      log_info("{} has {} views; this reads the default one, {}", path.string(), views.size(), views[0]);
+    }
+    Image stored = read_channels(file, wanted_channels(path, header.channels()));
+    const Imath::Box2i &data = header.dataWindow(), &shown = header.displayWindow();
+    if (data == shown) return stored;
+    if (!data.intersects(shown))
+      log_warning("{}: none of its pixels lies in its display window, which is empty", path.string());
+    return in_display_window(stored, data, shown);
+  });
   const auto channels = static_cast<std::size_t>(image.channels);
   const std::size_t colours = channels == 4 ? 3 : channels;
   parallel_for(image.data.size() / channels, [&](std::size_t k) {
@@ -254,6 +310,16 @@ Image load_exr(const std::filesystem::path& path, std::span<const std::byte> byt
     }
   });
   return image;
+}
+
+glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  check_exr_header(path, bytes, {});
+  return read_file(path, [&](Imf::InputFile& file) {
+    const std::vector<std::string> wanted = wanted_channels(path, file.header().channels());
+    if (!file.isComplete()) fail("{}: broken OpenEXR: the file is cut short", path.string());
+    read_ends(file, wanted);
+    return size_of(file.header().displayWindow());
+  });
 }
 
 }  // namespace binosplat

@@ -12,9 +12,10 @@
 // and so on.
 //
 // load_image (formats/image_file.h) reads R, G, B or Y of any OpenEXR file and brings them back to display
-// values by that attribute; a file without it is taken as scene-linear. A becomes straight alpha; of a file
-// that has `coverage`, and so its background, it is left out. Of several views it reads the default one, and
-// says so.
+// values by that attribute; a file without it is taken as scene-linear. The picture is that of the display
+// window: what the data window lacks of it is 0, and what lies beyond it is left out. A becomes straight
+// alpha; of a file that has `coverage`, and so its background, it is left out. Of several views it reads the
+// default one, and says so.
 
 #include <filesystem>
 

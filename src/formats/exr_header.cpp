@@ -54,8 +54,10 @@ std::int64_t extent(std::string_view box, std::size_t axis) {
 
 /// What decides how much memory OpenEXR takes for a part of a file.
 struct Part {
-  std::int64_t width = 0;  // px
+  std::int64_t width = 0;  // px, of the data window
   std::int64_t height = 0;
+  std::int64_t shown_width = 0;  // px, of the display window
+  std::int64_t shown_height = 0;
   std::int64_t channels = 0;
   std::size_t compression = 0;
   bool tiled = false;
@@ -118,6 +120,9 @@ class Walker {
     if (name == "dataWindow" && type == "box2i") {
       part.width = extent(value, 0);
       part.height = extent(value, 1);
+    } else if (name == "displayWindow" && type == "box2i") {
+      part.shown_width = extent(value, 0);
+      part.shown_height = extent(value, 1);
     } else if (name == "tiles" && type == "tiledesc") {
       part.tile_width = std::max<std::int64_t>(1, number(value, 0));
       part.tile_height = std::max<std::int64_t>(1, number(value, 4));
@@ -147,6 +152,11 @@ class Walker {
     };
     check(part.width, part.height);
     check_room(path_, part.width, part.height, limit_);
+    // What is shown around the data takes no bytes.
+    constexpr std::int64_t shown = std::int64_t{1} << 24;  // px that need no reason: 4096 x 4096
+    if (std::min(part.shown_width, part.shown_height) < 1 || part.shown_width > shown / part.shown_height)
+      check(part.shown_width, part.shown_height);
+    check_room(path_, part.shown_width, part.shown_height, limit_);
 
     // OpenEXR reads blocks of whole lines or rows of tiles, and makes room for a whole one even where the
     // picture is smaller.

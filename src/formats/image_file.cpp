@@ -7,10 +7,18 @@
 
 namespace binosplat {
 
+namespace {
+
+[[noreturn]] void fail_no_picture(const std::filesystem::path& path, Content content) {
+  fail("{} is not a picture that can be read: expected PNG, JPEG or OpenEXR, but it looks like {}",
+       path.string(), describe(content));
+}
+
+}  // namespace
+
 Image load_image(const std::filesystem::path& path, const PictureLimit& limit) {
   const MappedFile file(path);
-  const Content content = content_of(file.bytes());
-  switch (content) {
+  switch (const Content content = content_of(file.bytes())) {
     case Content::png:
       return load_png(path, file.bytes(), limit);
     case Content::jpeg:
@@ -18,10 +26,22 @@ Image load_image(const std::filesystem::path& path, const PictureLimit& limit) {
     case Content::exr:
       return load_exr(path, file.bytes(), limit);
     default:
-      break;
+      fail_no_picture(path, content);
   }
-  fail("{} is not a picture that can be read: expected PNG, JPEG or OpenEXR, but it looks like {}",
-       path.string(), describe(content));
+}
+
+glm::ivec2 picture_size(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  switch (const Content content = content_of(file.bytes())) {
+    case Content::png:
+      return png_size(path, file.bytes());
+    case Content::jpeg:
+      return jpeg_size(path, file.bytes());
+    case Content::exr:
+      return exr_size(path, file.bytes());
+    default:
+      fail_no_picture(path, content);
+  }
 }
 
 void check_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
@@ -44,18 +64,6 @@ void check_room(const std::filesystem::path& path, std::int64_t width, std::int6
   throw Error(ExitCode::out_of_memory,
               fmt::format("{}: {} x {} px take {} MB of memory here, and {} may be taken{}", path.string(),
                           width, height, bytes / 1'000'000, limit.bytes / 1'000'000, limit.advice));
-}
-
-std::optional<glm::ivec2> picture_size(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  switch (content_of(file.bytes())) {
-    case Content::png:
-      return png_size(file.bytes());
-    case Content::jpeg:
-      return jpeg_size(file.bytes());
-    default:
-      return std::nullopt;
-  }
 }
 
 }  // namespace binosplat

@@ -29,9 +29,9 @@ struct PictureLimit {
 /// ExitCode::out_of_memory and before any is taken, for pictures beyond `limit`.
 Image load_image(const std::filesystem::path& path, const PictureLimit& limit = {});
 
-/// Width and height in px as the header of a PNG or JPEG has them; nothing for other and for broken files, of
-/// which load_image() says what is wrong. Throws Error for a file that cannot be read.
-std::optional<glm::ivec2> picture_size(const std::filesystem::path& path);
+/// Width and height in px of what load_image() would read. Throws Error as that does, as far as the file's
+/// header and end tell: a photo in milliseconds.
+glm::ivec2 picture_size(const std::filesystem::path& path);
 
 /// Writes round(255 clamp(v)), or 65535 for 16 `bits`, of 1, 3 or 4 channels. No gamma is applied: the values
 /// are sRGB as they are, and the file says so.

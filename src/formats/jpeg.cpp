@@ -6,53 +6,88 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "formats/content.h"
 #include "formats/picture_readers.h"
 
 namespace binosplat {
 
-std::optional<glm::ivec2> jpeg_size(std::span<const std::byte> bytes) {
-  const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
-  glm::ivec2 size{0};
-  int subsampling = 0, colours = 0;
-  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  const bool good = decoder != nullptr && tjDecompressHeader3(decoder.get(), data, bytes.size(), &size.x,
-                                                              &size.y, &subsampling, &colours) == 0;
-  return good ? std::optional(size) : std::nullopt;
+namespace {
+
+class Reader {
+ public:
+  Reader(const std::filesystem::path& path, std::span<const std::byte> bytes)
+      : path_(path), bytes_(bytes), decoder_(tjInitDecompress(), &tjDestroy) {
+    if (decoder_ == nullptr) fail("{}: {}", path.string(), tjGetErrorStr2(nullptr));
+    int subsampling = 0;
+    if (tjDecompressHeader3(decoder_.get(), data(), bytes.size(), &size_.x, &size_.y, &subsampling,
+                            &colours_) != 0) {
+      fail("{}: broken JPEG: {}", path.string(), tjGetErrorStr2(decoder_.get()));
+    }
+    if (size_.x == 0 || size_.y == 0)
+      fail("{}: broken JPEG: it ends before its picture begins", path.string());
+    if (colours_ == TJCS_CMYK || colours_ == TJCS_YCCK)
+      fail("{}: a CMYK JPEG; convert it to RGB", path.string());
+    // Two bits a block of 8 x 8 make 256, progressive ones less.
+    check_size(path, size_.x, size_.y, bytes.size(), 1024);
+  }
+
+  const glm::ivec2& size() const { return size_; }
+
+  /// Whether the mark that ends a picture follows on the one that begins its pixels. Among those it is none.
+  bool has_end() const {
+    const std::string_view text = as_text(bytes_);
+    std::size_t at = 2;
+    while (at + 4 <= text.size() && text[at] == '\xff' && text[at + 1] != '\xda') {
+      // A marker may have any number of bytes 255 before it.
+      const bool fill = text[at + 1] == '\xff';
+      const auto high = static_cast<unsigned char>(text[at + 2]);
+      at += fill ? 1 : 2 + std::size_t{256} * high + static_cast<unsigned char>(text[at + 3]);
+    }
+    return at < text.size() && text.find("\xff\xd9", at) != std::string_view::npos;
+  }
+
+  Image read() const {
+    const int channels = colours_ == TJCS_GRAY ? 1 : 3;
+    Image image(size_.x, size_.y, channels);
+    std::vector<unsigned char> values(image.data.size());
+    const int format = channels == 1 ? TJPF_GRAY : TJPF_RGB;
+    if (tjDecompress2(decoder_.get(), data(), bytes_.size(), values.data(), size_.x, size_.x * channels,
+                      size_.y, format, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
+      // A cut file is only a warning to the library, which fills the rest with grey.
+      const std::string_view reason = tjGetErrorStr2(decoder_.get());
+      if (tjGetErrorCode(decoder_.get()) != TJERR_WARNING ||
+          reason.find("remature") != std::string_view::npos) {
+        fail("{}: broken JPEG: {}", path_.string(), reason);
+      }
+      log_warning("{}: {}", path_.string(), reason);
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) image.data[i] = static_cast<float>(values[i]) / 255.0f;
+    return image;
+  }
+
+ private:
+  const unsigned char* data() const { return reinterpret_cast<const unsigned char*>(bytes_.data()); }
+
+  const std::filesystem::path& path_;
+  std::span<const std::byte> bytes_;
+  std::unique_ptr<void, decltype(&tjDestroy)> decoder_;
+  glm::ivec2 size_{0};
+  int colours_ = 0;
+};
+
+}  // namespace
+
+glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  const Reader reader(path, bytes);
+  if (!reader.has_end()) fail("{}: broken JPEG: the file is cut short", path.string());
+  return reader.size();
 }
 
 Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes,
                 const PictureLimit& limit) {
-  const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
-  if (decoder == nullptr) fail("{}: {}", path.string(), tjGetErrorStr2(nullptr));
-  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  int width = 0;
-  int height = 0;
-  int subsampling = 0;
-  int colours = 0;
-  if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &subsampling, &colours) != 0) {
-    fail("{}: broken JPEG: {}", path.string(), tjGetErrorStr2(decoder.get()));
-  }
-  if (width == 0 || height == 0) fail("{}: broken JPEG: it ends before its picture begins", path.string());
-  if (colours == TJCS_CMYK || colours == TJCS_YCCK) fail("{}: a CMYK JPEG; convert it to RGB", path.string());
-  check_size(path, width, height, bytes.size(),
-             1024);  // two bits a block of 8 x 8 make 256, progressive ones less
-  check_room(path, width, height, limit);
-
-  const int channels = colours == TJCS_GRAY ? 1 : 3;
-  Image image(width, height, channels);
-  std::vector<unsigned char> values(image.data.size());
-  const int format = channels == 1 ? TJPF_GRAY : TJPF_RGB;
-  if (tjDecompress2(decoder.get(), data, bytes.size(), values.data(), width, width * channels, height, format,
-                    TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
-    // A cut file is only a warning to the library, which fills the rest with grey.
-    const std::string_view reason = tjGetErrorStr2(decoder.get());
-    if (tjGetErrorCode(decoder.get()) != TJERR_WARNING || reason.find("remature") != std::string_view::npos) {
-      fail("{}: broken JPEG: {}", path.string(), reason);
-    }
-    log_warning("{}: {}", path.string(), reason);
-  }
-  for (std::size_t i = 0; i < values.size(); ++i) image.data[i] = static_cast<float>(values[i]) / 255.0f;
-  return image;
+  const Reader reader(path, bytes);
+  check_room(path, reader.size().x, reader.size().y, limit);
+  return reader.read();
 }
 
 }  // namespace binosplat

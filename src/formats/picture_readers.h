@@ -18,9 +18,10 @@ Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> by
 Image load_exr(const std::filesystem::path& path, std::span<const std::byte> bytes,
                const PictureLimit& limit);
 
-/// Width and height in px, unread by anyone else; nothing for a broken header.
-std::optional<glm::ivec2> png_size(std::span<const std::byte> bytes);
-std::optional<glm::ivec2> jpeg_size(std::span<const std::byte> bytes);
+/// What picture_size() chooses from.
+glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
+glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
+glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 /// Throws Error for a picture of more than 2^31 px, or of more than the file's bytes can hold at the best
 /// compression that its format reaches, before anyone makes room for it: a header costs nothing to forge.

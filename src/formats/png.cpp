@@ -131,37 +131,56 @@ bool write_image(Writer& writer, const Image& image, int bits) {
 
 }  // namespace
 
-std::optional<glm::ivec2> png_size(std::span<const std::byte> bytes) {
-  constexpr std::size_t at = 16;  // after the signature, and the length and name of the first chunk
-  if (bytes.size() < at + 8) return std::nullopt;
-  const auto number = [&](std::size_t from) {
-    return png_get_uint_32(reinterpret_cast<png_const_bytep>(&bytes[from]));
-  };
-  if (std::max(number(at), number(at + 4)) > PNG_UINT_31_MAX) return std::nullopt;
-  return glm::ivec2(number(at), number(at + 4));
+namespace {
+
+/// Reads all up to the pixels, and returns the picture's size.
+glm::ivec2 begin(Reader& reader) {
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error<Reader>, on_warning);
+  if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
+    throw std::bad_alloc();
+  if (!read_header(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
+  const png_uint_32 width = png_get_image_width(reader.png, reader.info);
+  const png_uint_32 height = png_get_image_height(reader.png, reader.info);
+  const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
+  constexpr std::uint64_t best_deflate = 1032;  // bytes out of one byte of a zlib stream
+  check_size(reader.path, width, height, reader.bytes.size(),
+             best_deflate * 8 / static_cast<std::uint64_t>(bits) + 1);
+  return glm::ivec2(width, height);
+}
+
+/// Whether its chunks go on up to the one that ends it.
+bool has_end(std::span<const std::byte> bytes) {
+  constexpr std::size_t signature = 8, around = 12;  // a chunk's length, name and checksum
+  for (std::size_t at = signature; at + around <= bytes.size();) {
+    if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return true;
+    at += around + png_get_uint_32(reinterpret_cast<png_const_bytep>(&bytes[at]));
+  }
+  return false;
+}
+
+}  // namespace
+
+glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  Reader reader{path, bytes};
+  const glm::ivec2 size = begin(reader);
+  if (!has_end(bytes)) fail("{}: broken PNG: the file is cut short", path.string());
+  return size;
 }
 
 Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes,
                const PictureLimit& limit) {
   Reader reader{path, bytes};
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error<Reader>, on_warning);
-  if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
-    throw std::bad_alloc();
-  if (!read_header(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
-  const png_uint_32 width = png_get_image_width(reader.png, reader.info);
-  const png_uint_32 height = png_get_image_height(reader.png, reader.info);
-  const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
-  constexpr std::uint64_t best_deflate = 1032;  // bytes out of one byte of a zlib stream
-  check_size(path, width, height, bytes.size(), best_deflate * 8 / static_cast<std::uint64_t>(bits) + 1);
-  check_room(path, width, height, limit);
+  const glm::ivec2 size = begin(reader);
+  check_room(path, size.x, size.y, limit);
   if (!expand(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
 
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
+  const auto height = static_cast<std::size_t>(size.y);
   reader.values.resize(row_bytes * height);
   for (std::size_t y = 0; y < height; ++y) reader.rows.push_back(&reader.values[y * row_bytes]);
   if (!read_rows(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
 
-  Image image(static_cast<int>(width), static_cast<int>(height), png_get_channels(reader.png, reader.info));
+  Image image(size.x, size.y, png_get_channels(reader.png, reader.info));
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
   for (std::size_t i = 0; i < image.data.size(); ++i) {
     if (wide) {
