@@ -99,7 +99,7 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
       if (loaded != which.scene) {
         bench.reset();
         model.reset();
-        model = load_scene(plan.scenes[which.scene].options);
+        model = load_scene(plan.scenes[which.scene].options, {}, plan.scenes[which.scene].list.cameras);
         loaded = which.scene;
       }
       if (!bench) bench.emplace(open_case(*context, options, plan, which, *model, peaks));

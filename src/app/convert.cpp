@@ -157,7 +157,7 @@ ExitCode convert(const ConvertOptions& o) {
   done.format = format_of(o);
   check(o, done.format);
   const CameraList list = o.report ? listed_cameras(o.scene, o.camera) : CameraList{};
-  Model model = load_scene(o.scene);
+  Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   Views views;
   std::vector<Image> originals;
@@ -170,6 +170,12 @@ ExitCode convert(const ConvertOptions& o) {
   if (axes != wanted)
     log_info("its axes are turned from {} to {}, the ones of {}", axes, wanted,
              written_format(done.format).name);
+  if (done.format == ModelFormat::spz)
+    log_info(
+        "{}: its axes are RUB, as the format has them and as the file says; programs that take them for a "
+        "ply's "
+        "(RDF), such as splat-transform 3.7, show it upside down",
+        o.output);
   bring_into_axes(model, wanted);
   done.count = model.count();
   done.losses = write_model_file(o.output, model, done.format, o.harmonic_bits.value_or(8));

@@ -11,6 +11,7 @@
 
 #include "app/command.h"
 #include "app/context_options.h"
+#include "app/load_scene.h"
 #include "app/render_report.h"
 #include "app/shots.h"
 #include "formats/cameras_file.h"
@@ -214,7 +215,10 @@ ExitCode list_views(const InfoOptions& options) {
 ExitCode info(const InfoOptions& options) {
   if (!options.json.empty()) check_output(options.json);
   if (options.views) return list_views(options);
-  const Model model = load_model(options.scene.name, {.lod = options.scene.lod});
+  Model model = load_model(options.scene.name, {.lod = options.scene.lod});
+  const bool named = !options.camera.file.empty();
+  settle_axes(options.scene,
+              named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
   const std::optional<Seen> seen = see(options, model);

@@ -2,10 +2,14 @@
 
 #include <utility>
 
+#include "app/shots.h"
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "formats/model_file.h"
+#include "formats/spz.h"
 #include "scene/repeat.h"
+#include "scene/told_axes.h"
 
 namespace binosplat::app {
 
@@ -13,6 +17,17 @@ namespace {
 
 [[noreturn]] void fail_unknown(const std::string& name) {
   fail("{}: the scenes that are built in are called {} and {}", name, demo_room_name, demo_city_name);
+}
+
+// Nothing is said of those that cannot be read: they are not asked for.
+std::vector<Camera> cameras_beside(const SceneOptions& o) {
+  try {
+    SceneOptions scene;
+    scene.name = o.name;
+    return listed_cameras(scene, {}).cameras;
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget) {
@@ -51,9 +66,42 @@ std::vector<Camera> built_in_cameras(const SceneOptions& o) {
   return {};
 }
 
-Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budget) {
+void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& model) {
+  if (!o.axes.empty() || !model.format.starts_with("spz")) return;
+  if (model.axes != "RUB" && model.axes != "RDF") return;
+  const bool said = !model.format.ends_with(axes_not_said);
+  const std::string usual = model.axes, other = usual == "RUB" ? "RDF" : "RUB";
+  auto told = tell_axes(model, other, cameras);
+  if (!told) told = tell_axes(model, other, cameras_beside(o));
+  // What a file says is wrong only where cameras see hardly anything of the model so.
+  constexpr double hardly = 0.05;
+  if (said && (!told || told->by_ground || told->axes == usual || told->seen_otherwise > hardly)) return;
+  if (!told) {
+    log_info(
+        "{}: its file does not say where its axes point, and nothing else tells: taken as {}, as the format "
+        "says (--axes {} if it lies upside down or out of sight)",
+        o.name, usual, lowered(other));
+    return;
+  }
+  model.axes = told->axes;
+  const std::string& left = told->axes == usual ? other : usual;
+  const std::string why =
+      told->by_ground ? "in which its ground is below its cameras"
+                      : fmt::format("in which its cameras have {:.0f} % of it in view, and {:.0f} % in {}",
+                                    100.0 * told->seen, 100.0 * told->seen_otherwise, left);
+  if (said) {
+    log_warning("{}: its axes are taken as {}, {}, though its file says that (--axes {} to take them so)",
+                o.name, told->axes, why, lowered(left));
+  } else {
+    log_info("{}: its axes are taken as {}, {} (--axes for others)", o.name, told->axes, why);
+  }
+}
+
+Model load_scene(const SceneOptions& o, const std::optional<DetailBudget>& budget,
+                 std::span<const Camera> cameras) {
   Model model = load_once(o, budget);
   set_as_asked(o, model);
+  settle_axes(o, cameras, model);
   if (!o.repeat) return model;
   return repeat(std::move(model), o.repeat->x, o.repeat->y, *o.spacing);
 }

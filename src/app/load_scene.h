@@ -2,6 +2,7 @@
 // Models to draw: from files, or made by the program itself.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "app/scene_options.h"
@@ -22,8 +23,15 @@ void set_as_asked(const SceneOptions& options, Model& model);
 /// there is not.
 std::vector<Camera> built_in_cameras(const SceneOptions& options);
 
+/// The axes of an spz, which is written in two frames, where no option says which: those in which
+/// `cameras`, or the ones beside the model, look at it (scene/told_axes.h), or else the file's or the
+/// format's. Says which, unless it is what the file says, and how to choose others.
+void settle_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
+
 /// The long part: reads or makes the model, and repeats it where the options ask for that. `budget` of a file
-/// with levels of detail. Throws Error as built_in_cameras() and load_model() do.
-Model load_scene(const SceneOptions& options, const std::optional<DetailBudget>& budget = {});
+/// with levels of detail; `cameras` are those that it is seen from, where they are known. Throws Error as
+/// built_in_cameras() and load_model() do.
+Model load_scene(const SceneOptions& options, const std::optional<DetailBudget>& budget = {},
+                 std::span<const Camera> cameras = {});
 
 }  // namespace binosplat::app

@@ -111,7 +111,7 @@ ordered_json to_json(const std::vector<Step>& steps, const RefitOptions& o, cons
 ExitCode refit(const RefitOptions& o) {
   const ModelFormat format = check(o);
   const CameraList list = needed_cameras("refit", o);
-  Model model = load_scene(o.scene);
+  Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(format));
   const study::ViewSplit views =

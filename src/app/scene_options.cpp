@@ -78,8 +78,7 @@ CLI::Option* add_axes_option(CLI::App& sub, SceneOptions& o) {
             world_from_axes(o.axes);
           },
           "Where the model's x, y and z point in the cameras' world, by Right\nor Left, Up or Down, Forward "
-          "or Back, "
-          "as in rdf, rub (the format's)")
+          "or Back, as in rdf, rub (the format's;\nof an spz that does not say: by its cameras)")
       ->type_name("XYZ");
 }
 

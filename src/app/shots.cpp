@@ -289,7 +289,7 @@ OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, con
                      const std::function<void(const CameraList&)>& check) {
   OpenScene opened{.list = listed_cameras(scene, camera, rig)};
   if (check && opened.list.listed) check(opened.list);
-  opened.model = load_scene(scene);
+  opened.model = load_scene(scene, {}, opened.list.cameras);
   if (!opened.list.listed) opened.list = made_up_cameras(scene, camera, opened.list.known, opened.model);
   opened.near_plane = near_plane_of(camera, opened.list);
   return opened;

@@ -92,7 +92,7 @@ Driven open(const StudyOptions& options) {
   if (!options.camera.path.empty())
     driven.list = go_along_path(options.camera, headset_fps, true, std::move(driven.list));
   driven.metre = metre(options, driven.list.cameras);
-  driven.model = std::make_shared<const Model>(load_scene(options.scene));
+  driven.model = std::make_shared<const Model>(load_scene(options.scene, {}, driven.list.cameras));
   driven.near_plane = near_plane_of(options.camera, driven.list);
   return driven;
 }

@@ -129,7 +129,7 @@ std::vector<std::string> write(const TrimOptions& o, const study::Trimmed& found
 ExitCode trim(const TrimOptions& o) {
   const ModelFormat format = check(o);
   const CameraList list = needed_cameras("trim", o);
-  Model model = load_scene(o.scene);
+  Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model.format, format);
   bring_into_axes(model, axes_of(format));

@@ -3,14 +3,17 @@
 // zstd (4), or (1 to 3) not at all.
 //
 // Frame: OpenGL's (RUB) as the format says, unless an extension in the file names another. Some writers store
-// a ply's numbers (RDF) and do not say so: such a model stands upside down, and --axes rdf mends it.
+// a ply's numbers (RDF) and do not say so: Model::format then ends with axes_not_said.
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "scene/model.h"
 
 namespace binosplat {
+
+inline constexpr std::string_view axes_not_said = ", axes not said";
 
 /// Decodes a file's bytes; `source` names it in errors. Harmonics of degree 4 are cut to degree 3 with a
 /// warning. Throws Error for damaged or cut files, for unknown versions, and for headers that promise more

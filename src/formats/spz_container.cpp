@@ -216,8 +216,17 @@ std::vector<std::byte> spz_header(std::uint32_t version, std::size_t count, int 
   store_number(&header[8], static_cast<std::uint32_t>(count));
   header[12] = static_cast<std::byte>(degree);
   header[13] = static_cast<std::byte>(fraction_bits);
-  header[14] = static_cast<std::byte>(antialiased ? antialiased_flag : 0);
+  header[14] = static_cast<std::byte>(extensions_flag | (antialiased ? antialiased_flag : 0));
   return header;
+}
+
+std::vector<std::byte> spz_axes_extension(std::string_view axes) {
+  const auto* const found = std::find(std::begin(axes_names), std::end(axes_names), axes);
+  std::vector<std::byte> extension(12);
+  store_number(&extension[0], axes_extension);
+  store_number(&extension[4], std::uint32_t{4});  // bytes that follow
+  store_number(&extension[8], static_cast<std::uint32_t>(found - std::begin(axes_names) + 1));
+  return extension;
 }
 
 SpzContents unpack_spz(const std::string& source, std::span<const std::byte> bytes) {

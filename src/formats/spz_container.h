@@ -32,10 +32,13 @@ SpzSizes spz_sizes(std::uint32_t version, int degree);
 /// The scale of colours in bytes; wider than the base colours' own, so that those beyond 0 to 1 fit.
 constexpr double spz_colour_scale = 0.15;
 
-/// The header of versions 1 to 3 without extensions. `fraction_bits` of positions; throws Error for more
-/// Gaussians than it can count.
+/// The header of versions 1 to 3, with extensions at the end of the file. `fraction_bits` of positions;
+/// throws Error for more Gaussians than it can count.
 std::vector<std::byte> spz_header(std::uint32_t version, std::size_t count, int degree, int fraction_bits,
                                   bool antialiased);
+
+/// The extension that names the axes of a file, one of the sixteen that have a number.
+std::vector<std::byte> spz_axes_extension(std::string_view axes);
 
 /// Checks and unpacks a file. Throws Error (formats/spz.h).
 SpzContents unpack_spz(const std::string& source, std::span<const std::byte> bytes);

@@ -63,10 +63,11 @@ struct Wanted {
 };
 
 // The coarsest levels of a streamed SOG are there at once, the others come while one looks.
-preview::Loaded load(const SceneOptions& scene, const render::FrameSettings& settings) {
+preview::Loaded load(const SceneOptions& scene, const std::vector<Camera>& cameras,
+                     const render::FrameSettings& settings) {
   const bool asked = scene.detail || scene.gpu_memory;
   const bool follows = !scene.lod && !is_built_in(scene.name) && (asked || is_streamed_sog(scene.name));
-  if (!follows) return {load_scene(scene), nullptr};
+  if (!follows) return {load_scene(scene, {}, cameras), nullptr};
   const auto need = [scene, settings](const StreamedSog& levels, std::span<const shared::View> views) {
     return detail_need(scene, settings, levels, views);
   };
@@ -93,7 +94,9 @@ preview::Opened open(const Wanted& wanted) {
   }
   check_output(opened.folder / "picture");
   if (!is_built_in(scene.name)) opened.pose_file = pose_path(scene.name);
-  opened.load = [scene = scene, settings = wanted.settings] { return load(scene, settings); };
+  opened.load = [scene = scene, cameras = list.cameras, settings = wanted.settings] {
+    return load(scene, cameras, settings);
+  };
   opened.start = [wanted, list, pose](const Model& model, preview::Choices& choices) {
     const CameraOptions& o = wanted.camera;
     const CameraList all = list.listed ? list : made_up_cameras(wanted.scene, o, list.known, model);

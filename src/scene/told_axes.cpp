@@ -1,0 +1,80 @@
+#include "scene/told_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "scene/axes.h"
+#include "scene/framing.h"
+
+namespace binosplat {
+
+namespace {
+
+/// More of them tell no more.
+constexpr std::size_t most_gaussians = 20000, most_cameras = 64;
+/// Where fewer are in view, cameras look at something else.
+constexpr double least_seen = 0.01;
+/// So many times as many are in view where a frame is clearly the right one. Of trained scenes it is 17 times
+/// and more: their worlds' origin lies anywhere.
+constexpr double clearly = 2.0;
+/// The cosine of the cameras' up and the model's that says something.
+constexpr double along = 0.5;
+
+/// The share of the Gaussians that a camera in the model's frame has in its picture.
+double share_in_view(const Model& model, const Camera& camera) {
+  const glm::dmat3 into = glm::transpose(camera.rotation);
+  std::size_t looked_at = 0, seen = 0;
+  for (std::size_t i = 0; i < model.count(); i += model.count() / most_gaussians + 1) {
+    const glm::dvec3 v = into * (glm::dvec3(model.position[i]) - camera.position);
+    const double x = camera.fx * v.x / v.z + camera.cx, y = camera.fy * v.y / v.z + camera.cy;
+    ++looked_at;
+    if (v.z > 0.0 && x >= 0.0 && x < camera.width && y >= 0.0 && y < camera.height) ++seen;
+  }
+  return static_cast<double>(seen) / static_cast<double>(looked_at);
+}
+
+double mean_in_view(const Model& model, std::span<const Camera> cameras, const std::string& axes) {
+  std::vector<double> shares(cameras.size());
+  parallel_for(cameras.size(),
+               [&](std::size_t i) { shares[i] = share_in_view(model, into_axes(cameras[i], axes)); });
+  double sum = 0.0;
+  for (const double share : shares) sum += share;
+  return sum / static_cast<double>(shares.size());
+}
+
+/// How far the model's up is that of the cameras, -1 to 1, in each of both frames; 0 where either has none.
+struct Upright {
+  double usual = 0.0, other = 0.0;
+};
+Upright upright(const Model& model, const std::string& others, std::span<const Camera> cameras) {
+  const auto capture = capture_of(cameras);
+  if (!capture) return {};
+  const auto ground = find_ground(CoredModel(model));
+  if (!ground) return {};
+  const glm::dvec3 up = glm::transpose(world_from_axes(model.axes)) * ground->up;
+  return {glm::dot(ground->up, capture->up), glm::dot(world_from_axes(others) * up, capture->up)};
+}
+
+}  // namespace
+
+std::optional<ToldAxes> tell_axes(const Model& model, const std::string& others,
+                                  std::span<const Camera> cameras) {
+  if (cameras.empty() || model.count() == 0) return std::nullopt;
+  std::vector<Camera> some;
+  for (std::size_t i = 0; i < cameras.size(); i += cameras.size() / most_cameras + 1)
+    some.push_back(cameras[i]);
+  ToldAxes usual{.axes = model.axes, .cameras = some.size()}, other = usual;
+  other.axes = others;
+  usual.seen = other.seen_otherwise = mean_in_view(model, some, usual.axes);
+  other.seen = usual.seen_otherwise = mean_in_view(model, some, other.axes);
+  if (std::max(usual.seen, other.seen) < least_seen) return std::nullopt;
+  if (usual.seen >= clearly * other.seen) return usual;
+  if (other.seen >= clearly * usual.seen) return other;
+  usual.by_ground = other.by_ground = true;
+  const Upright up = upright(model, others, cameras);
+  if (std::max(up.usual, up.other) < along || std::min(up.usual, up.other) > 0.0) return std::nullopt;
+  return up.usual > up.other ? usual : other;
+}
+
+}  // namespace binosplat
