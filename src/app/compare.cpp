@@ -8,6 +8,8 @@
 
 #include "app/command.h"
 #include "app/option_checks.h"
+#include "app/output_options.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "formats/image_file.h"
 #include "measure/comparison.h"
@@ -31,6 +33,7 @@ struct CompareOptions {
   std::string difference;
   std::string json;
   std::optional<measure::Gaze> gaze;
+  Background background;  // none: alpha counts where both have some
 };
 
 using measure::Comparison;
@@ -45,11 +48,6 @@ void check_comparable(const CompareOptions& options, const Image& a, const Image
   if (a.width != b.width || a.height != b.height) {
     fail("{} is {} x {} px and {} is {} x {}: only pictures of one size can be compared", options.a, a.width,
          a.height, options.b, b.width, b.height);
-  }
-  if ((a.channels == 4) != (b.channels == 4)) {
-    const bool first = a.channels == 4;
-    fail("{} has alpha and {} has none: draw both with the same --background", first ? options.a : options.b,
-         first ? options.b : options.a);
   }
 }
 
@@ -133,7 +131,12 @@ ExitCode compare(const CompareOptions& options) {
   Image a = load_image(options.a, limit);
   Image b = load_image(options.b, limit);
   check_comparable(options, a, b);
-  measure::make_shown(a, b);
+  const bool before_background = measure::make_shown(a, b, options.background);
+  const glm::dvec3 background(options.background.value_or(glm::vec3(0.0f)));
+  if (before_background) {
+    log_info("alpha: what is seen through is compared before the background {:g},{:g},{:g}{}", background.r,
+             background.g, background.b, options.background ? "" : " (--background for another)");
+  }
   const Comparison found = measure::compare(a, b, options.pixels_per_degree);
   print(options, found, a);
   std::optional<measure::FoveatedComparison> foveated;
@@ -148,6 +151,7 @@ ExitCode compare(const CompareOptions& options) {
   }
   if (!options.json.empty()) {
     auto json = to_json(options, found, a);
+    if (before_background) json["background"] = {background.r, background.g, background.b};
     if (foveated) json["foveated"] = to_json(*foveated, *options.gaze);
     save_json(options.json, json);
   }
@@ -166,6 +170,11 @@ void add_compare(CLI::App& program, Command& command) {
   sub->add_option("A", options->a, "Picture: PNG, JPEG or OpenEXR")->required();
   sub->add_option("B", options->b, "Picture of the same size")->required();
   sub->add_option("--min-psnr", options->min_psnr, "Exit code 1 if PSNR is below this")->type_name("DB");
+  sub->add_option_function<std::string>(
+         "--background", [options](const std::string& text) { options->background = parse_background(text); },
+         "Colour from 0 to 1 before which pictures with alpha are compared;\nby default alpha counts where "
+         "both have some, and is before black\nwhere one has (0,0,0)")
+      ->type_name("R,G,B|none");
   sub->add_option("--ppd", options->pixels_per_degree, "For FLIP: pixels per degree that the viewer has (67)")
       ->check(CLI::Range(1.0, 1000.0).description(""))
       ->type_name("N");

@@ -5,8 +5,6 @@
 
 namespace binosplat::app {
 
-namespace {
-
 Background parse_background(const std::string& text) {
   if (text == "none") return std::nullopt;
   const glm::dvec3 rgb = parse_three("--background", text);
@@ -16,8 +14,6 @@ Background parse_background(const std::string& text) {
   }
   return glm::vec3(rgb);
 }
-
-}  // namespace
 
 void add_look_options(CLI::App& sub, OutputOptions& o, bool in_window) {
   sub.option_defaults()->group("Outputs");
@@ -64,7 +60,8 @@ void add_output_options(CLI::App& sub, OutputOptions& o) {
                 {{"mean", Depth::mean}, {"median", Depth::median}});
   sub.add_option(
          "--photos", o.photos,
-         "Print PSNR against DIR/NAME.jpg or .png, or the photos found beside\nthe cameras; with --mono")
+         "Print PSNR against DIR/NAME.jpg, .png or .exr, or the photos found\nbeside the cameras; with "
+         "--mono. Those with alpha are put before\n--background")
       ->type_name(fmt::format("DIR|{}", photos_beside))
       ->check(folder() | CLI::IsMember({photos_beside}).description(""));
   sub.add_option("--json", o.json, "Write everything printed as JSON")->type_name("FILE");

@@ -31,6 +31,9 @@ struct OutputOptions {
   glm::vec3 backdrop() const { return background.value_or(glm::vec3(0.0f)); }
 };
 
+/// The value of a --background: "R,G,B" of 0 to 1, or "none". Throws Error for anything else.
+Background parse_background(const std::string& text);
+
 /// Adds all of them; `options` must outlive the parsing.
 void add_output_options(CLI::App& sub, OutputOptions& options);
 

@@ -1,9 +1,12 @@
 #include "app/photos.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "formats/image_file.h"
+#include "measure/comparison.h"
 #include "study/bench.h"
 
 namespace binosplat::app {
@@ -20,20 +23,22 @@ void check_size(const fs::path& file, const glm::ivec2& size, const Camera& came
 
 }  // namespace
 
-Image load_view_photo(const fs::path& file, const Camera& camera) {
+Image load_view_photo(const fs::path& file, const Camera& camera, const glm::vec3& background) {
   Image photo = load_image(file);
   check_size(file, {photo.width, photo.height}, camera);
-  if (photo.channels != 3)
-    fail("photo {} has {} channels: expected the 3 of RGB", file.string(), photo.channels);
-  return photo;
+  static std::atomic<bool> said = false;
+  if (measure::is_see_through(photo) && !said.exchange(true)) {
+    log_info("photo {} has alpha: it is compared before the background {:g},{:g},{:g}, as others like it are",
+             file.string(), background.r, background.g, background.b);
+  }
+  return photo.channels == 3 ? photo : measure::before(background, photo);
 }
 
 void check_photos(const std::string& photos, std::span<const Camera> cameras) {
   if (photos.empty()) return;
   for (const Camera& camera : cameras) {
     const auto file = find_view_photo(photos, camera.name);
-    const auto size = file ? picture_size(*file) : std::nullopt;
-    if (size) check_size(*file, *size, camera);
+    if (file) check_size(*file, picture_size(*file), camera);
   }
 }
 

@@ -15,11 +15,14 @@
 
 namespace binosplat::app {
 
-/// Reads a view's photo. Throws Error unless it is RGB in the camera's size.
-Image load_view_photo(const std::filesystem::path& file, const Camera& camera);
+/// Reads a view's photo as RGB: grey in three equal channels, and what has alpha before the background of the
+/// pictures that it is compared with, which is said once. Throws Error unless it has the camera's size.
+Image load_view_photo(const std::filesystem::path& file, const Camera& camera,
+                      const glm::vec3& background = glm::vec3(0.0f));
 
-/// Throws Error as load_view_photo() does, but by the headers of the cameras' photos alone: quick, before a
-/// model is read. Views without a photo are no error here; no folder, none to check.
+/// Throws Error as load_view_photo() does, but as far as the headers and ends of the cameras' photos tell
+/// (picture_size): quick, before a model is read. Views without a photo are no error here; no folder, none to
+/// check.
 void check_photos(const std::string& photos, std::span<const Camera> cameras);
 
 /// The photos of a folder for a fit; none where `photos` is empty.

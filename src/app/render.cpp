@@ -42,11 +42,11 @@ using nlohmann::ordered_json;
 
 namespace {
 
-void check_any_photo(const std::string& folder, const std::vector<Shot>& shots) {
-  for (const Shot& shot : shots) {
-    if (find_view_photo(folder, shot.name)) return;
+void check_any_photo(const std::string& folder, const std::vector<Camera>& cameras) {
+  for (const Camera& camera : cameras) {
+    if (find_view_photo(folder, camera.name)) return;
   }
-  fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, shots[0].stem);
+  fail("--photos {}: there is no photo of any view drawn, for one {}.jpg", folder, stem_of(cameras[0].name));
 }
 
 // PSNR of the picture as 8 bits would keep it against the photo, where there is a folder of them.
@@ -58,8 +58,8 @@ std::optional<double> photo_psnr(const std::string& folder, const glm::vec3& bac
     log_info("no photo of {} in {}", shot.name, folder);
     return std::nullopt;
   }
-  const Image photo = load_view_photo(*file, shot.eyes.front().camera);
-  return measure::psnr(quantised(composite(picture, background)), quantised(photo));
+  const Image photo = load_view_photo(*file, shot.eyes.front().camera, background);
+  return measure::psnr(quantised(composite(picture, background)), photo);
 }
 
 // What the model takes on the GPU, and the shot that takes most.
@@ -135,11 +135,12 @@ struct Work {
 };
 
 // Of those that are drawn, before the model is read; and that each has a photo of its own.
-void check_photo_sizes(const RenderOptions& o, const Work& work) {
+void check_photos_drawn(const RenderOptions& o, const Work& work) {
   if (work.photos.empty() || !work.list.listed) return;
   check_photos_apart(work.photos, work.list.cameras);
   std::vector<Camera> cameras = chosen_cameras(o.camera.views, o.camera.lens, work.list);
   if (o.camera.views.empty() && !work.list.path) cameras.resize(1);
+  check_any_photo(work.photos, cameras);
   check_photos(work.photos, cameras);
 }
 
@@ -268,7 +269,7 @@ ExitCode render(const RenderOptions& o) {
   work.list = find_list(o, work.plan);
   check_views(o.camera.views, o.rig.mono, work.list);
   work.photos = photos_folder(o.output.photos, work.list);
-  check_photo_sizes(o, work);
+  check_photos_drawn(o, work);
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
   if (o.scene.detail || may_share(o)) {
@@ -281,7 +282,7 @@ ExitCode render(const RenderOptions& o) {
     fail("--detail-report: {} does not say what its levels lose, to share --quality with: give --detail PX",
          o.scene.name);
   if (!work.followed && o.scene.gpu_memory) budget = detail_budget(o, work.list);
-  Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget);
+  Model model = work.followed ? work.followed->coarsest() : load_scene(o.scene, budget, work.list.cameras);
   log_model(o.scene.name, o.drawing.decode, model,
             work.followed ? work.followed->gaussians() : model.count());
   if (!work.list.listed) work.list = made_up_cameras(o.scene, o.camera, work.list.known, model);
@@ -292,7 +293,7 @@ ExitCode render(const RenderOptions& o) {
     for (Shot& shot : work.shots) level(shot, up_of(o.camera, work.list.known));
   }
   check_shots(work.plan, work.shots);
-  if (!work.photos.empty()) check_any_photo(work.photos, work.shots);
+  if (!work.photos.empty() && !work.list.listed) check_any_photo(work.photos, work.list.cameras);
   if (seeks_screen(o, work.plan)) {
     const auto head =
         std::find_if(work.shots.begin(), work.shots.end(), [](const Shot& shot) { return !shot.given_eyes; });

@@ -25,7 +25,7 @@ std::string stem_of(std::string name) {
 std::optional<fs::path> find_view_photo(const fs::path& folder, const std::string& view) {
   if (fs::is_regular_file(folder / view)) return folder / view;
   for (const std::string& name : {view, stem_of(view)}) {
-    for (const char* ending : {".jpg", ".jpeg", ".png", ".JPG", ".JPEG", ".PNG"}) {
+    for (const char* ending : {".jpg", ".jpeg", ".png", ".exr", ".JPG", ".JPEG", ".PNG", ".EXR"}) {
       if (fs::is_regular_file(folder / (name + ending))) return folder / (name + ending);
     }
   }

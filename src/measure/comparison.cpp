@@ -2,22 +2,39 @@
 
 namespace binosplat::measure {
 
-namespace {
-
-Image as_colour(const Image& grey) {
-  Image colour(grey.width, grey.height, 3);
-  for (std::size_t k = 0; k < colour.data.size(); ++k) colour.data[k] = grey.data[k / 3];
-  return colour;
+bool is_see_through(const Image& image) {
+  if (image.channels != 4) return false;
+  for (std::size_t i = 3; i < image.data.size(); i += 4) {
+    if (image.data[i] != 1.0f) return true;
+  }
+  return false;
 }
 
-}  // namespace
+Image before(const glm::vec3& background, const Image& image) {
+  const auto channels = static_cast<std::size_t>(image.channels);
+  Image rgb(image.width, image.height, 3);
+  for (std::size_t i = 0; i < rgb.data.size(); ++i) {
+    const float* pixel = &image.data[i / 3 * channels];
+    const float v = pixel[channels == 1 ? 0 : i % 3], alpha = channels == 4 ? pixel[3] : 1.0f;
+    const float behind = background[static_cast<int>(i % 3)];
+    rgb.data[i] = alpha == 1.0f ? v : alpha * v + (1.0f - alpha) * behind;
+  }
+  return rgb;
+}
 
-void make_shown(Image& a, Image& b) {
-  // An EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
-  a = clamped(a);
-  b = clamped(b);
-  if (a.channels == 1 && b.channels == 3) a = as_colour(a);
-  if (b.channels == 1 && a.channels == 3) b = as_colour(b);
+bool make_shown(Image& a, Image& b, const Background& background) {
+  const bool see_through = is_see_through(a) || is_see_through(b);
+  const bool keeps_alpha = see_through && !background && a.channels == b.channels;
+  const glm::vec3 behind = background.value_or(glm::vec3(0.0f));
+  for (Image* image : {&a, &b}) {
+    if (image->channels == 4 && !keeps_alpha) *image = before(behind, *image);
+  }
+  for (Image* image : {&a, &b}) {
+    if (image->channels == 1 && a.channels != b.channels) *image = before(behind, *image);
+    // An EXR may hold values outside 0 to 1 that a PNG of the same picture cannot.
+    *image = clamped(*image);
+  }
+  return see_through && !keeps_alpha;
 }
 
 Comparison compare(const Image& a, const Image& b, double pixels_per_degree) {

@@ -14,9 +14,17 @@ struct Comparison {
   Difference largest;
 };
 
+/// Whether an image has alpha that is not 1 everywhere.
+bool is_see_through(const Image& image);
+
+/// RGB of any image: grey as three equal channels, and what is seen through before a background.
+Image before(const glm::vec3& background, const Image& image);
+
 /// Makes two pictures what a screen shows of them: values clamped to [0, 1], and grey as three equal channels
-/// where the other one has colour.
-void make_shown(Image& a, Image& b);
+/// where the other one has colour. Alpha is left out where it is 1 everywhere. Where only one has other
+/// alpha, it is shown before a background, black unless that is given; with a given background both are. Else
+/// alpha stays, and counts. Returns whether something that is seen through was put before a background.
+bool make_shown(Image& a, Image& b, const Background& background = {});
 
 /// Of two such pictures. Throws Error where they cannot be compared (measure/comparable.h).
 Comparison compare(const Image& a, const Image& b, double pixels_per_degree = flip_pixels_per_degree);

@@ -1,6 +1,8 @@
 // Pictures as arrays: from files, and how far two are apart.
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
@@ -45,10 +47,15 @@ Image empty_image(const py::array& array, const std::string& name) {
   return {static_cast<int>(side(1)), static_cast<int>(side(0)), static_cast<int>(side(2))};
 }
 
-Comparison compare(const py::object& a, const py::object& b, double pixels_per_degree) {
+Comparison compare(const py::object& a, const py::object& b, double pixels_per_degree,
+                   const std::optional<std::array<float, 3>>& background) {
   Image first = image_of(a, "a"), second = image_of(b, "b");
   const py::gil_scoped_release release;
-  measure::make_shown(first, second);
+  Background behind;
+  if (background) behind = glm::vec3((*background)[0], (*background)[1], (*background)[2]);
+  if (behind && glm::clamp(*behind, 0.0f, 1.0f) != *behind)
+    fail("background: expected three numbers from 0 to 1");
+  measure::make_shown(first, second, behind);
   return measure::compare(first, second, pixels_per_degree);
 }
 
@@ -128,13 +135,16 @@ void add_images(py::module_& module) {
           [](const Comparison& c) { return py::make_tuple(c.largest.y, c.largest.x, c.largest.channel); },
           "Row, column and channel of the largest error.")
       .def("__repr__", &describe);
-  module.def("compare", &compare, py::arg("a"), py::arg("b"),
-             py::arg("ppd") = measure::flip_pixels_per_degree,
-             "What `binosplat compare` says of two pictures of one size, arrays of (height, width) or\n"
-             "(height, width, 1, 3 or 4): float with white 1, uint8 or uint16. Values are clamped to\n"
-             "0 to 1 and not rounded (see quantised); grey counts as colour beside colour. ppd: pixels per\n"
-             "degree that the viewer has, 1 to 1000, for FLIP. Raises InputError for shapes that do not go\n"
-             "together, TypeError for other types of numbers.");
+  module.def(
+      "compare", &compare, py::arg("a"), py::arg("b"), py::arg("ppd") = measure::flip_pixels_per_degree,
+      py::arg("background") = py::none(),
+      "What `binosplat compare` says of two pictures of one size, arrays of (height, width) or\n"
+      "(height, width, 1, 3 or 4): float with white 1, uint8 or uint16. Values are clamped to\n"
+      "0 to 1 and not rounded (see quantised); grey counts as colour beside colour. background: RGB\n"
+      "before which pictures with alpha are compared; by default alpha counts where both have some\n"
+      "that is not 1, and is before black where one has. ppd: pixels per degree that the viewer has,\n"
+      "1 to 1000, for FLIP. Raises InputError for shapes that do not go together, TypeError for other\n"
+      "types of numbers.");
 }
 
 }  // namespace binosplat::python

@@ -142,7 +142,7 @@ TEST_F(Compare, WhatCannotBeComparedIsCodeTwo) {
     const char* said;
   } cases[] = {
       {{"compare", a, wide}, "21 x 16"},
-      {{"compare", a, alpha}, "has alpha and"},
+      {{"compare", a, alpha, "--background", "1,2,3"}, "--background 1,2,3: expected numbers from 0 to 1"},
       {{"compare", a, folder / "missing.png"}, "missing.png"},
       {{"compare", folder / "text.png", a}, "text.png"},
       {{"compare", a, folder / "cut.png"}, "cut.png"},

@@ -1,0 +1,102 @@
+#include "measure/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+Image noise(int channels, std::uint32_t seed) {
+  Image image(13, 11, channels);
+  test::Uniform uniform(seed);
+  for (float& value : image.data) value = static_cast<float>(uniform(-0.2, 1.2));
+  return image;
+}
+
+Image with_alpha(Image image, float alpha) {
+  for (std::size_t i = 3; i < image.data.size(); i += 4) image.data[i] = alpha;
+  return image;
+}
+
+const glm::vec3 green(0.1f, 0.8f, 0.2f);
+
+TEST(MadeShown, WhatIsSeenThroughIsBeforeTheBackground) {
+  const Image image = noise(4, 1);
+  const Image shown = measure::before(green, image);
+  ASSERT_EQ(shown.channels, 3);
+  for (int y = 0; y < 11; ++y) {
+    for (int x = 0; x < 13; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        const double alpha = image.at(x, y, 3), v = alpha * image.at(x, y, c) + (1 - alpha) * green[c];
+        EXPECT_NEAR(shown.at(x, y, c), v, 1e-6);
+      }
+    }
+  }
+  // Planted fault: premultiplied, as OpenEXR has it.
+  EXPECT_GT(std::abs(shown.at(3, 3, 0) - (image.at(3, 3, 0) + (1 - image.at(3, 3, 3)) * green[0])), 1e-3);
+  const Image grey = noise(1, 2);
+  const Image colour = measure::before(green, grey);
+  for (std::size_t i = 0; i < colour.data.size(); ++i) EXPECT_EQ(colour.data[i], grey.data[i / 3]);
+}
+
+/// The channels of two images once they are made shown, and whether a background came in.
+struct Made {
+  Image a, b;
+  bool before_background = false;
+};
+Made made(Image a, Image b, const Background& background = {}) {
+  const bool before_background = measure::make_shown(a, b, background);
+  return {std::move(a), std::move(b), before_background};
+}
+
+TEST(MadeShown, AlphaOfOneIsLeftOut) {
+  const Image opaque = with_alpha(noise(4, 1), 1.0f), rgb = measure::before(green, opaque);
+  const Image grey = noise(1, 3);
+  for (const Image& other : {rgb, grey, with_alpha(noise(4, 4), 1.0f)}) {
+    for (const bool first : {true, false}) {
+      const Made of = first ? made(opaque, other) : made(other, opaque);
+      EXPECT_EQ(of.a.channels, 3);
+      EXPECT_EQ(of.b.channels, 3);
+      EXPECT_FALSE(of.before_background);
+      EXPECT_EQ((first ? of.a : of.b).data, made(rgb, rgb).a.data);
+    }
+  }
+}
+
+TEST(MadeShown, AlphaOfOnePictureIsBeforeBlackOrAsAsked) {
+  const Image see_through = with_alpha(noise(4, 1), 0.5f);
+  for (const Image& other : {noise(3, 2), noise(1, 3)}) {
+    const Made of = made(see_through, other);
+    EXPECT_TRUE(of.before_background);
+    const Image black = measure::before(glm::vec3(0.0f), see_through);
+    EXPECT_EQ(of.a.data, made(black, black).a.data);
+    EXPECT_EQ(of.b.channels, 3);
+    const Image on_green = measure::before(green, see_through);
+    EXPECT_EQ(made(see_through, other, green).a.data, made(on_green, on_green).a.data);
+  }
+}
+
+TEST(MadeShown, AlphaOfBothCounts) {
+  const Image a = with_alpha(noise(4, 1), 0.5f), b = with_alpha(noise(4, 1), 0.25f);
+  const Made of = made(a, b);
+  EXPECT_EQ(of.a.channels, 4);
+  EXPECT_EQ(of.b.channels, 4);
+  EXPECT_FALSE(of.before_background);
+  EXPECT_NE(of.a.data, of.b.data);
+  // One that is opaque has alpha all the same.
+  EXPECT_EQ(made(a, with_alpha(noise(4, 1), 1.0f)).b.channels, 4);
+  // Unless a background is given.
+  EXPECT_EQ(made(a, b, green).a.channels, 3);
+  EXPECT_TRUE(made(a, b, green).before_background);
+}
+
+TEST(MadeShown, GreyStaysGreyBesideGrey) {
+  const Made of = made(noise(1, 1), noise(1, 2));
+  EXPECT_EQ(of.a.channels, 1);
+  EXPECT_EQ(of.b.channels, 1);
+  for (const float v : of.a.data) EXPECT_TRUE(v >= 0.0f && v <= 1.0f);
+}
+
+}  // namespace
+}  // namespace binosplat
