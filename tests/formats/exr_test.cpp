@@ -190,11 +190,11 @@ TEST(Exr, CarriesNotes) {
   EXPECT_EQ(attribute(folder / "a.exr", "unitsPerMetre"), "0.5");
 }
 
-/// A file as another program writes it: channels of FLOAT, all of `values`, in a data window that begins
+/// A file as another program writes it: channels of FLOAT, all of `values`, in a window that begins
 /// elsewhere.
 void write_foreign(const fs::path& path, const std::map<std::string, float>& values, int sampling = 1) {
   const Imath::Box2i window({-2, 3}, {1, 4});  // 4 x 2
-  Imf::Header header(Imath::Box2i({0, 0}, {9, 9}), window);
+  Imf::Header header(window, window);
   std::map<std::string, std::vector<float>> pixels;
   Imf::FrameBuffer frame;
   for (const auto& [name, value] : values) {
