@@ -32,7 +32,7 @@ void add_camera_options(CLI::App& sub, CameraOptions& o) {
   sub.add_option("--view", o.views,
                  "Cameras to draw by name, or all; default: the first. NAME also\nmeans the pair NAME_left, "
                  "NAME_right")
-      ->type_name("NAME");
+      ->type_name("NAME...");
   sub.add_option(
          "--path", o.path,
          "cameras.json or nerfstudio's camera_path.json of one path: of keys, as\n`view` saves them, or "

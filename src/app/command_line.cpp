@@ -4,10 +4,12 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -30,7 +32,7 @@ namespace {
 
 // Options that name outputs, older results, which may give way to new ones, and views.
 constexpr const char* no_inputs[] = {"--output", "--json", "--difference", "--compare",
-                                     "--merge",  "--view", "--test"};
+                                     "--merge",  "--view", "--test",       "--held-back"};
 
 constexpr double gaussian_bytes = 400.0;         // in memory, while a model of degree 3 is read
 constexpr std::uintmax_t cache_room = 64 << 20;  // bytes: more than shaders take
@@ -57,6 +59,36 @@ std::vector<std::string> option_names(const CLI::App& command) {
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   return names;
+}
+
+// As CLI11 sees it: a number below zero is none.
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-' && word != "--" &&
+         std::isdigit(static_cast<unsigned char>(word[1])) == 0;
+}
+
+const CLI::Option* option_called(const CLI::App& command, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  for (const CLI::Option* option : command.get_options()) {
+    if (!option->get_positional() && option->check_name(name)) return option;
+  }
+  return nullptr;
+}
+
+bool is_scene(const std::string& word) {
+  std::error_code ignored;
+  return is_built_in(word) || fs::exists(word, ignored);
+}
+
+// What an option that takes many words may have swallowed, where the scene is missed.
+std::string swallowed(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::vector<std::string> words = option->results();
+    if (option->get_positional() || option->get_items_expected_max() < 2 || words.size() < 2) continue;
+    return fmt::format("; {} was taken for a word of {}: if it is the model, there is none of that name",
+                       words.back(), option->get_name());
+  }
+  return "";
 }
 
 void note(const std::string& value) {
@@ -110,10 +142,18 @@ void check_arguments(int argc, const char* const* argv) {
 
 std::vector<std::string> with_command(const CLI::App& program, int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.empty() || words[0].starts_with("-")) return words;
   std::vector<std::string> commands;
   for (const CLI::App* sub : program.get_subcommands({})) commands.push_back(sub->get_name());
-  if (std::find(commands.begin(), commands.end(), words[0]) != commands.end()) return words;
+  const auto first = std::find_if(words.begin(), words.end(),
+                                  [](const std::string& word) { return !word.starts_with("-"); });
+  if (first != words.end() && std::find(commands.begin(), commands.end(), *first) != commands.end()) {
+    // `view` does it by itself: its options are those of another program.
+    const std::vector<std::string> others =
+        with_scene_first(*program.get_subcommand(*first), {first + 1, words.end()});
+    std::copy(others.begin(), others.end(), first + 1);
+    return words;
+  }
+  if (words.empty() || words[0].starts_with("-")) return words;
   if (words[0].find("://") != std::string::npos) fail_to_read(words[0], ENOENT);
   std::error_code ignored;
   if (!is_built_in(words[0]) && !fs::exists(words[0], ignored))
@@ -125,6 +165,33 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
   return words;
 }
 
+std::vector<std::string> with_scene_first(const CLI::App& command, std::vector<std::string> words) {
+  int missing = 0;  // words that stand for themselves; `bench --merge` has none, but needs none either
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional()) missing += std::max(1, option->get_items_expected_min());
+  }
+  std::optional<std::size_t> scene;
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    const CLI::Option* option = is_option(words[i]) ? option_called(command, words[i]) : nullptr;
+    if (option == nullptr) {
+      if (!is_option(words[i])) --missing;
+      continue;
+    }
+    int taken = words[i].find('=') != std::string::npos ? 1 : 0;
+    while (taken < option->get_items_expected_max() && i + 1 < words.size() && !is_option(words[i + 1]) &&
+           words[i + 1] != "--") {
+      ++i;
+      ++taken;
+    }
+    const bool of_folders = option->check_name("--merge");
+    if (taken > option->get_items_expected_min() && !of_folders && is_scene(words[i])) scene = i;
+  }
+  if (missing < 1 || !scene) return words;
+  std::rotate(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(*scene),
+              words.begin() + static_cast<std::ptrdiff_t>(*scene) + 1);
+  return words;
+}
+
 std::string explain(const CLI::App& command, const std::string& name, const CLI::ParseError& error) {
   // Words before a sub-command are not its own.
   const bool has_extras = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
@@ -132,6 +199,7 @@ std::string explain(const CLI::App& command, const std::string& name, const CLI:
   if (!chosen.empty() && !(has_extras && command.remaining_size() > 0))
     return explain(*chosen.front(), name + " " + chosen.front()->get_name(), error);
   std::string text = error.what();
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) text += swallowed(command);
   if (has_extras) {
     const std::vector<std::string> extras = command.remaining();
     const auto option = std::find_if(extras.begin(), extras.end(),

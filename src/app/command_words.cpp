@@ -82,6 +82,9 @@ bool takes_words_only(const CLI::Option& option) {
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
+// Which may as well be given again for each.
+bool takes_many(const CLI::Option& option) { return option.get_items_expected_max() > 1; }
+
 std::string replaced(const std::string& text, const std::string& what, const std::string& by) {
   return CLI::detail::find_and_replace(text, what, by);
 }
@@ -104,7 +107,7 @@ std::string filled(const std::string& help) { return replaced(roff(help), "\n  "
 std::string manual_of(const CLI::Option& option) {
   std::string names = option.get_positional() ? option.get_name(true) : option.get_name(false, true);
   if (takes_value(option) && !option.get_positional()) names += " " + option.get_type_name();
-  if (option.get_items_expected_max() > 1) names += " ...";
+  if (takes_many(option) && !names.ends_with("...")) names += " ...";
   return fmt::format(".TP\n.B {}\n{}\n", roff(names), filled(option.get_description()));
 }
 
@@ -231,7 +234,8 @@ std::string zsh_completion(const CLI::App& program) {
                         takes_words_only(*option) ? fmt::format("({})", fmt::join(taken, " ")) : "_files");
       }
       for (const std::string& name : option->get_lnames())
-        text += fmt::format("        {} \\\n", quoted(fmt::format("--{}[{}]{}", name, help, value)));
+        text += fmt::format("        {}{} \\\n", takes_many(*option) ? "\\*" : "",
+                            quoted(fmt::format("--{}[{}]{}", name, help, value)));
     }
     text += "        '*:file:_files'\n      ;;\n";
   }

@@ -25,9 +25,8 @@ using binosplat::ExitCode;
 
 constexpr const char* epilogue =
     "`binosplat SUBCOMMAND --help` has the options and examples.\n"
-    "Exit codes: 0 done; 1 a comparison fell short; 2 input, output or usage is wrong; 3 no usable OpenGL; 4 "
-    "out of "
-    "memory.";
+    "Exit codes: 0 done; 1 a comparison fell short; 2 input, output or usage is wrong; 3 no usable OpenGL, "
+    "display or headset; 4 out of memory.";
 
 int end(ExitCode code, const std::string& text) {
   binosplat::log_line(text);

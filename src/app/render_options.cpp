@@ -125,7 +125,7 @@ void add_view_options(CLI::App& sub, RenderOptions& o) {
   sub.get_option("--foveate")->group("Headset");
   sub.option_defaults()->group("Options");
   sub.get_option("--size")->description("Pixels of the window (1280x720, or more where displays are dense)");
-  sub.get_option("--view")->description("The camera to start at, by name (the first)");
+  sub.get_option("--view")->description("The camera to start at, by name (the first)")->type_name("NAME");
   for (const char* name : render_only) sub.get_option(name)->group("");  // understood, but in no help
   for (const char* name : not_in_windows) sub.get_option(name)->group("Headset");
   sub.footer(keys_text());

@@ -1,5 +1,7 @@
 #include "app/render_outputs.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -259,7 +261,18 @@ OutputPlan plan_outputs(const RenderOptions& render) {
 
 void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots) {
   if (!plan.file.empty() && shots.size() > 1) {
-    fail("-o {} is one file and {} views are to be drawn: name a folder", plan.file.string(), shots.size());
+    std::vector<std::string> names;
+    for (const Shot& shot : shots) names.push_back(shot.name);
+    constexpr std::size_t few = 4;
+    if (names.size() > few) {
+      names.resize(few);
+      names.emplace_back("...");
+    }
+    const char* ending = plan.vr_photo ? ".jpg" : plan.png ? ".png" : ".exr";
+    fail(
+        "-o {}{} is one file, and {} views are to be drawn ({}): name a folder, as -o {}, and each view's "
+        "pictures are called after it there; or draw one of them, as --view {}",
+        plan.file.string(), ending, shots.size(), fmt::join(names, ", "), plan.file.string(), names[0]);
   }
   for (const Shot& shot : shots) {
     const Camera &a = shots[0].eyes[0].camera, &b = shot.eyes[0].camera;

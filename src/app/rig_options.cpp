@@ -1,5 +1,9 @@
 #include "app/rig_options.h"
 
+#include <cctype>
+#include <cmath>
+#include <limits>
+
 #include "app/option_checks.h"
 #include "base/error.h"
 #include "base/numbers.h"
@@ -8,40 +12,62 @@ namespace binosplat::app {
 
 namespace {
 
-// Metres. A bare number beyond what a human or a low flight has is taken for millimetres that were meant.
-double parse_ipd(const std::string& text) {
-  constexpr double most = 1.0;
+struct Length {
+  double metres = 0.0;
+  bool has_unit = false;  // else metres are assumed
+};
+
+Length parse_length(const char* option, const std::string& text, const char* examples) {
   std::string_view unit = text;
   if (unit.starts_with("+")) unit.remove_prefix(1);
   const std::optional<double> value = take_real(unit);
   if (!value || !std::isfinite(*value))
-    fail("--ipd {}: expected metres, or a number with a unit, as in 0.064, 64mm or 3m", text);
-  if (unit == "mm") return 1e-3 * *value;
-  if (unit == "cm") return 1e-2 * *value;
-  if (unit == "m") return *value;
-  if (!unit.empty()) fail("--ipd {}: its unit may be m, cm or mm", text);
-  if (std::abs(*value) > most)
+    fail("{} {}: expected metres, or a number with a unit, {}", option, text, examples);
+  if (unit == "mm") return {1e-3 * *value, true};
+  if (unit == "cm") return {1e-2 * *value, true};
+  if (!unit.empty() && unit != "m") fail("{} {}: its unit may be m, cm or mm", option, text);
+  return {*value, !unit.empty()};
+}
+
+// Metres. A bare number beyond what a human or a low flight has is taken for millimetres that were meant.
+double parse_ipd(const std::string& text) {
+  constexpr double most = 1.0;
+  const Length length = parse_length("--ipd", text, "as in 0.064, 64mm or 3m");
+  if (!length.has_unit && std::abs(length.metres) > most)
     fail("--ipd {0}: that is {0} metres, and eyes are 0.063 apart; say {0}mm, or {0}m if it is meant", text);
-  return *value;
+  return length.metres;
+}
+
+double parse_convergence(const std::string& text) {
+  std::string word = text.substr(text.starts_with("+") ? 1 : 0);
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (word == "inf" || word == "infinity") return std::numeric_limits<double>::infinity();
+  return parse_length("--convergence", text, "as in 3, 80cm or 2.5m, or inf").metres;
 }
 
 }  // namespace
+
+CLI::Option* add_ipd_option(CLI::App& sub, RigOptions& o) {
+  return sub
+      .add_option_function<std::string>(
+          "--ipd", [&o](const std::string& text) { o.ipd = parse_ipd(text); },
+          "Distance between the eyes, in metres or with a unit: 64mm, 3m (0.063)")
+      ->type_name("METRES");
+}
 
 void add_rig_options(CLI::App& sub, RigOptions& o) {
   sub.option_defaults()->group("Both eyes");
   sub.add_flag("--mono", o.mono, "Draw the camera itself, one picture");
   choose<int>(sub, "--only", o.only, "Draw one eye of the pair", {{"left", 0}, {"right", 1}});
-  sub.add_option_function<std::string>(
-         "--ipd", [&o](const std::string& text) { o.ipd = parse_ipd(text); },
-         "Distance between the eyes, in metres or with a unit: 64mm, 3m (0.063)")
-      ->type_name("METRES");
+  add_ipd_option(sub, o);
   sub.add_option("--units-per-metre", o.units_per_metre, "World units that make a metre (1)")
       ->type_name("N")
       ->check(positive);
-  sub.add_option("--convergence", o.convergence,
-                 "Distance without disparity, where the screen stands; inf: infinitely\nfar (what suits the "
-                 "first view "
-                 "where one picture has both eyes, as for\nscreens; else inf)")
+  sub.add_option_function<std::string>(
+         "--convergence", [&o](const std::string& text) { o.convergence = parse_convergence(text); },
+         "Distance without disparity, where the screen stands, in metres or with\na unit: 80cm; inf: "
+         "infinitely far (what suits the first view where one\npicture has both eyes, as for screens; else "
+         "inf)")
       ->type_name("METRES|inf");
   sub.add_option("--cant", o.cant, "Turn each eye outwards (0)")->type_name("DEGREES");
 }

@@ -27,6 +27,9 @@ inline const RigOptions no_rig{.mono = true};
 /// Adds all of them; `options` must outlive the parsing.
 void add_rig_options(CLI::App& sub, RigOptions& options);
 
+/// One of them, for commands that take few.
+CLI::Option* add_ipd_option(CLI::App& sub, RigOptions& options);
+
 /// Throws Error for options that contradict each other.
 void check(const RigOptions& options);
 

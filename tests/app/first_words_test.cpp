@@ -59,6 +59,75 @@ TEST_F(FirstWords, OptionsMayComeBeforeTheScene) {
   EXPECT_TRUE(std::filesystem::exists(out + "/side_right.png"));
 }
 
+// Wherever an option takes many words, the last of them may be the scene.
+TEST_F(FirstWords, TheSceneMayStandBehindTheNames) {
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"--view", "side"}, std::vector<std::string>{"--view", "front", "side"},
+        std::vector<std::string>{"--view=side"}}) {
+    std::filesystem::remove_all(out);
+    std::vector<std::string> words = {"render", "--mono", "--size", "36x24"};
+    words.insert(words.end(), names.begin(), names.end());
+    words.insert(words.end(), {model, "-o", out});
+    EXPECT_TRUE(good(run(words)));
+    EXPECT_TRUE(std::filesystem::exists(out + "/side.png"));
+    EXPECT_EQ(std::filesystem::exists(out + "/front.png"), names.size() == 3);
+  }
+  // These end at what comes next, a view that is not there.
+  const std::string file = folder / "new.ply";
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"trim", "--held-back", "nobody", model, "-o", file, "--quality", "40"},
+           {"trim", "--test", "front", "nobody", model, "-o", file, "--quality", "40"},
+           {"refit", "--held-back", "nobody", model, "-o", file, "--against", "exact"},
+           {"calibrate", "--view", "nobody", model, "-o", folder / "c.json", "--quality", "40"},
+           {"convert", "--view", "nobody", model, "-o", file, "--report", "2"},
+           {"bench", "--view", "nobody", model, "-o", out},
+           {"study", "--view", "nobody", model, "--rules"},
+           {"--quiet", "render", "--view", "nobody", model, "-o", out}}) {
+    const Outcome outcome = run(words);
+    EXPECT_TRUE(ended(outcome, 2, "nobody")) << words[0];
+    EXPECT_NE(outcome.err.find("has no camera of this name"), std::string::npos) << words[0] << outcome.err;
+  }
+  // What is a name stays one: where the scene stands elsewhere, and where no file is called so.
+  test::write_text(folder / "side", "no model");
+  EXPECT_TRUE(good(run({"render", model, "--view", "front", "side", "--size", "36x24", "-o", out})));
+  EXPECT_TRUE(good(run({"render", "--view", "front", "side", "--size", "36x24", "-o", out, model})));
+  EXPECT_TRUE(ended(run({"render", "--view", "front", "nosuch.ply", "-o", out}), 2,
+                    "nosuch.ply was taken for a word of --view"));
+  EXPECT_TRUE(ended(run({"render", "-o", out}), 2, "SCENE is required"));
+}
+
+TEST_F(FirstWords, TheScreenHasAUnit) {
+  const auto metres = [&](const char* text) {
+    EXPECT_TRUE(
+        good(render({"--convergence", text, "--size", "36x24", "-o", out, "--json", folder / "r.json"})));
+    return nlohmann::json::parse(test::read_text(folder / "r.json"))["views"][0]["convergence_metres"];
+  };
+  EXPECT_DOUBLE_EQ(metres("300cm"), 3.0);
+  EXPECT_DOUBLE_EQ(metres("2.5"), 2.5);
+  EXPECT_DOUBLE_EQ(metres("4000mm"), 4.0);
+  EXPECT_TRUE(metres("inf").is_null());
+  EXPECT_TRUE(ended(render({"--convergence", "3ft", "-o", out}), 2, "its unit may be m, cm or mm"));
+  EXPECT_TRUE(ended(render({"--convergence", "near", "-o", out}), 2, "--convergence near: expected metres"));
+  EXPECT_TRUE(ended(render({"--convergence", "-3cm", "-o", out}), 2, "--convergence"));
+}
+
+TEST_F(FirstWords, QuietLeavesTheTableOut) {
+  const std::vector<std::string> words = {"render", model, "--size", "36x24", "-o", out};
+  EXPECT_NE(run(words).out.find("median ms"), std::string::npos);
+  std::vector<std::string> quiet = words;
+  quiet.emplace_back("--quiet");
+  const Outcome outcome = run(quiet);
+  ASSERT_TRUE(good(outcome));
+  EXPECT_EQ(outcome.out.find("median ms"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("front_left.png"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(FirstWords, HelpSaysWhatTheCodesMean) {
+  EXPECT_NE(run({"--help"}).out.find("3 no usable OpenGL, display or headset; 4 out of memory"),
+            std::string::npos);
+}
+
 TEST_F(FirstWords, EyesApartHaveAUnit) {
   EXPECT_TRUE(ended(render({"--ipd", "63", "-o", out}), 2, "--ipd 63: that is 63 metres"));
   EXPECT_TRUE(ended(render({"--ipd", "0.063x", "-o", out}), 2, "its unit may be m, cm or mm"));
@@ -110,6 +179,8 @@ TEST_F(FirstWords, OutputsAreWhatTheirEndingsSay) {
   EXPECT_TRUE(ended(render({"-o", folder / "a.gif"}), 2, "pictures are written as .png or .exr"));
   EXPECT_TRUE(ended(render({"-o", folder / "a.avi"}), 2, "videos as .mp4"));
   EXPECT_TRUE(ended(render({"-o", "-"}), 2, "-o -: pictures are files"));
+  EXPECT_TRUE(ended(render({"--view", "front", "side", "-o", folder / "two.png"}), 2,
+                    "two.png is one file, and 2 views are to be drawn (front, side): name a folder"));
   for (const char* name : {"v1.2", "run.v2", "plain"}) {
     EXPECT_TRUE(good(render({"--size", "36x24", "-o", folder / name})));
     EXPECT_TRUE(std::filesystem::exists(folder / name / "front_left.png")) << name;
