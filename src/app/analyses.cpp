@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/parts.h"
 #include "app/photos.h"
@@ -37,17 +38,19 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
     return photographed_views(choice, options.photos, options.camera.lens, scene.list);
   };
   // No view serves both: those named for the one are left out of all for the other.
-  const std::vector<study::CalibrationView> tested = views_of(to_test);
+  std::vector<study::CalibrationView> tested = views_of(to_test);
   std::vector<std::string> names;
   for (const study::CalibrationView& view : tested) names.push_back(view.camera.name);
   std::vector<study::CalibrationView> calibrated =
       views_of({named, calibration_views, named.empty() ? names : std::vector<std::string>()});
+  const auto context = open_context_for_all("study", true, options.context);
+  leave_out_blind("study", *context, scene.model, scene.near_plane, tested);
+  leave_out_blind("study", *context, scene.model, scene.near_plane, calibrated);
   if (calibrated.empty()) {
     log_warning("there are no other views than those to test on: tolerances are found on them, too");
     calibrated = tested;
   }
 
-  const auto context = open_context_for_all("study", true, options.context);
   Parts parts;
   const bool photos = !options.photos.empty();
   const study::Analysis analysis = study::analyse(

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "app/bench_plan.h"
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/output_options.h"
@@ -45,9 +46,10 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
                               : made_up_cameras(scene.options, options.camera, scene.list.known, model);
   const double near_plane = near_plane_of(options.camera, list);
   const bool photos = !options.photos.empty() && which.eyes == 1 && which.size == "own";
-  const std::vector<Shot> shots = choose_shots(options, static_cast<std::size_t>(plan.axes.views), photos,
-                                               make_shots(views_or_all(options.camera.views), lens_of(which),
-                                                          rig_of(which), list, near_plane, model.axes));
+  std::vector<Shot> shots = choose_shots(options, static_cast<std::size_t>(plan.axes.views), photos,
+                                         make_shots(views_or_all(options.camera.views), lens_of(which),
+                                                    rig_of(which), list, near_plane, model.axes));
+  leave_out_blind("bench", context, model, near_plane, shots);
   std::vector<study::BenchView> views;
   for (const Shot& shot : shots) {
     study::BenchView& view = views.emplace_back(study::BenchView{shot.name, views_of(shot), {}});

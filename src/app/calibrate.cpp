@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/option_checks.h"
 #include "app/output_options.h"
@@ -50,15 +51,21 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
     check_photos(o.photos, photographed_cameras(choice, o.photos, o.camera.lens, list));
   });
-  const std::vector<study::CalibrationView> views =
-      photographed_views(choice, o.photos, o.camera.lens, scene.list);
+  std::vector<study::CalibrationView> views = photographed_views(choice, o.photos, o.camera.lens, scene.list);
   const auto context = open_context_for_all("calibrate", false, o.context);
+  leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
   Progress progress("calibrating", study::calibrated_settings().size());
   const study::Calibration found =
       study::calibrate(*context, scene.model, views, scene.near_plane, o.target.target(), o.table,
                        [&](std::size_t entries, std::size_t) { progress.update(entries); });
   save_json(o.output, study::to_json(found));
   print(found, o);
+  // A tolerance goes with the size of the pictures: render warns where it differs.
+  if (o.camera.lens.size)
+    log_info(
+        "these tolerances are for pictures of {} x {} px: in larger ones they cost less than they may, "
+        "in smaller ones more",
+        found.width, found.height);
   return ExitCode::done;
 }
 

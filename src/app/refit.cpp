@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
@@ -52,6 +53,7 @@ ModelFormat check(const RefitOptions& o) {
 struct Step {
   std::string name;
   double held_back = 0.0, test = 0.0;
+  double held_back_own = 0.0, test_own = 0.0;  // in the cameras' own size, where --size is smaller
 };
 
 /// A model's pictures against what they should be, in views that have no say.
@@ -59,15 +61,22 @@ class Judge {
  public:
   Judge(gl::Context& context, const Model& original, const study::ViewSplit& views, Kind kind)
       : kind_(kind), held_back_(context, original, views.held_back, views.near_plane, kind) {
-    if (!views.test.empty())
-      test_ = std::make_unique<Calibrator>(context, original, views.test, views.near_plane, kind);
+    const auto open = [&](const std::vector<study::CalibrationView>& of) {
+      return of.empty() ? nullptr
+                        : std::make_unique<Calibrator>(context, original, of, views.near_plane, kind);
+    };
+    test_ = open(views.test);
+    held_back_own_ = open(views.held_back_own);
+    test_own_ = open(views.test_own);
   }
 
   double held_back(const Model& model) { return psnr(held_back_, held_back_.cost(model).mean_db); }
 
   Step step(std::string name, const Model& model) {
-    Step step{std::move(name), held_back(model), 0.0};
+    Step step{std::move(name), held_back(model), 0.0, 0.0, 0.0};
     if (test_) step.test = psnr(*test_, test_->cost(model).mean_db);
+    if (held_back_own_) step.held_back_own = psnr(*held_back_own_, held_back_own_->cost(model).mean_db);
+    if (test_own_) step.test_own = psnr(*test_own_, test_own_->cost(model).mean_db);
     return step;
   }
 
@@ -79,7 +88,7 @@ class Judge {
 
   Kind kind_;
   Calibrator held_back_;
-  std::unique_ptr<Calibrator> test_;
+  std::unique_ptr<Calibrator> test_, held_back_own_, test_own_;
 };
 
 void print(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
@@ -87,10 +96,16 @@ void print(const std::vector<Step>& steps, const RefitOptions& o, const study::V
   fmt::print("{} views fitted, {} of them to photos; {} held back, {} of test. PSNR in dB against {}\n\n",
              views.training.size(), photos, views.held_back.size(), views.test.size(),
              o.photos.empty() ? "the model's own pictures" : "the photos");
-  const bool has_test = !views.test.empty();
-  fmt::print("{:<44}{:>10}{:>9}\n", "", "held back", has_test ? "test" : "");
-  for (const Step& s : steps)
-    fmt::print("{:<44}{:>10.3f}{:>9}\n", s.name, s.held_back, has_test ? fmt::format("{:.3f}", s.test) : "");
+  const bool has_test = !views.test.empty(), two_sizes = !views.held_back_own.empty();
+  const auto test = [&](double db) { return has_test ? fmt::format("{:.3f}", db) : ""; };
+  fmt::print("{:<44}{:>10}{:>9}", "", "held back", has_test ? "test" : "");
+  if (two_sizes) fmt::print("{:>10}{:>9}", "own size", has_test ? "test" : "");
+  fmt::print("\n");
+  for (const Step& s : steps) {
+    fmt::print("{:<44}{:>10.3f}{:>9}", s.name, s.held_back, test(s.test));
+    if (two_sizes) fmt::print("{:>10.3f}{:>9}", s.held_back_own, test(s.test_own));
+    fmt::print("\n");
+  }
 }
 
 ordered_json to_json(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
@@ -103,6 +118,8 @@ ordered_json to_json(const std::vector<Step>& steps, const RefitOptions& o, cons
   for (const Step& s : steps) {
     ordered_json step = study::object("step", s.name, "held_back_db", s.held_back);
     if (!views.test.empty()) step["test_db"] = s.test;
+    if (!views.held_back_own.empty()) step["held_back_own_size_db"] = s.held_back_own;
+    if (!views.test_own.empty()) step["test_own_size_db"] = s.test_own;
     json["steps"].push_back(step);
   }
   return json;
@@ -114,9 +131,11 @@ ExitCode refit(const RefitOptions& o) {
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(format));
-  const study::ViewSplit views =
-      split_views("refit", o, o.split, list, near_plane_of(o.camera, list),
-                  [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
+  study::ViewSplit views = split_views("refit", o, o.split, list, near_plane_of(o.camera, list),
+                                       [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
+  const auto context = open_context(o.context);
+  leave_out_blind("refit", *context, model, views);
+  add_own_size(o, list, views);
   const study::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(
       views.training.begin(), views.training.end(),
@@ -124,7 +143,6 @@ ExitCode refit(const RefitOptions& o) {
   if (!o.photos.empty() && photos == 0)
     fail("--photos {}: the only photo of a view is held back to judge by; add photos, or use --against exact",
          o.photos);
-  const auto context = open_context(o.context);
   Model fitted = model;
   fitted.perspective = {o.order.value_or(model.perspective.order),
                         o.projection.value_or(model.perspective.projection)};
@@ -134,7 +152,7 @@ ExitCode refit(const RefitOptions& o) {
   if (fitted.perspective != model.perspective)
     steps.push_back(judge.step("as it was: " + study::name_of(model.perspective), model));
   steps.push_back(judge.step("before: " + study::name_of(fitted.perspective), fitted));
-  const double before = steps.back().held_back;
+  const double before = steps.back().held_back, before_own = steps.back().held_back_own;
 
   study::Refitted found = study::refit(*context, fitted, targets, {.rounds = o.rounds},
                                        [&](const Model& m) { return -judge.held_back(m); });
@@ -144,13 +162,15 @@ ExitCode refit(const RefitOptions& o) {
   steps.push_back(
       judge.step(fmt::format("as {}, {} bytes", written_format(format).name, written.bytes), written.model));
   print(steps, o, views, photos);
-  const bool nearer = found.best_round > 0 && steps.back().held_back >= before;
+  const bool nearer =
+      found.best_round > 0 && steps.back().held_back >= before && steps.back().held_back_own >= before_own;
   if (!o.json.empty()) save_json(o.json, to_json(steps, o, views, photos, found.best_round, nearer));
   if (!nearer) {
     log_warning(
-        "{} is not written: the views held back would be no nearer than before, {:.3f} dB; others held back "
-        "(--views, --held-back) or more cameras may help",
-        o.output, before);
+        "{} is not written: the views held back would be no nearer than before, {:.3f} dB{}; others held "
+        "back (--views, --held-back) or more cameras may help",
+        o.output, before,
+        views.held_back_own.empty() ? "" : fmt::format(" and {:.3f} in the cameras' own size", before_own));
     return ExitCode::fell_short;
   }
   for (const std::string& loss : write_model_file(o.output, fitted, format, o.harmonic_bits.value_or(8)))

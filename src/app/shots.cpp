@@ -295,12 +295,6 @@ OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, con
   return opened;
 }
 
-bool take_metre_of_cameras(const SceneOptions& scene, CameraList& list) {
-  if (list.known.units_per_metre || is_built_in(scene.name)) return false;
-  list.known.units_per_metre = metre_of(list.cameras);
-  return true;
-}
-
 stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane) {
   stereo::RigSettings settings;
   settings.ipd = rig.ipd.value_or(known.ipd.value_or(settings.ipd));

@@ -92,10 +92,6 @@ struct OpenScene {
 OpenScene open_scene(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                      const std::function<void(const CameraList&)>& check = {});
 
-/// Where nothing else tells how many units make a metre, the distances of the cameras do (metre_of); whether
-/// they did.
-bool take_metre_of_cameras(const SceneOptions& scene, CameraList& list);
-
 /// What there is of a rig. `near_plane` in world units.
 stereo::RigSettings rig_settings(const RigOptions& rig, const Known& known, double near_plane = near_default);
 

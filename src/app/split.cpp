@@ -3,10 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "app/option_checks.h"
 #include "app/photos.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "study/bench.h"
 
 namespace binosplat::app {
@@ -81,6 +83,28 @@ study::ViewSplit split_views(const std::string& command, const MeasuredOptions& 
     }
   }
   return views;
+}
+
+void add_own_size(const MeasuredOptions& o, const CameraList& list, study::ViewSplit& views) {
+  if (!o.camera.lens.size) return;
+  bool larger = false;
+  const auto in_own_size = [&](const std::vector<study::CalibrationView>& of) {
+    std::vector<study::CalibrationView> own;
+    for (const study::CalibrationView& view : of) {
+      own.push_back({chosen_cameras({view.camera.name}, {}, list)[0], {}});
+      const Camera& camera = own.back().camera;
+      larger = larger || camera.width > view.camera.width || camera.height > view.camera.height;
+    }
+    return own;
+  };
+  std::vector<study::CalibrationView> held_back = in_own_size(views.held_back),
+                                      test = in_own_size(views.test);
+  if (!larger) return;
+  const Camera &small = views.held_back[0].camera, &own = held_back[0].camera;
+  log_info("--size: judged at {} x {} px, and at the cameras' own {} x {}, which takes longer", small.width,
+           small.height, own.width, own.height);
+  views.held_back_own = std::move(held_back);
+  views.test_own = std::move(test);
 }
 
 }  // namespace binosplat::app

@@ -35,4 +35,8 @@ study::ViewSplit split_views(const std::string& command, const MeasuredOptions& 
                              const SplitOptions& split, const CameraList& list, double near_plane,
                              const MostHeldBack& most);
 
+/// Where --size makes the views smaller than their cameras are: those held back and of test in the cameras'
+/// own size as well, and says so. A bound that holds in a small picture may not hold in the large one.
+void add_own_size(const MeasuredOptions& options, const CameraList& list, study::ViewSplit& views);
+
 }  // namespace binosplat::app

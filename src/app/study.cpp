@@ -3,12 +3,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
 #include <span>
 
 #include "app/analyses.h"
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/option_checks.h"
 #include "app/output_options.h"
@@ -94,8 +96,11 @@ void print_rules(const std::vector<study::RuleResult>& results) {
   for (std::size_t k = 0; k < shown.size() + 11; ++k) fmt::print("---|");
   fmt::print("\n");
   for (const study::RuleResult& r : results) {
-    fmt::print("| {} | {:.4g} | {:.2f} | {:.2f} | {:.3f} | {:.1f} % | {:.3f} |", r.variant.name(),
-               r.variant.tolerance, r.db, r.disagreement_db, 1e-6 * r.pairs, 100.0 * r.removed, r.frame_ms);
+    // One eye disagrees with none.
+    const std::string disagreement =
+        std::isnan(r.disagreement_db) ? "-" : fmt::format("{:.2f}", r.disagreement_db);
+    fmt::print("| {} | {:.4g} | {:.2f} | {} | {:.3f} | {:.1f} % | {:.3f} |", r.variant.name(),
+               r.variant.tolerance, r.db, disagreement, 1e-6 * r.pairs, 100.0 * r.removed, r.frame_ms);
     std::map<std::string, double> ms;
     for (const gl::StageTime& stage : r.stages) ms[stage.name] = stage.ms;
     for (const char* name : shown) {
@@ -192,6 +197,7 @@ ExitCode study_scene(const StudyOptions& options) {
   }
   const Studied studied = open(options);
   const auto context = open_context_for_all("study", kind == Kind::rules, options.context);
+  refuse_blind("study", *context, *studied.model, studied.shots, studied.near_plane);
   if (kind == Kind::stability) study_stability(*context, options, studied);
   if (kind == Kind::turn) study_turn(*context, options, studied);
   if (kind == Kind::rules) save(options, rules(*context, options, studied), {});
@@ -223,9 +229,8 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
   sub.add_flag("--mono", o.rig.mono,
                "With --path, --rules, --motion, --turn and --levels: the cameras themselves, no rig");
   add_measured_options(sub, o);
-  sub.add_option("--ipd", o.rig.ipd, "Distance between the eyes in metres (0.063)")->type_name("M");
-  sub.add_option("--units-per-metre", o.rig.units_per_metre,
-                 "World units that make a metre (1);\nwith --motion: by the distances of cameras")
+  add_ipd_option(sub, o.rig);
+  sub.add_option("--units-per-metre", o.rig.units_per_metre, "World units that make a metre (1)")
       ->type_name("U");
   sub.add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
 }

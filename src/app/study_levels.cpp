@@ -9,6 +9,7 @@
 #include <list>
 #include <nlohmann/json.hpp>
 
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/followed.h"
 #include "app/load_scene.h"
@@ -93,15 +94,19 @@ study::FollowingModel following_model(Following& following) {
           }};
 }
 
-std::vector<study::LevelsShot> shots_of(const StudyOptions& options, const Listed& listed,
-                                        const std::string& axes) {
+// `model` at some level, which shows as well as another which views see nothing.
+std::vector<study::LevelsShot> shots_of(gl::Context& context, const StudyOptions& options,
+                                        const Listed& listed, const Model& model) {
   const CameraOptions& camera = options.camera;
-  const std::vector<Shot> all = make_shots(views_or_all(camera.views), camera.lens, options.rig, listed.list,
-                                           near_plane_of(camera, listed.list), axes);
+  const double near_plane = near_plane_of(camera, listed.list);
+  const std::vector<Shot> all =
+      make_shots(views_or_all(camera.views), camera.lens, options.rig, listed.list, near_plane, model.axes);
   const std::size_t wanted = camera.views.empty() ? shots_wanted : all.size();
+  std::vector<Shot> chosen;
+  for (const std::size_t k : study::spread_evenly(all.size(), wanted)) chosen.push_back(all[k]);
+  leave_out_blind("study --levels", context, model, near_plane, chosen);
   std::vector<study::LevelsShot> shots;
-  for (const std::size_t k : study::spread_evenly(all.size(), wanted))
-    shots.push_back({all[k].name, views_of(all[k])});
+  for (const Shot& shot : chosen) shots.push_back({shot.name, views_of(shot)});
   return shots;
 }
 
@@ -114,7 +119,7 @@ study::LevelsScene measured(gl::Context& context, const StudyOptions& options, c
     scene.detail = detail;
     models.push_back(following_model(all.emplace_back(context, scene)));
   }
-  const std::vector<study::LevelsShot> shots = shots_of(options, listed, all.front().model.axes);
+  const std::vector<study::LevelsShot> shots = shots_of(context, options, listed, all.front().model);
   study::LevelsScene scene{.name = listed.scene.name, .finest = all.front().levels.finest()};
   Progress progress("measuring " + scene.name, shots.size());
   std::size_t done = 0;

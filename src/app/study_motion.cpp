@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/option_checks.h"
@@ -76,10 +77,9 @@ struct Driven {
   RigOptions rig;
 };
 
-Metre metre(const StudyOptions& options, const std::vector<Camera>& cameras) {
+// As render has it.
+Metre metre(const StudyOptions& options) {
   if (options.rig.units_per_metre) return {*options.rig.units_per_metre, "--units-per-metre"};
-  if (options.camera.path.empty() && !is_built_in(options.scene.name))
-    return {metre_of(cameras), "the cameras' distances"};
   return {};
 }
 
@@ -91,7 +91,7 @@ Driven open(const StudyOptions& options) {
     fail("--motion goes through the cameras of a model: name their file with --cameras, or a --path");
   if (!options.camera.path.empty())
     driven.list = go_along_path(options.camera, headset_fps, true, std::move(driven.list));
-  driven.metre = metre(options, driven.list.cameras);
+  driven.metre = metre(options);
   driven.model = std::make_shared<const Model>(load_scene(options.scene, {}, driven.list.cameras));
   driven.near_plane = near_plane_of(options.camera, driven.list);
   return driven;
@@ -246,6 +246,9 @@ void study_motion(const StudyOptions& options) {
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
   const std::vector<Variant> rules = rules_for(options);
   const auto context = open_context_for_all("study", true, options.context);
+  refuse_blind("study --motion", *context, *driven.model,
+               make_shots(all_views, driven.lens, no_rig, driven.list, driven.near_plane, driven.model->axes),
+               driven.near_plane);
   study::MotionStudy study{.device = study::device_text(*context),
                            .scene = options.scene.name,
                            .gaussians = driven.model->count(),

@@ -44,8 +44,7 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
                                   const Studied& studied) {
   const std::string& axes = studied.model->axes;
   const Camera& camera = studied.shots.front().eyes.front().camera;
-  CameraList list = studied.list;
-  if (list.listed) take_metre_of_cameras(options.scene, list);
+  const CameraList& list = studied.list;
   const stereo::RigSettings rig = rig_settings(options.rig, list.known, studied.near_plane);
   study::PerspectiveViews views;
   Camera head = sized(lens_for_moving(camera), camera);

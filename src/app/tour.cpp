@@ -50,7 +50,7 @@ void add_tour_options(CLI::App& sub, CameraOptions& o) {
          "--tour", [&o](const std::string& text) { o.tour = parse_motion(text); },
          "Go through all of the cameras as a head does, --fps frames a second\n(90; videos: 30), in metres "
          "of "
-         "--units-per-metre, or else from camera\nto camera, in the median; M,DEG: at other speeds" +
+         "--units-per-metre; M,DEG: at other speeds" +
              motions_help())
       ->type_name("calm|walk|fast|M,DEG");
   sub.add_flag("--keys", o.keys, "Draw the keys of --path alone, and not the way through them");
@@ -74,12 +74,12 @@ CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, co
         "with --orbit",
         scene.name);
   }
-  if (take_metre_of_cameras(scene, list)) {
+  if (!list.known.units_per_metre && !is_built_in(scene.name))
     log_info(
-        "--tour: {:.4g} world units count as a metre, for the eyes' distance, too: from each camera to the "
-        "next, in the median (--units-per-metre for another)",
-        *list.known.units_per_metre);
-  }
+        "--tour: a metre is one world unit, as for pictures; from each camera to the next are {0:.4g} units, "
+        "in "
+        "the median: --units-per-metre {0:.4g} takes that for a metre",
+        metre_of(list.cameras));
   const std::size_t count = list.cameras.size();
   TourSettings settings{*camera.tour, fps, rig_settings(rig, list.known).units_per_metre};
   settings.seconds = camera.seconds.value_or(settings.seconds);

@@ -17,9 +17,9 @@ void add_tour_options(CLI::App& sub, CameraOptions& options);
 /// --fps, or what fits a tour: 30 for a video, as for others, else 90 as headsets have.
 double tour_fps(const std::optional<double>& fps, bool video);
 
-/// The tour's cameras, one a frame, in the place of those that it goes through; says so. Where nothing tells
-/// of a metre, it is metre_of those (scenes that are built in are in metres), and the eyes are apart by it,
-/// too. Throws Error where there are not two cameras.
+/// The tour's cameras, one a frame, in the place of those that it goes through; says so. A metre is what it
+/// is for pictures, one unit where nothing tells; what the cameras' distances would make of it (metre_of) is
+/// said. Throws Error where there are not two cameras.
 CameraList go_on_tour(const SceneOptions& scene, const CameraOptions& camera, const RigOptions& rig,
                       double fps, CameraList list);
 

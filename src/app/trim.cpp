@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/blind.h"
 #include "app/command.h"
 #include "app/load_scene.h"
 #include "app/model_files.h"
@@ -60,29 +61,49 @@ std::string decibels(Kind kind, double db) {
   return fmt::format("{:.3f}", db);
 }
 
+std::string size_of(const std::vector<study::CalibrationView>& views) {
+  return fmt::format("{} x {} px", views[0].camera.width, views[0].camera.height);
+}
+
 void print(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
            std::size_t gaussians) {
   const Kind kind = o.bound.target().kind;
+  const bool two_sizes = !views.held_back_own.empty();
   fmt::print(
-      "{} views weighed, {} held back, {} of test; bound: {}\n", views.training.size(),
+      "{} views weighed, {} held back, {} of test; bound: {}{}\n", views.training.size(),
       views.held_back.size(), views.test.size(),
       o.bound.max_drop
           ? fmt::format("at most {} dB lost against the photos, mean of those held back", *o.bound.max_drop)
-          : fmt::format("{} dB against the exact pictures, mean of those held back", *o.bound.quality));
+          : fmt::format("{} dB against the exact pictures, mean of those held back", *o.bound.quality),
+      two_sizes ? fmt::format(", at {} and, as `own`, at the cameras' own {}", size_of(views.held_back),
+                              size_of(views.held_back_own))
+                : "");
   fmt::print("{} of {} Gaussians touch no pixel of the views weighed, {:.1f} %\n\n", found.unseen, gaussians,
              100.0 * static_cast<double>(found.unseen) / static_cast<double>(gaussians));
   const char* db = kind == Kind::drop ? "drop dB" : "PSNR dB";
-  fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11}{:>9}{:>9}{:>9}{:>9}\n", "", "Gaussians", "SH", "bytes", "pairs",
-             "ms", db, "worst", views.test.empty() ? "" : "test");
+  const bool has_test = !views.test.empty();
+  fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11}{:>9}{:>9}{:>9}{:>9}", "", "Gaussians", "SH", "bytes", "pairs",
+             "ms", db, "worst", has_test ? "test" : "");
+  if (two_sizes) fmt::print("{:>9}{:>9}{:>9}", "own dB", "worst", has_test ? "test" : "");
+  fmt::print("\n");
+  const auto print_db = [&](const Calibrator::Cost& held_back, const Calibrator::Cost& test) {
+    fmt::print("{:>9}{:>9}{:>9}", decibels(kind, held_back.mean_db), decibels(kind, held_back.worst_db),
+               has_test ? decibels(kind, test.mean_db) : "");
+  };
   for (const study::TrimStep& s : found.steps) {
-    fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}{:>9}{:>9}{:>9}\n", s.name, s.gaussians, s.degree,
-               s.bytes > 0 ? std::to_string(s.bytes) : "", s.held_back.pairs, s.held_back.ms,
-               decibels(kind, s.held_back.mean_db), decibels(kind, s.held_back.worst_db),
-               views.test.empty() ? "" : decibels(kind, s.test.mean_db));
+    fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}", s.name, s.gaussians, s.degree,
+               s.bytes > 0 ? std::to_string(s.bytes) : "", s.held_back.pairs, s.held_back.ms);
+    print_db(s.held_back, s.test);
+    if (two_sizes) print_db(*s.held_back_own, s.test_own.value_or(Calibrator::Cost{}));
+    fmt::print("\n");
   }
-  const Calibrator::Cost& last = found.steps.back().held_back;
-  fmt::print("worst of those held back: {}, {} dB\n", views.held_back[last.worst_view].camera.name,
-             decibels(kind, last.worst_db));
+  const study::TrimStep& last = found.steps.back();
+  const auto print_worst = [&](const char* size, const Calibrator::Cost& cost) {
+    fmt::print("worst of those held back{}: {}, {} dB\n", size, views.held_back[cost.worst_view].camera.name,
+               decibels(kind, cost.worst_db));
+  };
+  print_worst("", last.held_back);
+  if (two_sizes) print_worst(", own size", *last.held_back_own);
 }
 
 ordered_json to_json(const Calibrator::Cost& cost, const std::vector<study::CalibrationView>& views) {
@@ -106,6 +127,8 @@ ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const st
                                       s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
                                       to_json(s.held_back, views.held_back));
     if (!views.test.empty()) step["test"] = to_json(s.test, views.test);
+    if (s.held_back_own) step["held_back_own_size"] = to_json(*s.held_back_own, views.held_back_own);
+    if (s.test_own) step["test_own_size"] = to_json(*s.test_own, views.test_own);
     json["steps"].push_back(step);
   }
   return json;
@@ -133,26 +156,33 @@ ExitCode trim(const TrimOptions& o) {
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model.format, format);
   bring_into_axes(model, axes_of(format));
-  const study::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list),
-                                             [](std::size_t, std::size_t cameras) { return cameras / 2; });
+  study::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list),
+                                       [](std::size_t, std::size_t cameras) { return cameras / 2; });
   study::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
   if (o.refit) settings.refit = photo_finder(o.photos);
   const auto context = open_context(o.context);
+  leave_out_blind("trim", *context, model, views);
+  add_own_size(o, list, views);
   study::Trimmed found = study::trim(*context, model, views, settings);
   if (const fs::path file = model_file(o.scene.name); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
-  if (original && found.steps.back().bytes >= found.steps.front().bytes) found.less = false;
+  const study::TrimStep &first = found.steps.front(), &last = found.steps.back();
+  const bool no_smaller = found.less && original && last.bytes >= first.bytes;
+  if (no_smaller) found.less = false;
   print(o, found, views, model.count());
   if (!found.fits && !original) {
     fail(
         "-o {}: the format alone costs more than the bound allows, {}; choose .ply, which keeps all, or "
         "allow for more",
-        o.output, fmt::format("{:.3f} dB", found.steps.back().held_back.mean_db));
+        o.output, fmt::format("{:.3f} dB", last.worse_db()));
   }
   const std::vector<std::string> losses = write(o, found, format, original);
   for (const std::string& loss : losses) log_warning("{}", loss);
   if (found.less) {
     fmt::print("\n{}\n", o.output);
+  } else if (no_smaller) {
+    fmt::print("\n{}: the model as it was, {} bytes: with what can be left out gone it would take {}\n",
+               o.output, first.bytes, last.bytes);
   } else {
     fmt::print("\n{}: the model as it was: nothing can be left out within the bound\n", o.output);
   }

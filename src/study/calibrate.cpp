@@ -67,14 +67,16 @@ Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
   return cost(frame_, settings, render::measures(settings.transmittance) ? render::settling_frames : 1);
 }
 
-Calibrator::Cost Calibrator::cost(const Model& other, int drawings) {
+Calibrator::Cost Calibrator::cost(const Model& other, int drawings,
+                                  const std::function<void(std::size_t)>& after_view) {
   render::Frame frame(context_, other);
   // It slept while the model was made.
   if (drawings > 1) wake(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
-  return cost(frame, {}, drawings);
+  return cost(frame, {}, drawings, after_view);
 }
 
-Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSettings& settings, int drawings) {
+Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSettings& settings, int drawings,
+                                  const std::function<void(std::size_t)>& after_view) {
   Cost cost;
   const bool drop = kind_ == CalibrationTarget::Kind::drop;
   const auto count = static_cast<double>(views_.size());
@@ -100,6 +102,7 @@ Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSetti
     cost.mean_db += value / count;
     const double pairs = static_cast<double>(wanted_[v]->exact_pairs);
     if (pairs > 0) cost.pairs_removed += (1.0 - static_cast<double>(report.pairs) / pairs) / count;
+    if (after_view) after_view(v + 1);
   }
   return cost;
 }

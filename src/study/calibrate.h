@@ -29,7 +29,9 @@ struct ViewSplit {
   std::vector<Camera> training;            // of the world
   std::vector<CalibrationView> held_back;  // at least one; their mean decides
   std::vector<CalibrationView> test;       // decide nothing: what they show is stated; may be empty
-  double near_plane = near_default;        // world units
+  // The same two in the cameras' own size, where that is larger; else empty. A bound holds in both sizes.
+  std::vector<CalibrationView> held_back_own, test_own;
+  double near_plane = near_default;  // world units
 };
 
 /// A model in some views, and what each way to draw it costs there.
@@ -60,8 +62,8 @@ class Calibrator {
   double exact_photo_db() const;
 
   /// What another model in the same axes costs in the place of this one, drawn exactly; of so many drawings
-  /// of a view the median time counts.
-  Cost cost(const Model& other, int drawings = 1);
+  /// of a view the median time counts. `after_view(views)` is called after each.
+  Cost cost(const Model& other, int drawings = 1, const std::function<void(std::size_t)>& after_view = {});
 
   render::DepthTable depth_table(const measure::DepthTableSettings& settings = {});
 
@@ -70,7 +72,8 @@ class Calibrator {
   CalibrationEntry find(render::FrameSettings settings, double target_db);
 
  private:
-  Cost cost(render::Frame& frame, const render::FrameSettings& settings, int drawings);
+  Cost cost(render::Frame& frame, const render::FrameSettings& settings, int drawings,
+            const std::function<void(std::size_t)>& after_view = {});
 
   struct Wanted;
   gl::Context& context_;

@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "base/statistics.h"
 #include "measure/search.h"
 #include "scene/reduce.h"
@@ -27,14 +28,16 @@ constexpr double after_bits = 0.25, after_harmonics = 0.5;  // shares of the bou
 class Trimmer {
  public:
   Trimmer(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings)
-      : context_(context),
-        views_(views),
-        settings_(settings),
-        original_(model),
-        judge_(context, model, views.held_back, views.near_plane, settings.target.kind) {
-    if (!views.test.empty())
-      test_ =
-          std::make_unique<Calibrator>(context, model, views.test, views.near_plane, settings.target.kind);
+      : context_(context), views_(views), settings_(settings), original_(model) {
+    const auto open = [&](const std::vector<CalibrationView>& of) {
+      return of.empty()
+                 ? nullptr
+                 : std::make_unique<Calibrator>(context, model, of, views.near_plane, settings.target.kind);
+    };
+    judge_ = open(views.held_back);
+    judge_own_ = open(views.held_back_own);
+    test_ = open(views.test);
+    test_own_ = open(views.test_own);
     tell("as it was", model, 0);
   }
 
@@ -42,7 +45,7 @@ class Trimmer {
     if (settings_.refit) {
       refitted_ = original_;
       found_.less = fit(*refitted_, {}, judge());
-      start_ = judge_.cost(*refitted_).mean_db;
+      start_ = judged(*refitted_);
       tell("colours fitted", *refitted_, 0);
     }
     const bool has_harmonics = whole().degree > 0 && settings_.format != ModelFormat::splat;
@@ -67,9 +70,18 @@ class Trimmer {
   }
 
  private:
-  double cost(const Model& model, int bits) {
-    return judge_.cost(settings_.write(model, bits).model).mean_db;
+  /// What the bound is on: the mean of the views held back, in the size that loses more.
+  double judged(const Model& model) {
+    const std::size_t views = views_.held_back.size();
+    Progress progress(fmt::format("trying {} Gaussians of degree {}", model.count(), model.degree),
+                      views + views_.held_back_own.size());
+    const double db = judge_->cost(model, 1, [&](std::size_t done) { progress.update(done); }).mean_db;
+    if (!judge_own_) return db;
+    const auto tell = [&](std::size_t done) { progress.update(views + done); };
+    return std::min(db, judge_own_->cost(model, 1, tell).mean_db);
   }
+
+  double cost(const Model& model, int bits) { return judged(settings_.write(model, bits).model); }
 
   /// What is trimmed.
   const Model& whole() const { return refitted_ ? *refitted_ : original_; }
@@ -89,7 +101,7 @@ class Trimmer {
   }
 
   RefitJudge judge() {
-    return [this](const Model& model) { return -sign() * judge_.cost(model).mean_db; };
+    return [this](const Model& model) { return -sign() * judged(model); };
   }
 
   /// The least PSNR, or the largest drop, for a share of what the whole bound allows to be lost.
@@ -240,10 +252,15 @@ class Trimmer {
   }
 
   void tell(const std::string& name, const Model& model, std::uintmax_t bytes) {
-    TrimStep& step = found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}});
-    step.held_back = judge_.cost(model, drawings);
+    TrimStep& step =
+        found_.steps.emplace_back(TrimStep{name, model.count(), model.degree, bytes, {}, {}, {}, {}});
+    step.held_back = judge_->cost(model, drawings);
+    if (judge_own_) step.held_back_own = judge_own_->cost(model);
     if (test_) step.test = test_->cost(model);
-    log_info("{}: {} Gaussians, {:.3f} dB", name, step.gaussians, step.held_back.mean_db);
+    if (test_own_) step.test_own = test_own_->cost(model);
+    log_info(
+        "{}: {} Gaussians, {:.3f} dB{}", name, step.gaussians, step.held_back.mean_db,
+        judge_own_ ? fmt::format(", {:.3f} dB in the cameras' own size", step.held_back_own->mean_db) : "");
   }
 
   gl::Context& context_;
@@ -252,8 +269,8 @@ class Trimmer {
   const Model& original_;
   std::optional<Model> refitted_;  // the original with fitted colours, where that is asked for
   Model model_;                    // as trimmed so far
-  Calibrator judge_;
-  std::unique_ptr<Calibrator> test_;
+  std::unique_ptr<Calibrator> judge_, judge_own_;  // own: in the cameras' own size, or none
+  std::unique_ptr<Calibrator> test_, test_own_;
   double start_ = 0.0;  // what the whole model loses, as a drop: below 0 where fitting gained
   Weights weights_;
   Trimmed found_;

@@ -2,7 +2,9 @@
 // The smallest model that keeps the pictures: in three steps, each searched against what it costs in views
 // that had no say in what goes.
 
+#include <algorithm>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,13 @@ struct TrimStep {
   std::uintmax_t bytes = 0;
   Calibrator::Cost held_back;
   Calibrator::Cost test;  // all 0 without such views
+  // In the cameras' own size, where the views are smaller (ViewSplit).
+  std::optional<Calibrator::Cost> held_back_own, test_own;
+
+  /// What the bound is on: the mean of the size that loses more; a PSNR, as a drop is of one size.
+  double worse_db() const {
+    return held_back_own ? std::min(held_back.mean_db, held_back_own->mean_db) : held_back.mean_db;
+  }
 };
 
 struct Trimmed {
@@ -52,9 +61,10 @@ struct TrimSettings {
 /// quarter of it; the harmonics that change colours least for another: a lower degree for all, then, where
 /// zeros are packed (spz), for as many Gaussians as possible; last the Gaussians without which the pictures
 /// change least, for all that remains, half of it at least. What a Gaussian is worth is learned in the
-/// training views, the bound is on the mean of those held back. Every candidate is judged as it reads back
-/// from its file, so the bound holds for what is written. The model's axes are those of the format, and it is
-/// not Scaffold-GS's. Throws Error for views that a target cannot be measured in (Calibrator).
+/// training views, the bound is on the mean of those held back, in both sizes where they have two. Every
+/// candidate is judged as it reads back from its file, so the bound holds for what is written. The model's
+/// axes are those of the format, and it is not Scaffold-GS's. Throws Error for views that a target cannot be
+/// measured in (Calibrator).
 Trimmed trim(gl::Context& context, const Model& model, const ViewSplit& views, const TrimSettings& settings);
 
 }  // namespace binosplat::study

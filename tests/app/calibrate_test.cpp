@@ -26,6 +26,33 @@ struct CalibrateTest : test::SceneTest {
   ordered_json report() const { return ordered_json::parse(read_text(folder / "r.json")); }
 };
 
+TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
+  ordered_json cameras = ordered_json::parse(read_text(folder / "cameras.json"));
+  const auto turn = [&](std::size_t k) {
+    cameras[k]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+    write_text(folder / "cameras.json", cameras.dump());
+  };
+  turn(1);
+  const Outcome outcome = calibrate({"--quality", "38", "--size", "36x24"});
+  ASSERT_TRUE(ended(outcome, 0, "1 of 4 views see nothing of the model and are left out (side)"));
+  const ordered_json found = ordered_json::parse(read_text(file));
+  EXPECT_EQ(found["views"].size(), 3);
+  for (const auto& entry : found["entries"]) EXPECT_LT(entry["tolerance"], 1e3) << entry;
+  std::filesystem::remove(file);
+  for (const std::size_t k : {0u, 2u, 3u}) turn(k);
+  EXPECT_TRUE(ended(calibrate({"--quality", "38"}), 2,
+                    "calibrate: none of its views sees anything of the model, so that all would look equal: "
+                    "view front looks away from the model"));
+  EXPECT_FALSE(std::filesystem::exists(file));
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"bench", model, "--axes", "quick", "-o", folder / "chart"},
+           {"study", model, "--size", "36x24", "-o", folder / "page"},
+           {"study", model, "--rules", "--size", "36x24", "--view", "front"},
+           {"study", model, "--motion", "--size", "36x24"},
+           {"convert", model, "--report", "2", "-o", folder / "m.spz"}})
+    EXPECT_TRUE(ended(test::run_program(words), 2, "sees anything of the model")) << words[0];
+}
+
 TEST_F(CalibrateTest, RenderGoesByIt) {
   const Outcome outcome = calibrate({"--quality", "38", "--views", "2"});
   ASSERT_TRUE(good(outcome));

@@ -34,8 +34,8 @@ TEST_F(MotionCommand, GoesThroughTheCamerasAndLeavesAPage) {
               "squared,one", "--rule", "peripheral,last", "--size", "36x24", "--target", "38", "-o", out});
   EXPECT_EQ(json.at("eyes"), 2);
   EXPECT_EQ(json.at("width"), 36);
-  EXPECT_EQ(json.at("metre_source"), "the cameras' distances");
-  EXPECT_EQ(json.at("units_per_metre"), 0.5) << "the pair's eyes are one head, at the first camera";
+  EXPECT_EQ(json.at("metre_source"), "nothing says otherwise");
+  EXPECT_EQ(json.at("units_per_metre"), 1.0) << "as render has it";
   ASSERT_EQ(json.at("paths").size(), 2u);
   const auto& still = json.at("paths")[0];
   EXPECT_EQ(still.at("name"), "still");

@@ -118,6 +118,7 @@ TEST_F(RulesCommand, ATurnedHeadIsMeasuredAgainstPhotosToo) {
 TEST_F(RulesCommand, DrawsTheOneView) {
   const auto json = rules({"--view", "front", "--mono", "--target", "36"});
   EXPECT_EQ(json.at("eyes"), 1);
+  EXPECT_EQ(printed.find("nan"), std::string::npos) << printed;
   ASSERT_EQ(json.at("rules").size(), 7u);
   EXPECT_TRUE(json.at("rules")[0].at("psnr_db").is_null());
   EXPECT_EQ(json.at("rules")[0].at("pairs_removed"), 0.0);

@@ -49,18 +49,18 @@ bool says(const Outcome& outcome, const std::string& text) {
   return outcome.err.find(text) != std::string::npos;
 }
 
-TEST_F(Tour, WalksInMetresOfTheCameras) {
+TEST_F(Tour, WalksInMetresThatAreThoseOfPictures) {
   const Outcome outcome = tour({"--tour", "walk", "--seconds", "0.05", "--mono"});
   ASSERT_TRUE(good(outcome));
-  EXPECT_TRUE(says(outcome, "0.25 world units count as a metre")) << outcome.err;
-  EXPECT_TRUE(says(outcome, "--units-per-metre for another")) << outcome.err;
+  EXPECT_TRUE(says(outcome, "a metre is one world unit, as for pictures")) << outcome.err;
+  EXPECT_TRUE(says(outcome, "--units-per-metre 0.25 takes that for a metre")) << outcome.err;
   EXPECT_TRUE(says(outcome, fmt::format("through 6 cameras of {}/cameras.json at", folder.path().string())))
       << outcome.err;
   EXPECT_TRUE(says(outcome, "5 frames, 0.0556 s")) << outcome.err;
   const auto frames = views();
   ASSERT_EQ(frames.size(), 5u);
   for (std::size_t k = 1; k < frames.size(); ++k)
-    EXPECT_NEAR(glm::distance(place(frames[k]), place(frames[k - 1])), 0.25 * 1.5 / 90.0, 1e-6);
+    EXPECT_NEAR(glm::distance(place(frames[k]), place(frames[k - 1])), 1.5 / 90.0, 1e-6);
   EXPECT_EQ(frames[4].at("name"), "tour_00004");
   EXPECT_TRUE(std::filesystem::exists(out + "/tour_00004.png"));
   ASSERT_TRUE(good(render({"--view", "v0", "--mono", "--size", "32x24", "-o", folder / "v0.png"})));
@@ -75,14 +75,21 @@ TEST_F(Tour, EyesAndSpeedsHaveOneMetre) {
     const Outcome outcome = tour(more);
     ASSERT_TRUE(good(outcome));
     EXPECT_TRUE(says(outcome, said)) << outcome.err;
-    EXPECT_EQ(says(outcome, "count as a metre"), said == "count as a metre") << outcome.err;
+    EXPECT_EQ(says(outcome, "a metre is one world unit"), said == "a metre is one world unit") << outcome.err;
     const auto frames = views();
     ASSERT_EQ(frames.size(), 2u);
     EXPECT_NEAR(glm::distance(place(frames[0]), place(frames[1])), units * 3.0 / 50.0, 1e-6);
     EXPECT_NEAR(glm::distance(place(frames[0], 0), place(frames[0], 1)), units * 0.063, 1e-6);
     EXPECT_EQ(frames[0].at("units_per_metre"), units);
+    // A picture has the same metre.
+    std::vector<std::string> still = {"--view", "v0", "--size", "32x24",
+                                      "-o",     out,  "--json", folder / "s.json"};
+    if (more[0] == "--units-per-metre") still.insert(still.end(), {more[0], more[1]});
+    EXPECT_TRUE(good(render(still)));
+    EXPECT_EQ(nlohmann::json::parse(test::read_text(folder / "s.json"))["views"][0]["units_per_metre"],
+              units);
   };
-  expect({}, 0.25, "count as a metre");
+  expect({}, 1.0, "a metre is one world unit");
   expect({"--units-per-metre", "0.5"}, 0.5, "at up to 3 m and 90 degrees a second");
   nlohmann::json pose = test::camera_json("saved", 0.5);
   pose.update({{"up", {0, -1, 0}}, {"units_per_metre", 0.75}, {"ipd_metres", 0.063}, {"near", 0.1}});
@@ -123,7 +130,7 @@ TEST_F(Tour, ScenesThatAreBuiltInAreInMetres) {
       test::run_program({"render", "demo:room", "--tour", "calm", "--seconds", "0.02", "--size", "32x24",
                          "--mono", "--json", folder / "run.json", "-o", out});
   ASSERT_TRUE(good(outcome));
-  EXPECT_FALSE(says(outcome, "count as a metre")) << outcome.err;
+  EXPECT_FALSE(says(outcome, "a metre is")) << outcome.err;
   const auto frames = views();
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_LT(glm::distance(place(frames[0]), place(frames[1])), 1.01 * 0.3 / 90.0);

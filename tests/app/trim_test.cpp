@@ -3,6 +3,7 @@
 #include "app/scene.h"
 #include "formats/image_file.h"
 #include "formats/model_file.h"
+#include "measure/metrics.h"
 #include "support/fixtures.h"
 #include "support/models.h"
 #include "support/scaffold_files.h"
@@ -186,6 +187,92 @@ TEST_F(TrimTest, DropsAreAgainstPhotosAndTestViewsDecideNothing) {
   std::filesystem::remove(folder / "photos/view3.png");
   EXPECT_TRUE(ended(trim("m.ply", {"--photos", folder / "photos", "--max-drop", "1", "--test", "view3"}), 2,
                     "there is no photo of view view3"));
+}
+
+// What holds in small pictures may not hold in the cameras' own.
+TEST_F(TrimTest, ABoundHoldsInTheCamerasOwnSizeToo) {
+  const Model whole = test::random_model(8, 600, 1);
+  save_ply(model, whole);
+  const auto own_db = [&](const std::string& file) {
+    double sum = 0.0;
+    for (const char* view : {"view1", "view3", "view5"}) {
+      for (const std::string& which : {model, std::string(folder / file)})
+        EXPECT_TRUE(good(run_program({"render", which, "--cameras", folder / "cameras.json", "--mono",
+                                      "--view", view, "--bits", "16", "-o", which + ".png"})));
+      sum += measure::psnr(load_image(model + ".png"), load_image((folder / file).string() + ".png"));
+    }
+    return sum / 3.0;
+  };
+  const std::vector<std::string> judges = {"--quality",   "32",    "--size", "12x8",
+                                           "--held-back", "view1", "view3",  "view5"};
+  const Outcome outcome = trim("m.ply", judges);
+  ASSERT_TRUE(good(outcome));
+  EXPECT_NE(outcome.out.find("at 12 x 8 px and, as `own`, at the cameras' own 72 x 48 px"), std::string::npos)
+      << outcome.out;
+  const json last = report()["steps"].back();
+  EXPECT_GE(last["held_back"]["mean_db"], 32.0);
+  EXPECT_GE(last["held_back_own_size"]["mean_db"], 32.0);
+  EXPECT_GT(own_db("m.ply"), 31.9);
+  const std::size_t left = trimmed("m.ply").count();
+
+  // Cameras that are as small are judged in that size alone, and their bound does not hold in the larger one.
+  json small = test::load_json(folder / "cameras.json");
+  const json large = small;
+  for (json& camera : small) camera.update({{"width", 12}, {"height", 8}, {"fx", 10.0}, {"fy", 10.0}});
+  test::write_text(folder / "cameras.json", small.dump());
+  ASSERT_TRUE(good(trim("s.ply", judges)));
+  EXPECT_FALSE(report()["steps"].back().contains("held_back_own_size"));
+  test::write_text(folder / "cameras.json", large.dump());
+  EXPECT_LT(own_db("s.ply"), 31.0) << "a bound of small pictures goes unnoticed";
+  EXPECT_LT(trimmed("s.ply").count(), left);
+}
+
+TEST_F(TrimTest, ViewsThatSeeNothingHaveNoSay) {
+  save_ply(model, seen());
+  json cameras = test::load_json(folder / "cameras.json");
+  const auto turned = [&](std::size_t from) {
+    json away = cameras;
+    for (std::size_t k = from; k < away.size(); ++k)
+      away[k]["rotation"] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
+    test::write_text(folder / "cameras.json", away.dump());
+  };
+  turned(0);
+  EXPECT_TRUE(ended(trim("m.ply", {"--quality", "25"}), 2, "none of its views sees anything of the model"));
+  EXPECT_TRUE(ended(run_program({"refit", model, "--against", "exact", "-o", folder / "m.ply"}), 2,
+                    "none of its views sees anything"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "m.ply"));
+  turned(4);
+  const Outcome outcome = trim("m.ply", {"--quality", "25"});
+  ASSERT_TRUE(ended(outcome, 0, "2 of 6 views see nothing of the model and are left out (view4, view5)"));
+  for (const json& view : report()["steps"].back()["held_back"]["views"]) {
+    EXPECT_TRUE(view["name"] != "view4" && view["name"] != "view5") << view;
+    EXPECT_LT(view["db"], 100.0) << view;
+  }
+  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view4", "view5"}), 2,
+                    "none of the views held back to judge by sees anything"));
+  EXPECT_TRUE(ended(trim("n.ply", {"--quality", "25", "--held-back", "view0", "view1", "view2", "view3"}), 2,
+                    "none of the views to learn from sees anything"));
+}
+
+// A file that has less of each Gaussian than what is written.
+TEST_F(TrimTest, AModelThatGetsNoSmallerIsSaidToBeSo) {
+  test::PlyFile lean = test::small_model();
+  const auto normals = static_cast<std::ptrdiff_t>(lean.column("nx"));
+  lean.columns.erase(lean.columns.begin() + normals, lean.columns.begin() + normals + 3);
+  for (std::vector<double>& row : lean.rows) row.erase(row.begin() + normals, row.begin() + normals + 3);
+  for (const std::size_t behind : {5u, 6u}) lean.at(behind, "z") = -5.0;
+  test::write_text(model, to_bytes(lean));
+  const Outcome outcome = trim("m.ply", {"--quality", "90"});
+  ASSERT_TRUE(good(outcome));
+  const json last = report()["steps"].back();
+  EXPECT_LT(last["gaussians"], 300);
+  EXPECT_NE(outcome.out.find(fmt::format("the model as it was, {} bytes: with what can be left out gone it "
+                                         "would take {}",
+                                         std::filesystem::file_size(model), last["bytes"].get<int>())),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(outcome.out.find("nothing can be left out"), std::string::npos) << outcome.out;
+  EXPECT_EQ(test::read_text(folder / "m.ply"), test::read_text(model));
 }
 
 TEST_F(TrimTest, ErrorsSayWhatToDo) {

@@ -1,0 +1,120 @@
+#include "app/blind.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "app/empty_view.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "study/bench.h"
+#include "study/blind.h"
+
+namespace binosplat::app {
+
+namespace {
+
+/// The names of the views that see nothing, and why the first of them does not.
+struct Blind {
+  std::vector<std::string> names;
+  std::string why;
+};
+
+Blind blind_of(const Model& model, const std::vector<Camera>& cameras, const std::vector<bool>& sees,
+               double near_plane) {
+  Blind blind;
+  for (std::size_t v = 0; v < cameras.size(); ++v) {
+    if (sees[v]) continue;
+    blind.names.push_back(cameras[v].name);
+    if (blind.names.size() > 1) continue;
+    Shot shot;
+    shot.name = cameras[v].name;
+    shot.eyes = {{"", cameras[v], {}}};
+    blind.why = why_empty(model, shot, near_plane);
+    blind.why.resize(std::min(blind.why.size(), blind.why.find(": see --eye")));  // which these do not have
+  }
+  return blind;
+}
+
+std::string some_of(std::vector<std::string> names) {
+  constexpr std::size_t most = 4;
+  const std::size_t more = names.size() > most ? names.size() - most : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+void warn(const Blind& blind, std::size_t of) {
+  log_warning("{} of {} views see nothing of the model and are left out ({}): {}", blind.names.size(), of,
+              some_of(blind.names), blind.why);
+}
+
+[[noreturn]] void fail_blind(const std::string& command, const Blind& blind) {
+  fail("{}: none of its views sees anything of the model, so that all would look equal: {}", command,
+       blind.why);
+}
+
+template <typename View>
+void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<View>& views) {
+  std::vector<View> kept;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    if (sees[first + v]) kept.push_back(std::move(views[v]));
+  }
+  views = std::move(kept);
+}
+
+}  // namespace
+
+std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
+                               const std::vector<Camera>& cameras, double near_plane) {
+  std::vector<bool> sees = study::seeing(context, model, cameras, near_plane);
+  const Blind blind = blind_of(model, cameras, sees, near_plane);
+  if (blind.names.size() == cameras.size() && !cameras.empty()) fail_blind(command, blind);
+  if (!blind.names.empty()) warn(blind, cameras.size());
+  return sees;
+}
+
+void refuse_blind(const std::string& command, gl::Context& context, const Model& model,
+                  const std::vector<Shot>& shots, double near_plane) {
+  constexpr std::size_t most = 16;
+  std::vector<Camera> cameras;
+  for (const std::size_t k : study::spread_evenly(shots.size(), most))
+    cameras.push_back(shots[k].eyes.front().camera);
+  const std::vector<bool> sees = study::seeing(context, model, cameras, near_plane);
+  if (std::find(sees.begin(), sees.end(), true) == sees.end())
+    fail_blind(command, blind_of(model, cameras, sees, near_plane));
+}
+
+void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
+                     std::vector<Shot>& shots) {
+  std::vector<Camera> cameras;
+  for (const Shot& shot : shots) cameras.push_back(shot.eyes.front().camera);
+  keep_those(seeing_views(command, context, model, cameras, near_plane), 0, shots);
+}
+
+void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
+                     std::vector<study::CalibrationView>& views) {
+  std::vector<Camera> cameras;
+  for (const study::CalibrationView& view : views) cameras.push_back(view.camera);
+  keep_those(seeing_views(command, context, model, cameras, near_plane), 0, views);
+}
+
+void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,
+                     study::ViewSplit& views) {
+  std::vector<Camera> cameras = views.training;
+  for (const auto* task : {&views.held_back, &views.test}) {
+    for (const study::CalibrationView& view : *task) cameras.push_back(view.camera);
+  }
+  const std::vector<bool> sees = seeing_views(command, context, model, cameras, views.near_plane);
+  const std::size_t held_back = views.training.size(), test = held_back + views.held_back.size();
+  keep_those(sees, 0, views.training);
+  keep_those(sees, held_back, views.held_back);
+  keep_those(sees, test, views.test);
+  if (views.held_back.empty())
+    fail("{}: none of the views held back to judge by sees anything of the model: name others by --held-back",
+         command);
+  if (views.training.empty())
+    fail("{}: none of the views to learn from sees anything of the model: give it more cameras", command);
+}
+
+}  // namespace binosplat::app
