@@ -12,9 +12,12 @@
 #include "app/model_files.h"
 #include "app/option_checks.h"
 #include "app/run_file.h"
+#include "app/shots.h"
+#include "base/error.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/output_file.h"
+#include "formats/cameras_file.h"
 #include "formats/content.h"
 #include "formats/model_output.h"
 #include "formats/streamed_sog_writer.h"
@@ -75,6 +78,24 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
   return false;
 }
 
+/// Leaves the model's cameras beside its levels, in the world that they are in, so that they are drawn from
+/// there as the model was. Cameras that lie there stay.
+void write_cameras(const LevelsOptions& o) {
+  const fs::path file = fs::path(o.output) / "cameras.json";
+  if (fs::exists(file)) return;
+  try {
+    const CameraList list = listed_cameras(o.scene, {});
+    auto json = nlohmann::ordered_json::array();
+    for (const Camera& camera : list.cameras) {
+      json.push_back(camera_json(camera));
+      if (!camera.time) json.back().erase("time");
+    }
+    if (!list.cameras.empty()) save_json(file, json);
+  } catch (const Error& error) {
+    log_warning("{}; no cameras are left beside the levels", error.what());
+  }
+}
+
 ExitCode levels(const LevelsOptions& o) {
   check(o.scene);
   const nlohmann::ordered_json run = identity_of(o);
@@ -92,6 +113,7 @@ ExitCode levels(const LevelsOptions& o) {
        }});
   for (const std::string& loss : written.losses) log_warning("{}", loss);
   if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
+  write_cameras(o);
   fmt::print("level   Gaussians\n");
   for (std::size_t level = 0; level < written.gaussians.size(); ++level)
     fmt::print("{:>5}{:>12}\n", level, written.gaussians[level]);

@@ -153,6 +153,27 @@ TEST(LevelsScaffold, AreRefused) {
                     "is a Scaffold-GS model, which makes its Gaussians anew for each eye"));
 }
 
+TEST_F(LevelsTest, HaveTheCamerasOfTheModelBesideThem) {
+  add_cameras();
+  ASSERT_TRUE(good(levels(out)));
+  const auto beside = nlohmann::json::parse(test::read_text(out + "/cameras.json"));
+  ASSERT_EQ(beside.size(), 4u);
+  EXPECT_FALSE(beside[0].contains("time"));
+  const auto picture = [&](const std::string& scene) {
+    EXPECT_TRUE(good(run_program({"render", scene, "--view", "side", "--mono", "-o", folder / "p.png"})));
+    return load_image(folder / "p.png");
+  };
+  EXPECT_GT(measure::psnr(picture(model), picture(out)), 25.0);
+  // They stay where they are somebody's own by now, and broken ones are no reason to fail.
+  test::write_text(out + "/cameras.json", nlohmann::json({test::camera_json("mine", 0)}).dump());
+  ASSERT_TRUE(good(levels(out)));
+  EXPECT_EQ(nlohmann::json::parse(test::read_text(out + "/cameras.json"))[0]["img_name"], "mine");
+  test::write_text(folder / "cameras.json", "[");
+  const std::string other = folder / "other";
+  EXPECT_TRUE(ended(levels(other), 0, "no cameras are left beside the levels"));
+  EXPECT_FALSE(fs::exists(other + "/cameras.json"));
+}
+
 // Of scenes of many sizes another size is another run.
 TEST_F(LevelsTest, OfACityAndOfCopies) {
   const auto city = [&](const char* count) {
