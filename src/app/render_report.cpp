@@ -10,6 +10,7 @@
 #include "app/command.h"
 #include "app/foveate_options.h"
 #include "app/load_scene.h"
+#include "app/render_summary.h"
 #include "base/log.h"
 #include "base/statistics.h"
 #include "scene/scaffold.h"
@@ -62,20 +63,6 @@ ordered_json comfort_json(const Comfort& comfort) {
                 "vertical_px", r.vertical_px, "comfortable", stereo::comfortable(r));
 }
 
-// What the eyes focus on.
-std::string focus_text(const Comfort& comfort) {
-  if (!comfort.focus) return "what is infinitely far";
-  return fmt::format("{} at {:.3g} m", comfort.headset ? "a headset's focus" : "the screen", *comfort.focus);
-}
-
-// How the disparities of a pair lie.
-void print_comfort(const Drawn& drawn) {
-  const stereo::DisparityRange& r = drawn.comfort->range;
-  fmt::print("  disparity {:.1f} (far) to {:.1f} px (near), {:.2f} to {:.2f} degrees, against {}{}\n",
-             r.far_px, r.near_px, r.far_degrees, r.near_degrees, focus_text(*drawn.comfort),
-             r.vertical_px > 0.5 ? fmt::format("; vertical up to {:.1f} px", r.vertical_px) : "");
-}
-
 double discomfort(const Drawn& drawn) {
   const stereo::DisparityRange& r = drawn.comfort->range;
   return std::max(r.near_degrees, -r.far_degrees);
@@ -97,13 +84,6 @@ void warn_of_discomfort(const std::vector<Drawn>& all) {
       worst->shot.name, others > 0 ? fmt::format(" and {} other view{}", others, others == 1 ? "" : "s") : "",
       stereo::comfortable_degrees, better.convergence,
       better.ipd ? fmt::format(" --ipd {:.3g}", *better.ipd) : "");
-}
-
-/// Of what a frame says of itself: with what its levels lose, where they share --quality.
-double told_psnr(const Drawn& drawn) {
-  const bool shares = drawn.levels && drawn.levels->predicted_psnr;
-  const double frame = drawn.report.quality;
-  return shares ? psnr_of_both(frame, *drawn.levels->predicted_psnr) : frame;
 }
 
 std::string levels_text(const ShotLevels& levels) {
@@ -278,7 +258,10 @@ void print_needs(const render::MemoryNeeds& needs) {
 }
 
 void print(const RenderReport& report) {
+  const bool together = is_way(report);
+  if (together) print_way(report);
   for (const Drawn& drawn : report.drawn) {
+    if (together) break;
     std::string line = fmt::format("{}: {}", drawn.shot.name, fmt::join(drawn.files, ", "));
     line += drawn.report.stages.empty()
                 ? "  (by the float64 reference, on the CPU"
@@ -298,11 +281,12 @@ void print(const RenderReport& report) {
     if (drawn.comfort) print_comfort(drawn);
   }
   warn_of_discomfort(report.drawn);
+  tell_whether_quality_pays(report);
   if (const auto mean = mean_photo_psnr(report)) fmt::print("mean: {:.4f} dB against the photos\n", *mean);
   print_levels(report);
   const std::size_t frames = report.times.frames();
   const std::vector<StageTimes::Row> rows = report.times.rows();
-  if (rows.empty()) return;
+  if (rows.empty() || is_quiet()) return;
   fmt::print("\n{:<12}{:>12}{:>12}\n", "stage", "median ms", "p99 ms");
   for (const StageTimes::Row& row : rows) {
     fmt::print("{:<12}{:>12.3f}{:>12.3f}\n", row.stage, row.median_ms, row.p99_ms);
@@ -318,6 +302,7 @@ void save(const std::filesystem::path& path, const RenderReport& report) {
       "version", BINOSPLAT_VERSION, "scene", scene_json(report), "device",
       object("backend", context.backend(), "renderer", context.renderer(), "opengl", context.version()),
       "settings", settings_json(report));
+  if (report.exact_ms) json["exact_frame_ms"] = *report.exact_ms;
   json["views"] = ordered_json::array();
   for (const Drawn& drawn : report.drawn)
     json["views"].push_back(view_json(drawn, report.options, report.convergence));

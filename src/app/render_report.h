@@ -69,6 +69,7 @@ struct RenderReport {
   std::optional<double> convergence;  // m, by an option or because it suits; none: infinitely far
   std::vector<Drawn> drawn;
   StageTimes times;
+  std::optional<double> exact_ms;  // GPU time of an exact frame, where --quality draws many
 };
 
 /// Bytes as "1,210 MB", or "3.4 MB" where whole ones would say little.

@@ -49,6 +49,24 @@ TEST_F(BuiltIn, TheCityIsClosed) {
   EXPECT_GT(open_share(load_image(out + "/camera.png")), 0.5) << "a hole goes unnoticed";
 }
 
+TEST_F(BuiltIn, PairsAreComfortableAsTheyCome) {
+  const auto draw = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "render");
+    words.insert(words.end(), {"--view", "all", "--size", "160x90", "-o", out, "--json", folder / "r.json"});
+    const Outcome outcome = run_program(words);
+    EXPECT_TRUE(good(outcome));
+    bool comfortable = true;
+    for (const auto& view : report()["views"]) comfortable = comfortable && view["disparity"]["comfortable"];
+    EXPECT_EQ(outcome.err.find("tire most eyes") == std::string::npos, comfortable) << outcome.err;
+    return comfortable;
+  };
+  EXPECT_TRUE(draw({"demo:room"}));
+  EXPECT_TRUE(draw({"demo:room", "--layout", "anaglyph"}));
+  EXPECT_TRUE(draw({"demo:city", "--count", "100000"}));
+  EXPECT_FALSE(draw({"demo:room", "--ipd", "63mm"})) << "what tires goes unnoticed";
+  EXPECT_EQ(report()["views"][0]["ipd_metres"], 0.063) << "options come first";
+}
+
 TEST_F(BuiltIn, AnotherSeedIsAnotherPicture) {
   const auto draw = [&](const std::string& name, const std::string& seed) {
     ASSERT_TRUE(good(city({"--mono", "--size", "96x54", "-o", folder / name, "--seed", seed})));

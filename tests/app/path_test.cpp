@@ -61,6 +61,21 @@ TEST_F(KeysPath, GoesThroughKeys) {
   EXPECT_NE(test::read_text(out + "/path_00011.png"), test::read_text(out + "/path_00012.png"));
 }
 
+TEST_F(KeysPath, ManyFramesAreToldInAFewLines) {
+  save_cameras(0.5);
+  const auto lines = [&](const char* fps) {
+    const Outcome outcome = along({"--fps", fps, "--quality", "40"});
+    EXPECT_TRUE(good(outcome));
+    EXPECT_EQ(outcome.out.find("13 frames: ") != std::string::npos, std::string(fps) == "8") << outcome.out;
+    EXPECT_EQ(outcome.out.find("path_00001.png") != std::string::npos, std::string(fps) != "8")
+        << outcome.out;
+    return std::count(outcome.out.begin(), outcome.out.end(), '\n');
+  };
+  const auto few = lines("4"), many = lines("8");
+  EXPECT_EQ(views().size(), 13u) << "each by itself";
+  EXPECT_LT(many, few);
+}
+
 TEST_F(KeysPath, InSecondsIsAtAnEvenPace) {
   save_cameras(0.5);
   EXPECT_TRUE(ended(along({"--fps", "8", "--seconds", "1"}), 0, "in 1 s: 9 frames"));

@@ -1,0 +1,25 @@
+#pragma once
+// What is told of many frames together, and of a run as a whole.
+
+#include "app/render_report.h"
+
+namespace binosplat::app {
+
+/// dB that a frame says of itself: with what its levels lose, where they share --quality.
+double told_psnr(const Drawn& drawn);
+
+/// Prints how the disparities of a pair lie.
+void print_comfort(const Drawn& drawn);
+
+/// Whether many frames belong together, as those of a path or a video: lines for each would bury what they
+/// say.
+bool is_way(const RenderReport& report);
+
+/// Prints all frames of a way in a few lines: medians, and what is worst.
+void print_way(const RenderReport& report);
+
+/// Says so where --quality takes longer than exact frames, which are better, too: in small pictures drawn by
+/// a CPU most tiles are drawn exactly as well, to know the error.
+void tell_whether_quality_pays(const RenderReport& report);
+
+}  // namespace binosplat::app
