@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -167,28 +166,35 @@ std::vector<std::string> with_command(const CLI::App& program, int argc, const c
 
 std::vector<std::string> with_scene_first(const CLI::App& command, std::vector<std::string> words) {
   int missing = 0;  // words that stand for themselves; `bench --merge` has none, but needs none either
+  bool has_many = false;
   for (const CLI::Option* option : command.get_options()) {
-    if (option->get_positional()) missing += std::max(1, option->get_items_expected_min());
+    if (!option->get_positional()) continue;
+    missing += std::max(1, option->get_items_expected_min());
+    has_many = has_many || option->get_items_expected_max() > 1;
   }
-  std::optional<std::size_t> scene;
-  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
-    const CLI::Option* option = is_option(words[i]) ? option_called(command, words[i]) : nullptr;
+  auto scene = words.begin(), behind = scene;  // the scenes among the words of an option
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    if (*word == "--") {
+      missing -= static_cast<int>(words.end() - word) - 1;
+      break;
+    }
+    const CLI::Option* option = is_option(*word) ? option_called(command, *word) : nullptr;
     if (option == nullptr) {
-      if (!is_option(words[i])) --missing;
+      if (!is_option(*word)) --missing;
       continue;
     }
-    int taken = words[i].find('=') != std::string::npos ? 1 : 0;
-    while (taken < option->get_items_expected_max() && i + 1 < words.size() && !is_option(words[i + 1]) &&
-           words[i + 1] != "--") {
-      ++i;
-      ++taken;
+    const int most = option->get_allow_extra_args() ? option->get_items_expected_max()
+                                                    : std::min(1, option->get_items_expected_max());
+    int taken = word->find('=') != std::string::npos ? 1 : 0;
+    for (; taken < most && word + 1 != words.end() && !is_option(word[1]) && word[1] != "--"; ++taken) ++word;
+    if (option->check_name("--merge")) continue;  // whose words are folders
+    const int spare = taken - option->get_items_expected_min();
+    for (int n = 0; n < (has_many ? spare : std::min(spare, 1)) && is_scene(*(word - n)); ++n) {
+      if (n == 0) behind = word + 1;
+      scene = word - n;
     }
-    const bool of_folders = option->check_name("--merge");
-    if (taken > option->get_items_expected_min() && !of_folders && is_scene(words[i])) scene = i;
   }
-  if (missing < 1 || !scene) return words;
-  std::rotate(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(*scene),
-              words.begin() + static_cast<std::ptrdiff_t>(*scene) + 1);
+  if (missing > 0) std::rotate(words.begin(), scene, behind);
   return words;
 }
 

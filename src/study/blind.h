@@ -10,8 +10,9 @@
 
 namespace binosplat::study {
 
-/// Of each camera of the world, whether its exact picture has anything of the model in it. Draws a small
-/// picture of each, and one in its own size only where that is empty. `near_plane` in world units.
+/// Of each camera of the world, whether its exact picture has anything of the model in it. Where no
+/// Gaussian's middle tells, a small picture is drawn, and one in its own size only where that is empty.
+/// `near_plane` in world units.
 std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<const Camera> cameras,
                          double near_plane);
 

@@ -56,7 +56,8 @@ TEST_F(BuiltIn, PairsAreComfortableAsTheyCome) {
     const Outcome outcome = run_program(words);
     EXPECT_TRUE(good(outcome));
     bool comfortable = true;
-    for (const auto& view : report()["views"]) comfortable = comfortable && view["disparity"]["comfortable"];
+    const nlohmann::json views = report()["views"];
+    for (const auto& view : views) comfortable = comfortable && view["disparity"]["comfortable"].get<bool>();
     EXPECT_EQ(outcome.err.find("tire most eyes") == std::string::npos, comfortable) << outcome.err;
     return comfortable;
   };

@@ -24,6 +24,18 @@ TEST(StudyBlind, CamerasThatLookAwayOrPastSeeNothing) {
   EXPECT_EQ(seeing(test::gl_context(), faint, cameras, near_default), std::vector<bool>(4, false));
 }
 
+// Middles beside the picture, and one before the near plane, whose Gaussians reach into it or do not.
+TEST(StudyBlind, WhatReachesIntoThePictureIsSeen) {
+  Model model;
+  test::add(model, {3, 0, 3}, glm::vec3(1.0f), 0.9f);
+  const std::vector<Camera> cameras = {test::front_camera(64, 48, 60)};
+  EXPECT_TRUE(seeing(test::gl_context(), model, cameras, near_default)[0]);
+  model.scale[0] = glm::vec3(0.01f);
+  EXPECT_FALSE(seeing(test::gl_context(), model, cameras, near_default)[0]);
+  model.position[0] = {0, 0, 0.1};
+  EXPECT_FALSE(seeing(test::gl_context(), model, cameras, near_default)[0]);
+}
+
 // A speck that a small picture cannot show is found in the large one.
 TEST(StudyBlind, ASpeckIsLookedForInTheViewsOwnSize) {
   Model model;
