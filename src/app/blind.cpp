@@ -66,10 +66,10 @@ void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<Vi
 }  // namespace
 
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
-                               const std::vector<Camera>& cameras, double near_plane) {
+                               const std::vector<Camera>& cameras, double near_plane, bool needs_one) {
   std::vector<bool> sees = study::seeing(context, model, cameras, near_plane);
   const Blind blind = blind_of(model, cameras, sees, near_plane);
-  if (blind.names.size() == cameras.size() && !cameras.empty()) fail_blind(command, blind);
+  if (needs_one && blind.names.size() == cameras.size() && !cameras.empty()) fail_blind(command, blind);
   if (!blind.names.empty()) warn(blind, cameras.size());
   return sees;
 }

@@ -12,9 +12,10 @@
 namespace binosplat::app {
 
 /// Which cameras see something of the model (study::seeing). Warns of those that do not, and why; throws
-/// Error where none does. `command` is what judges in them, `near_plane` in world units.
+/// Error where none does, unless what is judged in them is not what the command is for. `command` is what
+/// judges in them, `near_plane` in world units.
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
-                               const std::vector<Camera>& cameras, double near_plane);
+                               const std::vector<Camera>& cameras, double near_plane, bool needs_one = true);
 
 /// Throws Error where none of the shots, or of some spread evenly over many, sees anything of the model.
 void refuse_blind(const std::string& command, gl::Context& context, const Model& model,

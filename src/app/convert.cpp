@@ -87,7 +87,7 @@ Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   for (const std::size_t i : study::spread_evenly(all.size(), wanted)) chosen.push_back(all[i]);
   views.context = open_context(o.context);
   const std::vector<bool> sees =
-      seeing_views("convert --report", *views.context, model, chosen, views.near_plane);
+      seeing_views("convert --report", *views.context, model, chosen, views.near_plane, false);
   for (std::size_t v = 0; v < chosen.size(); ++v) {
     if (sees[v]) views.cameras.push_back(chosen[v]);
   }

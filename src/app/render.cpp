@@ -148,15 +148,17 @@ void check_photos_drawn(const RenderOptions& o, const Work& work) {
 // What an exact frame takes in the place of the last of a long path, to say whether --quality paid; nothing
 // where a path is too short to tell, or its frames are not drawn whole.
 std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, const RenderReport& report) {
-  constexpr std::size_t long_enough = 24;  // frames: these two are a small share of them
+  // Frames, of which these two are a small share, or by a CPU, where it hardly ever pays, the one.
+  constexpr std::size_t many = 24, some = 6;
   const RenderOptions& o = report.options;
-  if (!o.drawing.quality || !work.list.path || report.drawn.size() < long_enough || work.followed ||
-      o.foveate || work.plan.vr180)
+  if (!o.drawing.quality || !work.list.path ||
+      report.drawn.size() < (report.context.software() ? some : many) || work.followed || o.foveate ||
+      work.plan.vr180)
     return std::nullopt;
   const render::FrameSettings exact{
       .order = o.drawing.order, .projection = o.drawing.projection, .precision = o.drawing.precision};
   const std::vector<shared::View> views = views_of(report.drawn.back().shot);
-  frame.draw(views, exact);  // in which drivers compile their programs
+  if (report.drawn.size() >= many) frame.draw(views, exact);  // in which drivers compile their programs
   return frame.draw(views, exact).total_ms;
 }
 

@@ -49,8 +49,12 @@ TEST_F(CalibrateTest, ViewsThatSeeNothingHaveNoSay) {
            {"study", model, "--size", "36x24", "-o", folder / "page"},
            {"study", model, "--rules", "--size", "36x24", "--view", "front"},
            {"study", model, "--motion", "--size", "36x24"},
-           {"convert", model, "--report", "2", "-o", folder / "m.spz"}})
+       })
     EXPECT_TRUE(ended(test::run_program(words), 2, "sees anything of the model")) << words[0];
+  // The file is what convert is for.
+  const Outcome converted = test::run_program({"convert", model, "--report", "2", "-o", folder / "m.ply"});
+  EXPECT_TRUE(ended(converted, 0, "2 of 2 views see nothing of the model and are left out"));
+  EXPECT_EQ(converted.out.find("equal"), std::string::npos) << converted.out;
 }
 
 TEST_F(CalibrateTest, RenderGoesByIt) {

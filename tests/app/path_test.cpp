@@ -73,6 +73,11 @@ TEST_F(KeysPath, ManyFramesAreToldInAFewLines) {
   };
   const auto few = lines("4"), many = lines("8");
   EXPECT_EQ(views().size(), 13u) << "each by itself";
+  const auto json = nlohmann::json::parse(test::read_text(folder / "r.json"));
+  const bool by_cpu = json["device"]["renderer"].get<std::string>().starts_with("llvmpipe");
+  EXPECT_TRUE(!by_cpu || json.contains("exact_frame_ms")) << "whether --quality pays is not known";
+  EXPECT_TRUE(ended(render({"--quality", "40", "--mono", "--size", "24x16", "-o", out}), 0,
+                    "by itself an exact one is faster"));
   EXPECT_LT(many, few);
 }
 
