@@ -1,6 +1,7 @@
 #include "gl/context.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 #include <utility>
 
@@ -33,6 +34,17 @@ std::unique_ptr<Context> attempt(const Open& open, std::string& reasons) {
   }
 }
 
+/// What the environment makes Mesa draw with, a line for each of its variables.
+std::string asked_of_mesa() {
+  std::string lines;
+  for (const char* name : {"GALLIUM_DRIVER", "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE"}) {
+    const char* const value = std::getenv(name);
+    if (value != nullptr)
+      lines += fmt::format("\n{}={} is set, which Mesa goes by: try without it", name, value);
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::unique_ptr<Context> Context::open(Backend backend, int device) {
@@ -45,7 +57,8 @@ std::unique_ptr<Context> Context::open(Backend backend, int device) {
   if (context == nullptr && tries(Backend::surfaceless)) context = attempt(open_egl_surfaceless, reasons);
   if (context == nullptr && tries(Backend::osmesa)) context = attempt(open_osmesa, reasons);
   if (context == nullptr)
-    throw Error(ExitCode::no_gl, fmt::format("no usable OpenGL 4.5 context. Tried:{}", reasons));
+    throw Error(ExitCode::no_gl,
+                fmt::format("no usable OpenGL 4.5 context. Tried:{}{}", reasons, asked_of_mesa()));
   return context;
 }
 

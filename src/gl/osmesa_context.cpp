@@ -4,6 +4,9 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <cstdlib>
+#include <optional>
+#include <string>
 
 #include "base/error.h"
 #include "gl/backends.h"
@@ -51,6 +54,27 @@ const OsMesa& osmesa() {
   return loaded;
 }
 
+/// While one lives, Mesa draws with llvmpipe. OSMesa crashes where the environment asks for a driver that it
+/// was built without, as WSL's users do with d3d12 for other programs, and its others have no 4.5.
+class WithLlvmpipe {
+ public:
+  WithLlvmpipe() {
+    const char* const asked = std::getenv(name);
+    if (asked == nullptr) return;
+    asked_ = asked;
+    setenv(name, "llvmpipe", 1);
+  }
+  ~WithLlvmpipe() {
+    if (asked_) setenv(name, asked_->c_str(), 1);
+  }
+  WithLlvmpipe(const WithLlvmpipe&) = delete;
+  WithLlvmpipe& operator=(const WithLlvmpipe&) = delete;
+
+ private:
+  static constexpr const char* name = "GALLIUM_DRIVER";
+  std::optional<std::string> asked_;
+};
+
 class OsMesaContext final : public Context {
  public:
   OsMesaContext() {
@@ -63,6 +87,7 @@ class OsMesaContext final : public Context {
                                            osmesa_context_minor_version,
                                            5,
                                            0};
+    const WithLlvmpipe with_llvmpipe;
     context_ = osmesa().create_context(attributes.data(), nullptr);
     if (context_ == nullptr) throw Error(ExitCode::no_gl, "OSMesa: no OpenGL 4.5 core context");
     if (osmesa().make_current(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
