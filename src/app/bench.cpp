@@ -11,6 +11,7 @@
 #include "app/blind.h"
 #include "app/command.h"
 #include "app/load_scene.h"
+#include "app/option_checks.h"
 #include "app/output_options.h"
 #include "app/photos.h"
 #include "base/log.h"
@@ -238,7 +239,7 @@ void add_bench(CLI::App& program, Command& command) {
       ->type_name("NAME...");
   add_photos_option(*sub, o->photos, "Compare with DIR/NAME.jpg or .png as well");
   sub->add_option("--ppd", o->ppd, "For FLIP: pixels per degree that the viewer has (67)")
-      ->check(CLI::Range(1.0, 1000.0).description(""))
+      ->check(between(1.0, 1000.0, "a number from 1 to 1000"))
       ->type_name("N");
   sub->add_flag("--profile", o->profile,
                 "Set each stage beside what it must move and compute at least, at this GPU's best rates");

@@ -80,10 +80,10 @@ void add_calibrate(CLI::App& program, Command& command) {
   sub->add_option("--quality", o->target.quality,
                   "Target: PSNR against the exact pictures, mean over the views")
       ->type_name("DB")
-      ->check(above_zero);
+      ->check(quality_range);
   sub->add_option("--max-drop", o->target.max_drop, "Target: dB lost against the photos, mean over the views")
       ->type_name("DB")
-      ->check(above_zero);
+      ->check(positive);
   add_photos_option(*sub, o->photos);
   sub->add_option("--cameras", o->camera.file, "Cameras, where they are not beside the model")
       ->type_name("FILE");
@@ -98,7 +98,7 @@ void add_calibrate(CLI::App& program, Command& command) {
   sub->add_option("--far", o->table.far,
                   "Where its bins end, in world units; AdaGScale's is 100 (fits the scene)")
       ->type_name("DEPTH")
-      ->check(above_zero);
+      ->check(positive);
   add_measured_options(*sub, *o);
   sub->footer(
       "Examples:\n"

@@ -169,14 +169,16 @@ void add_compare(CLI::App& program, Command& command) {
   const auto options = std::make_shared<CompareOptions>();
   sub->add_option("A", options->a, "Picture: PNG, JPEG or OpenEXR")->required();
   sub->add_option("B", options->b, "Picture of the same size")->required();
-  sub->add_option("--min-psnr", options->min_psnr, "Exit code 1 if PSNR is below this")->type_name("DB");
+  sub->add_option("--min-psnr", options->min_psnr, "Exit code 1 if PSNR is below this")
+      ->type_name("DB")
+      ->check(between(-INFINITY, INFINITY, "decibels"));
   sub->add_option_function<std::string>(
          "--background", [options](const std::string& text) { options->background = parse_background(text); },
          "Colour from 0 to 1 before which pictures with alpha are compared;\nby default alpha counts where "
          "both have some, and is before black\nwhere one has (0,0,0)")
       ->type_name("R,G,B|none");
   sub->add_option("--ppd", options->pixels_per_degree, "For FLIP: pixels per degree that the viewer has (67)")
-      ->check(CLI::Range(1.0, 1000.0).description(""))
+      ->check(between(1.0, 1000.0, "a number from 1 to 1000"))
       ->type_name("N");
   sub->add_option_function<std::string>(
          "--foveate-at", [options](const std::string& text) { options->gaze = parse_gaze(text); },

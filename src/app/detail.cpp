@@ -42,13 +42,13 @@ std::int64_t bytes_for(render::FrameShape shape, std::uint32_t gaussians, bool i
 std::size_t gaussians_that_fit(double megabytes, render::FrameSettings settings,
                                std::span<const shared::View> views, int degree, bool in_parts) {
   settings.depth_table = {1.0f, {1.0f}};  // not measured yet
-  const auto bytes = static_cast<std::int64_t>(1e6 * megabytes);
+  const double bytes = 1e6 * megabytes;
   Model model;
   model.degree = degree;
   const render::FrameShape shape = render::make_shape(views, settings, model);
   std::uint32_t fits = 0;
   for (std::uint32_t step = 1u << 30; step > 0; step /= 2) {
-    if (bytes_for(shape, fits + step, in_parts) <= bytes) fits += step;
+    if (static_cast<double>(bytes_for(shape, fits + step, in_parts)) <= bytes) fits += step;
   }
   return fits;
 }

@@ -20,7 +20,7 @@ void add_drawing_options(CLI::App& sub, DrawingOptions& o, bool in_window) {
                  "first frame "
                  "on: one in four draws some tiles exactly, too")
       ->type_name("DB")
-      ->check(positive);
+      ->check(quality_range);
   sub.add_option("--calibration", o.calibration, "Take the tolerance from a file of binosplat calibrate")
       ->type_name("FILE");
   choose_explained(sub, "--transmittance", o.transmittance,

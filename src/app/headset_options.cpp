@@ -28,7 +28,7 @@ void add_headset_options(CLI::App& sub, HeadsetOptions& o) {
                "In the headset of an OpenXR runtime; sticks walk and turn, grips hold the\nworld");
   sub.add_option("--scale", o.scale, "Of both sides of the pictures that the runtime recommends (1)")
       ->type_name("FACTOR")
-      ->check(CLI::Range(0.1, 4.0).description(""));
+      ->check(between(0.1, 4.0, "a factor from 0.1 to 4"));
   sub.add_option_function<std::string>(
          "--frame-budget",
          [&o](const std::string& text) {

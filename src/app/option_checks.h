@@ -18,18 +18,27 @@
 
 #include "base/error.h"
 #include "base/numbers.h"
+#include "render/settings.h"
 #include "shared/axes.h"
 
 namespace binosplat::app {
 
-/// Finite and above zero; written so that "nan" and "inf" fail too.
-inline const CLI::Validator positive(
-    [](std::string& text) {
-      double value = 0.0;
-      const bool good = CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
-      return good ? std::string() : text + ": expected a number above zero";
-    },
-    "");
+/// From `low` to `high`, both included, which "nan" is not.
+inline CLI::Validator between(double low, double high, const char* expected) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0.0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return good ? std::string() : fmt::format("{}: expected {}", text, expected);
+      },
+      "");
+}
+
+/// What numbers of 32 bits hold, and what is computed from them.
+inline const CLI::Validator positive = between(1e-30, 1e30, "a number above zero (1e-30 to 1e30)");
+inline const CLI::Validator not_negative = between(0.0, 1e30, "a number from 0 to 1e30");
+inline const CLI::Validator quality_range =
+    between(render::quality_least, render::quality_most, "decibels from 10 to 100");
 
 /// From 0 to 2^64 - 1; CLI11 by itself would take -1 for the largest.
 inline const CLI::Validator whole(
@@ -103,9 +112,6 @@ inline glm::ivec2 parse_two(const std::string& option, const std::string& text, 
 }
 
 inline CLI::Validator range(int low, int high) { return CLI::Range(low, high).description(""); }
-
-inline const CLI::Validator not_negative = CLI::NonNegativeNumber.description("");
-inline const CLI::Validator above_zero = CLI::PositiveNumber.description("");
 
 inline CLI::Validator folder() { return CLI::Validator(CLI::ExistingDirectory).description(""); }
 

@@ -300,7 +300,7 @@ void add_study(CLI::App& program, Command& command) {
                   "dB that tolerances are chosen for (40);\nwith --motion: at which rules are compared")
       ->excludes(sub->get_option("--no-equal"), levels)
       ->type_name("DB")
-      ->check(above_zero);
+      ->check(quality_range);
   sub->add_option("--tolerance,--loss", o.tolerance, "Of the rule carried, instead")
       ->excludes(rules, motion, levels)
       ->type_name("X")
@@ -309,7 +309,7 @@ void add_study(CLI::App& program, Command& command) {
                   "Steer the rule carried to so many dB;\nwith --motion: every rule (40)")
       ->excludes(rules, levels)
       ->type_name("DB")
-      ->check(above_zero);
+      ->check(quality_range);
   const auto of_rule = [&](const char* name, int& into, std::span<const Choice> choices) {
     choose(*sub, name, into, fmt::format("Of the rule carried ({})", choices[into].name), words_of(choices))
         ->excludes(rules, motion, levels);

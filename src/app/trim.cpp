@@ -202,10 +202,10 @@ void add_trim(CLI::App& program, Command& command) {
   sub->add_option("--max-drop", o->bound.max_drop,
                   "Bound: dB lost against the photos, mean over the views held back")
       ->type_name("DB")
-      ->check(above_zero);
+      ->check(positive);
   sub->add_option("--quality", o->bound.quality, "Bound: PSNR against the exact pictures, likewise")
       ->type_name("DB")
-      ->check(above_zero);
+      ->check(quality_range);
   add_photos_option(*sub, o->photos);
   add_split_options(
       *sub, *o, o->split,

@@ -80,6 +80,10 @@ void check(const FrameSettings& settings, std::string_view prefix = "");
 /// own Gaussians.
 FrameSettings exact_of(const FrameSettings& settings);
 
+/// What somebody may ask for as a quality, dB: less is no picture any more, and pictures of 8 bits tell no
+/// more from exact ones.
+constexpr double quality_least = 10.0, quality_most = 100.0;
+
 /// The same as check() for what somebody chose to draw by, where all must have an effect: no transmittance
 /// with a rule that uses no bound. (A frame may measure by any rule, as measure_depth_table does.)
 void check_choice(const FrameSettings& settings, std::string_view prefix = "");
