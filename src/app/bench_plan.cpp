@@ -13,6 +13,7 @@
 #include "base/numbers.h"
 #include "base/output_file.h"
 #include "formats/image_file.h"
+#include "formats/whole.h"
 #include "study/calibration.h"
 #include "study/fields.h"
 #include "study/settings.h"
@@ -126,10 +127,8 @@ std::vector<study::BenchPoint> load_points(const fs::path& path) {
 BenchFolder::BenchFolder(fs::path folder, std::shared_ptr<const ordered_json> plan)
     : folder_(std::move(folder)), plan_(std::move(plan)) {
   const fs::path file = folder_ / "plan.json";
-  if (!fs::exists(file)) {
-    save_json(file, *plan_);
-    return;
-  }
+  // Of runs that begin at the same time one writes it.
+  if (!fs::exists(file) && save_json_as_first(file, *plan_)) return;
   if (load_json(file) != *plan_) {
     fail(
         "{} holds the points of another run: other scenes, cameras or photos (by content), axes or another "
@@ -150,6 +149,11 @@ std::size_t BenchFolder::size() const { return plan_->at("points").size(); }
 
 fs::path BenchFolder::file(std::size_t point) const {
   return folder_ / "points" / fmt::format("{:05}.json", point);
+}
+
+bool BenchFolder::has(std::size_t point) const {
+  const fs::path picture = fs::path(file(point)).replace_extension(".png");
+  return is_whole(file(point)) && (!fs::exists(picture) || is_whole(picture));
 }
 
 study::BenchNumbers BenchFolder::load(std::size_t point) const {

@@ -70,8 +70,8 @@ class BenchFolder {
 
   const std::shared_ptr<const nlohmann::ordered_json>& plan() const { return plan_; }
   bool same_plan(const BenchFolder& other) const;
-  std::size_t size() const;  // points of the plan
-  bool has(std::size_t point) const { return std::filesystem::exists(file(point)); }
+  std::size_t size() const;           // points of the plan
+  bool has(std::size_t point) const;  // whole
   study::BenchNumbers load(std::size_t point) const;
   void save(std::size_t point, const study::BenchNumbers& measured) const;
   /// All points, measured or not.

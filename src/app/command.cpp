@@ -4,11 +4,16 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <new>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
 #include <thread>
 
 #include "base/inputs.h"
+#include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/output_file.h"
 #include "formats/content.h"
@@ -30,7 +35,44 @@ fs::path& unfinished() {
   return path;
 }
 
+// Names come from files and may be in any encoding; what is not UTF-8 is replaced rather than refused.
+std::string text_of(const nlohmann::ordered_json& value) {
+  return value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
+
+int end_by_what_was_thrown() {
+  const auto end = [](ExitCode code, const std::string& text) {
+    log_line(text);
+    return static_cast<int>(code);
+  };
+  constexpr const char* no_memory =
+      "out of memory: the model and the pictures do not fit; try a smaller --size, or fewer Gaussians";
+  try {
+    throw;
+  } catch (const Error& error) {
+    return end(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return end(ExitCode::out_of_memory, no_memory);
+  } catch (const fs::filesystem_error& error) {
+    return end(ExitCode::bad_input, fmt::format("{}: {}", error.path1().string(), error.code().message()));
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) != 0)
+      return end(ExitCode::bad_input,
+                 fmt::format("cannot write to standard output: {}", error.code().message()));
+    // Threads for which there was no room.
+    if (error.code() == std::errc::resource_unavailable_try_again ||
+        error.code() == std::errc::not_enough_memory)
+      return end(ExitCode::out_of_memory, no_memory);
+    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+  } catch (const std::exception& error) {
+    // As TBB tells of threads for which there was no room.
+    if (std::string_view(error.what()).find("pthread_create") != std::string_view::npos)
+      return end(ExitCode::out_of_memory, no_memory);
+    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+  }
+}
 
 void end_cleanly_on_signals() {
   sigset_t signals;
@@ -68,19 +110,32 @@ Unfinished::~Unfinished() {
   unfinished().clear();
 }
 
+fs::path place_of(const fs::path& path) {
+  std::error_code error;
+  const fs::path whole = fs::absolute(path, error);
+  const fs::path place = fs::weakly_canonical(whole, error);
+  return error ? whole.lexically_normal() : place;
+}
+
 fs::path folder_there(fs::path folder) {
   std::error_code ignored;
-  while (!fs::exists(folder, ignored) && folder.has_relative_path()) folder = folder.parent_path();
+  // Links that lead nowhere are there, too.
+  while (!fs::exists(fs::symlink_status(folder, ignored)) && folder.has_relative_path())
+    folder = folder.parent_path();
   return folder;
 }
 
 void check_output(const fs::path& path) {
   std::error_code error;
-  if (fs::is_directory(path, error)) fail("cannot write {}: it is a folder", path.string());
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) fail("cannot write {}: it is a folder", path.string());
+  if (error == std::errc::too_many_symbolic_link_levels)
+    fail("cannot write {}: its symbolic links lead in a circle", path.string());
   check_no_input(path);
   const fs::path folder = folder_there(fs::absolute(path).parent_path());
   if (!fs::is_directory(folder, error)) {
-    fail("cannot write {}: {} is a file where a folder is needed", path.string(), folder.string());
+    const char* const what = fs::is_symlink(folder, error) ? "symbolic link that leads to no folder" : "file";
+    fail("cannot write {}: {} is a {} where a folder is needed", path.string(), folder.string(), what);
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     fail("cannot write {}: {}: {}", path.string(), folder.string(), std::strerror(errno));
@@ -96,9 +151,15 @@ nlohmann::ordered_json load_json(const fs::path& path) {
 void save_json(const fs::path& path, const nlohmann::ordered_json& value) {
   const Uninterrupted hold;
   OutputFile file(path);
-  // Names come from files and may be in any encoding; what is not UTF-8 is replaced rather than refused.
-  file.write(value.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  file.write(text_of(value));
   file.commit();
+}
+
+bool save_json_as_first(const fs::path& path, const nlohmann::ordered_json& value) {
+  const Uninterrupted hold;
+  OutputFile file(path);
+  file.write(text_of(value));
+  return file.commit_as_first();
 }
 
 }  // namespace binosplat::app

@@ -33,6 +33,9 @@ void add_info(CLI::App& program, Command& command);
 /// Whether the preview was built and lies beside this program.
 bool has_preview();
 
+/// In a handler of `main`: says what is wrong, and returns the exit code for it.
+int end_by_what_was_thrown();
+
 /// From now on SIGHUP, SIGINT and SIGTERM end the program at once, or after the file that is being written
 /// (Uninterrupted), so that no half file is left. Call it before any thread is made.
 void end_cleanly_on_signals();
@@ -55,6 +58,9 @@ class Unfinished {
   Unfinished& operator=(const Unfinished&) = delete;
 };
 
+/// Where a file is written that `path` names: the same for all its spellings and symbolic links.
+std::filesystem::path place_of(const std::filesystem::path& path);
+
 /// The folder itself, or the nearest above it that there is.
 std::filesystem::path folder_there(std::filesystem::path folder);
 
@@ -68,5 +74,8 @@ nlohmann::ordered_json load_json(const std::filesystem::path& path);
 
 /// Writes `value` for people and programs to read. Numbers that are not finite become null, as JSON has none.
 void save_json(const std::filesystem::path& path, const nlohmann::ordered_json& value);
+
+/// The same where nothing stands there; else false (OutputFile::commit_as_first).
+bool save_json_as_first(const std::filesystem::path& path, const nlohmann::ordered_json& value);
 
 }  // namespace binosplat::app

@@ -8,12 +8,14 @@
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "app/command.h"
 #include "app/model_files.h"
+#include "app/option_checks.h"
 #include "app/scene_options.h"
 #include "base/error.h"
 #include "base/inputs.h"
@@ -98,15 +100,26 @@ void note(const std::string& value) {
   for (const char* name : {"meta.json", "lod-meta.json"}) note_input(fs::path(value) / name);
 }
 
-void note_pictures_in(const std::string& folder) {
+void check_outputs(const CLI::App& command) {
+  std::map<fs::path, std::string> outputs;
+  for (const char* name : {"--output", "--json", "--difference"}) {
+    const CLI::Option* const option = command.get_option_no_throw(name);
+    if (option == nullptr || option->count() == 0) continue;
+    const std::string file = option->results().back();
+    const auto [at, is_new] = outputs.try_emplace(place_of(file), name);
+    if (!is_new) fail("{} {}: it is what {} writes, too; name another file", name, file, at->second);
+  }
+}
+
+}  // namespace
+
+void note_photos(const std::string& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     const std::string ending = lowered_ending(entry.path());
     if (ending == ".jpg" || ending == ".jpeg" || ending == ".png") note_input(entry.path());
   }
 }
-
-}  // namespace
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& words) {
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
@@ -247,7 +260,7 @@ void add_max_memory(CLI::App& sub) {
          },
          "Believe a small file that its model takes so much memory (0.4 GB,\nor more where the file is "
          "larger)")
-      ->check(CLI::Range(1.0, 1e9).description(""))
+      ->check(between(1.0, 1e9, "megabytes from 1 to 1e9"))
       ->type_name("MB");
 }
 
@@ -259,9 +272,10 @@ void note_inputs(const CLI::App& program) {
     if (output) continue;
     for (const std::string& value : option->results()) {
       note(value);
-      if (option->check_name("--photos")) note_pictures_in(value);
+      if (option->check_name("--photos")) note_photos(value);
     }
   }
+  check_outputs(program);
 }
 
 }  // namespace binosplat::app

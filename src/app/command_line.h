@@ -44,7 +44,11 @@ void add_max_memory(CLI::App& sub);
 /// --quiet.
 void add_quiet(CLI::App& sub);
 
-/// Notes the files that a parsed command line names to be read (base/inputs.h): all but its outputs.
+/// Notes the files that a parsed command line names to be read (base/inputs.h): all but its outputs. Throws
+/// Error where two of its outputs are one file.
 void note_inputs(const CLI::App& program);
+
+/// Notes the pictures in a folder of photos.
+void note_photos(const std::string& folder);
 
 }  // namespace binosplat::app

@@ -1,9 +1,13 @@
 // binosplat levels: a model at several levels of detail, in files that are read by themselves.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "app/command.h"
 #include "app/content_key.h"
@@ -19,8 +23,10 @@
 #include "base/output_file.h"
 #include "formats/cameras_file.h"
 #include "formats/content.h"
+#include "formats/leaf_errors.h"
 #include "formats/model_output.h"
 #include "formats/streamed_sog_writer.h"
+#include "formats/whole.h"
 #include "scene/axes.h"
 #include "study/fields.h"
 #include "study/level_errors.h"
@@ -39,17 +45,49 @@ struct LevelsOptions {
   ContextOptions context;
 };
 
-LevelFolder folder_at(const fs::path& folder) {
-  return {
-      [folder](const std::string& name) { return fs::exists(folder / name); },
-      [folder](const std::string& name) { return std::string(as_text(MappedFile(folder / name).bytes())); },
-      [folder](const std::string& name, std::span<const std::byte> bytes) {
-        const Uninterrupted hold;
-        OutputFile file(folder / name);
-        file.write(bytes);
-        file.commit();
-      }};
-}
+constexpr const char* run_name = "levels-run.json";
+
+/// The folder, which is asked for the same files again and again, by several threads.
+class Folder {
+ public:
+  explicit Folder(fs::path folder) : folder_(std::move(folder)) {}
+
+  /// Whether a file is there with all that belongs to it; says which are there without.
+  bool has(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const auto [at, is_new] = has_.try_emplace(name, false);
+    if (is_new && fs::exists(folder_ / name)) {
+      at->second = is_complete(name);
+      if (!at->second) log_info("{}: not all of it is there; it is made again", (folder_ / name).string());
+    }
+    return at->second;
+  }
+
+  std::string read(const std::string& name) const {
+    return std::string(as_text(MappedFile(folder_ / name).bytes()));
+  }
+
+  void write(const std::string& name, std::span<const std::byte> bytes) {
+    {
+      const Uninterrupted hold;
+      OutputFile file(folder_ / name);
+      file.write(bytes);
+      file.commit();
+    }
+    const std::lock_guard lock(mutex_);
+    has_[name] = true;
+  }
+
+ private:
+  bool is_complete(const std::string& name) const {
+    if (name.ends_with("meta.json")) return is_whole_sog(folder_ / name);
+    return is_whole(folder_ / name) && (!name.starts_with("together_") || all_drawn(name, read(name)));
+  }
+
+  fs::path folder_;
+  std::mutex mutex_;
+  std::map<std::string, bool> has_;
+};
 
 /// What tells a run from others.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
@@ -66,15 +104,20 @@ nlohmann::ordered_json identity_of(const LevelsOptions& o) {
 
 /// Whether the folder has an earlier run like this one; throws Error where it has anything else.
 bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
-  const fs::path folder = o.output, file = folder / "levels-run.json";
+  const fs::path folder = o.output, file = folder / run_name;
   check_output(file);
   check_output(folder / "lod-meta.json");
+  // Others first: whoever writes them has written that file before, under a name of its own.
+  std::error_code none;
+  const bool others =
+      std::any_of(fs::directory_iterator(folder, none), {}, [](const fs::directory_entry& entry) {
+        return !entry.path().filename().string().starts_with(run_name);
+      });
   if (fs::exists(file)) {
     check_same_run(file, run, "levels");
     return true;
   }
-  if (fs::exists(folder) && !fs::is_empty(folder))
-    fail("-o {}: the folder has other files; name another, or an empty one", o.output);
+  if (others) fail("-o {}: the folder has other files; name another, or an empty one", o.output);
   return false;
 }
 
@@ -104,13 +147,26 @@ ExitCode levels(const LevelsOptions& o) {
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(ModelFormat::sog));
   const auto context = open_context(o.context);
-  if (!again) save_json(fs::path(o.output) / "levels-run.json", run);
+  claim_run(fs::path(o.output) / run_name, run, "levels");
+  Folder folder(o.output);
+  std::ptrdiff_t undrawn = 0;
   const LevelsWritten written = write_streamed_sog(
-      model, o.settings, folder_at(o.output),
+      model, o.settings,
+      {[&](const std::string& name) { return folder.has(name); },
+       [&](const std::string& name) { return folder.read(name); },
+       [&](const std::string& name, std::span<const std::byte> bytes) { folder.write(name, bytes); }},
       {[&](std::span<const std::vector<Model>> leaves) { return study::level_errors(*context, leaves); },
        [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int pictures) {
-         return study::loss_together(*context, leaves, errors, pictures);
+         std::vector<LossTogether> losses = study::loss_together(*context, leaves, errors, pictures);
+         undrawn += std::ranges::count(losses, false, &LossTogether::drawn);
+         return losses;
        }});
+  if (undrawn > 0)
+    log_warning(
+        "there was no memory for {} of the pictures that tell what parts lose together, by which levels are "
+        "chosen: --detail and --quality may cost more or less than they say. Start it again where there is "
+        "more, and it draws these",
+        undrawn);
   for (const std::string& loss : written.losses) log_warning("{}", loss);
   if (again) log_info("{} of {} SOGs were in {} already", written.kept, written.files, o.output);
   write_cameras(o);

@@ -5,8 +5,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <exception>
-#include <new>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -17,21 +15,16 @@
 #include "app/command_words.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/memory.h"
 
 namespace {
 
-using binosplat::Error;
 using binosplat::ExitCode;
 
 constexpr const char* epilogue =
     "`binosplat SUBCOMMAND --help` has the options and examples.\n"
     "Exit codes: 0 done; 1 a comparison fell short; 2 input, output or usage is wrong; 3 no usable OpenGL, "
     "display or headset; 4 out of memory.";
-
-int end(ExitCode code, const std::string& text) {
-  binosplat::log_line(text);
-  return static_cast<int>(code);
-}
 
 // Options that cannot be understood end in CLI::ParseError, everything else that is wrong in Error.
 int run(int argc, char** argv) {
@@ -73,20 +66,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return end(ExitCode::bad_input, binosplat::app::explain(program, "binosplat", error));
-  } catch (const Error& error) {
-    return end(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return end(
-        ExitCode::out_of_memory,
-        "out of memory: the model and the pictures do not fit; try a smaller --size, or fewer Gaussians");
-  } catch (const std::system_error& error) {
-    if (std::ferror(stdout) == 0)
-      return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
-    return end(ExitCode::bad_input,
-               fmt::format("cannot write to standard output: {}", error.code().message()));
-  } catch (const std::exception& error) {
-    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+    binosplat::log_line(binosplat::app::explain(program, "binosplat", error));
+    return static_cast<int>(ExitCode::bad_input);
   }
 }
 
@@ -96,8 +77,13 @@ int main(int argc, char** argv) {
   // Writing beyond a limit of file size then fails like a full disk, with an error that can be reported.
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::settle_shader_caches();
-  binosplat::app::end_cleanly_on_signals();
+  binosplat::end_cleanly_without_memory();
   binosplat::end_cleanly_on_cut_files();
-
-  return run(argc, argv);
+  try {
+    binosplat::app::spare_full_disk();
+    binosplat::app::end_cleanly_on_signals();
+    return run(argc, argv);
+  } catch (...) {
+    return binosplat::app::end_by_what_was_thrown();
+  }
 }

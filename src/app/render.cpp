@@ -11,6 +11,7 @@
 
 #include "app/calibrated.h"
 #include "app/command.h"
+#include "app/command_line.h"
 #include "app/demo_eyes.h"
 #include "app/detail.h"
 #include "app/empty_view.h"
@@ -266,8 +267,8 @@ CameraList find_list(const RenderOptions& o, const OutputPlan& plan) {
   return list;
 }
 
-// Leaves the shots that this run is to draw.
-void take_what_is_left(const RenderOptions& o, double near_plane, Work& work) {
+// Leaves the shots that this run is to draw. What tells it from others, with --resume.
+std::optional<ordered_json> take_what_is_left(const RenderOptions& o, double near_plane, Work& work) {
   std::optional<ordered_json> run;
   if (o.resume) run = identity_of(o, work.list, near_plane, work.shots);
   const std::size_t all = work.shots.size();
@@ -279,6 +280,7 @@ void take_what_is_left(const RenderOptions& o, double near_plane, Work& work) {
   } else {
     forget_run(work.plan);
   }
+  return run;
 }
 
 ExitCode render(const RenderOptions& asked) {
@@ -289,6 +291,7 @@ ExitCode render(const RenderOptions& asked) {
   work.list = find_list(o, work.plan);
   check_views(o.camera.views, o.rig.mono, work.list);
   work.photos = photos_folder(o.output.photos, work.list);
+  note_photos(work.photos);
   check_photos_drawn(o, work);
   const render::FrameSettings settings = settings_of(o.drawing);
   std::optional<DetailBudget> budget;
@@ -312,7 +315,7 @@ ExitCode render(const RenderOptions& asked) {
   if (work.plan.vr180) {
     for (Shot& shot : work.shots) level(shot, up_of(o.camera, work.list.known));
   }
-  check_shots(work.plan, work.shots);
+  check_shots(work.plan, work.shots, o.output.json);
   if (!work.photos.empty() && !work.list.listed) check_any_photo(work.photos, work.list.cameras);
   if (seeks_screen(o, work.plan)) {
     const auto head =
@@ -321,7 +324,7 @@ ExitCode render(const RenderOptions& asked) {
   }
   const std::vector<shared::View> first =
       views_of(work.shots[0]);  // whichever part of the views is drawn here
-  take_what_is_left(o, near_plane, work);
+  const std::optional<ordered_json> run = take_what_is_left(o, near_plane, work);
   if (work.shots.empty()) return ExitCode::done;
   context = open_context(o.context);
   if (work.followed) work.followed->bring(*context, model, first);
@@ -337,6 +340,7 @@ ExitCode render(const RenderOptions& asked) {
   print_needs(report.needs);
   if (o.output.output.empty()) claim_folder(work.plan.folder, o.scene.name);
   draw_all(*context, work, model, report);
+  check_alone(work.plan, run);
   print(report);
   if (!o.output.json.empty()) save(o.output.json, report);
   return ExitCode::done;

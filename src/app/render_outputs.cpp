@@ -11,6 +11,7 @@
 #include "app/command.h"
 #include "app/tour.h"
 #include "app/vr180.h"
+#include "base/inputs.h"
 #include "base/output_file.h"
 #include "base/text.h"
 #include "formats/exr.h"
@@ -195,9 +196,14 @@ fs::path default_folder(const std::string& scene) {
 
 void claim_folder(const fs::path& folder, const std::string& scene) {
   const Uninterrupted hold;
+  const fs::path model = path_of(scene);
+  const bool cut = fs::exists(folder / owner_name) && owner_of(folder).empty();
   OutputFile file(folder / owner_name);
-  file.write(path_of(scene).string() + "\n");
-  file.commit();
+  file.write(model.string() + "\n");
+  if (cut) return file.commit();
+  if (!file.commit_as_first() && is_anothers(folder, model))
+    fail("{}: another run has begun to draw another model there: start again, or name a folder with -o",
+         folder.string());
 }
 
 OutputPlan plan_outputs(const RenderOptions& render) {
@@ -259,7 +265,15 @@ OutputPlan plan_outputs(const RenderOptions& render) {
   return plan;
 }
 
-void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots) {
+void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots, const std::string& json) {
+  const fs::path place = json.empty() ? fs::path() : place_of(json);
+  for (const Shot& shot : shots) {
+    for (const std::string& file : files_of(plan, shot)) {
+      check_no_input(file);
+      if (!json.empty() && place_of(file) == place)
+        fail("--json {}: it is the picture of {}; name another file", json, shot.name);
+    }
+  }
   if (!plan.file.empty() && shots.size() > 1) {
     std::vector<std::string> names;
     for (const Shot& shot : shots) names.push_back(shot.name);

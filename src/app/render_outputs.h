@@ -36,16 +36,17 @@ constexpr double video_fps = 30.0;
 /// another model lie there (claim_folder).
 std::filesystem::path default_folder(const std::string& scene);
 
-/// Writes down in a folder of pictures which model they are of.
+/// Writes down in a folder of pictures which model they are of. Throws Error if a run of another model has
+/// done so since default_folder() found it free.
 void claim_folder(const std::filesystem::path& folder, const std::string& scene);
 
 /// From -o, --layout, --exr, --bits and --fps. Throws Error, before any long work, for what cannot be
 /// written.
 OutputPlan plan_outputs(const RenderOptions& render);
 
-/// Throws Error for shots whose eyes cannot be laid out as planned, for many in one picture, and for videos
-/// whose frames differ in size.
-void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots);
+/// Throws Error for shots whose eyes cannot be laid out as planned, for many in one picture, for videos whose
+/// frames differ in size, and for pictures that would replace what the run reads, or the file of --json.
+void check_shots(const OutputPlan& plan, const std::vector<Shot>& shots, const std::string& json);
 
 /// The video that is planned, to be given each shot's pictures as frame_of() has them; nothing if none is.
 std::unique_ptr<Video> open_video(const OutputPlan& plan, const std::vector<Shot>& shots);

@@ -10,6 +10,7 @@
 #include "app/content_key.h"
 #include "app/run_file.h"
 #include "base/log.h"
+#include "formats/whole.h"
 #include "study/fields.h"
 
 namespace binosplat::app {
@@ -34,6 +35,15 @@ std::string views_key(const std::vector<Shot>& shots) {
     }
   }
   return content_key(cameras);
+}
+
+std::optional<std::string> first_there(const OutputPlan& plan, const std::vector<Shot>& shots) {
+  for (const Shot& shot : shots) {
+    for (const std::string& picture : files_of(plan, shot)) {
+      if (fs::exists(picture)) return picture;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -63,26 +73,38 @@ ordered_json identity_of(const RenderOptions& o, const CameraList& list, double 
 
 void leave_out_drawn(const OutputPlan& plan, const ordered_json& run, std::vector<Shot>& shots) {
   const fs::path file = plan.folder / run_name;
-  if (fs::exists(file)) {
-    check_same_run(file, run, "pictures");
-  } else {
-    for (const Shot& shot : shots) {
-      for (const std::string& picture : files_of(plan, shot)) {
-        if (fs::exists(picture))
-          fail(
-              "{}: nothing says how it was drawn, so that --resume cannot go on from it. Name another folder "
-              "with -o, or remove it",
-              picture);
-      }
-    }
-    save_json(file, run);
-  }
+  // Pictures first: whoever draws them has written the file before.
+  const std::optional<std::string> picture = first_there(plan, shots);
+  if (picture && !fs::exists(file))
+    fail(
+        "{}: nothing says how it was drawn, so that --resume cannot go on from it. Name another folder with "
+        "-o, or remove it",
+        *picture);
+  claim_run(file, run, "pictures");
   const std::size_t all = shots.size();
+  std::size_t cut = 0;
   const std::size_t there = std::erase_if(shots, [&](const Shot& shot) {
     const std::vector<std::string> files = files_of(plan, shot);
-    return std::all_of(files.begin(), files.end(), [](const std::string& name) { return fs::exists(name); });
+    if (!std::ranges::all_of(files, [](const std::string& name) { return fs::exists(name); })) return false;
+    const bool whole = std::ranges::all_of(files, [](const std::string& name) { return is_whole(name); });
+    cut += whole ? 0 : 1;
+    return whole;
   });
   log_info("{} of {} views are in {} already", there, all, plan.folder.string());
+  if (cut > 0)
+    log_warning("{} of the views there {} cut short, and drawn again", cut, cut == 1 ? "is" : "are");
+}
+
+void check_alone(const OutputPlan& plan, const std::optional<ordered_json>& run) {
+  if (plan.folder.empty()) return;
+  const fs::path file = plan.folder / run_name;
+  const bool there = fs::exists(file);
+  if (there && run) return check_same_run(file, *run, "pictures");
+  if (there || run)
+    fail(
+        "{}: another run has drawn into the folder meanwhile, and its pictures may be among these: draw them "
+        "again, in a folder of their own",
+        plan.folder.string());
 }
 
 void forget_run(const OutputPlan& plan) {

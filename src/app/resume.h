@@ -2,6 +2,7 @@
 // render --resume: what an earlier run of the same kind has drawn is left as it is.
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,16 @@ std::vector<std::string> options_given(const CLI::App& sub);
 nlohmann::ordered_json identity_of(const RenderOptions& options, const CameraList& list, double near_plane,
                                    const std::vector<Shot>& shots);
 
-/// Takes the shots off whose files are all in the folder, and says how many these are. That they are of this
-/// run is told by a file beside them, which the first run writes. Throws Error where it is of another run,
-/// and where there are files and none that tells of them.
+/// Takes the shots off whose files are all in the folder, whole, and says how many these are. That they are
+/// of this run is told by a file beside them, which the first run writes. Throws Error where it is of another
+/// run, and where there are files and none that tells of them.
 void leave_out_drawn(const OutputPlan& plan, const nlohmann::ordered_json& run, std::vector<Shot>& shots);
 
 /// For runs that draw all: what they leave in the folder is not what the file there tells of.
 void forget_run(const OutputPlan& plan);
+
+/// After the last shot: throws Error if a run of another kind began to draw into the folder since this one,
+/// which was handed `run` to leave_out_drawn(), or nothing and called forget_run().
+void check_alone(const OutputPlan& plan, const std::optional<nlohmann::ordered_json>& run);
 
 }  // namespace binosplat::app

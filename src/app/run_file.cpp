@@ -10,6 +10,12 @@
 
 namespace binosplat::app {
 
+void claim_run(const std::filesystem::path& file, const nlohmann::ordered_json& run, const char* results) {
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored) || !save_json_as_first(file, run))
+    check_same_run(file, run, results);
+}
+
 void check_same_run(const std::filesystem::path& file, const nlohmann::ordered_json& run,
                     const char* results) {
   const nlohmann::ordered_json saved = load_json(file);

@@ -1,11 +1,13 @@
 #include "base/output_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include "base/error.h"
 #include "base/inputs.h"
@@ -13,6 +15,22 @@
 namespace binosplat {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Waits until the disk has what is in a file or folder; false with errno where it cannot. Of disks that do
+/// not know how to, and folders that may not be read, nothing more can be had.
+bool is_on_disk(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return errno == EACCES;
+  const bool good = fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+  const int reason = errno;
+  close(file);
+  errno = reason;
+  return good;
+}
+
+}  // namespace
 
 OutputFile::OutputFile(const fs::path& path) : target_(path) {
   std::error_code ignored;
@@ -27,6 +45,11 @@ OutputFile::OutputFile(const fs::path& path) : target_(path) {
   }
   check_no_input(target_);
   const fs::path folder = target_.parent_path();
+  folders_.push_back(folder.empty() ? "." : folder);
+  while (!fs::exists(folders_.back(), ignored) && folders_.back().has_relative_path()) {
+    const fs::path above = folders_.back().parent_path();
+    folders_.push_back(above.empty() ? "." : above);
+  }
   std::error_code error;
   if (!folder.empty()) fs::create_directories(folder, error);
   if (error) {
@@ -58,12 +81,32 @@ void OutputFile::flush() {
 }
 
 void OutputFile::commit() {
-  // What is buffered may find the disk full only now.
-  std::FILE* file = file_;
-  file_ = nullptr;
-  if (std::fclose(file) != 0) fail_to_write();
+  finish();
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail_to_write();
   committed_ = true;
+  sync_folders();
+}
+
+bool OutputFile::commit_as_first() {
+  finish();
+  bool first = link(temporary_.c_str(), target_.c_str()) == 0;
+  // Some disks have no links.
+  if (!first && errno != EEXIST)
+    first = renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0;
+  if (!first && errno != EEXIST) fail_to_write();
+  if (first) sync_folders();
+  return first;  // the temporary name goes with this
+}
+
+void OutputFile::finish() {
+  // What is buffered may find the disk full only now.
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail_to_write();
+  // A system may write the new name to the disk before the bytes, and then lose its power.
+  if (!is_on_disk(temporary_)) fail_to_write();
+}
+
+void OutputFile::sync_folders() const {
+  for (const fs::path& folder : folders_) is_on_disk(folder);
 }
 
 void OutputFile::fail_to_write() const {

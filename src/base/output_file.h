@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace binosplat {
 
@@ -35,14 +36,21 @@ class OutputFile {
   /// or instead. Throws Error as write() does.
   void flush();
 
-  /// Flushes, closes and renames to the target, replacing what stood there. Throws Error where any of it
-  /// fails; then the target is as it was.
+  /// Flushes, closes and renames to the target, replacing what stood there; a loss of power from then on
+  /// leaves the file whole. Throws Error where any of it fails; then the target is as it was.
   void commit();
 
+  /// The same where nothing stands there; else false, and what stands there stays. Of several that do so at
+  /// once, in whatever processes, one gets true.
+  bool commit_as_first();
+
  private:
+  void finish();
+  void sync_folders() const;
   [[noreturn]] void fail_to_write() const;
 
   std::filesystem::path target_;
+  std::vector<std::filesystem::path> folders_;  // the file's, and those above it that were made for it
   std::filesystem::path temporary_;
   std::FILE* file_ = nullptr;
   bool committed_ = false;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "formats/json_file.h"
 
 namespace binosplat {
@@ -56,7 +58,9 @@ std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& 
 
 nlohmann::ordered_json json_of(const std::vector<LossTogether>& pictures) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const LossTogether& picture : pictures) json.push_back({picture.predicted, picture.found});
+  for (const LossTogether& picture : pictures) {
+    json.push_back(picture.drawn ? nlohmann::ordered_json{picture.predicted, picture.found} : nullptr);
+  }
   return json;
 }
 
@@ -65,11 +69,17 @@ std::vector<double> loss_shares(const std::string& name, const std::string& text
   const JsonValue pictures(name, told);
   std::vector<double> shares;
   for (std::size_t k = 0; k < pictures.size(); ++k) {
+    if (told[k].is_null()) continue;
     const JsonValue picture = pictures.at(k).list_of(2);
     const double predicted = picture.at(0).number();
     if (predicted > 0.0) shares.push_back(picture.at(1).number() / predicted);
   }
   return shares;
+}
+
+bool all_drawn(const std::string& name, const std::string& text) {
+  const nlohmann::json told = parse_json(name, text);
+  return !told.empty() && std::ranges::none_of(told, [](const nlohmann::json& one) { return one.is_null(); });
 }
 
 }  // namespace binosplat

@@ -26,7 +26,10 @@ std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& 
 
 /// Of a scene's pictures.
 nlohmann::ordered_json json_of(const std::vector<LossTogether>& pictures);
-/// By how much more each loses than predicted, but those that are predicted to lose nothing.
+/// By how much more each loses than predicted, but those that are predicted to lose nothing, or were not
+/// drawn.
 std::vector<double> loss_shares(const std::string& name, const std::string& text);
+/// Whether there are pictures, all of them drawn.
+bool all_drawn(const std::string& name, const std::string& text);
 
 }  // namespace binosplat

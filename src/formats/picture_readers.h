@@ -37,4 +37,7 @@ void check_room(const std::filesystem::path& path, std::int64_t width, std::int6
 void check_exr_header(const std::filesystem::path& path, std::span<const std::byte> bytes,
                       const PictureLimit& limit);
 
+/// Whether an OpenEXR file in lines has all of its blocks.
+bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes);
+
 }  // namespace binosplat

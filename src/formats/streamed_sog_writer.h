@@ -30,12 +30,13 @@ struct LeafErrors {
 /// The squared error of a picture, as what leaves lose by themselves predicts it, and as it is.
 struct LossTogether {
   double predicted = 0.0, found = 0.0;
+  bool drawn = true;  // false: there was no room for the picture
 };
 
 /// What levels of leaves lose, given from the finest, as the files have them.
 struct JudgeLevels {
   std::function<std::vector<LeafErrors>(std::span<const std::vector<Model>> leaves)> alone;
-  /// In pictures of all of them: so many, or fewer.
+  /// In pictures of all of them: so many, or fewer where there are no eyes for more.
   std::function<std::vector<LossTogether>(std::span<const std::vector<Model>> leaves,
                                           std::span<const LeafErrors> errors, int pictures)>
       together;
@@ -44,6 +45,7 @@ struct JudgeLevels {
 /// The folder that a streamed SOG is written to; names are relative to it. Files may be written by several
 /// threads at a time.
 struct LevelFolder {
+  /// Whether it has a file, whole, and for a meta.json those that this names.
   std::function<bool(const std::string& name)> has;
   std::function<std::string(const std::string& name)> read;
   std::function<void(const std::string& name, std::span<const std::byte> bytes)> write;

@@ -96,9 +96,11 @@ class Leaves {
     gpu_model_->reload();
   }
 
-  /// Views from among them, as long as the levels are the coarsest.
-  std::vector<shared::View> find_views(int pictures) {
+  /// Views from among them, as long as the levels are the coarsest; sets `room` to whether there was room to
+  /// look for them.
+  std::vector<shared::View> find_views(int pictures, bool& room) {
     std::vector<shared::View> views;
+    room = true;
     Random random(1);
     const auto any = [&] {
       const Model& level = leaves_[random.bits() % leaves_.size()].back();
@@ -111,7 +113,7 @@ class Leaves {
         one.eye = glm::mix(one.at, any(), random.uniform(0.3, 1.0));
       }
       std::erase_if(tries, [](const Try& one) { return one.eye == one.at; });
-      for (const Try& one : those_that_show(tries)) {
+      for (const Try& one : those_that_show(tries, room)) {
         if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side));
       }
     }
@@ -160,11 +162,15 @@ class Leaves {
   };
 
   /// Those whose views have much to show, and nothing close before what they look at.
-  std::vector<Try> those_that_show(std::span<const Try> tries) {
+  std::vector<Try> those_that_show(std::span<const Try> tries, bool& room) {
     std::vector<shared::View> views;
     for (const Try& one : tries) views.push_back(from(one.eye, one.at, tried_side));
     std::vector<std::vector<SeenPart>> seen;
-    if (views.empty() || !can_draw([&] { seen = sight_->look(views, {}, layout_); })) return {};
+    if (views.empty()) return {};
+    if (!can_draw([&] { seen = sight_->look(views, {}, layout_); })) {
+      room = false;
+      return {};
+    }
     std::vector<Try> found;
     for (std::size_t k = 0; k < tries.size(); ++k) {
       double area = 0.0, logarithms = 0.0;
@@ -196,7 +202,8 @@ class Leaves {
 std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> of_leaves,
                                         std::span<const LeafErrors> errors, int pictures) {
   Leaves leaves(context, of_leaves, errors);
-  const std::vector<shared::View> views = leaves.find_views(pictures);
+  bool room = true;
+  const std::vector<shared::View> views = leaves.find_views(pictures, room);
   std::vector<LossTogether> losses;
   for (const shared::View& view : views) {
     LossTogether loss;
@@ -209,12 +216,11 @@ std::vector<LossTogether> loss_together(gl::Context& context, std::span<const st
       leaves.draw(view);
       loss.found = error.mean(leaves.colours());
     };
-    if (can_draw(draw)) {
-      losses.push_back(loss);
-    } else {
-      leaves.start_again();
-    }
+    loss.drawn = can_draw(draw);
+    if (!loss.drawn) leaves.start_again();
+    losses.push_back(loss);
   }
+  if (!room) losses.resize(static_cast<std::size_t>(pictures), {.drawn = false});
   return losses;
 }
 

@@ -13,8 +13,8 @@ namespace binosplat::study {
 /// Draws so many pictures of the leaves from among them, at levels that are predicted to have 40 dB by what
 /// each loses by itself (`errors`, of level_errors), and compares with the finest of what is seen: parts that
 /// overlap lose more, walls that are seen at an angle less. Eyes lie between two Gaussians and look at one of
-/// them which nothing hides. Few pictures or none where such eyes are not found, or memory does not suffice.
-/// The same for the same leaves.
+/// them which nothing hides. Few pictures or none where such eyes are not found; those for which memory does
+/// not suffice are there, and not drawn. The same for the same leaves.
 std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> leaves,
                                         std::span<const LeafErrors> errors, int pictures);
 

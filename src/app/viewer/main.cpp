@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <csignal>
 #include <memory>
-#include <new>
 
 #include "app/command.h"
 #include "app/command_line.h"
@@ -18,6 +17,7 @@
 #include "app/viewer/headset.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/memory.h"
 #include "preview/window.h"
 
 namespace binosplat::app {
@@ -134,11 +134,6 @@ void view(const RenderOptions& o) {
   preview::run(opened, choices_of(o), window, open_other);
 }
 
-int end(ExitCode code, const std::string& text) {
-  log_line(text);
-  return static_cast<int>(code);
-}
-
 int run(int argc, char** argv) {
   CLI::App program("binosplat view: look at a model with both eyes", "binosplat view");
   RenderOptions options;
@@ -156,13 +151,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return end(ExitCode::bad_input, explain(program, "binosplat view", error));
-  } catch (const Error& error) {
-    return end(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return end(ExitCode::out_of_memory, "out of memory: the model does not fit");
-  } catch (const std::exception& error) {
-    return end(ExitCode::bad_input, fmt::format("internal error: {}", error.what()));
+    log_line(explain(program, "binosplat view", error));
+    return static_cast<int>(ExitCode::bad_input);
+  } catch (...) {
+    return end_by_what_was_thrown();
   }
 }
 
@@ -173,6 +165,8 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   binosplat::app::settle_shader_caches();
+  binosplat::end_cleanly_without_memory();
   binosplat::end_cleanly_on_cut_files();
+  binosplat::app::spare_full_disk();
   return binosplat::app::run(argc, argv);
 }

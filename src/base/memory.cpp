@@ -1,0 +1,48 @@
+#include "base/memory.h"
+
+#include <sys/mman.h>
+
+#include <csignal>
+#include <cstddef>
+
+#include "base/error.h"
+
+namespace binosplat {
+
+namespace {
+
+struct sigaction before_abort, before_fault;
+
+/// Whether the system refuses as much as drivers ask for at a time.
+bool is_out_of_memory() {
+  constexpr std::size_t much = std::size_t{256} << 20;
+  void* const taken = mmap(nullptr, much, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (taken == MAP_FAILED) return true;
+  munmap(taken, much);
+  return false;
+}
+
+/// Calls nothing but what a handler may (signal-safety(7)), and mmap, which asks the system alone.
+void on_crash(int signal) {
+  if (is_out_of_memory()) {
+    constexpr char text[] =
+        "\nbinosplat: out of memory: a library crashed where no more was to be had; give it more (ulimit "
+        "-v), or "
+        "try a smaller --size, or fewer Gaussians\n";
+    static_cast<void>(!write(STDERR_FILENO, text, sizeof(text) - 1));
+    _exit(static_cast<int>(ExitCode::out_of_memory));
+  }
+  // The fault comes again, and abort() ends by itself.
+  sigaction(signal, signal == SIGABRT ? &before_abort : &before_fault, nullptr);
+}
+
+}  // namespace
+
+void end_cleanly_without_memory() {
+  struct sigaction action = {};
+  action.sa_handler = on_crash;
+  sigaction(SIGABRT, &action, &before_abort);
+  sigaction(SIGSEGV, &action, &before_fault);
+}
+
+}  // namespace binosplat
