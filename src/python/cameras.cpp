@@ -13,6 +13,7 @@
 #include "formats/view_files.h"
 #include "python/module.h"
 #include "python/rig.h"
+#include "python/unlocked.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 
@@ -162,7 +163,7 @@ void add_camera(py::module_& module) {
         check_size(width, height);
         check_fov(fov);
         const glm::dvec3 upwards = vector_of("up", up);
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         return frame_model(model, width, height, fov, upwards);
       },
       py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(), py::arg("up") = up_in_colmap,
@@ -187,7 +188,7 @@ void add_list(py::module_& module) {
   module.def(
       "load_cameras",
       [](const std::filesystem::path& path, const std::optional<std::filesystem::path>& model) {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         Cameras cameras{path.string(), load_cameras(path)};
         const auto dataparser = model ? find_dataparser(*model) : std::nullopt;
         if (dataparser) move_into_training(*dataparser, path, cameras.list);

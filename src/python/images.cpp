@@ -9,6 +9,7 @@
 #include "formats/image_file.h"
 #include "measure/comparison.h"
 #include "python/module.h"
+#include "python/unlocked.h"
 
 namespace binosplat::python {
 
@@ -50,7 +51,7 @@ Image empty_image(const py::array& array, const std::string& name) {
 Comparison compare(const py::object& a, const py::object& b, double pixels_per_degree,
                    const std::optional<std::array<float, 3>>& background) {
   Image first = image_of(a, "a"), second = image_of(b, "b");
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   Background behind;
   if (background) behind = glm::vec3((*background)[0], (*background)[1], (*background)[2]);
   if (behind && glm::clamp(*behind, 0.0f, 1.0f) != *behind)
@@ -98,7 +99,7 @@ void add_images(py::module_& module) {
       [](const std::filesystem::path& path) {
         Image image;
         {
-          const py::gil_scoped_release release;
+          const Unlocked unlocked;
           image = load_image(path);
         }
         return array_of(std::move(image));
@@ -111,7 +112,7 @@ void add_images(py::module_& module) {
       [](const std::filesystem::path& path, const py::object& picture, int bits) {
         if (bits != 8 && bits != 16) fail("bits {}: expected 8 or 16", bits);
         const Image image = image_of(picture, "picture");
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         save_png(path, image, bits);
       },
       py::arg("path"), py::arg("picture"), py::arg("bits") = 8,

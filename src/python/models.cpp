@@ -4,6 +4,7 @@
 
 #include "formats/model_file.h"
 #include "python/module.h"
+#include "python/unlocked.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/model.h"
@@ -16,7 +17,7 @@ std::shared_ptr<Model> load(const std::filesystem::path& path, const std::option
                             const std::optional<std::size_t>& appearance,
                             const std::optional<std::string>& axes, const std::optional<bool>& antialiased) {
   if (axes) world_from_axes(*axes);
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   auto model = std::make_shared<Model>(load_model(path, {lod, appearance, {}}));
   model->axes = axes.value_or(model->axes);
   model->antialiased = antialiased.value_or(model->antialiased);

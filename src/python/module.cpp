@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "python/unlocked.h"
 
 namespace binosplat::python {
 
@@ -61,6 +62,7 @@ PYBIND11_MODULE(binosplat, module) {
   module.doc() =
       "3D Gaussian Splatting models as pictures for one eye or both, drawn by OpenGL compute shaders.";
   module.attr("__version__") = BINOSPLAT_VERSION;
+  Unlocked::outlive_all();
   add_errors(module);
   add_images(module);
   add_models(module);

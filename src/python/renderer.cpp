@@ -10,6 +10,7 @@
 #include "python/gl_thread.h"
 #include "python/module.h"
 #include "python/rig.h"
+#include "python/unlocked.h"
 #include "render/frame.h"
 #include "scene/axes.h"
 
@@ -97,7 +98,7 @@ std::unique_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
     fail("device {}: backend {} has none", *device, backend);
   if (device && *device < 0) fail("device {}: devices are numbered from 0", *device);
   const int kept = find_choice("precision", precision, precision_choices);
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   return std::make_unique<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
 }
 
@@ -150,7 +151,9 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
                 double near_plane, const std::string& depth, bool follow) {
   if (!(near_plane > 0.0 && std::isfinite(near_plane)))
     fail("near {}: expected world units above zero", near_plane);
-  if (quality && !(*quality > 0.0f)) fail("quality {}: expected dB, above zero", *quality);
+  if (quality && !(*quality > 0.0f))
+    fail("quality {}: expected decibels from {} to {}", *quality, render::quality_least,
+         render::quality_most);
   const bool given = quality || tolerance;
   render::FrameSettings settings;
   settings.quality = quality.value_or(0.0f);
@@ -168,7 +171,7 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
   const auto views = views_of(view, renderer.model().axes, near_plane);
   Drawn drawn;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     drawn = renderer.draw(views, settings, follow);
   }
   const py::dict report = dict_of(drawn.report);
@@ -225,11 +228,11 @@ void add_renderer(py::module_& module) {
            py::arg("decode") = "eyes", py::arg("background") = std::array<float, 3>{},
            py::arg("near") = near_default, py::arg("depth") = "mean", py::arg("follow") = false, draw_help)
       .def_property_readonly("device", &Renderer::device, "What it draws with.")
-      .def("close", &Renderer::close, py::call_guard<py::gil_scoped_release>(),
+      .def("close", &Renderer::close, py::call_guard<Unlocked>(),
            "Gives the GPU's memory back; it is also given back with the last reference, and by `with`.")
       .def("__enter__", [](Renderer& renderer) -> Renderer& { return renderer; })
       .def("__exit__", [](Renderer& renderer, const py::args&) {
-        const py::gil_scoped_release release;
+        const Unlocked unlocked;
         renderer.close();
       });
 }
