@@ -75,6 +75,8 @@ void end_cleanly_on_cut_files() {
 }
 
 void fail_to_read(const std::filesystem::path& path, int reason) {
+  if (reason == ENOMEM)
+    throw Error(ExitCode::out_of_memory, fmt::format("out of memory: no room to read {}", path.string()));
   const bool address = path.string().find("://") != std::string::npos;
   fail("cannot read {}: {}", path.string(),
        address ? "it is an address, and only files are read: download it first" : std::strerror(reason));

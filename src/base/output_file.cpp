@@ -113,7 +113,8 @@ void OutputFile::fail_to_write() const {
   const int reason = errno;
   std::error_code ignored;
   fs::remove(temporary_, ignored);
-  fail("cannot write {}: {}", target_.string(), std::strerror(reason));
+  throw Error(reason == ENOMEM ? ExitCode::out_of_memory : ExitCode::bad_input,
+              fmt::format("cannot write {}: {}", target_.string(), std::strerror(reason)));
 }
 
 }  // namespace binosplat

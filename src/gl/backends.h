@@ -8,6 +8,10 @@
 
 namespace binosplat::gl {
 
+/// Throws Error for a library that dlopen() has just not opened, with what it said: (out_of_memory) where
+/// there was no room for it, else (no_gl) with `what_to_install`.
+[[noreturn]] void fail_to_load(const char* library, const char* what_to_install);
+
 /// Through EGL's device platform; `device` as in Context::open. Throws Error(bad_input) for a number that
 /// there is not.
 std::unique_ptr<Context> open_egl_device(int device);

@@ -1,5 +1,7 @@
 #include "gl/context.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
@@ -46,6 +48,15 @@ std::string asked_of_mesa() {
 }
 
 }  // namespace
+
+void fail_to_load(const char* library, const char* what_to_install) {
+  const std::string why = dlerror();
+  for (const char* no_room : {"failed to map segment", "annot allocate memory"}) {
+    if (why.find(no_room) != std::string::npos)
+      throw Error(ExitCode::out_of_memory, fmt::format("out of memory: no room for OpenGL: {}", why));
+  }
+  throw Error(ExitCode::no_gl, fmt::format("{}: {}. {}", library, why, what_to_install));
+}
 
 std::unique_ptr<Context> Context::open(Backend backend, int device) {
   const auto tries = [&](Backend one) {

@@ -47,9 +47,7 @@ void load(void* library, const char* name, F& function) {
 const Egl& egl() {
   static const Egl loaded = [] {
     void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) {
-      throw Error(ExitCode::no_gl, fmt::format("no libEGL.so.1 ({}). {}", dlerror(), what_to_install));
-    }
+    if (library == nullptr) fail_to_load("EGL", what_to_install);
     Egl e;
     load(library, "eglGetProcAddress", e.get_proc_address);
     load(library, "eglInitialize", e.initialize);

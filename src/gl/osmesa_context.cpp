@@ -42,8 +42,7 @@ void load(void* library, const char* name, F& function) {
 const OsMesa& osmesa() {
   static const OsMesa loaded = [] {
     void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr)
-      throw Error(ExitCode::no_gl, fmt::format("OSMesa: {}. {}", dlerror(), what_to_install));
+    if (library == nullptr) fail_to_load("OSMesa", what_to_install);
     OsMesa o;
     load(library, "OSMesaCreateContextAttribs", o.create_context);
     load(library, "OSMesaDestroyContext", o.destroy_context);
