@@ -159,15 +159,15 @@ void add_camera(py::module_& module) {
       "vertical field of view in degrees. Raises InputError if they make no camera.");
   module.def(
       "frame",
-      [](const Model& model, int width, int height, const Three& up, double fov) {
+      [](const std::shared_ptr<Model>& model, int width, int height, const Three& up, double fov) {
         check_size(width, height);
         check_fov(fov);
         const glm::dvec3 upwards = vector_of("up", up);
         const Unlocked unlocked;
-        return frame_model(model, width, height, fov, upwards);
+        return frame_model(*model, width, height, fov, upwards);
       },
-      py::arg("model"), py::arg("width"), py::arg("height"), py::kw_only(), py::arg("up") = up_in_colmap,
-      py::arg("fov") = default_fov_degrees,
+      py::arg("model").none(false), py::arg("width"), py::arg("height"), py::kw_only(),
+      py::arg("up") = up_in_colmap, py::arg("fov") = default_fov_degrees,
       "A camera that shows all of a model from outside; draw with near=model.near. up, fov: as of\n"
       "look_at. Raises InputError, for one of an empty model.");
 }

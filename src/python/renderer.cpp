@@ -90,7 +90,7 @@ class Renderer {
   std::unique_ptr<OnGpu> on_gpu_;  // made, used and destroyed on the thread
 };
 
-std::unique_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& backend,
+std::shared_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& backend,
                                const std::optional<int>& device, const std::string& precision) {
   static constexpr Choice backends[] = {{"auto", ""}, {"device", ""}, {"surfaceless", ""}, {"osmesa", ""}};
   const auto chosen = static_cast<gl::Backend>(find_choice("backend", backend, backends));
@@ -99,7 +99,7 @@ std::unique_ptr<Renderer> open(std::shared_ptr<Model> model, const std::string& 
   if (device && *device < 0) fail("device {}: devices are numbered from 0", *device);
   const int kept = find_choice("precision", precision, precision_choices);
   const Unlocked unlocked;
-  return std::make_unique<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
+  return std::make_shared<Renderer>(std::move(model), chosen, device.value_or(-1), kept);
 }
 
 void check(const render::FrameSettings& s, bool given, bool scaffold) {
@@ -143,7 +143,8 @@ struct DrawnPicture {
   py::dict report;
 };
 
-py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
+// A Renderer that is held here outlives what Python does to its own while it ends.
+py::object draw(const std::shared_ptr<Renderer>& renderer, const std::variant<Camera, Rig>& view,
                 const std::optional<float>& quality, const std::optional<float>& tolerance,
                 const std::optional<std::string>& th, const std::string& transmittance,
                 const std::optional<std::string>& order, const std::optional<std::string>& projection,
@@ -151,7 +152,7 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
                 double near_plane, const std::string& depth, bool follow) {
   if (!(near_plane > 0.0 && std::isfinite(near_plane)))
     fail("near {}: expected world units above zero", near_plane);
-  if (quality && !(*quality > 0.0f))
+  if (quality && !(*quality >= render::quality_least && *quality <= render::quality_most))
     fail("quality {}: expected decibels from {} to {}", *quality, render::quality_least,
          render::quality_most);
   const bool given = quality || tolerance;
@@ -165,14 +166,14 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
   settings.tiles = find_choice("tiles", tiles, tiles_choices);
   settings.decode = find_choice("decode", decode, decode_choices);
   settings.background = {background[0], background[1], background[2]};
-  check(settings, given, renderer.model().scaffold != nullptr);
+  check(settings, given, renderer->model().scaffold != nullptr);
   static constexpr Choice depths[] = {{"mean", ""}, {"median", ""}};
   settings.depth = find_choice("depth", depth, depths) == 0 ? Depth::mean : Depth::median;
-  const auto views = views_of(view, renderer.model().axes, near_plane);
+  const auto views = views_of(view, renderer->model().axes, near_plane);
   Drawn drawn;
   {
     const Unlocked unlocked;
-    drawn = renderer.draw(views, settings, follow);
+    drawn = renderer->draw(views, settings, follow);
   }
   const py::dict report = dict_of(drawn.report);
   py::list pictures;
@@ -182,6 +183,11 @@ py::object draw(Renderer& renderer, const std::variant<Camera, Rig>& view,
                                  report});
   }
   return views.size() == 1 ? py::object(pictures[0]) : py::object(py::tuple(pictures));
+}
+
+void close(const std::shared_ptr<Renderer>& renderer) {
+  const Unlocked unlocked;
+  renderer->close();
 }
 
 constexpr const char* draw_help =
@@ -215,11 +221,12 @@ void add_renderer(py::module_& module) {
           "report", &DrawnPicture::report,
           "Of the frame, a dict: total_ms and stages_ms (GPU times), visible, pairs, tolerance and\n"
           "quality (dB) that it came to, attempts, remembered, gpu_bytes.");
-  py::class_<Renderer>(module, "Renderer",
-                       "A model on a GPU, or in Mesa's software renderer.\n\n"
-                       "backend: 'auto' (a GPU, else Mesa), 'device', 'surfaceless' or 'osmesa'. device:\n"
-                       "number of the EGL device. precision: 'full', or 'half' for half the memory at 60 dB\n"
-                       "and more. Raises OpenGLError, OutOfMemory, InputError.")
+  py::class_<Renderer, std::shared_ptr<Renderer>>(
+      module, "Renderer",
+      "A model on a GPU, or in Mesa's software renderer.\n\n"
+      "backend: 'auto' (a GPU, else Mesa), 'device', 'surfaceless' or 'osmesa'. device:\n"
+      "number of the EGL device. precision: 'full', or 'half' for half the memory at 60 dB\n"
+      "and more. Raises OpenGLError, OutOfMemory, InputError.")
       .def(py::init(&open), py::arg("model").none(false), py::kw_only(), py::arg("backend") = "auto",
            py::arg("device") = py::none(), py::arg("precision") = "full")
       .def("draw", &draw, py::arg("view"), py::kw_only(), py::arg("quality") = py::none(),
@@ -228,13 +235,10 @@ void add_renderer(py::module_& module) {
            py::arg("decode") = "eyes", py::arg("background") = std::array<float, 3>{},
            py::arg("near") = near_default, py::arg("depth") = "mean", py::arg("follow") = false, draw_help)
       .def_property_readonly("device", &Renderer::device, "What it draws with.")
-      .def("close", &Renderer::close, py::call_guard<Unlocked>(),
+      .def("close", &close,
            "Gives the GPU's memory back; it is also given back with the last reference, and by `with`.")
       .def("__enter__", [](Renderer& renderer) -> Renderer& { return renderer; })
-      .def("__exit__", [](Renderer& renderer, const py::args&) {
-        const Unlocked unlocked;
-        renderer.close();
-      });
+      .def("__exit__", [](const std::shared_ptr<Renderer>& renderer, const py::args&) { close(renderer); });
 }
 
 }  // namespace binosplat::python

@@ -10,8 +10,20 @@ namespace binosplat::python {
 namespace {
 
 std::atomic<int> alive = 0;
+std::atomic<bool> python_is_gone = false;
+
+void leave() {
+  --alive;
+  alive.notify_all();
+}
+
+[[noreturn]] void sleep_to_the_end() {
+  leave();
+  while (true) pause();
+}
 
 void wait_for_all() {
+  python_is_gone = true;
   for (int left = alive; left > 0; left = alive) alive.wait(left);
 }
 
@@ -20,13 +32,14 @@ void wait_for_all() {
 Unlocked::Unlocked() : state_(PyEval_SaveThread()) { ++alive; }
 
 Unlocked::~Unlocked() {
-  --alive;
-  alive.notify_all();
+  // Beyond its end Python would let the thread pass.
+  if (python_is_gone) sleep_to_the_end();
   try {
     PyEval_RestoreThread(state_);
-  } catch (...) {  // pthread_exit(), which Python calls once it has ended
-    while (true) pause();
+  } catch (...) {  // pthread_exit(), which Python calls once it has begun to end
+    sleep_to_the_end();
   }
+  leave();
 }
 
 void Unlocked::outlive_all() {

@@ -5,10 +5,10 @@
 
 namespace binosplat::python {
 
-/// While one lives, Python's other threads may run; the thread that made it calls nothing of Python's. In the
-/// place of py::gil_scoped_release: where Python has ended meanwhile, as it does beside daemon threads, the
-/// thread sleeps until the process has, too. Python would end it by an exception that no destructor lets
-/// pass.
+/// While one lives, Python's other threads may run; the thread that made it calls nothing of Python's, and
+/// uses no more than it holds itself: Python frees what daemon threads were given when it ends. In the place
+/// of py::gil_scoped_release: where Python has ended meanwhile, as it does beside daemon threads, the thread
+/// sleeps until the process has, too. Python would end it by an exception that no destructor lets pass.
 class Unlocked {
  public:
   Unlocked();

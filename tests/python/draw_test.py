@@ -143,7 +143,9 @@ def test_a_quality_is_what_was_asked_for(renderer, cameras):
 
 
 WRONG = [
-    ({"quality": -1}, "quality -1: expected dB, above zero"),
+    ({"quality": -1}, "quality -1: expected decibels from 10 to 100"),
+    ({"quality": 4000}, "quality 4000: expected decibels from 10 to 100"),
+    ({"quality": float("nan")}, "quality nan: expected decibels from 10 to 100"),
     ({"quality": 40, "tolerance": 1}, "tolerance with quality: each chooses the tolerance"),
     ({"th": "squared"}, "th squared needs tolerance or quality"),
     ({"th": "tau", "tolerance": 1}, "tolerance has no effect with th tau, which is exact"),

@@ -122,3 +122,106 @@ sys.exit(os.WEXITSTATUS(status))
 def test_a_forked_process_is_told_that_it_cannot(scene):
     ended = python(FORKED, scene / "model.ply")
     assert ended.returncode == 0, ended.stderr
+
+
+DAEMON = """
+import atexit, sys, threading, time, binosplat
+model = binosplat.load_model(sys.argv[1])
+camera = binosplat.frame(model, 320, 240)
+renderer = binosplat.Renderer(model, backend="surfaceless")
+drawn = threading.Event()
+
+def draw_for_ever():
+    while True:
+        renderer.draw(camera)
+        drawn.set()
+
+def load_for_ever():
+    while True:
+        binosplat.frame(binosplat.load_model(sys.argv[1]), 32, 24)
+        drawn.set()
+
+def open_for_ever():
+    while True:
+        binosplat.Renderer(model, backend="surfaceless").draw(camera)
+        drawn.set()
+
+def start(work):
+    for _ in range(2):
+        threading.Thread(target=work, daemon=True).start()
+    drawn.wait()
+"""
+
+
+@pytest.mark.parametrize("how", [
+    "start(draw_for_ever)",
+    "start(draw_for_ever); del renderer",
+    "start(draw_for_ever); time.sleep(0.05)",
+    "start(load_for_ever)",
+    "start(open_for_ever)",
+    "atexit.register(renderer.draw, camera); start(draw_for_ever)",
+    "start(draw_for_ever); raise SystemExit(0)",
+])
+def test_python_ends_well_while_daemon_threads_work(scene, how):
+    for _ in range(3):
+        ended = python(DAEMON + how, scene / "model.ply")
+        assert ended.returncode == 0, ended.stderr
+        assert "terminate" not in ended.stderr
+
+
+LATE = """
+import sys, binosplat
+model = binosplat.load_model(sys.argv[1])
+camera = binosplat.frame(model, 32, 24)
+renderer = binosplat.Renderer(model, backend="surfaceless")
+
+class Late:
+    def __del__(self, renderer=renderer, camera=camera):
+        renderer.draw(camera)
+
+def views():
+    try:
+        while True:
+            yield renderer.draw(camera)
+    finally:
+        renderer.draw(camera)
+
+late = Late()
+some = views()
+next(some)
+"""
+
+
+@pytest.mark.parametrize("how", ["", "import builtins; builtins.kept = late", "del renderer"])
+def test_what_draws_while_python_ends_is_no_crash(scene, how):
+    ended = python(LATE + how, scene / "model.ply")
+    assert ended.returncode == 0, ended.stderr
+
+
+PARALLEL = """
+import multiprocessing, sys, binosplat
+
+def width_of(path):
+    model = binosplat.load_model(path)
+    camera = binosplat.frame(model, 32, 24)
+    return binosplat.Renderer(model, backend="surfaceless").draw(camera).colour.shape[1]
+
+if __name__ == "__main__":
+    path, method = sys.argv[1:]
+    opened = binosplat.Renderer(binosplat.load_model(path), backend="surfaceless")
+    try:
+        with multiprocessing.get_context(method).Pool(2) as pool:
+            print(pool.map(width_of, [path] * 2))
+    except binosplat.InputError as error:
+        print(error)
+"""
+
+
+@pytest.mark.parametrize("method, said", [
+    ("spawn", "[32, 32]"), ("forkserver", "[32, 32]"), ("fork", "multiprocessing's method 'spawn'")])
+def test_pools_of_processes(scene, tmp_path, method, said):
+    (tmp_path / "pool.py").write_text(PARALLEL)
+    ended = subprocess.run([sys.executable, tmp_path / "pool.py", scene / "model.ply", method], capture_output=True,
+                           text=True, timeout=120)
+    assert ended.returncode == 0, ended.stderr
+    assert said in ended.stdout
