@@ -1,11 +1,52 @@
 #include "base/output_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 #include "support/errors.h"
 #include "support/full_disk.h"
 #include "support/program.h"
+
+namespace {
+
+/// What the system was told of files, in order.
+struct Told {
+  std::mutex mutex;
+  std::vector<std::string> all;
+};
+
+Told& told() {
+  static Told one;
+  return one;
+}
+
+}  // namespace
+
+// In the place of the C library's, for all that this program is linked of.
+extern "C" int fsync(int file) {
+  struct stat status {};
+  fstat(file, &status);
+  {
+    const std::lock_guard lock(told().mutex);
+    told().all.emplace_back(S_ISDIR(status.st_mode) ? "sync folder" : "sync file");
+  }
+  return static_cast<int>(syscall(SYS_fsync, file));
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  {
+    const std::lock_guard lock(told().mutex);
+    told().all.emplace_back("rename");
+  }
+  return static_cast<int>(syscall(SYS_rename, from, to));
+}
 
 namespace binosplat {
 namespace {
@@ -51,6 +92,52 @@ TEST(OutputFile, LeavesNothingWhenNotCommitted) {
   }
   EXPECT_EQ(read_text(folder / "out.txt"), "old");
   EXPECT_EQ(folder.names(), Names{"out.txt"});
+}
+
+// Before its name is: a loss of power may come at any time.
+TEST(OutputFile, IsOnTheDiskWhenCommitted) {
+  const test::TempFolder folder;
+  using Steps = std::vector<std::string>;
+  const auto steps_of = [&](const std::string& name, bool commits) {
+    told().all.clear();
+    OutputFile file(folder / name);
+    file.write("text");
+    if (commits) file.commit();
+    return told().all;
+  };
+  EXPECT_EQ(steps_of("out.txt", true), (Steps{"sync file", "rename", "sync folder"}));
+  EXPECT_EQ(steps_of("a/b/out.txt", true),
+            (Steps{"sync file", "rename", "sync folder", "sync folder", "sync folder"}))
+      << "folders that were made are in others";
+  EXPECT_EQ(steps_of("a/b/out.txt", true), (Steps{"sync file", "rename", "sync folder"}));
+  EXPECT_EQ(steps_of("none.txt", false), Steps{}) << "planted: one that is not committed";
+}
+
+TEST(OutputFile, IsTheFirstOfMany) {
+  const test::TempFolder folder;
+  for (int round = 0; round < 20; ++round) {
+    const fs::path path = folder / std::to_string(round);
+    std::atomic<int> first = 0, winner = -1;
+    {
+      std::vector<std::jthread> threads;
+      for (int k = 0; k < 4; ++k) {
+        threads.emplace_back([&, k] {
+          OutputFile file(path);
+          file.write(std::to_string(k));
+          if (!file.commit_as_first()) return;
+          ++first;
+          winner = k;
+        });
+      }
+    }
+    EXPECT_EQ(first, 1);
+    EXPECT_EQ(read_text(path), std::to_string(winner));
+  }
+  EXPECT_EQ(folder.names().size(), 20u) << "nothing else is left";
+  OutputFile late(folder / "0");  // planted: it commits as any other does
+  late.write("late");
+  late.commit();
+  EXPECT_EQ(read_text(folder / "0"), "late");
 }
 
 TEST(OutputFile, ReplacesWhatStoodThere) {

@@ -1,0 +1,35 @@
+#include "base/memory.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+
+namespace binosplat {
+namespace {
+
+/// No more than the program has and a little.
+void take_all_memory() {
+  const rlimit limit = {rlim_t{64} << 20, rlim_t{64} << 20};
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+TEST(MemoryDeathTest, ACrashWithoutMemoryEndsWithALine) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  const auto crash = [](bool without_memory, int signal) {
+    end_cleanly_without_memory();
+    if (without_memory) take_all_memory();
+    signal == SIGABRT ? std::abort() : static_cast<void>(raise(signal));
+    raise(signal);  // as a fault comes again
+  };
+  for (const int signal : {SIGABRT, SIGSEGV}) {
+    EXPECT_EXIT(crash(true, signal), testing::ExitedWithCode(4),
+                "binosplat: out of memory: a library crashed");
+    // Planted: there is memory, so that the crash has another reason.
+    EXPECT_EXIT(crash(false, signal), testing::KilledBySignal(signal), "");
+  }
+}
+
+}  // namespace
+}  // namespace binosplat
