@@ -94,6 +94,8 @@ Image image_of(const py::object& picture, const std::string& name) {
 }
 
 void add_images(py::module_& module) {
+  // Looks NumPy up, once: two threads whose first arrays come at the same time would wait for each other.
+  const py::array_t<float> first(0);
   module.def(
       "load_image",
       [](const std::filesystem::path& path) {
