@@ -1,6 +1,7 @@
 // render --backend: the same picture from each of Mesa's ways to a context.
 
 #include "app/scene.h"
+#include "formats/image_file.h"
 
 namespace binosplat {
 namespace {
@@ -35,6 +36,41 @@ TEST_F(BackendTest, SurfacelessAndOsMesaAreEqualBitForBit) {
   ASSERT_TRUE(good(draw("osmesa", "other.exr", {"--tiles", "aabb"})));
   EXPECT_NE(read_text(folder / "egl.exr"), read_text(folder / "other.exr"))
       << "another picture goes unnoticed";
+}
+
+// As people have them for other programs: on WSL GALLIUM_DRIVER is d3d12.
+TEST_F(BackendTest, DriversThatMesaLacksAreNoCrash) {
+  add_cameras();
+  const std::vector<std::string> line = {"--mono", "--view", "front",         "--size",
+                                         "36x24",  "-o",     folder / "p.png"};
+  ASSERT_TRUE(good(render(line)));
+  const auto seen = [&] { return load_image(folder / "p.png").data; };
+  const auto expected = seen();
+  const bool osmesa = draw("osmesa", "osmesa.exr").code == 0;
+  for (const std::map<std::string, std::string>& variables :
+       {std::map<std::string, std::string>{{"GALLIUM_DRIVER", "d3d12"}},
+        {{"GALLIUM_DRIVER", "zink"}},
+        {{"GALLIUM_DRIVER", "swr"}},
+        {{"GALLIUM_DRIVER", "virgl"}},
+        {{"GALLIUM_DRIVER", "softpipe"}},
+        {{"GALLIUM_DRIVER", "nonsense"}},
+        {{"GALLIUM_DRIVER", ""}},
+        {{"GALLIUM_DRIVER", "zink"}, {"LIBGL_ALWAYS_SOFTWARE", "1"}},
+        {{"MESA_LOADER_DRIVER_OVERRIDE", "zink"}},
+        {{"MESA_LOADER_DRIVER_OVERRIDE", "nonsense"}}}) {
+    std::filesystem::remove(folder / "p.png");
+    const std::string shown = variables.begin()->first + "=" + variables.begin()->second;
+    const Outcome drawn = render(line, {.variables = variables});
+    if (osmesa) EXPECT_TRUE(good(drawn)) << shown;
+    if (drawn.code == 0) {
+      EXPECT_EQ(seen(), expected) << shown;
+    } else {
+      EXPECT_EQ(drawn.code, 3) << shown << drawn.err;
+      EXPECT_NE(drawn.err.find(shown), std::string::npos) << drawn.err;
+    }
+    const Outcome devices = test::run_program({"devices"}, {.variables = variables});
+    EXPECT_TRUE(devices.code == 0 || (devices.code == 3 && !osmesa)) << shown << devices.code;
+  }
 }
 
 TEST_F(BackendTest, TheDeviceAgreesWithMesa) {

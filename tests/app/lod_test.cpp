@@ -29,6 +29,11 @@ TEST(RenderLevels, FitTheMemoryNearTheCameraFirst) {
   const Outcome all = render("0,0,-20", "20");
   ASSERT_TRUE(good(all));
   EXPECT_NE(all.err.find("1000 Gaussians of level 0\n"), std::string::npos) << all.err;
+  for (const char* more_than_numbers_hold : {"1e13", "1e30"}) {
+    const Outcome more = render("0,0,-20", more_than_numbers_hold);
+    ASSERT_TRUE(good(more));
+    EXPECT_NE(more.err.find("1000 Gaussians of level 0\n"), std::string::npos) << more.err;
+  }
   const Outcome right = render("12,0,13", "1.467");
   ASSERT_TRUE(good(right));
   EXPECT_NE(right.err.find("248 Gaussians of level 0, 185 Gaussians of level 1"), std::string::npos)

@@ -133,7 +133,8 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   run.send(SIGINT);
   run.wait();
   // However far it came, one of those that are there is left as it is, and one that is not is drawn.
-  write_text(out + "/view0.png", "as it was");
+  const std::string as_it_was = read_text(whole + "/view0.png") + "as it was";
+  write_text(out + "/view0.png", as_it_was);
   std::filesystem::remove(out + "/view4.png");
   const auto there = contents(out).size() - 1;
   const Outcome outcome = again();
@@ -141,7 +142,7 @@ TEST_F(Resume, GoesOnAfterAnInterruption) {
   EXPECT_NE(outcome.err.find(fmt::format("{} of 5 views are in {} already", there, out)), std::string::npos)
       << outcome.err;
   auto expected = contents(whole);
-  expected["view0.png"] = "as it was";
+  expected["view0.png"] = as_it_was;
   EXPECT_EQ(contents(out), expected);
   const Outcome third = again();
   ASSERT_TRUE(good(third));

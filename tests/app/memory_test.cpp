@@ -1,0 +1,65 @@
+// What is said where memory does not suffice.
+
+#include "app/scene.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using test::good;
+using test::Outcome;
+using test::read_text;
+using test::run_program;
+
+struct Memory : test::SceneTest {
+  Memory() { test::save_ply(model, test::random_model(1, 600, 1)); }
+
+  /// With no more than so many MB of addresses.
+  static Outcome with_memory(const std::vector<std::string>& line, rlim_t megabytes) {
+    test::Surroundings surroundings;
+    surroundings.limits[RLIMIT_AS] = megabytes << 20;
+    return run_program(line, surroundings);
+  }
+
+  /// Whether it was done, or its last line says that memory did not suffice.
+  static testing::AssertionResult ends_well(const Outcome& outcome) {
+    const bool done = outcome.code == 0 || outcome.code == 3;
+    if (done || (outcome.code == 4 && outcome.err.find("memory") != std::string::npos) ||
+        (outcome.code == 4 && outcome.err.find("no room") != std::string::npos))
+      return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "exit code " << outcome.code << ": " << outcome.err;
+  }
+};
+
+TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
+  const std::vector<std::string> line = {"levels", model, "-o", out, "--leaf", "64", "--levels", "3"};
+  ASSERT_TRUE(good(run_program(line)));
+  const std::string whole = read_text(out + "/lod-meta.json");
+  int short_of_memory = 0;
+  for (const rlim_t megabytes : {60, 250, 300, 320, 330, 340, 350, 360, 400, 450, 500, 600, 700}) {
+    fs::remove_all(out);
+    const Outcome outcome = with_memory(line, megabytes);
+    EXPECT_TRUE(ends_well(outcome)) << megabytes;
+    if (outcome.code == 0 && read_text(out + "/lod-meta.json") != whole)
+      EXPECT_NE(outcome.err.find("there was no memory for"), std::string::npos) << megabytes << outcome.err;
+    short_of_memory += outcome.code == 0 ? 0 : 1;
+    // What is there counts as far as it is whole.
+    EXPECT_TRUE(good(run_program(line))) << megabytes;
+    EXPECT_EQ(read_text(out + "/lod-meta.json"), whole) << megabytes;
+  }
+  EXPECT_GT(short_of_memory, 0) << "planted: the least is too little for anything";
+}
+
+TEST_F(Memory, OtherCommandsEndWithALine) {
+  for (const std::vector<std::string>& line :
+       {std::vector<std::string>{"render", model, "--mono", "--size", "64x48", "-o", out},
+        {"calibrate", model, "--quality", "40", "--views", "1", "-o", folder / "c.json"},
+        {"devices"}}) {
+    for (const rlim_t megabytes : {60, 200, 250, 300, 350, 450, 600})
+      EXPECT_TRUE(ends_well(with_memory(line, megabytes))) << line[0] << " " << megabytes;
+  }
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,147 @@
+// Runs that begin at the same time in one folder, and what a loss of power leaves of one.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <thread>
+
+#include "app/scene.h"
+#include "support/broken.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ended;
+using test::good;
+using test::Outcome;
+using test::Program;
+using test::read_text;
+using test::run_program;
+using test::write_text;
+using Arguments = std::vector<std::string>;
+using Files = std::map<std::string, std::string>;
+
+Files contents(const fs::path& folder) {
+  Files files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files[entry.path().lexically_relative(folder)] = read_text(entry.path());
+  return files;
+}
+
+struct Runs : test::SceneTest {
+  Runs() {
+    add_row_of_cameras(3);
+    test::PlyFile file = test::small_model();
+    for (std::size_t i = 0; i < file.rows.size(); ++i) file.at(i, "f_dc_0") = 1.0;
+    write_text(other, test::to_bytes(file));
+  }
+
+  /// Both at once, into one folder, as often as `rounds`: one is done, with the files that it has alone, and
+  /// the other is told whose folder it is.
+  void expect_one_of(const Arguments& a, const Arguments& b, const std::string& said) const {
+    Files alone[2];
+    for (int k = 0; k < 2; ++k) {
+      ASSERT_TRUE(good(run_program(k == 0 ? a : b)));
+      alone[k] = contents(out);
+      fs::remove_all(out);
+    }
+    ASSERT_NE(alone[0], alone[1]) << "planted: files of both would go unnoticed";
+    for (int round = 0; round < 2; ++round) {
+      Program first(round % 2 == 0 ? a : b), second(round % 2 == 0 ? b : a);
+      const Outcome outcomes[] = {first.wait(), second.wait()};
+      const bool first_won = outcomes[0].code == 0;
+      EXPECT_TRUE(good(outcomes[first_won ? 0 : 1]));
+      EXPECT_TRUE(ended(outcomes[first_won ? 1 : 0], 2, said));
+      EXPECT_EQ(contents(out), alone[first_won == (round % 2 == 0) ? 0 : 1]);
+      fs::remove_all(out);
+    }
+  }
+
+  Arguments levels_of(const std::string& of) const {
+    return {"levels", of, "-o", out, "--leaf", "64", "--levels", "2"};
+  }
+  Arguments pictures(const Arguments& more = {}) const {
+    Arguments all = {"render", model, "--view", "all", "--mono", "--size", "36x24", "--resume", "-o", out};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  const std::string other = folder / "other.ply";
+};
+
+TEST_F(Runs, LevelsOfTwoModelsDoNotMix) {
+  expect_one_of(levels_of(model), levels_of(other), "holds levels of another run");
+}
+
+TEST_F(Runs, PicturesOfTwoOptionsDoNotMix) {
+  expect_one_of(pictures(), pictures({"--background", "1,1,1"}), "holds pictures of another run");
+}
+
+TEST_F(Runs, PointsOfTwoScenesDoNotMix) {
+  write_text(folder / "axes.json", R"({"eyes": [1], "sizes": ["32x24"], "views": 1, "frames": 1, "repeats": 1,
+                                       "settings": [{"tiles": ["ellipse"]}]})");
+  const auto bench = [&](const std::string& of) {
+    return Arguments{"bench", of, "--axes", folder / "axes.json", "-o", out};
+  };
+  Program first(bench(model)), second(bench(other));
+  const Outcome outcomes[] = {first.wait(), second.wait()};
+  const bool first_won = outcomes[0].code == 0;
+  EXPECT_TRUE(good(outcomes[first_won ? 0 : 1]));
+  EXPECT_TRUE(ended(outcomes[first_won ? 1 : 0], 2, "holds the points of another run"));
+}
+
+// Work is done twice, and no harm.
+TEST_F(Runs, OfOneKindShareAFolder) {
+  for (const Arguments& line : {levels_of(model), pictures()}) {
+    ASSERT_TRUE(good(run_program(line)));
+    const Files alone = contents(out);
+    fs::remove_all(out);
+    Program first(line), second(line);
+    EXPECT_TRUE(good(first.wait()));
+    EXPECT_TRUE(good(second.wait()));
+    EXPECT_EQ(contents(out), alone);
+    fs::remove_all(out);
+  }
+}
+
+TEST_F(Runs, ThatDrawOverOneAnotherSaySo) {
+  Program slow(pictures({"--frames", "300"}));
+  while (!fs::exists(out + "/view0.png")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(good(render({"--view", "view2", "--mono", "--size", "36x24", "-o", out})));
+  EXPECT_TRUE(ended(slow.wait(), 2, "another run has drawn into the folder meanwhile"));
+}
+
+/// Each of a run's files cut, one after the other, and what the next run makes of it.
+struct CutRuns : Runs {
+  void expect_whole_again(const Arguments& line, const std::string& run_file) const {
+    ASSERT_TRUE(good(run_program(line)));
+    const Files whole = contents(out);
+    std::size_t made_again = 0;
+    for (const auto& [name, bytes] : whole) {
+      if (name == run_file || bytes.size() < 10) continue;
+      const std::size_t left =
+          std::array{std::size_t{0}, bytes.size() / 2, bytes.size() - 3}[made_again++ % 3];
+      write_text(fs::path(out) / name, bytes.substr(0, left));
+      EXPECT_TRUE(good(run_program(line))) << name << " of " << left << " bytes";
+      EXPECT_EQ(contents(out), whole) << name << " of " << left << " bytes";
+    }
+    EXPECT_GT(made_again, 5);
+    write_text(fs::path(out) / run_file, "");
+    EXPECT_TRUE(ended(run_program(line), 2, run_file));
+  }
+};
+
+TEST_F(CutRuns, PicturesAreDrawnAgain) {
+  expect_whole_again(pictures({"--exr", "half"}), "render-run.json");
+  EXPECT_TRUE(ended(run_program(pictures()), 2, "render-run.json"));
+}
+
+TEST_F(CutRuns, LevelsAreWrittenAgain) {
+  test::save_ply(model, test::random_model(1, 200, 1));
+  expect_whole_again(levels_of(model), "levels-run.json");
+}
+
+}  // namespace
+}  // namespace binosplat
