@@ -112,7 +112,10 @@ Unfinished::~Unfinished() {
 
 fs::path place_of(const fs::path& path) {
   std::error_code error;
-  const fs::path whole = fs::absolute(path, error);
+  fs::path whole = fs::absolute(path, error);
+  // Links to what is not there yet, too, as the other output may be.
+  for (int links = 0; links < 40 && fs::is_symlink(whole, error); ++links)
+    whole = whole.parent_path() / fs::read_symlink(whole, error);
   const fs::path place = fs::weakly_canonical(whole, error);
   return error ? whole.lexically_normal() : place;
 }

@@ -67,6 +67,95 @@ TEST_F(Edges, InputsAreNeverOverwritten) {
   EXPECT_TRUE(good(render({"--view", "front", "--mono", "-o", a})));
 }
 
+TEST_F(Edges, OutputsAreFilesOfTheirOwn) {
+  std::filesystem::create_symlink(folder / "q.png", folder / "link.png");
+  std::filesystem::create_directory_symlink(folder.path(), folder / "here");
+  const std::string q = folder / "q.png";
+  const auto one_view = [&](const std::string& output, const std::string& json,
+                            const std::vector<std::string>& more = {}) {
+    std::vector<std::string> all = {"--view", "front", "--mono", "--size", "36x24",
+                                    "-o",     output,  "--json", json};
+    all.insert(all.end(), more.begin(), more.end());
+    return render(all);
+  };
+  for (const char* same : {"q.png", "./q.png", "here/q.png", "link.png", "photos/../q.png"})
+    EXPECT_TRUE(ended(one_view(q, folder / same), 2, "it is what --output writes, too")) << same;
+  EXPECT_TRUE(ended(one_view(folder.path(), folder / "front.png"), 2, "it is the picture of front"));
+  EXPECT_TRUE(ended(one_view(q, folder / "q.exr", {"--exr", "half"}), 2, "it is the picture of front"));
+  EXPECT_TRUE(ended(run_program({"convert", model, "-o", folder / "a.sog", "--json", folder / "./a.sog"}), 2,
+                    "it is what --output writes, too"));
+  EXPECT_FALSE(std::filesystem::exists(q));
+  EXPECT_TRUE(good(one_view(q, folder / "q.json"))) << "planted: others are not one file";
+  EXPECT_TRUE(ended(run_program({"compare", q, q, "--difference", folder / "d", "--json", folder / "./d"}), 2,
+                    "it is what --json writes, too"));
+}
+
+TEST_F(Edges, PhotosBesideAreNotDrawnOver) {
+  ASSERT_TRUE(good(render({"--view", "front", "--mono", "-o", folder / "images"})));
+  EXPECT_TRUE(ended(render({"--view", "front", "--mono", "--photos", "beside", "-o", folder / "images"}), 2,
+                    "this run reads it, and it would be lost"));
+}
+
+TEST_F(Edges, NumbersHaveRanges) {
+  const std::string to = folder / "to.ply";
+  const std::vector<std::vector<std::string>> lines = {
+      {"render", model, "-o", out, "--quality"},      {"trim", model, "-o", to, "--quality"},
+      {"calibrate", model, "-o", to, "--quality"},    {"study", model, "--rules", "--target"},
+      {"study", model, "--path", model, "--quality"},
+  };
+  for (std::vector<std::string> line : lines) {
+    line.emplace_back();
+    for (const char* number : {"nan", "inf", "4000", "-40", "9.9", "100.1"}) {
+      line.back() = number;
+      EXPECT_TRUE(ended(run_program(line), 2, "expected decibels from 10 to 100")) << line[0] << number;
+    }
+  }
+  const std::vector<std::vector<std::string>> others = {
+      {"render", model, "-o", out, "--tolerance"},
+      {"render", model, "-o", out, "--near"},
+      {"render", model, "-o", out, "--fov"},
+      {"render", model, "-o", out, "--fps"},
+      {"render", model, "-o", out, "--kernel-px2"},
+      {"render", model, "-o", out, "--gpu-memory"},
+      {"render", model, "-o", out, "--max-memory"},
+      {"render", model, "-o", out, "--units-per-metre"},
+      {"render", model, "-o", out, "--ipd"},
+      {"render", model, "-o", out, "--cant"},
+      {"render", model, "-o", out, "--convergence"},
+      {"render", model, "-o", out, "--spacing"},
+      {"render", model, "-o", out, "--detail"},
+      {"render", model, "-o", out, "--seconds"},
+      {"trim", model, "-o", to, "--max-drop"},
+      {"calibrate", model, "-o", to, "--max-drop"},
+      {"calibrate", model, "-o", to, "--far"},
+      {"compare", model, model, "--min-psnr"},
+      {"compare", model, model, "--ppd"},
+      {"compare", model, model, "--max-memory"},
+      {"bench", model, "--ppd"},
+      {"study", model, "--ipd"},
+      {"study", model, "--units-per-metre"},
+  };
+  for (std::vector<std::string> line : others) {
+    line.emplace_back("nan");
+    EXPECT_TRUE(ended(run_program(line), 2, "nan")) << line[0] << line[line.size() - 2];
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_FALSE(std::filesystem::exists(to));
+}
+
+TEST_F(Edges, LinksInACircleAreNamed) {
+  std::filesystem::create_symlink(folder / "b", folder / "a");
+  std::filesystem::create_symlink(folder / "a", folder / "b");
+  std::filesystem::create_symlink(folder / "nowhere", folder / "dangling");
+  for (const char* to : {"a", "a/deeper", "dangling", "dangling/deeper"}) {
+    EXPECT_TRUE(ended(run_program({"levels", model, "-o", folder / to}), 2, "is a symbolic link")) << to;
+    EXPECT_TRUE(ended(run_program({"bench", model, "-o", folder / to}), 2, "is a symbolic link")) << to;
+    EXPECT_TRUE(ended(render({"--resume", "-o", folder / to}), 2, "is a symbolic link")) << to;
+  }
+  std::filesystem::create_symlink(folder / "c.png", folder / "c.png");
+  EXPECT_TRUE(ended(render({"--mono", "-o", folder / "c.png"}), 2, "lead in a circle"));
+}
+
 TEST_F(Edges, NamesOfViewsArePlain) {
   for (const std::string& bad : {std::string("a\x1b[31m"), std::string("a\0b", 3), std::string("a\nb")}) {
     const nlohmann::json cameras = {test::camera_json(bad, 0.0)};
