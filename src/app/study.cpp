@@ -231,7 +231,8 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
   add_measured_options(sub, o);
   add_ipd_option(sub, o.rig);
   sub.add_option("--units-per-metre", o.rig.units_per_metre, "World units that make a metre (1)")
-      ->type_name("U");
+      ->type_name("U")
+      ->check(positive);
   sub.add_option("--json", o.json, "Write everything as JSON")->type_name("FILE");
 }
 
