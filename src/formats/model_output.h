@@ -55,7 +55,8 @@ std::uint64_t bytes_in(ModelFormat format, std::size_t count, int degree);
 ///  - compressed ply: PlayCanvas' (formats/compressed_ply.h), in Morton order (formats/morton.h).
 ///  - .splat: antimatter15's (formats/splat.h).
 ///  - spz: version 3 within gzip (formats/spz.h). `harmonic_bits`, 1 to 8, are those of a coefficient of
-///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4. An extension names the axes.
+///    degrees 2 and 3; degree 1 has one more where 8 leave it. Niantic's own writer takes 4. An extension
+///    names the axes.
 ///  - SOG: version 2 as an archive (formats/sog.h), in Morton order; harmonics of degrees 1 to 3 from a
 ///  palette
 ///    of 65,536 at most (formats/codebook.h).

@@ -195,8 +195,10 @@ void add_list(py::module_& module) {
         return cameras;
       },
       py::arg("path"), py::arg("model") = py::none(),
-      "Reads cameras.json, transforms.json, nerfstudio's camera_path.json or a COLMAP reconstruction, by their\n"
-      "file or folder, or the camera in a SHARP model's ply. With the path of a model that nerfstudio trained,\n"
+      "Reads cameras.json, transforms.json, nerfstudio's camera_path.json or a COLMAP reconstruction, by "
+      "their\n"
+      "file or folder, or the camera in a SHARP model's ply. With the path of a model that nerfstudio "
+      "trained,\n"
       "they are moved into the world of its training (dataparser_transforms.json). Raises InputError.");
   module.def("find_cameras", &find_cameras, py::arg("model"),
              "The file or folder with the cameras of a model, beside the model's path; None without.");
