@@ -102,7 +102,7 @@ Camera frame_of(const fs::path& path, const JsonValue& root, const JsonValue& fr
 std::optional<glm::ivec2> photo_size(const fs::path& list, const std::string& file_path) {
   const fs::path photo = list.parent_path() / file_path;
   std::error_code ignored;
-  return fs::is_regular_file(photo, ignored) ? picture_size(photo) : std::nullopt;
+  return fs::is_regular_file(photo, ignored) ? std::optional(picture_size(photo)) : std::nullopt;
 }
 
 }  // namespace
