@@ -80,7 +80,6 @@ int main(int argc, char** argv) {
   binosplat::end_cleanly_without_memory();
   binosplat::end_cleanly_on_cut_files();
   try {
-    binosplat::app::spare_full_disk();
     binosplat::app::end_cleanly_on_signals();
     return run(argc, argv);
   } catch (...) {

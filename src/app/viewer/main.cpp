@@ -167,6 +167,5 @@ int main(int argc, char** argv) {
   binosplat::app::settle_shader_caches();
   binosplat::end_cleanly_without_memory();
   binosplat::end_cleanly_on_cut_files();
-  binosplat::app::spare_full_disk();
   return binosplat::app::run(argc, argv);
 }
