@@ -139,6 +139,9 @@ void ModelBuffers::upload(gl::Context& context, const Model& model) {
     upload_pages(context, *model.scaffold, page_step(context, model));
     return;
   }
+  // What shaders write into these buffers (Scatter) must be there before: uploads overtook it on an H200
+  // (driver 580) that had much else to do, in spite of a barrier, and a model kept parts of what it had been.
+  context.gl().Finish();
   set_pages(context, model);
   for (Page& page : pages) {
     page.gaussians->reserve(room_in(page, model) * gaussian_bytes(precision));
