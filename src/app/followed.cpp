@@ -18,9 +18,10 @@ namespace {
 // Gaussians by whose finest levels it is found what levels lose: of a picture, or of each of a turning
 // head's.
 constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
-// Samples of a picture: levels that one finds to miss what was asked for by more than this become finer.
-constexpr int samples_most = 6;
-constexpr double misses_db = 1.0;
+// Samples of a picture: levels that one finds to miss what was asked for by more than this become finer, and
+// each further miss asks for so much more than what was asked for.
+constexpr int samples_most = 8;
+constexpr double misses_db = 1.0, more_db = 3.0;
 
 std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views,
                            const render::FrameSettings& settings) {
@@ -106,9 +107,11 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
   if (!sight || views.empty()) return switched;
   for (int sample = 1; sample <= samples_most; ++sample) {
     const DetailSeen seen = try_sample(model, *sight, views, settings);
-    const bool keeps = sample > 1 && told_psnr() > *need(views).db - misses_db;
+    DetailNeed finer = need(views);
+    const bool keeps = sample > 1 && told_psnr() > *finer.db - misses_db;
     if (keeps || seen.drawn.empty() || sample == samples_most) break;
-    if (!scene_.choose(views, need(views), seen)) break;
+    *finer.db += more_db * (sample - 1);
+    if (!scene_.choose(views, finer, seen)) break;
     change();
   }
   return switched;

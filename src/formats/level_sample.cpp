@@ -17,6 +17,9 @@ namespace {
 const double together = std::pow(10.0, 0.08);
 constexpr double fades = 0.9;      // what was found counts so much beside what is found next
 constexpr double nothing = 1e-20;  // squared error of a picture
+// A sample of some parts says at most so many times what is predicted of all, and at least one part of it:
+// single parts are off by more.
+constexpr double by_chance = 8.0;
 
 }  // namespace
 
@@ -70,20 +73,15 @@ SampleLoss loss_of(const DetailChoice& choice, double all, std::span<const std::
 
 void LevelsFound::note(const SampleLoss& loss) {
   if (!(loss.predicted > 0.0 && loss.all > 0.0)) return;
-  const double left = 1.0 - std::min(loss.predicted / loss.all, 1.0);
-  const bool is_all = left < 0.01;  // then nothing is up to chance
-  const double keeps = is_all ? 0.0 : fades;
-  const double parts = static_cast<double>(loss.parts) / (is_all ? 1.0 : left);
-  prior_ *= keeps;
-  parts_ = keeps * parts_ + parts;
-  predicted_ = keeps * predicted_ + parts * loss.predicted;
-  found_ = keeps * found_ + parts * loss.found * std::pow(together, left);
-}
-
-double LevelsFound::factor() const {
-  if (parts_ == 0.0) return 1.0;
-  const double as_predicted = prior_ * predicted_ / parts_;
-  return (as_predicted + found_) / (as_predicted + predicted_);
+  const double left = 1.0 - std::min(loss.predicted / loss.all, 1.0), times = loss.found / loss.predicted;
+  if (left < 0.01) {  // then nothing is up to chance
+    parts_ = static_cast<double>(loss.parts);
+    found_ = parts_ * times;
+    return;
+  }
+  const double parts = static_cast<double>(loss.parts) / left;
+  parts_ = fades * parts_ + parts;
+  found_ = fades * found_ + parts * std::clamp(times * std::pow(together, left), 1.0 / by_chance, by_chance);
 }
 
 }  // namespace binosplat

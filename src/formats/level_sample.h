@@ -46,19 +46,20 @@ PartModels exchange(const PartModels& others, Model& model, ModelParts& parts, c
 SampleLoss loss_of(const DetailChoice& choice, double all, std::span<const std::size_t> levels,
                    std::span<const std::size_t> parts, double found);
 
-/// How many times what is predicted levels are found to lose: what samples lost over what they were predicted
-/// to lose. What was found first counts less and less, and nothing once all that is lost was in a sample.
+/// How many times what is predicted levels are found to lose: what was found first counts less and less, and
+/// nothing once all that is lost was in a sample.
 class LevelsFound {
  public:
   void note(const SampleLoss& loss);
-  double factor() const;
+  double factor() const { return found_ / parts_; }
   /// The same, but levels that seem to lose nothing are not made as coarse as that allows: a sample of other
   /// parts would find them wrong.
   double to_choose_by() const { return std::max(factor(), 1.0 / 8.0); }
 
  private:
-  double prior_ = 8.0;  // parts of which nothing is known but what is predicted
-  double parts_ = 0.0, predicted_ = 0.0, found_ = 0.0;  // of samples, each times its parts
+  static constexpr double prior = 8.0;  // parts of which nothing is known but what is predicted
+
+  double parts_ = prior, found_ = prior;  // and times what is predicted, with what was found before
 };
 
 }  // namespace binosplat
