@@ -1,5 +1,5 @@
 // After the blend: the squared error of a view in its probe's tiles, drawn exactly, summed for --quality. Both as 8 bits would
-// keep them, which is what is looked at, or as they are where bytes tell less, as of a few pixels; and the squares of the sums of THREADS pixels, a tile mostly, by which tiles differ. One
+// keep them, which is what is looked at; and the squares of the sums of THREADS pixels, a tile mostly, by which tiles differ. One
 // invocation a pixel of those tiles.
 #include "shared/limits.h"
 #include "shared/types.h"
@@ -13,25 +13,23 @@ layout(std430, binding = 1) readonly buffer Colours { vec4 colours[]; };  // C, 
 layout(std430, binding = 2) buffer FrameCounters { Counters counters; };
 #include "frame.glsl"
 
-shared vec2 sums[THREADS];
+shared float sums[THREADS];
 
-vec3 colour_of(uint pixel) {
-  return colours[pixel].rgb + colours[pixel].a * frame.background.rgb;
+vec3 shown(uint pixel) {
+  return in_bytes(colours[pixel].rgb + colours[pixel].a * frame.background.rgb) / 255.0;
 }
 
-// In bytes, and as it is.
-vec2 squared_error(uint nth) {
+float squared_error(uint nth) {
   View exact = views[frame.asked];
   const uint side = uint(TILE_SIZE);
   uvec2 tile = uvec2(nth / (side * side) % exact.tiles_x, nth / (side * side) / exact.tiles_x);
   uvec2 in_tile = uvec2(nth % side, nth / side % side);
   uvec2 kept = tile * side + in_tile;
   uvec2 at = tile * exact.pitch + uvec2(exact.shift_x, exact.shift_y) + in_tile;
-  if (tile.y >= exact.tiles_y || at.x >= exact.width || at.y >= exact.height) return vec2(0.0);
-  vec3 a = colour_of(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x);
-  vec3 b = colour_of(views[frame.probed].pixel_offset + at.y * exact.width + at.x);
-  vec3 bytes = (in_bytes(a) - in_bytes(b)) / 255.0, shown = clamp(a, 0.0, 1.0) - clamp(b, 0.0, 1.0);
-  return vec2(dot(bytes, bytes), dot(shown, shown));
+  if (tile.y >= exact.tiles_y || at.x >= exact.width || at.y >= exact.height) return 0.0;
+  vec3 d = shown(exact.pixel_offset + kept.y * exact.tiles_x * side + kept.x) -
+           shown(views[frame.probed].pixel_offset + at.y * exact.width + at.x);
+  return dot(d, d);
 }
 
 void main() {
@@ -43,12 +41,11 @@ void main() {
     barrier();
   }
   if (self != 0u) return;
-  float error = max(sums[0].x, sums[0].y);
-  // Whole numbers, so that the order of the additions does not matter; none that is more than nothing is lost.
-  uint sum = error > 0.0 ? max(uint(error * float(PROBE_SCALE) + 0.5), 1u) : 0u;
+  // Whole numbers, so that the order of the additions does not matter.
+  uint sum = uint(sums[0] * float(PROBE_SCALE));
   uint before = atomicAdd(counters.probe_low, sum);
   if (before + sum < before) atomicAdd(counters.probe_high, 1u);
-  uint square = uint(min(error * error, 1000.0) * float(PROBE_SCALE));
+  uint square = uint(min(sums[0] * sums[0], 1000.0) * float(PROBE_SCALE));
   before = atomicAdd(counters.probe_squares_low, square);
   if (before + square < before) atomicAdd(counters.probe_squares_high, 1u);
 }

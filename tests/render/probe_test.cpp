@@ -217,29 +217,6 @@ TEST(Quality, IsToldFromTheFirstFrameOn) {
   }
 }
 
-// Where all bytes are the same, what differs is told all the same.
-TEST(Quality, OfAFewPixelsIsNoMoreThanItIs) {
-  int equal_bytes = 0;
-  for (int seed = 0; seed < 12; ++seed) {
-    const Model model = test::random_model(static_cast<std::uint64_t>(200 + seed), 3000, 1);
-    const std::vector views = {make_view(test::front_camera(1, 1, 1))};
-    const auto exact = test::draw(model, views);
-    render::Frame frame(test::gl_context(), model);
-    const render::FrameReport report =
-        frame.draw(views, {.th = TH_SQUARED, .quality = 45, .background = background});
-    const Picture drawn = frame.read_pictures().front();
-    const double db = measure::psnr(composite(drawn, background), composite(exact.front(), background));
-    const double of_bytes = measure::psnr(shown(drawn), shown(exact.front()));
-    // Of one pixel the sum is rounded to its steps.
-    const auto error_of = [](double psnr) { return std::pow(10.0, -0.1 * psnr); };
-    EXPECT_GE(error_of(report.quality),
-              std::max(error_of(db), error_of(of_bytes)) - 0.6 / (3.0 * PROBE_SCALE))
-        << seed;
-    equal_bytes += std::isinf(of_bytes) && db < 70.0 ? 1 : 0;
-  }
-  EXPECT_GT(equal_bytes, 0) << "planted: bytes alone tell of equal pictures";
-}
-
 TEST(Quality, NeedsARule) {
   const Model model = test::random_model(100, 10, 0);
   const shared::View view = make_view(test::front_camera(32, 32, 32));
