@@ -104,7 +104,9 @@ TEST(DamagedFiles, Cameras) {
   const std::string camera =
       R"({"img_name": "1", "width": 4, "height": 3, "position": [1, 2.5, -3e0], "fx": 5, "fy": 6.5,
           "rotation": [[0, 0, 1], [0, -1, 0], [1, 0, 0]], "cx": 2, "time": 0.5})";
-  try_damaged({"[" + camera + ",\n" + camera + "]"}, [](const auto& path) { load_cameras(path); });
+  std::string other = camera;
+  other.replace(other.find("\"1\""), 3, "\"2\"");
+  try_damaged({"[" + camera + ",\n" + other + "]"}, [](const auto& path) { load_cameras(path); });
 }
 
 TEST(DamagedFiles, Pictures) {
