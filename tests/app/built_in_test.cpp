@@ -139,7 +139,7 @@ TEST_F(BuiltIn, ValuesThatAreNone) {
       {{model, "--repeat", "65536x65536", "--spacing", "1"}, "--repeat 65536x65536 of 300 Gaussians"},
       {{model, "--repeat", "2x2", "--spacing", "0"}, "above zero"},
       {{model, "--repeat", "2x2", "--spacing", "nan"}, "above zero"},
-      {{model, "--repeat", "2x2", "--spacing", "1e300"}, "--spacing 1e+300"},
+      {{model, "--repeat", "2x2", "--spacing", "1e300"}, "--spacing: 1e300: expected a number above zero"},
   };
   for (const auto& c : cases) {
     std::vector<std::string> arguments = c.arguments;
