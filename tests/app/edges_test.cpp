@@ -148,9 +148,9 @@ TEST_F(Edges, LinksInACircleAreNamed) {
   std::filesystem::create_symlink(folder / "a", folder / "b");
   std::filesystem::create_symlink(folder / "nowhere", folder / "dangling");
   for (const char* to : {"a", "a/deeper", "dangling", "dangling/deeper"}) {
-    EXPECT_TRUE(ended(run_program({"levels", model, "-o", folder / to}), 2, "is a symbolic link")) << to;
-    EXPECT_TRUE(ended(run_program({"bench", model, "-o", folder / to}), 2, "is a symbolic link")) << to;
-    EXPECT_TRUE(ended(render({"--resume", "-o", folder / to}), 2, "is a symbolic link")) << to;
+    EXPECT_TRUE(ended(run_program({"levels", model, "-o", folder / to}), 2, "symbolic link")) << to;
+    EXPECT_TRUE(ended(run_program({"bench", model, "-o", folder / to}), 2, "symbolic link")) << to;
+    EXPECT_TRUE(ended(render({"--resume", "-o", folder / to}), 2, "symbolic link")) << to;
   }
   std::filesystem::create_symlink(folder / "c.png", folder / "c.png");
   EXPECT_TRUE(ended(render({"--mono", "-o", folder / "c.png"}), 2, "lead in a circle"));
