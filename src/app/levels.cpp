@@ -122,10 +122,10 @@ bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
 }
 
 /// Leaves the model's cameras beside its levels, in the world that they are in, so that they are drawn from
-/// there as the model was. Cameras that lie there stay.
+/// there as the model was. Cameras that lie there stay, but for a file that was cut.
 void write_cameras(const LevelsOptions& o) {
   const fs::path file = fs::path(o.output) / "cameras.json";
-  if (fs::exists(file)) return;
+  if (is_whole(file)) return;
   try {
     const CameraList list = listed_cameras(o.scene, {});
     auto json = nlohmann::ordered_json::array();

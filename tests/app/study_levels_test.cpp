@@ -74,7 +74,7 @@ TEST_F(StudyLevels, TellWhatRenderTells) {
 
 TEST_F(StudyLevels, OfSeveralScenesTellHowTimesGrow) {
   const std::string small = make_levels("small");
-  test::save_ply(model, test::floor_model());
+  test::save_ply(model, test::random_model(2, 2000, 1));
   const std::string large = make_levels("large", false);
   const Outcome outcome =
       study({small, large}, {"--detail", "30dB", "--cameras", small + "/cameras.json", "--view", "view2",

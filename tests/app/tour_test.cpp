@@ -118,7 +118,7 @@ TEST_F(Tour, ItsFirstToleranceIsSearchedAsThatOfAnyPictureIs) {
 
 TEST_F(Tour, PairsAreHeads) {
   add_cameras();  // front and pair are at one place, side is half a unit away
-  ASSERT_TRUE(good(tour({"--tour", "1,90", "--fps", "4", "--mono"})));
+  ASSERT_TRUE(good(tour({"--tour", "1,90", "--fps", "4", "--mono", "--units-per-metre", "0.5"})));
   const auto frames = views();
   ASSERT_EQ(frames.size(), 5u);  // 1 m in 1 s
   EXPECT_NEAR(place(frames[0]).x, 0.0, 1e-6);
@@ -141,7 +141,8 @@ TEST_F(Tour, AVideoHasTheToursFrames) {
   if (!have_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
   const std::string video = folder / "a.mkv";
   const auto facts = [&](std::vector<std::string> more) {
-    more.insert(more.end(), {"--tour", "walk", "--seconds", "0.25", "-o", video});
+    more.insert(more.end(),
+                {"--tour", "walk", "--seconds", "0.25", "--units-per-metre", "0.25", "-o", video});
     EXPECT_TRUE(good(tour(more)));
     return facts_of(video);
   };
