@@ -63,13 +63,19 @@ def test_other_shapes_are_refused(pictures, shape):
         binosplat.compare(np.zeros(shape, np.float32), np.zeros(shape, np.float32))
 
 
+def test_alpha_of_one_is_before_black(pictures):
+    a, b = pictures
+    opaque = np.dstack([b, np.full(b.shape[:2], 255, np.uint8)])
+    assert binosplat.compare(a, opaque).psnr == binosplat.compare(a, b).psnr
+    clear = np.dstack([b, np.zeros(b.shape[:2], np.uint8)])
+    assert binosplat.compare(a, clear).psnr == binosplat.compare(a, np.zeros_like(b)).psnr
+
+
 def test_pictures_that_do_not_go_together_are_refused(pictures):
     a, b = pictures
-    for other, words in ((b[:-1], "pictures of 20 x 24 and 20 x 23 px cannot be compared"),
-                         (np.zeros((24, 20, 4), np.uint8), "pictures of 3 and 4 channels cannot be compared")):
-        with pytest.raises(binosplat.InputError) as raised:
-            binosplat.compare(a, other)
-        assert words in str(raised.value)
+    with pytest.raises(binosplat.InputError) as raised:
+        binosplat.compare(a, b[:-1])
+    assert "pictures of 20 x 24 and 20 x 23 px cannot be compared" in str(raised.value)
     with pytest.raises(binosplat.InputError):
         binosplat.compare(a, b, ppd=0)
     huge = np.broadcast_to(np.zeros(1, np.float32), (1 << 20, 1 << 20))  # takes no memory itself
