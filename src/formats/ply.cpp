@@ -1,11 +1,8 @@
 #include "formats/ply.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -17,56 +14,13 @@
 #include "formats/content.h"
 #include "formats/perspective.h"
 #include "formats/ply_layout.h"
+#include "formats/ply_numbers.h"
 
 namespace binosplat {
 
 namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
-
-/// A number as it is stored; every type of ply fits a double exactly.
-template <typename Bits>
-Bits load_bits(const std::byte* at, bool swapped) {
-  Bits bits;
-  std::memcpy(&bits, at, sizeof(bits));
-  if constexpr (sizeof(Bits) > 1) {
-    if (swapped) {
-      auto bytes = std::bit_cast<std::array<std::byte, sizeof(Bits)>>(bits);
-      std::reverse(bytes.begin(), bytes.end());
-      bits = std::bit_cast<Bits>(bytes);
-    }
-  }
-  return bits;
-}
-
-template <typename T, typename Bits>
-double load_as(const std::byte* at, bool swapped) {
-  return static_cast<double>(std::bit_cast<T>(load_bits<Bits>(at, swapped)));
-}
-
-double load(PlyType type, const std::byte* at, bool swapped) {
-  switch (type) {
-    case PlyType::int8:
-      return load_as<std::int8_t, std::uint8_t>(at, swapped);
-    case PlyType::uint8:
-      return load_as<std::uint8_t, std::uint8_t>(at, swapped);
-    case PlyType::int16:
-      return load_as<std::int16_t, std::uint16_t>(at, swapped);
-    case PlyType::uint16:
-      return load_as<std::uint16_t, std::uint16_t>(at, swapped);
-    case PlyType::int32:
-      return load_as<std::int32_t, std::uint32_t>(at, swapped);
-    case PlyType::uint32:
-      return load_as<std::uint32_t, std::uint32_t>(at, swapped);
-    case PlyType::float16:
-      return half_of(load_bits<std::uint16_t>(at, swapped));
-    case PlyType::float32:
-      return load_as<float, std::uint32_t>(at, swapped);
-    case PlyType::float64:
-      break;
-  }
-  return load_as<double, std::uint64_t>(at, swapped);
-}
 
 /// Walks the elements of a ply file in order and decodes the Gaussians among them.
 class PlyReader {
@@ -76,7 +30,7 @@ class PlyReader {
         bytes_(bytes),
         header_(header),
         layout_(find_layout(path, header_)),
-        swapped_((header_.format == PlyFormat::big_endian) != (std::endian::native == std::endian::big)),
+        swapped_(is_swapped(header_.format)),
         at_(header_.data),
         line_(header_.lines),
         progress_("reading " + path.filename().string(), layout_.vertices->count) {}
@@ -184,7 +138,7 @@ class PlyReader {
       std::size_t length = 1;
       if (property.count_type) {
         if (size_of(*property.count_type) > bytes_.size() - at) return beyond;
-        const double count = load(*property.count_type, bytes_.data() + at, swapped_);
+        const double count = load_ply_number(*property.count_type, bytes_.data() + at, swapped_);
         if (count < 0) return beyond;
         length = static_cast<std::size_t>(count);
         at += size_of(*property.count_type);
@@ -199,7 +153,7 @@ class PlyReader {
     RawGaussian raw;
     for (std::size_t k = 0; k < layout_.sources.size(); ++k) {
       const auto& [property, type, as_bits] = layout_.sources[k];
-      raw[k] = static_cast<float>(load(type, row + offsets[property], swapped_));
+      raw[k] = static_cast<float>(load_ply_number(type, row + offsets[property], swapped_));
     }
     return raw;
   }

@@ -8,10 +8,10 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
-#include "formats/bytes.h"
 #include "formats/content.h"
 #include "formats/lens.h"
 #include "formats/ply_header.h"
+#include "formats/ply_numbers.h"
 
 namespace binosplat {
 
@@ -59,32 +59,8 @@ class Rows {
     if (wanted.count > (bytes_.size() - at) / size_of(type)) fail(wanted, "the file is cut short within it");
     Numbers numbers;
     for (std::size_t i = 0; i < wanted.count; ++i)
-      numbers.push_back(load(type, bytes_.subspan(at + i * size_of(type), size_of(type))));
+      numbers.push_back(load_ply_number(type, &bytes_[at + i * size_of(type)], is_swapped(header_.format)));
     return numbers;
-  }
-
-  double load(PlyType type, std::span<const std::byte> stored) const {
-    std::vector<std::byte> bytes(stored.begin(), stored.end());
-    if (header_.format == PlyFormat::big_endian) std::reverse(bytes.begin(), bytes.end());
-    switch (type) {
-      case PlyType::int8:
-        return load_number<std::int8_t>(bytes.data());
-      case PlyType::uint8:
-        return load_number<std::uint8_t>(bytes.data());
-      case PlyType::int16:
-        return load_number<std::int16_t>(bytes.data());
-      case PlyType::uint16:
-        return load_number<std::uint16_t>(bytes.data());
-      case PlyType::int32:
-        return load_number<std::int32_t>(bytes.data());
-      case PlyType::uint32:
-        return load_number<std::uint32_t>(bytes.data());
-      case PlyType::float32:
-        return load_number<float>(bytes.data());
-      case PlyType::float64:
-        break;
-    }
-    return load_number<double>(bytes.data());
   }
 
   Numbers read_text(const PlyElement& wanted) const {

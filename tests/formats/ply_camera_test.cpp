@@ -102,6 +102,18 @@ TEST_F(PlyCamera, IsWhatTheModelWasMadeFrom) {
   EXPECT_TRUE(test::fails_saying([&] { load_cameras(model); }, {"tells no camera", "'intrinsic'"}));
 }
 
+// A type that readers of models know is one of cameras, too.
+TEST_F(PlyCamera, MayBeHalves) {
+  std::vector<Element> elements = sharp();
+  for (Element& element : elements)
+    if (element.type == "float") element.type = "half";
+  for (const char* format : {"binary_little_endian", "binary_big_endian", "ascii"}) {
+    const Camera camera = load(elements, format);
+    EXPECT_TRUE(as_meant(camera)) << format;
+    EXPECT_EQ(glm::dvec4(camera.fx, camera.fy, camera.cx, camera.cy), glm::dvec4(500, 510, 320.5, 200.25));
+  }
+}
+
 TEST_F(PlyCamera, OfTheFirstVersion) {
   const Numbers transposed = {0, 0, 1, 2, -1, 0, 0, 3, 0, -1, 0, -1};
   const Camera camera =

@@ -8,6 +8,7 @@
 #include "formats/ply.h"
 #include "support/errors.h"
 #include "support/ply.h"
+#include "support/ply_models.h"
 #include "support/program.h"
 
 namespace binosplat {
@@ -15,18 +16,8 @@ namespace {
 
 using test::PlyFile;
 
-Model load(const std::string& bytes) {
-  const test::TempFolder folder;
-  test::write_text(folder / "model.ply", bytes);
-  return load_ply(folder / "model.ply");
-}
-
-Model load(const PlyFile& file) { return load(to_bytes(file)); }
-
-bool equal(const Model& a, const Model& b) {
-  return a.degree == b.degree && a.position == b.position && a.scale == b.scale && a.rotation == b.rotation &&
-         a.opacity == b.opacity && a.sh == b.sh && a.left_out == b.left_out;
-}
+using test::equal;
+using test::load;
 
 /// By the definition of the format, in float64.
 double from_bits(int bits) {

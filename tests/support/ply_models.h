@@ -1,0 +1,27 @@
+#pragma once
+// Models that are read from ply files of a test.
+
+#include <string>
+
+#include "formats/ply.h"
+#include "support/ply.h"
+#include "support/program.h"
+
+namespace binosplat::test {
+
+/// What is read of the bytes of a ply.
+inline Model load(const std::string& bytes) {
+  const TempFolder folder;
+  write_text(folder / "model.ply", bytes);
+  return load_ply(folder / "model.ply");
+}
+
+inline Model load(const PlyFile& file) { return load(to_bytes(file)); }
+
+/// But for what is said of them.
+inline bool equal(const Model& a, const Model& b) {
+  return a.degree == b.degree && a.position == b.position && a.scale == b.scale && a.rotation == b.rotation &&
+         a.opacity == b.opacity && a.sh == b.sh && a.left_out == b.left_out;
+}
+
+}  // namespace binosplat::test
