@@ -31,8 +31,7 @@ Blind blind_of(const Model& model, const std::vector<Camera>& cameras, const std
     Shot shot;
     shot.name = cameras[v].name;
     shot.eyes = {{"", cameras[v], {}}};
-    blind.why = why_empty(model, shot, near_plane);
-    blind.why.resize(std::min(blind.why.size(), blind.why.find(": see --eye")));  // which these do not have
+    blind.why = why_empty(model, shot, near_plane, "");
   }
   return blind;
 }
@@ -63,16 +62,17 @@ void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<Vi
   views = std::move(kept);
 }
 
-}  // namespace
-
+/// Which cameras see something. Warns of those that do not; throws Error where none does, but one is needed.
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
-                               const std::vector<Camera>& cameras, double near_plane, bool needs_one) {
+                               const std::vector<Camera>& cameras, double near_plane, bool needs_one = true) {
   std::vector<bool> sees = study::seeing(context, model, cameras, near_plane);
   const Blind blind = blind_of(model, cameras, sees, near_plane);
   if (needs_one && blind.names.size() == cameras.size() && !cameras.empty()) fail_blind(command, blind);
   if (!blind.names.empty()) warn(blind, cameras.size());
   return sees;
 }
+
+}  // namespace
 
 void refuse_blind(const std::string& command, gl::Context& context, const Model& model,
                   const std::vector<Shot>& shots, double near_plane) {
@@ -97,6 +97,11 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
   std::vector<Camera> cameras;
   for (const study::CalibrationView& view : views) cameras.push_back(view.camera);
   keep_those(seeing_views(command, context, model, cameras, near_plane), 0, views);
+}
+
+void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
+                     std::vector<Camera>& cameras) {
+  keep_those(seeing_views(command, context, model, cameras, near_plane, false), 0, cameras);
 }
 
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,

@@ -83,14 +83,9 @@ Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   Views views{{}, near_plane_of(o.camera, list), nullptr};
   const std::vector<Camera> all = chosen_cameras(o.camera.views, o.camera.lens, list);
   const std::size_t wanted = o.camera.views.empty() ? static_cast<std::size_t>(*o.report) : all.size();
-  std::vector<Camera> chosen;
-  for (const std::size_t i : study::spread_evenly(all.size(), wanted)) chosen.push_back(all[i]);
+  for (const std::size_t i : study::spread_evenly(all.size(), wanted)) views.cameras.push_back(all[i]);
   views.context = open_context(o.context);
-  const std::vector<bool> sees =
-      seeing_views("convert --report", *views.context, model, chosen, views.near_plane, false);
-  for (std::size_t v = 0; v < chosen.size(); ++v) {
-    if (sees[v]) views.cameras.push_back(chosen[v]);
-  }
+  leave_out_blind("convert --report", *views.context, model, views.near_plane, views.cameras);
   return views;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scene/axes.h"
+#include "scene/point_seen.h"
 #include "scene/summary.h"
 
 namespace binosplat::app {
@@ -20,19 +21,17 @@ Seen look(const Model& model, Camera camera, double near_plane) {
   camera = into_axes(camera, model.axes);
   Seen seen;
   for (const glm::vec3& p : model.position) {
-    const glm::dvec3 v = glm::transpose(camera.rotation) * (glm::dvec3(p) - camera.position);
-    if (v.z <= 0.0) continue;
-    ++(v.z > near_plane ? seen.ahead : seen.near);
-    const double x = camera.fx * v.x / v.z + camera.cx, y = camera.fy * v.y / v.z + camera.cy;
-    const bool inside = x >= 0.0 && x < camera.width && y >= 0.0 && y < camera.height;
-    if (inside && v.z > near_plane) ++seen.inside;
+    const PointSeen point = see(camera, p);
+    if (point.ahead <= 0.0) continue;
+    ++(point.ahead > near_plane ? seen.ahead : seen.near);
+    if (point.is_within(0.0) && point.ahead > near_plane) ++seen.inside;
   }
   return seen;
 }
 
 }  // namespace
 
-std::string why_empty(const Model& model, const Shot& shot, double near_plane) {
+std::string why_empty(const Model& model, const Shot& shot, double near_plane, std::string_view elsewhere) {
   const Camera& eye = shot.eyes.front().camera;
   const Seen seen = look(model, eye, near_plane);
   if (seen.inside > 0)
@@ -52,9 +51,8 @@ std::string why_empty(const Model& model, const Shot& shot, double near_plane) {
   const Bounds core = summarise(model).core;
   const glm::dvec3 middle =
       world_from_axes(model.axes) * (0.5 * (glm::dvec3(core.low) + glm::dvec3(core.high)));
-  return fmt::format(
-      "view {} looks {} the model, whose middle is at {:.4g},{:.4g},{:.4g}: see --eye and --at, or --orbit 8",
-      shot.name, seen.ahead == 0 ? "away from" : "past", middle.x, middle.y, middle.z);
+  return fmt::format("view {} looks {} the model, whose middle is at {:.4g},{:.4g},{:.4g}{}", shot.name,
+                     seen.ahead == 0 ? "away from" : "past", middle.x, middle.y, middle.z, elsewhere);
 }
 
 }  // namespace binosplat::app

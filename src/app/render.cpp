@@ -156,8 +156,8 @@ std::optional<double> exact_frame_ms(render::Frame& frame, const Work& work, con
       report.drawn.size() < (report.context.software() ? some : many) || work.followed || o.foveate ||
       work.plan.vr180)
     return std::nullopt;
-  const render::FrameSettings exact{
-      .order = o.drawing.order, .projection = o.drawing.projection, .precision = o.drawing.precision};
+  render::FrameSettings exact = render::exact_of(settings_of(o.drawing));
+  exact.precision = o.drawing.precision;
   const std::vector<shared::View> views = views_of(report.drawn.back().shot);
   if (report.drawn.size() >= many) frame.draw(views, exact);  // in which drivers compile their programs
   return frame.draw(views, exact).total_ms;

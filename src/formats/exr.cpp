@@ -325,8 +325,7 @@ glm::ivec2 exr_size(const std::filesystem::path& path, std::span<const std::byte
 bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   constexpr int lines = 16;  // of a block that ZIP packs, as in what is written here
   check_exr_header(path, bytes, {});
-  try {
-    Imf::InputFile file(path.c_str());
+  return read_file(path, [](Imf::InputFile& file) {
     const Imath::Box2i window = file.header().dataWindow();
     for (int y = window.min.y; y <= window.max.y; y += lines) {
       const char* block = nullptr;
@@ -334,11 +333,7 @@ bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> 
       file.rawPixelData(y, block, size);  // throws where it is cut
     }
     return file.isComplete();
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    return false;
-  }
+  });
 }
 
 }  // namespace binosplat

@@ -21,21 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using Files = std::vector<fs::path>;
 
-/// The pictures that a SOG's meta.json names.
-Files pictures_of(const fs::path& meta, const nlohmann::json& json) {
-  const JsonValue root(meta.string(), json);
-  Files files;
-  for (const char* item : {"means", "scales", "quats", "sh0", "shN"}) {
-    if (!root.has(item)) continue;
-    const JsonValue names = root.at(item).at("files");
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const std::string name = names.at(i).text();
-      if (stays_below(name)) files.push_back(meta.parent_path() / name);
-    }
-  }
-  return files;
-}
-
 Files files_of_levels(const fs::path& lod_meta, const nlohmann::json& json) {
   const SogLevels levels(lod_meta, json);
   Files files = levels.files();
@@ -55,7 +40,7 @@ Files named_by(const fs::path& path) {
     case Content::json: {
       const nlohmann::json json = parse_json(path.string(), as_text(file.bytes()));
       if (is_sog_levels(json)) return files_of_levels(path, json);
-      if (is_sog_meta(json)) return pictures_of(path, json);
+      if (is_sog_meta(json)) return pictures_of_sog(path, json);
       if (is_gltf(json)) return files_of_gltf(path, file.bytes());
       return {};
     }
@@ -65,6 +50,20 @@ Files named_by(const fs::path& path) {
 }
 
 }  // namespace
+
+Files pictures_of_sog(const fs::path& meta, const nlohmann::json& json) {
+  const JsonValue root(meta.string(), json);
+  Files files;
+  for (const char* item : {"means", "scales", "quats", "sh0", "shN"}) {
+    if (!root.has(item)) continue;
+    const JsonValue names = root.at(item).at("files");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string name = names.at(i).text();
+      if (stays_below(name)) files.push_back(meta.parent_path() / name);
+    }
+  }
+  return files;
+}
 
 Files files_of_model(const fs::path& path) {
   std::set<fs::path> found = {file_of(path)};

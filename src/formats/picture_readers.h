@@ -37,7 +37,10 @@ void check_room(const std::filesystem::path& path, std::int64_t width, std::int6
 void check_exr_header(const std::filesystem::path& path, std::span<const std::byte> bytes,
                       const PictureLimit& limit);
 
-/// Whether an OpenEXR file in lines has all of its blocks.
+/// Whether a PNG has all of its chunks, up to the one that ends it, and where `by_sums` each as it was
+/// written.
+bool is_whole_png(std::span<const std::byte> bytes, bool by_sums);
+/// Whether an OpenEXR file in lines has all of its blocks. Throws Error for what OpenEXR cannot read.
 bool is_whole_exr(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace binosplat

@@ -148,22 +148,30 @@ glm::ivec2 begin(Reader& reader) {
   return glm::ivec2(width, height);
 }
 
-/// Whether its chunks go on up to the one that ends it.
-bool has_end(std::span<const std::byte> bytes) {
-  constexpr std::size_t signature = 8, around = 12;  // a chunk's length, name and checksum
-  for (std::size_t at = signature; at + around <= bytes.size();) {
-    if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return true;
-    at += around + png_get_uint_32(reinterpret_cast<png_const_bytep>(&bytes[at]));
+}  // namespace
+
+// Chunks of LENGTH NAME DATA SUM, behind a signature.
+bool is_whole_png(std::span<const std::byte> bytes, bool by_sums) {
+  constexpr std::size_t signature = 8, around = 12;
+  const auto number = [&](std::size_t at) {
+    return png_get_uint_32(reinterpret_cast<png_const_bytep>(&bytes[at]));
+  };
+  for (std::size_t at = signature, length = 0; at + around <= bytes.size(); at += around + length) {
+    length = number(at);
+    if (length > bytes.size() - at - around) return false;
+    const auto summed = bytes.subspan(at + 4, 4 + length);  // name and data
+    if (by_sums &&
+        crc32_z(0, reinterpret_cast<const Bytef*>(summed.data()), summed.size()) != number(at + 8 + length))
+      return false;
+    if (std::memcmp(summed.data(), "IEND", 4) == 0) return true;
   }
   return false;
 }
 
-}  // namespace
-
 glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   Reader reader{path, bytes};
   const glm::ivec2 size = begin(reader);
-  if (!has_end(bytes)) fail("{}: broken PNG: the file is cut short", path.string());
+  if (!is_whole_png(bytes, false)) fail("{}: broken PNG: the file is cut short", path.string());
   return size;
 }
 

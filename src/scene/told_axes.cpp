@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
+#include "scene/point_seen.h"
 
 namespace binosplat {
 
@@ -23,13 +24,11 @@ constexpr double along = 0.5;
 
 /// The share of the Gaussians that a camera in the model's frame has in its picture.
 double share_in_view(const Model& model, const Camera& camera) {
-  const glm::dmat3 into = glm::transpose(camera.rotation);
   std::size_t looked_at = 0, seen = 0;
   for (std::size_t i = 0; i < model.count(); i += model.count() / most_gaussians + 1) {
-    const glm::dvec3 v = into * (glm::dvec3(model.position[i]) - camera.position);
-    const double x = camera.fx * v.x / v.z + camera.cx, y = camera.fy * v.y / v.z + camera.cy;
+    const PointSeen middle = see(camera, model.position[i]);
     ++looked_at;
-    if (v.z > 0.0 && x >= 0.0 && x < camera.width && y >= 0.0 && y < camera.height) ++seen;
+    if (middle.ahead > 0.0 && middle.is_within(0.0)) ++seen;
   }
   return static_cast<double>(seen) / static_cast<double>(looked_at);
 }

@@ -9,6 +9,7 @@
 #include "base/progress.h"
 #include "render/frame.h"
 #include "scene/axes.h"
+#include "scene/point_seen.h"
 
 namespace binosplat::study {
 
@@ -30,12 +31,10 @@ bool has_middle(const Model& model, const Camera& camera, double near_plane) {
   // The middle of the nearest pixel is up to half a pixel away both ways, and the low-pass at least so wide.
   const double not_faint = 2.0 / 255.0 * std::exp(0.25 / model.kernel_px2);
   if (model.antialiased || model.scaffold) return false;
-  const glm::dmat3 into = glm::transpose(camera.rotation);
   for (std::size_t i = 0; i < model.count(); ++i) {
-    const glm::dvec3 v = into * (glm::dvec3(model.position[i]) - camera.position);
-    if (double{model.opacity[i]} < not_faint || v.z <= 1.01 * near_plane) continue;
-    const double x = camera.fx * v.x / v.z + camera.cx, y = camera.fy * v.y / v.z + camera.cy;
-    if (x > 1.0 && x < camera.width - 1.0 && y > 1.0 && y < camera.height - 1.0) return true;
+    if (double{model.opacity[i]} < not_faint) continue;
+    const PointSeen middle = see(camera, model.position[i]);
+    if (middle.ahead > 1.01 * near_plane && middle.is_within(1.0)) return true;
   }
   return false;
 }

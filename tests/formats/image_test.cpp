@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
-#include <turbojpeg.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 
 #include "support/errors.h"
 #include "support/full_disk.h"
+#include "support/jpeg.h"
 #include "support/ply.h"
 #include "support/program.h"
 
@@ -232,14 +232,7 @@ std::string jpeg_bytes(int format, int subsampling, Image& image) {
       }
     }
   }
-  tjhandle encoder = tjInitCompress();
-  unsigned char* data = nullptr;
-  unsigned long size = 0;
-  tjCompress2(encoder, levels.data(), 48, 0, 32, format, &data, &size, subsampling, 98, TJFLAG_ACCURATEDCT);
-  std::string bytes(reinterpret_cast<char*>(data), size);
-  tjFree(data);
-  tjDestroy(encoder);
-  return bytes;
+  return test::encode_jpeg(levels, 48, 32, format, subsampling, 98, TJFLAG_ACCURATEDCT);
 }
 
 double largest_difference(const Image& a, const Image& b) {
@@ -279,14 +272,8 @@ TEST(Jpeg, BrokenFilesAreRefused) {
 }
 
 TEST(Jpeg, CmykIsRefused) {
-  std::vector<unsigned char> levels(16 * 16 * 4, 99);
-  tjhandle encoder = tjInitCompress();
-  unsigned char* data = nullptr;
-  unsigned long size = 0;
-  tjCompress2(encoder, levels.data(), 16, 0, 16, TJPF_CMYK, &data, &size, TJSAMP_444, 90, 0);
-  EXPECT_TRUE(refuses(std::string(reinterpret_cast<char*>(data), size), {"CMYK"}));
-  tjFree(data);
-  tjDestroy(encoder);
+  const std::vector<unsigned char> levels(16 * 16 * 4, 99);
+  EXPECT_TRUE(refuses(test::encode_jpeg(levels, 16, 16, TJPF_CMYK, TJSAMP_444, 90), {"CMYK"}));
 }
 
 TEST(Images, OtherFilesAreNamed) {

@@ -1,12 +1,12 @@
 // The sizes of pictures by their headers, and what cannot be read, found without reading it.
 
 #include <gtest/gtest.h>
-#include <turbojpeg.h>
 
 #include "formats/exr.h"
 #include "formats/image_file.h"
 #include "support/broken.h"
 #include "support/errors.h"
+#include "support/jpeg.h"
 #include "support/models.h"
 #include "support/program.h"
 
@@ -26,14 +26,7 @@ std::string jpeg_of(int format, int subsampling, int flags = 0) {
   std::vector<unsigned char> pixels(std::size_t{40} * 30 * 4);
   test::Uniform uniform(5);
   for (unsigned char& v : pixels) v = static_cast<unsigned char>(uniform(0, 255));
-  tjhandle encoder = tjInitCompress();
-  unsigned char* out = nullptr;
-  unsigned long size = 0;
-  tjCompress2(encoder, pixels.data(), 40, 0, 30, format, &out, &size, subsampling, 90, flags);
-  std::string bytes(reinterpret_cast<char*>(out), size);
-  tjFree(out);
-  tjDestroy(encoder);
-  return bytes;
+  return test::encode_jpeg(pixels, 40, 30, format, subsampling, 90, flags);
 }
 
 struct PictureSize : testing::Test {
