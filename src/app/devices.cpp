@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-void print(const gl::Device& device) {
+void print_device(const gl::Device& device) {
   fmt::print("{}\n", device.options);
   if (!device.usable) {
     fmt::print("  cannot be used: {}\n", device.trouble);
@@ -30,7 +30,7 @@ void print(const gl::Device& device) {
   for (const std::string& lack : device.lacks) fmt::print("  lacks {}\n", lack);
 }
 
-ordered_json to_json(const gl::Device& device) {
+ordered_json device_json(const gl::Device& device) {
   if (!device.usable)
     return study::object("options", device.options, "usable", false, "trouble", device.trouble);
   const gl::Limits& l = device.limits;
@@ -40,7 +40,7 @@ ordered_json to_json(const gl::Device& device) {
       study::object("storage_block_bytes", l.storage_block_bytes, "groups", l.groups, "invocations",
                     l.invocations, "shared_bytes", l.shared_bytes, "storage_blocks", l.storage_blocks,
                     "program_binaries", l.program_binaries, "timestamp_bits", l.timestamp_bits, "subgroups",
-                    l.subgroups_of_32),
+                    l.subgroups_of_32, "why_no_subgroups", l.why_no_subgroups),
       "lacks", device.lacks);
 }
 
@@ -48,8 +48,8 @@ ExitCode devices(const std::string& json) {
   const std::vector<gl::Device> list = gl::list_devices();
   ordered_json all = ordered_json::array();
   for (const gl::Device& device : list) {
-    print(device);
-    all.push_back(to_json(device));
+    print_device(device);
+    all.push_back(device_json(device));
   }
   if (!json.empty()) save_json(json, all);
   const bool any = std::any_of(list.begin(), list.end(), [](const gl::Device& d) { return d.usable; });

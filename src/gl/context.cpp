@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "gl/backends.h"
+#include "gl/subgroups.h"
 
 namespace binosplat::gl {
 
@@ -100,6 +101,8 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend, b
                             renderer_, limits_.storage_blocks, bindings, storage_blocks_needed,
                             storage_bindings_needed));
   }
+  limits_.why_no_subgroups = gl::why_no_subgroups(*this);
+  use_subgroups(true);
 }
 
 void Context::read_limits() {
@@ -118,19 +121,6 @@ void Context::read_limits() {
   int bits = 0;
   functions_.GetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
   limits_.timestamp_bits = static_cast<std::uint32_t>(bits);
-  const int extensions = integer(GL_NUM_EXTENSIONS);
-  for (int i = 0; i < extensions; ++i) {
-    const auto* name =
-        reinterpret_cast<const char*>(functions_.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
-    if (name != nullptr && std::string_view(name) == "GL_KHR_shader_subgroup") {
-      constexpr int needed = GL_SUBGROUP_FEATURE_BALLOT_BIT_KHR | GL_SUBGROUP_FEATURE_SHUFFLE_BIT_KHR |
-                             GL_SUBGROUP_FEATURE_VOTE_BIT_KHR | GL_SUBGROUP_FEATURE_ARITHMETIC_BIT_KHR;
-      has_subgroups_ = integer(GL_SUBGROUP_SIZE_KHR) == 32 &&
-                       (integer(GL_SUBGROUP_SUPPORTED_STAGES_KHR) & GL_COMPUTE_SHADER_BIT) != 0 &&
-                       (integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & needed) == needed;
-    }
-  }
-  use_subgroups(true);
   functions_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &limits_.storage_block_bytes);
   // llvmpipe states 128 MiB and works right up to 2 GiB, where a read crashes; no driver is trusted beyond
   // that.

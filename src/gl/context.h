@@ -34,9 +34,9 @@ struct Limits {
   std::int64_t shared_bytes = 0;         // of one work group
   std::uint32_t program_binaries = 0;    // formats; 0: programs cannot be kept
   std::uint32_t timestamp_bits = 0;      // 0: stages cannot be timed
-  /// Of 32 invocations with ballots, as the programs that know subgroups expect them
-  /// (GL_KHR_shader_subgroup).
+  /// Whether programs may use subgroups of 32 invocations, as found by gl/subgroups.h, and why not.
   bool subgroups_of_32 = false;
+  std::string why_no_subgroups;
 };
 
 class Context {
@@ -63,7 +63,7 @@ class Context {
   /// Largest group count that a dispatch may use along x; a test may lower it to see dispatches split.
   void limit_groups(std::uint32_t groups) { limits_.groups = groups; }
   /// Whether programs may use subgroups, if there are any; a test may see what is drawn without them.
-  void use_subgroups(bool use) { limits_.subgroups_of_32 = use && has_subgroups_; }
+  void use_subgroups(bool use) { limits_.subgroups_of_32 = use && limits_.why_no_subgroups.empty(); }
 
   const std::string& backend() const { return backend_; }    // "EGL device 0", "OSMesa", "caller's"
   const std::string& renderer() const { return renderer_; }  // GL_RENDERER
@@ -106,7 +106,6 @@ class Context {
 
   Functions functions_;
   Limits limits_;
-  bool has_subgroups_ = false;
   std::string backend_, vendor_, renderer_, version_;
   std::filesystem::path shader_folder_;
   std::unique_ptr<ProgramCache> program_cache_;

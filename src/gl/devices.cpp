@@ -8,8 +8,11 @@ namespace binosplat::gl {
 
 namespace {
 
-std::vector<std::string> missing(const Limits& limits) {
+std::vector<std::string> missing(const Limits& limits, bool software) {
   std::vector<std::string> lacks;
+  if (!limits.subgroups_of_32 && !software)
+    lacks.push_back(
+        fmt::format("subgroups of 32 invocations ({}): frames take longer", limits.why_no_subgroups));
   if (limits.timestamp_bits == 0) lacks.emplace_back("timestamps: stages are not timed");
   if (limits.program_binaries == 0)
     lacks.emplace_back("program binaries: shaders are compiled at every start");
@@ -30,7 +33,7 @@ Device look_at(Backend backend, int number, std::string options) {
     device.version = context->version();
     device.software = context->software();
     device.limits = context->limits();
-    device.lacks = missing(device.limits);
+    device.lacks = missing(device.limits, device.software);
   } catch (const Error& error) {
     device.trouble = error.what();
   }

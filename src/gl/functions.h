@@ -79,6 +79,7 @@ namespace binosplat::gl {
   X(GetUniformLocation, GETUNIFORMLOCATION)                                             \
   X(IsEnabled, ISENABLED)                                                               \
   X(IsEnabledi, ISENABLEDI)                                                             \
+  X(IsProgram, ISPROGRAM)                                                               \
   X(LinkProgram, LINKPROGRAM)                                                           \
   X(MapNamedBufferRange, MAPNAMEDBUFFERRANGE)                                           \
   X(MemoryBarrier, MEMORYBARRIER)                                                       \

@@ -62,7 +62,9 @@ KeptState::~KeptState() {
   if (scissors_ != GL_FALSE) gl_.Enablei(GL_SCISSOR_TEST, 0);
   if (encodes_ != GL_FALSE) gl_.Enable(GL_FRAMEBUFFER_SRGB);
   if (discards_ != GL_FALSE) gl_.Enable(GL_RASTERIZER_DISCARD);
-  gl_.UseProgram(static_cast<GLuint>(program_));
+  // One that was deleted while it was in use went with its last use.
+  const auto program = static_cast<GLuint>(program_);
+  gl_.UseProgram(gl_.IsProgram(program) == GL_TRUE ? program : 0);
 }
 
 KeptDrawing::KeptDrawing(const Context& context, std::uint32_t framebuffer, std::uint32_t vertices, int width,

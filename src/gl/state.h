@@ -15,6 +15,7 @@ namespace binosplat::gl {
 /// bindings, of binding 0 and the general ones; the buffer of indirect dispatches; the images of the first
 /// MAX_CANVASES units; the scissor test of index 0, the conversion to sRGB and the rasterizer's discarding.
 ///
+/// A program that was deleted while it was in use cannot be set again: then none is.
 /// What triangles go by is kept by KeptDrawing where one is drawn.
 /// Nothing else is touched: nothing is bound to draw with (vertex arrays, framebuffers, textures, samplers),
 /// and neither are other images, pixel store, clear values, viewports, masks, tests, blending or the debug

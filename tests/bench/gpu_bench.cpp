@@ -103,6 +103,7 @@ Loaded load(const Case& c, const fs::path& scenes, const fs::path& views, int sh
 struct How {
   render::FrameSettings settings;
   fs::path shaders;
+  bool subgroups = true;
   int frames = 20;  // that the medians are of
   int shrink = 1;   // pictures so many times smaller
   std::optional<stereo::Foveation> foveate;
@@ -223,6 +224,7 @@ Json run(const Case& c, const fs::path& scenes, const fs::path& views, const How
   const Clock::time_point start = Clock::now();
   const auto context = gl::Context::open();
   context->set_shader_folder(how.shaders);
+  context->use_subgroups(how.subgroups);
   Json json = {{"scene", c.name},
                {"precision", precision_choices[how.settings.precision].name},
                {"order", order_choices[*how.settings.order].name},
@@ -301,6 +303,7 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", scenes, "Folder of the unpacked scenes");
   app.add_option("--views", views, "Folder of the bench views (SCENE_bench.json)");
   app.add_option("--shader-dir", how.shaders, "Read shaders from this folder, not the built-in ones");
+  app.add_flag("!--no-subgroups", how.subgroups, "Draw as GPUs do whose subgroups have not 32 invocations");
   app.add_option("--json", json, "Append the result to this file, one line");
   app.add_option("--frames", how.frames, "Frames that the medians are of");
   app.add_option("--shrink", how.shrink,

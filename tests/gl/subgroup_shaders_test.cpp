@@ -85,6 +85,11 @@ TEST_F(SubgroupShaders, Compile) {
     EXPECT_EQ(said_of("ranges_of_tiles.comp",
                       {{"SUPERTILE_SIDE", "2"}, {"WITH_SUBGROUPS", "1"}, {"WRITES", writes}}, {}),
               "");
+  Defines check = {{"COLUMNS", "32"}, {"ROWS", "4"}};
+  for (const char* fault :
+       {"OF_OTHER_SIZE", "IN_OTHER_ORDER", "VOTE_WITH_OTHERS", "SHUFFLE_OTHERS", "ADD_OTHERS"})
+    check.emplace_back(std::string("SUBGROUPS_") + fault, "1u");
+  EXPECT_EQ(said_of("subgroups_check.comp", check, {}), "");
   for (const char* block : {"1024", "2048"}) {
     for (const char* bits : {"8", "9"}) {
       EXPECT_EQ(said_of("primitives/sort_scatter_subgroups.comp",

@@ -320,6 +320,16 @@ TEST_F(State, IsTheSameAfterAFrame) {
   EXPECT_GT(*std::max_element(odd_copy.begin(), odd_copy.end()), 0.1f) << "nothing was copied";
 }
 
+TEST_F(State, AProgramThatWasDeletedInUseLeavesNoError) {
+  gl.UseProgram(caller.context->program("ranges_clear.comp").id());
+  caller.context->set_shader_folder({});  // which deletes it
+  {
+    const gl::KeptState kept(*caller.context);
+    gl.UseProgram(0);
+  }
+  EXPECT_EQ(gl.GetError(), GLenum{GL_NO_ERROR});
+}
+
 TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   const Model model = test::random_model(1, 200, 1);
   render::Frame frame(*caller.context, model);

@@ -1,0 +1,95 @@
+#include "gl/subgroups.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <string_view>
+
+#include "base/error.h"
+#include "gl/buffer.h"
+#include "gl/dispatch.h"
+#include "gl/state.h"
+
+namespace binosplat::gl {
+
+namespace {
+
+/// A work group of a shader that knows subgroups.
+struct GroupShape {
+  int columns, rows;
+};
+
+/// Of sorts and scans (pairs.comp's first), and of blend_subgroups.comp and ranges_of_tiles.comp.
+constexpr std::array group_shapes = {GroupShape{128, 1}, GroupShape{256, 1}, GroupShape{32, 2},
+                                     GroupShape{32, 4}, GroupShape{32, 8}};
+
+struct Fault {
+  const char* define;
+  const char* text;
+};
+
+/// What subgroups_check.comp looks for, worst first.
+constexpr std::array subgroup_faults = {
+    Fault{"SUBGROUPS_OF_OTHER_SIZE", "are said to have 32 invocations, and have others"},
+    Fault{"SUBGROUPS_IN_OTHER_ORDER", "have their invocations in another order"},
+    Fault{"SUBGROUPS_VOTE_WITH_OTHERS", "vote with others than their 32 invocations"},
+    Fault{"SUBGROUPS_SHUFFLE_OTHERS", "shuffle with others than their 32 invocations"},
+    Fault{"SUBGROUPS_ADD_OTHERS", "add up others than their 32 invocations"}};
+
+bool has_extension(const Functions& gl, std::string_view wanted) {
+  GLint extensions = 0;
+  gl.GetIntegerv(GL_NUM_EXTENSIONS, &extensions);
+  for (GLint i = 0; i < extensions; ++i) {
+    const auto* name = reinterpret_cast<const char*>(gl.GetStringi(GL_EXTENSIONS, static_cast<GLuint>(i)));
+    if (name != nullptr && name == wanted) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string found_in_subgroups(Context& context) {
+  const KeptState kept(context);
+  Dispatcher dispatcher(context);
+  Buffer wrong(context, "faults of subgroups");
+  wrong.upload(std::vector<std::uint32_t>{0});
+  for (const GroupShape& shape : group_shapes) {
+    Defines defines = {{"COLUMNS", std::to_string(shape.columns)}, {"ROWS", std::to_string(shape.rows)}};
+    for (std::size_t k = 0; k < subgroup_faults.size(); ++k)
+      defines.emplace_back(subgroup_faults[k].define, fmt::format("{}u", 1u << k));
+    dispatcher.start(context.program("subgroups_check.comp", defines), Work::of_groups(1),
+                     {{"Wrong", wrong}});
+  }
+  dispatcher.wait_for_writes();
+  const std::uint32_t found = wrong.read<std::uint32_t>(1).front();
+  for (std::size_t k = 0; k < subgroup_faults.size(); ++k) {
+    if ((found >> k & 1u) != 0) return fmt::format("its subgroups {}", subgroup_faults[k].text);
+  }
+  return "";
+}
+
+std::string why_no_subgroups(Context& context) {
+  const Functions& gl = context.gl();
+  const auto integer = [&](GLenum name) {
+    GLint value = 0;
+    gl.GetIntegerv(name, &value);
+    return value;
+  };
+  constexpr GLint needed = GL_SUBGROUP_FEATURE_BALLOT_BIT_KHR | GL_SUBGROUP_FEATURE_SHUFFLE_BIT_KHR |
+                           GL_SUBGROUP_FEATURE_VOTE_BIT_KHR | GL_SUBGROUP_FEATURE_ARITHMETIC_BIT_KHR;
+  if (!has_extension(gl, "GL_KHR_shader_subgroup")) return "it has no GL_KHR_shader_subgroup";
+  if (const GLint size = integer(GL_SUBGROUP_SIZE_KHR); size != 32)
+    return fmt::format("its subgroups have {} invocations", size);
+  if ((integer(GL_SUBGROUP_SUPPORTED_STAGES_KHR) & GL_COMPUTE_SHADER_BIT) == 0)
+    return "its compute shaders have no subgroups";
+  if ((integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & needed) != needed)
+    return "its subgroups lack votes, sums, ballots or shuffles";
+  try {
+    return found_in_subgroups(context);
+  } catch (const Error& error) {  // a compiler that does not take what its driver says that it has
+    if (error.code() != ExitCode::no_gl) throw;
+    return fmt::format("its shaders with subgroups do not compile: {}", error.what());
+  }
+}
+
+}  // namespace binosplat::gl
