@@ -41,7 +41,8 @@ tidy() {
 }
 export -f tidy
 
-cmake --preset release -B build/tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON --log-level=ERROR >/dev/null
+cmake --preset release -B build/tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_UNITY_BUILD=OFF \
+  --log-level=ERROR >/dev/null
 deadline=$((EPOCHSECONDS + 240))
 if [[ ${1:-} == --all ]]; then deadline=$((EPOCHSECONDS + 86400)); fi
 export deadline

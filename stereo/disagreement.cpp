@@ -14,7 +14,7 @@ namespace {
 
 constexpr double depth_tolerance = 0.01;
 
-void check(const std::array<shared::View, 2>& views, std::span<const Picture> pictures) {
+void check_pair(const std::array<shared::View, 2>& views, std::span<const Picture> pictures) {
   if (pictures.size() != 2)
     fail("disagreement of {} pictures: expected a left and a right one", pictures.size());
   for (std::size_t k = 0; k < 2; ++k) {
@@ -88,8 +88,8 @@ struct Counted {
 
 Disagreement disagreement(const std::array<shared::View, 2>& views, std::span<const Picture> exact,
                           std::span<const Picture> approximate) {
-  check(views, exact);
-  check(views, approximate);
+  check_pair(views, exact);
+  check_pair(views, approximate);
   const Image left_depth = depth_map(exact[0]), right_depth = depth_map(exact[1]);
   const Image left = error_of(approximate[0], exact[0]), right = error_of(approximate[1], exact[1]);
   Disagreement result;

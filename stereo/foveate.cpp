@@ -16,7 +16,7 @@ constexpr double gaze_most = 80.0;
 constexpr double scale_least = 0.05;
 
 // Pixels of the context that one beside it is made of, on each side.
-constexpr std::uint32_t reach = 2;
+constexpr std::uint32_t inset_reach = 2;
 
 glm::dvec3 direction_of(const glm::dvec2& gaze) {
   return glm::normalize(glm::dvec3(std::tan(glm::radians(gaze.x)), -std::tan(glm::radians(gaze.y)), 1.0));
@@ -102,11 +102,11 @@ FoveatedEye foveate(const shared::View& eye, const Foveation& foveation, std::si
     out.context.lens[k + 2] = static_cast<float>(eye.lens[k + 2] * scale);
     out.context_part.low_pass_share *= static_cast<float>(scale);
     // What no pixel beside the inset is made of.
-    const auto begin = static_cast<std::uint32_t>(std::ceil(out.inset_begin[k] * scale)) + reach;
+    const auto begin = static_cast<std::uint32_t>(std::ceil(out.inset_begin[k] * scale)) + inset_reach;
     const auto end = static_cast<std::uint32_t>(std::floor(out.inset_end[k] * scale));
     const bool at_begin = out.inset_begin[k] == 0, at_end = out.inset_end[k] == size[k];
     out.context_part.hole_begin[k] = at_begin ? 0 : begin;
-    out.context_part.hole_end[k] = at_end ? std::max(pixels, 1u) : end - std::min(end, reach);
+    out.context_part.hole_end[k] = at_end ? std::max(pixels, 1u) : end - std::min(end, inset_reach);
   }
   if (glm::any(glm::greaterThanEqual(out.context_part.hole_begin, out.context_part.hole_end)))
     out.context_part.hole_begin = out.context_part.hole_end = glm::uvec2(0);

@@ -13,7 +13,7 @@ namespace {
 /// text.
 constexpr double parallel_tolerance = 1e-9;
 
-void check(const RigSettings& s) {
+void check_rig(const RigSettings& s) {
   // Written so that values that are not finite fail too.
   if (!(s.ipd >= 0.0 && std::isfinite(s.ipd))) fail("--ipd {}: expected metres, zero or more", s.ipd);
   if (!(s.units_per_metre > 0.0 && std::isfinite(s.units_per_metre))) {
@@ -75,7 +75,7 @@ bool are_parallel(const Camera& a, const Camera& b) {
 }  // namespace
 
 EyePair make_rig(const Camera& head, const RigSettings& settings) {
-  check(settings);
+  check_rig(settings);
   check_near(settings.near_plane);
   const double half = 0.5 * settings.ipd * settings.units_per_metre;
   const double shift = settings.convergence ? 0.5 * head.fx * settings.ipd / *settings.convergence : 0.0;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t calibration_views = 16, test_views = 8;
 
-void print(const study::Page& page) {
+void print_page(const study::Page& page) {
   for (const study::Section& section : page.sections)
     fmt::print("{}\n  {}\n", section.title, section.problem.empty() ? section.sentence : section.problem);
 }
@@ -63,7 +63,7 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
   const study::Page page = study::analysis_page(analysis);
   save_report(folder, "study.json", to_json(analysis), page);
-  print(page);
+  print_page(page);
   fmt::print("\n{}: report.html, study.json\n", folder.string());
   return ExitCode::done;
 }

@@ -124,7 +124,7 @@ void print_profile(const std::vector<study::StageFloor>& stages) {
   }
 }
 
-void print(const std::vector<study::BenchPoint>& points) {
+void print_points(const std::vector<study::BenchPoint>& points) {
   const std::vector<bool> front = study::pareto_front(points);
   const bool is_seen =
       std::ranges::any_of(points, [](const study::BenchPoint& p) { return p.seen.has_value(); });
@@ -154,7 +154,7 @@ void print(const std::vector<study::BenchPoint>& points) {
 ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
   const study::BenchResults results = folder.results();
   folder.save_results(results);
-  print(results.points);
+  print_points(results.points);
   fmt::print("\n{}: report.html, results.csv, results.json\n", folder.path().string());
   if (!options.compare.empty()) {
     fmt::print("\nSince {}:\n", options.compare);
@@ -184,7 +184,7 @@ BenchFolder merge(const BenchOptions& options) {
   return into;
 }
 
-void check(const BenchOptions& options) {
+void check_bench(const BenchOptions& options) {
   if (options.merge.empty() == options.scenes.empty())
     fail("bench needs scenes to measure, or --merge and the folders of shards");
   if (!options.merge.empty() && !options.shard.all())
@@ -206,7 +206,7 @@ void check_photos_of(const BenchPlan& plan, const BenchOptions& options) {
 }
 
 ExitCode bench(const BenchOptions& options) {
-  check(options);
+  check_bench(options);
   check_output(fs::path(options.output) / "results.json");
   if (!options.compare.empty()) load_points(options.compare);  // while nothing is lost
   if (!options.merge.empty()) return finish(options, merge(options));

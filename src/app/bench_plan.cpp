@@ -25,7 +25,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-BenchScene open(const BenchOptions& options, const std::string& file) {
+BenchScene open_bench_scene(const BenchOptions& options, const std::string& file) {
   BenchScene scene{is_built_in(file) ? file : fs::path(file).stem().string(), options.scene, {}};
   scene.options.name = file;
   scene.list = listed_cameras(scene.options, options.camera);
@@ -33,7 +33,7 @@ BenchScene open(const BenchOptions& options, const std::string& file) {
 }
 
 // What tells a scene from another of the same name.
-ordered_json scene_json(const BenchOptions& options, const BenchScene& scene) {
+ordered_json bench_scene_json(const BenchOptions& options, const BenchScene& scene) {
   ordered_json json = {{"name", scene.name}};
   if (scene.name == demo_city_name) {
     json["count"] = city_settings(scene.options).count;
@@ -99,9 +99,9 @@ BenchPlan make_plan(const BenchOptions& options) {
   ordered_json scenes = ordered_json::array();
   std::set<std::string> names;
   for (const std::string& file : options.scenes) {
-    const BenchScene& scene = plan.scenes.emplace_back(open(options, file));
+    const BenchScene& scene = plan.scenes.emplace_back(open_bench_scene(options, file));
     if (!names.insert(scene.name).second) fail("two scenes are called {}: bench them one by one", scene.name);
-    scenes.push_back(scene_json(options, scene));
+    scenes.push_back(bench_scene_json(options, scene));
     add_cases(plan, plan.scenes.size() - 1);
   }
   plan.json = std::make_shared<ordered_json>(

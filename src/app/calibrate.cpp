@@ -27,7 +27,7 @@ struct CalibrateOptions : MeasuredOptions {
   std::string output;
 };
 
-void print(const study::Calibration& c, const CalibrateOptions& o) {
+void print_calibration(const study::Calibration& c, const CalibrateOptions& o) {
   const bool drop = c.target.kind == study::CalibrationTarget::Kind::drop;
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
              drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
@@ -59,7 +59,7 @@ ExitCode calibrate(const CalibrateOptions& o) {
       study::calibrate(*context, scene.model, views, scene.near_plane, o.target.target(), o.table,
                        [&](std::size_t entries, std::size_t) { progress.update(entries); });
   save_json(o.output, study::to_json(found));
-  print(found, o);
+  print_calibration(found, o);
   // A tolerance goes with the size of the pictures: render warns where it differs.
   if (o.camera.lens.size)
     log_info(

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double same_focal = 0.05;  // share: nearer than this the tolerance needs no scaling to speak of
 
-render::FrameSettings exact(render::FrameSettings settings) {
+render::FrameSettings without_calibration(render::FrameSettings settings) {
   settings.th = TH_TAU;
   settings.tolerance = 0.0f;
   settings.transmittance = TRANSMITTANCE_ONE;
@@ -38,11 +38,11 @@ void CalibratedSettings::check_model(const Model& model) {
 
 render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSettings settings) const {
   if (!calibration_) return settings;
-  if (other_model_) return exact(settings);
+  if (other_model_) return without_calibration(settings);
   const Camera& camera = shot.eyes.front().camera;
   if (!study::covers(*calibration_, camera.position)) {
     log_warning("{} is far from the calibrated views: drawing it exactly", shot.name);
-    return exact(settings);
+    return without_calibration(settings);
   }
   if (std::abs(camera.fx / calibration_->focal - 1.0) > same_focal)
     log_warning(

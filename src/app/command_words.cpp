@@ -46,12 +46,12 @@ Part part_of(const CLI::App& app) {
 }
 
 /// With the options of `view`, which the preview has, a program of its own. Holds what options refer to.
-struct Parts {
+struct CommandParts {
   RenderOptions values;
   CLI::App view;
   std::vector<Part> commands;
 
-  explicit Parts(const CLI::App& program) : view("", "view") {
+  explicit CommandParts(const CLI::App& program) : view("", "view") {
     add_view_options(view, values);
     add_max_memory(view);
     add_quiet(view);
@@ -127,7 +127,7 @@ std::string names_of(const Options& options) {
 }  // namespace
 
 std::string manual_page(const CLI::App& program) {
-  const Parts parts(program);
+  const CommandParts parts(program);
   std::string page = fmt::format(
       ".TH BINOSPLAT 1 \"\" \"binosplat {}\" \"User Commands\"\n.SH NAME\nbinosplat \\- "
       "both eyes of a 3D Gaussian Splatting model\n.ad l\n.SH SYNOPSIS\n.B binosplat\nSUBCOMMAND [OPTIONS] "
@@ -148,7 +148,7 @@ std::string manual_page(const CLI::App& program) {
 }
 
 std::string bash_completion(const CLI::App& program) {
-  const Parts parts(program);
+  const CommandParts parts(program);
   std::vector<std::string> commands;
   std::string options, words;
   for (const Part& part : parts.commands) {
@@ -185,7 +185,7 @@ complete -o bashdefault -o default -F _binosplat binosplat
 }
 
 std::string fish_completion(const CLI::App& program) {
-  const Parts parts(program);
+  const CommandParts parts(program);
   const auto quoted = [](const std::string& text) {
     return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
   };
@@ -208,7 +208,7 @@ std::string fish_completion(const CLI::App& program) {
 }
 
 std::string zsh_completion(const CLI::App& program) {
-  const Parts parts(program);
+  const CommandParts parts(program);
   const auto quoted = [](const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; };
   // What ends a part of a word's description.
   const auto escaped = [](std::string text) {

@@ -56,7 +56,7 @@ const char* channel_name(const Image& image, int channel) {
   return image.channels == 1 ? "grey" : names[channel];
 }
 
-void print(const CompareOptions& options, const Comparison& found, const Image& image) {
+void print_comparison(const CompareOptions& options, const Comparison& found, const Image& image) {
   if (std::isinf(found.psnr) && found.psnr > 0) {
     fmt::print("PSNR           infinite: the pictures are equal\n");
   } else {
@@ -86,7 +86,7 @@ measure::Gaze parse_gaze(const std::string& text) {
   return {v.x, v.y, v.z};
 }
 
-void print(const measure::FoveatedComparison& found) {
+void print_comparison(const measure::FoveatedComparison& found) {
   fmt::print("\n{:<20}{:>10}{:>14}{:>10}{:>14}\n", "from the gaze", "pixels", "PSNR", "visible",
              "99 % below");
   for (const measure::Ring& ring : found.rings) {
@@ -101,7 +101,7 @@ void print(const measure::FoveatedComparison& found) {
       100 * found.visible);
 }
 
-nlohmann::ordered_json to_json(const measure::FoveatedComparison& found, const measure::Gaze& gaze) {
+nlohmann::ordered_json comparison_json(const measure::FoveatedComparison& found, const measure::Gaze& gaze) {
   nlohmann::ordered_json json =
       study::object("x", gaze.x, "y", gaze.y, "fov_degrees", gaze.fov_degrees, "visible", found.visible,
                     "rings", nlohmann::ordered_json::array());
@@ -113,7 +113,8 @@ nlohmann::ordered_json to_json(const measure::FoveatedComparison& found, const m
   return json;
 }
 
-nlohmann::ordered_json to_json(const CompareOptions& options, const Comparison& found, const Image& image) {
+nlohmann::ordered_json comparison_json(const CompareOptions& options, const Comparison& found,
+                                       const Image& image) {
   const auto& largest = found.largest;
   return study::object(
       "version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width, "height",
@@ -124,7 +125,7 @@ nlohmann::ordered_json to_json(const CompareOptions& options, const Comparison& 
       "min_psnr_db", options.min_psnr);
 }
 
-ExitCode compare(const CompareOptions& options) {
+ExitCode compare_files(const CompareOptions& options) {
   if (!options.difference.empty()) check_output(options.difference);
   if (!options.json.empty()) check_output(options.json);
   const PictureLimit limit = limit_of(options);
@@ -138,10 +139,10 @@ ExitCode compare(const CompareOptions& options) {
              background.g, background.b, options.background ? "" : " (--background for another)");
   }
   const Comparison found = measure::compare(a, b, options.pixels_per_degree);
-  print(options, found, a);
+  print_comparison(options, found, a);
   std::optional<measure::FoveatedComparison> foveated;
   if (options.gaze) foveated = measure::compare_foveated(a, b, *options.gaze);
-  if (foveated) print(*foveated);
+  if (foveated) print_comparison(*foveated);
   if (!options.difference.empty()) {
     const double gain = measure::difference_gain(measure::common_error(a, b));
     const Uninterrupted hold;
@@ -150,9 +151,9 @@ ExitCode compare(const CompareOptions& options) {
                255.0 / gain);
   }
   if (!options.json.empty()) {
-    auto json = to_json(options, found, a);
+    auto json = comparison_json(options, found, a);
     if (before_background) json["background"] = {background.r, background.g, background.b};
-    if (foveated) json["foveated"] = to_json(*foveated, *options.gaze);
+    if (foveated) json["foveated"] = comparison_json(*foveated, *options.gaze);
     save_json(options.json, json);
   }
   if (options.min_psnr && !(found.psnr >= *options.min_psnr)) {
@@ -202,7 +203,7 @@ void add_compare(CLI::App& program, Command& command) {
       "  binosplat compare drawn.png photo.jpg\n"
       "  binosplat compare a.exr b.png --min-psnr 50 --difference error.png\n"
       "  binosplat compare foveated.png exact.png --foveate-at 1830,1600,100");
-  sub->callback([options, &command] { command = [options] { return compare(*options); }; });
+  sub->callback([options, &command] { command = [options] { return compare_files(*options); }; });
 }
 
 }  // namespace binosplat::app

@@ -66,7 +66,7 @@ ModelFormat format_of(const ConvertOptions& o) {
   return o.to ? *o.to : output_format(o.output, "; or say --to");
 }
 
-void check(const ConvertOptions& o, ModelFormat format) {
+void check_convert(const ConvertOptions& o, ModelFormat format) {
   check_output(o.output);
   check_harmonic_bits(o.harmonic_bits, format);
   if (!o.json.empty()) check_output(o.json);
@@ -103,7 +103,8 @@ std::vector<Image> draw(const Views& views, const Model& model, const char* labe
   return pictures;
 }
 
-std::vector<ViewCost> compare(const Views& views, const Model& back, const std::vector<Image>& originals) {
+std::vector<ViewCost> costs_of_views(const Views& views, const Model& back,
+                                     const std::vector<Image>& originals) {
   const std::vector<Image> pictures = draw(views, back, "drawing what was written");
   std::vector<ViewCost> costs;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
@@ -118,11 +119,11 @@ const ViewCost& worst_of(const std::vector<ViewCost>& views) {
                            [](const ViewCost& a, const ViewCost& b) { return a.psnr < b.psnr; });
 }
 
-std::string decibels(double psnr) {
+std::string decibels_or_equal(double psnr) {
   return std::isinf(psnr) && psnr > 0.0 ? "equal" : fmt::format("{:.2f} dB", psnr);
 }
 
-void print(const ConvertOptions& o, const Converted& c) {
+void print_converted(const ConvertOptions& o, const Converted& c) {
   const char* format = written_format(c.format).name;
   fmt::print("{}: {}, {} Gaussians\n", o.output, format, c.count);
   fmt::print("{} bytes, {:.2f} a Gaussian", c.bytes, c.bytes_each());
@@ -134,12 +135,13 @@ void print(const ConvertOptions& o, const Converted& c) {
   if (c.views.empty()) return;
   fmt::print("\nPSNR of 8-bit pictures against the original's\n");
   for (const ViewCost& view : c.views)
-    fmt::print("  {:<24} {:>5} x {:<5} {:>10}\n", view.name, view.width, view.height, decibels(view.psnr));
+    fmt::print("  {:<24} {:>5} x {:<5} {:>10}\n", view.name, view.width, view.height,
+               decibels_or_equal(view.psnr));
   const ViewCost& worst = worst_of(c.views);
-  fmt::print("worst: {}, {}\n", worst.name, decibels(worst.psnr));
+  fmt::print("worst: {}, {}\n", worst.name, decibels_or_equal(worst.psnr));
 }
 
-nlohmann::ordered_json to_json(const ConvertOptions& o, const Converted& c) {
+nlohmann::ordered_json converted_json(const ConvertOptions& o, const Converted& c) {
   nlohmann::ordered_json json =
       study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
                     written_format(c.format).name, "gaussians", c.count, "bytes", c.bytes,
@@ -157,7 +159,7 @@ nlohmann::ordered_json to_json(const ConvertOptions& o, const Converted& c) {
 ExitCode convert(const ConvertOptions& o) {
   Converted done;
   done.format = format_of(o);
-  check(o, done.format);
+  check_convert(o, done.format);
   const CameraList list = o.report ? listed_cameras(o.scene, o.camera) : CameraList{};
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
@@ -187,10 +189,10 @@ ExitCode convert(const ConvertOptions& o) {
   done.bytes = fs::file_size(o.output);
   if (o.report) {
     model = load_written(o.output, model);
-    done.views = compare(views, model, originals);
+    done.views = costs_of_views(views, model, originals);
   }
-  print(o, done);
-  if (!o.json.empty()) save_json(o.json, to_json(o, done));
+  print_converted(o, done);
+  if (!o.json.empty()) save_json(o.json, converted_json(o, done));
   return ExitCode::done;
 }
 

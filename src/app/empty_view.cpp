@@ -11,15 +11,15 @@ namespace binosplat::app {
 namespace {
 
 // Where the model's Gaussians lie, as a camera sees their middles.
-struct Seen {
+struct MiddlesSeen {
   std::size_t inside = 0;  // the picture, beyond the near plane
   std::size_t ahead = 0;   // beyond the near plane
   std::size_t near = 0;    // before the camera, but not beyond it
 };
 
-Seen look(const Model& model, Camera camera, double near_plane) {
+MiddlesSeen look(const Model& model, Camera camera, double near_plane) {
   camera = into_axes(camera, model.axes);
-  Seen seen;
+  MiddlesSeen seen;
   for (const glm::vec3& p : model.position) {
     const PointSeen point = see(camera, p);
     if (point.ahead <= 0.0) continue;
@@ -33,7 +33,7 @@ Seen look(const Model& model, Camera camera, double near_plane) {
 
 std::string why_empty(const Model& model, const Shot& shot, double near_plane, std::string_view elsewhere) {
   const Camera& eye = shot.eyes.front().camera;
-  const Seen seen = look(model, eye, near_plane);
+  const MiddlesSeen seen = look(model, eye, near_plane);
   if (seen.inside > 0)
     return "what lies in the picture has opacities below 1/255, or the threshold leaves it out (--th)";
   if (shot.ipd && shot.eyes.size() == 2) {

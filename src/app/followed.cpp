@@ -23,8 +23,8 @@ constexpr std::size_t sample_of_one = 1 << 17, sample_of_many = 1 << 14;
 constexpr int samples_most = 8;
 constexpr double misses_db = 1.0, more_db = 3.0;
 
-std::vector<Picture> exact(render::Frame& frame, std::span<const shared::View> views,
-                           const render::FrameSettings& settings) {
+std::vector<Picture> exact_pictures(render::Frame& frame, std::span<const shared::View> views,
+                                    const render::FrameSettings& settings) {
   frame.draw(views, render::exact_of(settings));
   return frame.read_pictures();
 }
@@ -175,13 +175,14 @@ ShotLevels FollowedLevels::follow(Model& model, render::Frame& frame, stereo::Sh
   ShotLevels levels;
   std::vector<Picture> before;
   const auto changing = [&] {
-    if (report_ && heads_turn_) before = exact(frame, views, settings);
+    if (report_ && heads_turn_) before = exact_pictures(frame, views, settings);
     show.release();
   };
   const auto brought = std::exchange(brought_, {});
   if (!std::ranges::equal(std::as_bytes(std::span(brought)), std::as_bytes(views)))
     levels.switched = settle(model, frame.model(), views, settings, changing);
-  if (!before.empty()) levels.switch_psnr = measure::psnr(before, exact(frame, views, settings), background_);
+  if (!before.empty())
+    levels.switch_psnr = measure::psnr(before, exact_pictures(frame, views, settings), background_);
   levels.gaussians = parts_.gaussians();
   levels.predicted_psnr = told_psnr();
   levels.left = settings.quality;

@@ -9,9 +9,9 @@ namespace binosplat::app {
 
 namespace {
 
-const std::vector<std::string> words = {"inset", "context", "gaze", "seam"};
+const std::vector<std::string> foveate_words = {"inset", "context", "gaze", "seam"};
 
-double number_of(std::string_view text, const std::string& word, const char* expected) {
+double number_of_word(std::string_view text, const std::string& word, const char* expected) {
   std::string_view rest = text;
   const std::optional<double> value = take_real(rest);
   if (!value || !rest.empty()) fail("--foveate {}={}: expected {}", word, text, expected);
@@ -46,9 +46,9 @@ stereo::Foveation parse_foveation(const std::string& text) {
   stereo::Foveation out;
   std::vector<std::string> seen;
   for (const Entry& entry : entries_of(text)) {
-    if (std::ranges::find(words, entry.word) == words.end()) {
-      fail("--foveate {}: there is no {}{}; it takes {}", text, entry.word, suggestion(entry.word, words),
-           fmt::join(words, ", "));
+    if (std::ranges::find(foveate_words, entry.word) == foveate_words.end()) {
+      fail("--foveate {}: there is no {}{}; it takes {}", text, entry.word,
+           suggestion(entry.word, foveate_words), fmt::join(foveate_words, ", "));
     }
     if (std::ranges::find(seen, entry.word) != seen.end())
       fail("--foveate {}: {} is given twice", text, entry.word);
@@ -57,12 +57,12 @@ stereo::Foveation parse_foveation(const std::string& text) {
     if (entry.word == "inset") {
       std::string_view degrees = value;
       if (degrees.ends_with("deg")) degrees.remove_suffix(3);
-      out.inset_degrees = number_of(degrees, entry.word, "degrees, as in inset=20deg");
+      out.inset_degrees = number_of_word(degrees, entry.word, "degrees, as in inset=20deg");
     } else if (entry.word == "context") {
       out.context_scale =
-          number_of(value, entry.word, "a share of the pixels along an axis, as in context=0.4");
+          number_of_word(value, entry.word, "a share of the pixels along an axis, as in context=0.4");
     } else if (entry.word == "seam") {
-      out.seam = number_of(value, entry.word, "a share of the inset, as in seam=0.1");
+      out.seam = number_of_word(value, entry.word, "a share of the inset, as in seam=0.1");
     } else {
       if (entry.values.size() != 2 && entry.values.size() != 4) {
         fail(
@@ -71,7 +71,7 @@ stereo::Foveation parse_foveation(const std::string& text) {
             fmt::join(entry.values, ","));
       }
       const auto degrees = [&](std::size_t k) {
-        return number_of(entry.values[k], "gaze", "degrees to the right and up, as in gaze=10,-5");
+        return number_of_word(entry.values[k], "gaze", "degrees to the right and up, as in gaze=10,-5");
       };
       for (std::size_t k = 0; k < entry.values.size(); k += 2)
         out.gaze.emplace_back(degrees(k), degrees(k + 1));

@@ -40,13 +40,13 @@ struct InfoOptions {
 };
 
 /// What the model's Gaussians are worth in views of it.
-struct Seen {
+struct SeenOfViews {
   std::size_t views = 0;
   std::size_t unseen = 0;   // Gaussians that touch no pixel
   std::size_t most_of = 0;  // Gaussians of the largest weights, which together have 99 % of all
 };
 
-std::optional<Seen> see(const InfoOptions& o, const Model& model) {
+std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
   if (o.camera.file.empty()) return std::nullopt;
   if (model.scaffold)
     fail("--cameras: {} is a Scaffold-GS model, which makes its Gaussians anew for each eye", o.scene.name);
@@ -55,7 +55,7 @@ std::optional<Seen> see(const InfoOptions& o, const Model& model) {
   const auto context = open_context({});
   study::Weights weights = study::weigh(*context, model, cameras, near_plane_of(o.camera, list));
   std::vector<double>& weight = weights.weight;
-  Seen seen{cameras.size(), weights.unseen(), 0};
+  SeenOfViews seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());
   double left = 0.99 * std::accumulate(weight.begin(), weight.end(), 0.0);
   while (left > 0.0 && seen.most_of < weight.size()) left -= weight[seen.most_of++];
@@ -114,7 +114,7 @@ void print_sizes(const Model& model) {
              model.degree > 0 ? " (without harmonics)" : "", size(ModelFormat::spz), size(ModelFormat::sog));
 }
 
-void print(const Seen& seen, std::size_t all) {
+void print_info(const SeenOfViews& seen, std::size_t all) {
   const auto share = [&](std::size_t count) {
     return 100.0 * static_cast<double>(count) / static_cast<double>(all);
   };
@@ -125,7 +125,7 @@ void print(const Seen& seen, std::size_t all) {
       "`binosplat trim` writes the smallest model that keeps them");
 }
 
-void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
+void print_info(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
   const std::size_t n = model.count();
   fmt::print("{} ({})\n", model.name, model.format);
   fmt::print("{:<14} {}{}\n", "Gaussians", n,
@@ -167,11 +167,11 @@ void print(const Model& model, const ModelSummary& s, const render::MemoryNeeds&
   print_bar("huge", s.huge, n);
 }
 
-ordered_json to_json(const Bounds& b) {
+ordered_json info_json(const Bounds& b) {
   return {{"low", {b.low.x, b.low.y, b.low.z}}, {"high", {b.high.x, b.high.y, b.high.z}}};
 }
 
-ordered_json to_json(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
+ordered_json info_json(const Model& model, const ModelSummary& s, const render::MemoryNeeds& needs) {
   ordered_json scale;
   for (const auto& [decade, count] : s.scale)
     scale.push_back({{"from", std::pow(10.0, decade)}, {"count", count}});
@@ -179,8 +179,8 @@ ordered_json to_json(const Model& model, const ModelSummary& s, const render::Me
       "name", model.name, "format", model.format, "gaussians", model.count(), "left_out", model.left_out,
       "degree", model.degree, "axes", model.axes, "kernel_px2", model.kernel_px2, "antialiased",
       model.antialiased, "order", order_choices[model.perspective.order].name, "projection",
-      projection_choices[model.perspective.projection].name, "bounds", to_json(s.all), "core_bounds",
-      to_json(s.core), "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
+      projection_choices[model.perspective.projection].name, "bounds", info_json(s.all), "core_bounds",
+      info_json(s.core), "gpu_bytes", object("model", needs.model, "headset_frame", needs.frame));
   if (model.scaffold) return json;  // the rest is made for each eye
   for (std::size_t k = 0; k < std::size(written_formats); ++k)
     json["file_bytes"][written_formats[k].name] =
@@ -221,11 +221,11 @@ ExitCode info(const InfoOptions& options) {
               named ? listed_cameras(options.scene, options.camera).cameras : std::vector<Camera>{}, model);
   const ModelSummary summary = summarise(model);
   const render::MemoryNeeds needs = headset_needs(model);
-  const std::optional<Seen> seen = see(options, model);
-  print(model, summary, needs);
-  if (seen) print(*seen, model.count());
+  const std::optional<SeenOfViews> seen = see(options, model);
+  print_info(model, summary, needs);
+  if (seen) print_info(*seen, model.count());
   if (options.json.empty()) return ExitCode::done;
-  ordered_json json = to_json(model, summary, needs);
+  ordered_json json = info_json(model, summary, needs);
   if (seen)
     json["views"] =
         object("count", seen->views, "unseen", seen->unseen, "gaussians_of_99_percent", seen->most_of);

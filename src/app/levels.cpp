@@ -45,7 +45,7 @@ struct LevelsOptions {
   ContextOptions context;
 };
 
-constexpr const char* run_name = "levels-run.json";
+constexpr const char* levels_run_name = "levels-run.json";
 
 /// The folder, which is asked for the same files again and again, by several threads.
 class Folder {
@@ -104,14 +104,14 @@ nlohmann::ordered_json identity_of(const LevelsOptions& o) {
 
 /// Whether the folder has an earlier run like this one; throws Error where it has anything else.
 bool has_run(const LevelsOptions& o, const nlohmann::ordered_json& run) {
-  const fs::path folder = o.output, file = folder / run_name;
+  const fs::path folder = o.output, file = folder / levels_run_name;
   check_output(file);
   check_output(folder / "lod-meta.json");
   // Others first: whoever writes them has written that file before, under a name of its own.
   std::error_code none;
   const bool others =
       std::any_of(fs::directory_iterator(folder, none), {}, [](const fs::directory_entry& entry) {
-        return !entry.path().filename().string().starts_with(run_name);
+        return !entry.path().filename().string().starts_with(levels_run_name);
       });
   if (fs::exists(file)) {
     check_same_run(file, run, "levels");
@@ -147,7 +147,7 @@ ExitCode levels(const LevelsOptions& o) {
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(ModelFormat::sog));
   const auto context = open_context(o.context);
-  claim_run(fs::path(o.output) / run_name, run, "levels");
+  claim_run(fs::path(o.output) / levels_run_name, run, "levels");
   Folder folder(o.output);
   std::ptrdiff_t undrawn = 0;
   const LevelsWritten written = write_streamed_sog(

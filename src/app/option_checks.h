@@ -41,7 +41,7 @@ inline const CLI::Validator quality_range =
     between(render::quality_least, render::quality_most, "decibels from 10 to 100");
 
 /// From 0 to 2^64 - 1; CLI11 by itself would take -1 for the largest.
-inline const CLI::Validator whole(
+inline const CLI::Validator whole_number(
     [](std::string& text) {
       std::uint64_t value = 0;
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::ordered_json;
 using study::Calibrator;
-using Kind = study::CalibrationTarget::Kind;
+using TargetKind = study::CalibrationTarget::Kind;
 
 struct RefitOptions : MeasuredOptions {
   bool against_exact = false;
@@ -37,7 +37,7 @@ struct RefitOptions : MeasuredOptions {
   std::string json;
 };
 
-ModelFormat check(const RefitOptions& o) {
+ModelFormat check_refit(const RefitOptions& o) {
   if (o.photos.empty() != o.against_exact)
     fail("refit needs what to fit: --photos DIR, or --against exact for the model's own pictures");
   if (o.camera.lens.size && !o.photos.empty())
@@ -59,7 +59,7 @@ struct Step {
 /// A model's pictures against what they should be, in views that have no say.
 class Judge {
  public:
-  Judge(gl::Context& context, const Model& original, const study::ViewSplit& views, Kind kind)
+  Judge(gl::Context& context, const Model& original, const study::ViewSplit& views, TargetKind kind)
       : kind_(kind), held_back_(context, original, views.held_back, views.near_plane, kind) {
     const auto open = [&](const std::vector<study::CalibrationView>& of) {
       return of.empty() ? nullptr
@@ -83,16 +83,16 @@ class Judge {
  private:
   /// Of a cost, which against photos is what is lost of what the model had.
   double psnr(const Calibrator& views, double db) const {
-    return kind_ == Kind::drop ? views.exact_photo_db() - db : db;
+    return kind_ == TargetKind::drop ? views.exact_photo_db() - db : db;
   }
 
-  Kind kind_;
+  TargetKind kind_;
   Calibrator held_back_;
   std::unique_ptr<Calibrator> test_, held_back_own_, test_own_;
 };
 
-void print(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
-           std::size_t photos) {
+void print_refit(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
+                 std::size_t photos) {
   fmt::print("{} views fitted, {} of them to photos; {} held back, {} of test. PSNR in dB against {}\n\n",
              views.training.size(), photos, views.held_back.size(), views.test.size(),
              o.photos.empty() ? "the model's own pictures" : "the photos");
@@ -108,8 +108,8 @@ void print(const std::vector<Step>& steps, const RefitOptions& o, const study::V
   }
 }
 
-ordered_json to_json(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
-                     std::size_t photos, int best_round, bool written) {
+ordered_json refit_json(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
+                        std::size_t photos, int best_round, bool written) {
   ordered_json json =
       study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
                     o.photos.empty() ? "exact" : "photos", "views_fitted", views.training.size(), "photos",
@@ -126,7 +126,7 @@ ordered_json to_json(const std::vector<Step>& steps, const RefitOptions& o, cons
 }
 
 ExitCode refit(const RefitOptions& o) {
-  const ModelFormat format = check(o);
+  const ModelFormat format = check_refit(o);
   const CameraList list = needed_cameras("refit", o);
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
@@ -147,7 +147,7 @@ ExitCode refit(const RefitOptions& o) {
   fitted.perspective = {o.order.value_or(model.perspective.order),
                         o.projection.value_or(model.perspective.projection)};
 
-  Judge judge(*context, model, views, o.photos.empty() ? Kind::quality : Kind::drop);
+  Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<Step> steps;
   if (fitted.perspective != model.perspective)
     steps.push_back(judge.step("as it was: " + study::name_of(model.perspective), model));
@@ -161,10 +161,10 @@ ExitCode refit(const RefitOptions& o) {
   const study::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
   steps.push_back(
       judge.step(fmt::format("as {}, {} bytes", written_format(format).name, written.bytes), written.model));
-  print(steps, o, views, photos);
+  print_refit(steps, o, views, photos);
   const bool nearer =
       found.best_round > 0 && steps.back().held_back >= before && steps.back().held_back_own >= before_own;
-  if (!o.json.empty()) save_json(o.json, to_json(steps, o, views, photos, found.best_round, nearer));
+  if (!o.json.empty()) save_json(o.json, refit_json(steps, o, views, photos, found.best_round, nearer));
   if (!nearer) {
     log_warning(
         "{} is not written: the views held back would be no nearer than before, {:.3f} dB{}; others held "

@@ -70,8 +70,8 @@ ExrOptions exr_options(const OutputOptions& options, const Notes& notes) {
   return {options.exr_half.value_or(true), options.exr_display.value_or(false), options.background, notes};
 }
 
-void write(const OutputOptions& options, const OutputPlan& plan, const std::string& path,
-           const Picture& picture, const Notes& notes) {
+void write_picture(const OutputOptions& options, const OutputPlan& plan, const std::string& path,
+                   const Picture& picture, const Notes& notes) {
   const Uninterrupted hold;
   if (plan.png)
     save_png(path + ".png", composite(picture, options.background), options.bits.value_or(8), notes);
@@ -344,8 +344,8 @@ std::vector<std::string> write_outputs(const std::string& scene, const OutputOpt
   }
   if (plan.layout == LAYOUT_SEPARATE) {
     for (std::size_t k = 0; k < bases.size(); ++k)
-      write(options, plan, bases[k], pictures[k],
-            notes_of(scene, options, shot, shot.eyes[k].side, shown.most));
+      write_picture(options, plan, bases[k], pictures[k],
+                    notes_of(scene, options, shot, shot.eyes[k].side, shown.most));
     return files_of(plan, shot);
   }
   Notes notes = notes_of(scene, options, shot, "left, right", shown.most);
@@ -354,8 +354,8 @@ std::vector<std::string> write_outputs(const std::string& scene, const OutputOpt
     const Uninterrupted hold;
     save_exr(bases[0] + ".exr", pictures[0], pictures[1], exr_options(options, notes));
   } else {
-    write(options, plan, bases[0], stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background),
-          notes);
+    write_picture(options, plan, bases[0],
+                  stereo::lay_out(plan.layout, pictures[0], pictures[1], options.background), notes);
   }
   return files_of(plan, shot);
 }

@@ -20,7 +20,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* run_name = "render-run.json";
+constexpr const char* render_run_name = "render-run.json";
 
 // Where it is drawn and which part of it, and what is believed of files.
 constexpr const char* no_matter[] = {"--output", "--shard",      "--resume", "--backend",
@@ -72,7 +72,7 @@ ordered_json identity_of(const RenderOptions& o, const CameraList& list, double 
 }
 
 void leave_out_drawn(const OutputPlan& plan, const ordered_json& run, std::vector<Shot>& shots) {
-  const fs::path file = plan.folder / run_name;
+  const fs::path file = plan.folder / render_run_name;
   // Pictures first: whoever draws them has written the file before.
   const std::optional<std::string> picture = first_there(plan, shots);
   if (picture && !fs::exists(file))
@@ -97,7 +97,7 @@ void leave_out_drawn(const OutputPlan& plan, const ordered_json& run, std::vecto
 
 void check_alone(const OutputPlan& plan, const std::optional<ordered_json>& run) {
   if (plan.folder.empty()) return;
-  const fs::path file = plan.folder / run_name;
+  const fs::path file = plan.folder / render_run_name;
   const bool there = fs::exists(file);
   if (there && run) return check_same_run(file, *run, "pictures");
   if (there || run)
@@ -109,7 +109,7 @@ void check_alone(const OutputPlan& plan, const std::optional<ordered_json>& run)
 
 void forget_run(const OutputPlan& plan) {
   std::error_code ignored;
-  if (!plan.folder.empty()) fs::remove(plan.folder / run_name, ignored);
+  if (!plan.folder.empty()) fs::remove(plan.folder / render_run_name, ignored);
 }
 
 }  // namespace binosplat::app

@@ -58,7 +58,7 @@ void add_scene_options(CLI::App& sub, SceneOptions& o) {
   sub.add_option("--appearance", o.appearance,
                  "Which of the appearances that a Scaffold-GS model was trained with\n(0)")
       ->type_name("ID")
-      ->check(whole);
+      ->check(whole_number);
   add_seed_option(sub, o);
   add_count_option(sub, o, "Gaussians of demo:city, 10000 to 100000000 (1000000)");
   add_repeat_options(sub, o);
@@ -96,11 +96,11 @@ void add_repeat_options(CLI::App& sub, SceneOptions& o) {
 }
 
 CLI::Option* add_seed_option(CLI::App& sub, SceneOptions& o) {
-  return sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole);
+  return sub.add_option("--seed", o.seed, "Which demo:city (1)")->type_name("N")->check(whole_number);
 }
 
 CLI::Option* add_count_option(CLI::App& sub, SceneOptions& o, const char* help) {
-  return sub.add_option("--count", o.count, help)->type_name("N")->check(whole);
+  return sub.add_option("--count", o.count, help)->type_name("N")->check(whole_number);
 }
 
 void check(const SceneOptions& o) {

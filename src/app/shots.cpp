@@ -24,7 +24,7 @@ constexpr int made_up_height = 720;
 constexpr double eye_height = 1.6;  // m, of somebody who stands
 
 // A view by name: one camera, a head or itself, or a pair of eyes.
-struct Choice {
+struct ShotChoice {
   std::string name;
   std::vector<Camera> cameras;
 };
@@ -35,8 +35,8 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 // The cameras as views in their order; where pairs are wanted, a NAME_left and its NAME_right are the one
 // view NAME.
-std::vector<Choice> all_choices(const std::vector<Camera>& cameras, bool pairs) {
-  std::vector<Choice> choices;
+std::vector<ShotChoice> all_choices(const std::vector<Camera>& cameras, bool pairs) {
+  std::vector<ShotChoice> choices;
   std::set<std::string> taken;
   for (const Camera& camera : cameras) {
     const std::string& name = camera.name;
@@ -52,7 +52,7 @@ std::vector<Choice> all_choices(const std::vector<Camera>& cameras, bool pairs) 
   return choices;
 }
 
-Choice choose(const std::string& name, const CameraList& list, bool mono, const char* option) {
+ShotChoice choose(const std::string& name, const CameraList& list, bool mono, const char* option) {
   const auto exact =
       std::find_if(list.cameras.begin(), list.cameras.end(), [&](const Camera& c) { return c.name == name; });
   if (exact != list.cameras.end()) return {name, {*exact}};
@@ -62,24 +62,24 @@ Choice choose(const std::string& name, const CameraList& list, bool mono, const 
   return {name, {(*eyes)[0], (*eyes)[1]}};
 }
 
-std::vector<Choice> chosen(const std::vector<std::string>& views, const CameraList& list, bool mono,
-                           const char* option = "--view") {
+std::vector<ShotChoice> chosen(const std::vector<std::string>& views, const CameraList& list, bool mono,
+                               const char* option = "--view") {
   const bool everything = !list.listed || list.path || views == all_views;
   if (everything || views.empty()) {
-    std::vector<Choice> choices = all_choices(list.cameras, !mono);
+    std::vector<ShotChoice> choices = all_choices(list.cameras, !mono);
     if (everything || choices.size() == 1) return choices;
     log_info("{} has {} views; drawing the first, {} (--view NAME... or --view all for others)", list.source,
              choices.size(), choices[0].name);
     choices.resize(1);
     return choices;
   }
-  std::vector<Choice> choices;
+  std::vector<ShotChoice> choices;
   for (const std::string& name : views) choices.push_back(choose(name, list, mono, option));
   return choices;
 }
 
 stereo::EyePair eyes_of(const Lens& lens, const RigOptions& rig, const stereo::RigSettings& settings,
-                        const Choice& choice) {
+                        const ShotChoice& choice) {
   if (choice.cameras.size() == 1) return stereo::make_rig(sized(lens, choice.cameras[0]), settings);
   if (rig.places_eyes()) {
     fail("view {} is a pair of eyes that the cameras give: leave --ipd, --convergence and --cant out",
@@ -96,14 +96,14 @@ stereo::EyePair eyes_of(const Lens& lens, const RigOptions& rig, const stereo::R
 }
 
 void add_eyes(const Lens& lens, const RigOptions& rig, const stereo::RigSettings& settings,
-              const Choice& choice, const std::string& axes, Shot& shot) {
+              const ShotChoice& choice, const std::string& axes, Shot& shot) {
   if (rig.mono) {
     const Camera camera = sized(lens, choice.cameras[0]);
     shot.eyes = {{"", camera, make_view(into_axes(camera, axes), settings.near_plane)}};
     return;
   }
   const stereo::EyePair pair = eyes_of(lens, rig, settings, choice);
-  Choice entered = choice;
+  ShotChoice entered = choice;
   for (Camera& camera : entered.cameras) camera = into_axes(camera, axes);
   const stereo::EyePair drawn = eyes_of(lens, rig, settings, entered);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -329,7 +329,7 @@ void check_views(const std::vector<std::string>& views, bool mono, const CameraL
 std::vector<Camera> chosen_cameras(const std::vector<std::string>& views, const Lens& lens,
                                    const CameraList& list, const char* option) {
   std::vector<Camera> cameras;
-  for (const Choice& choice : chosen(views_or_all(views), list, true, option))
+  for (const ShotChoice& choice : chosen(views_or_all(views), list, true, option))
     cameras.push_back(sized(lens, choice.cameras[0]));
   return cameras;
 }
@@ -339,7 +339,7 @@ std::vector<Shot> make_shots(const std::vector<std::string>& views, const Lens& 
   const stereo::RigSettings settings = rig_settings(rig, list.known, near_plane);
   std::vector<Shot> shots;
   std::set<std::string> taken;
-  for (const Choice& choice : chosen(views, list, rig.mono)) {
+  for (const ShotChoice& choice : chosen(views, list, rig.mono)) {
     Shot& shot = shots.emplace_back();
     shot.name = choice.name;
     const std::string stem = shot.stem = stem_of(choice.name);

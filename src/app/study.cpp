@@ -32,7 +32,7 @@ namespace {
 using nlohmann::ordered_json;
 using study::Variant;
 
-Studied open(const StudyOptions& options) {
+Studied open_studied(const StudyOptions& options) {
   // A case takes a head along paths of its own, and makes the eyes itself; a head that turns has one.
   const RigOptions& rig = options.stability || options.turn ? no_rig : options.rig;
   OpenScene scene = open_scene(options.scene, options.camera, options.rig, [&](const CameraList& list) {
@@ -140,35 +140,35 @@ ordered_json rules(gl::Context& context, const StudyOptions& options, const Stud
 }
 
 /// Which study the options ask for, beside the analyses.
-enum class Kind { analyses, stability, rules, motion, turn, levels, path };
+enum class StudyKind { analyses, stability, rules, motion, turn, levels, path };
 
-Kind kind_of(const StudyOptions& o) {
+StudyKind kind_of(const StudyOptions& o) {
   const bool path = !o.camera.path.empty() && !o.motion.chosen;  // --motion goes along one, too
   if (int{o.stability} + int{o.rules} + int{o.motion.chosen} + int{o.turn} + int{o.levels} + int{path} > 1)
     fail("study: --stability, --rules, --motion, --turn, --levels and --path FILE are studies of their own");
-  return o.stability       ? Kind::stability
-         : o.rules         ? Kind::rules
-         : o.motion.chosen ? Kind::motion
-         : o.turn          ? Kind::turn
-         : o.levels        ? Kind::levels
-         : path            ? Kind::path
-                           : Kind::analyses;
+  return o.stability       ? StudyKind::stability
+         : o.rules         ? StudyKind::rules
+         : o.motion.chosen ? StudyKind::motion
+         : o.turn          ? StudyKind::turn
+         : o.levels        ? StudyKind::levels
+         : path            ? StudyKind::path
+                           : StudyKind::analyses;
 }
 
-void check(const StudyOptions& options, Kind kind) {
-  const bool of_page =
-      kind == Kind::stability || kind == Kind::motion || kind == Kind::turn || kind == Kind::levels;
-  if (!options.test.empty() || (!options.photos.empty() && kind != Kind::turn))
+void check_study(const StudyOptions& options, StudyKind kind) {
+  const bool of_page = kind == StudyKind::stability || kind == StudyKind::motion || kind == StudyKind::turn ||
+                       kind == StudyKind::levels;
+  if (!options.test.empty() || (!options.photos.empty() && kind != StudyKind::turn))
     fail(
         "study: --test and --photos are for the analyses, and --photos for --turn, without --stability, "
         "--rules, --motion, --levels and --path");
-  if (options.frames && kind != Kind::rules && kind != Kind::motion && kind != Kind::levels)
+  if (options.frames && kind != StudyKind::rules && kind != StudyKind::motion && kind != StudyKind::levels)
     fail("--frames goes with --rules, --motion and --levels, or with the analyses");
-  if (options.rays && kind != Kind::turn) fail("--rays goes with --turn");
+  if (options.rays && kind != StudyKind::turn) fail("--rays goes with --turn");
   if (options.rays && std::int64_t{options.rays->x} * options.rays->y > 1'000'000)
     fail("--rays {}x{}: at most a million", options.rays->x, options.rays->y);
-  if (options.camera.views.size() > 1 && kind != Kind::levels) fail("--view: this study is of one view");
-  if (kind == Kind::motion && !options.camera.views.empty())
+  if (options.camera.views.size() > 1 && kind != StudyKind::levels) fail("--view: this study is of one view");
+  if (kind == StudyKind::motion && !options.camera.views.empty())
     fail("--view: --motion goes through all cameras");
   if (!options.output.empty() && !of_page)
     fail(
@@ -177,31 +177,31 @@ void check(const StudyOptions& options, Kind kind) {
 }
 
 ExitCode study_scene(const StudyOptions& options) {
-  const Kind kind = kind_of(options);
-  if (options.scenes.size() > 1 && kind != Kind::levels)
+  const StudyKind kind = kind_of(options);
+  if (options.scenes.size() > 1 && kind != StudyKind::levels)
     fail("study {}: expected one scene; only --levels takes more", fmt::join(options.scenes, " "));
-  if (kind == Kind::analyses) {
+  if (kind == StudyKind::analyses) {
     if (!options.not_for_analyses.empty())
       fail("study: {} {} with --stability, --rules, --motion, --turn, --levels or --path FILE",
            fmt::join(options.not_for_analyses, ", "), options.not_for_analyses.size() > 1 ? "go" : "goes");
     return analyse_scene(options, options.test, options.frames.value_or(24),
                          options.output.empty() ? "out/study" : options.output);
   }
-  check(options, kind);
+  check_study(options, kind);
   if (!options.output.empty()) check_output(std::filesystem::path(options.output) / "study.json");
   if (!options.json.empty()) check_output(options.json);
-  if (kind == Kind::motion || kind == Kind::levels) {  // which open their scenes themselves
-    if (kind == Kind::motion) study_motion(options);
-    if (kind == Kind::levels) study_levels(options);
+  if (kind == StudyKind::motion || kind == StudyKind::levels) {  // which open their scenes themselves
+    if (kind == StudyKind::motion) study_motion(options);
+    if (kind == StudyKind::levels) study_levels(options);
     return ExitCode::done;
   }
-  const Studied studied = open(options);
-  const auto context = open_context_for_all("study", kind == Kind::rules, options.context);
+  const Studied studied = open_studied(options);
+  const auto context = open_context_for_all("study", kind == StudyKind::rules, options.context);
   refuse_blind("study", *context, *studied.model, studied.shots, studied.near_plane);
-  if (kind == Kind::stability) study_stability(*context, options, studied);
-  if (kind == Kind::turn) study_turn(*context, options, studied);
-  if (kind == Kind::rules) save(options, rules(*context, options, studied), {});
-  if (kind == Kind::path) save(options, along_path(*context, options, studied), {});
+  if (kind == StudyKind::stability) study_stability(*context, options, studied);
+  if (kind == StudyKind::turn) study_turn(*context, options, studied);
+  if (kind == StudyKind::rules) save(options, rules(*context, options, studied), {});
+  if (kind == StudyKind::path) save(options, along_path(*context, options, studied), {});
   return ExitCode::done;
 }
 

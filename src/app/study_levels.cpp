@@ -29,7 +29,7 @@ namespace {
 constexpr std::size_t shots_wanted = 8;
 constexpr int frames_wanted = 24;
 
-double number_of(const DetailNeed& detail) { return detail.db.value_or(detail.apart_px); }
+double number_of_detail(const DetailNeed& detail) { return detail.db.value_or(detail.apart_px); }
 
 /// From the fewest dB or px on.
 std::vector<DetailNeed> parse_details(const std::vector<std::string>& texts) {
@@ -39,8 +39,10 @@ std::vector<DetailNeed> parse_details(const std::vector<std::string>& texts) {
     if (details.back().db.has_value() != details.front().db.has_value())
       fail("--detail {}: expected all of them in pixels, or all in decibels", fmt::join(texts, ","));
   }
-  std::ranges::sort(details, {}, number_of);
-  const auto same = [](const DetailNeed& a, const DetailNeed& b) { return number_of(a) == number_of(b); };
+  std::ranges::sort(details, {}, number_of_detail);
+  const auto same = [](const DetailNeed& a, const DetailNeed& b) {
+    return number_of_detail(a) == number_of_detail(b);
+  };
   details.erase(std::unique(details.begin(), details.end(), same), details.end());
   return details;
 }
@@ -86,7 +88,7 @@ struct Following {
 };
 
 study::FollowingModel following_model(Following& following) {
-  return {number_of(following.detail), following.gpu_model,
+  return {number_of_detail(following.detail), following.gpu_model,
           [&following](render::Frame& frame, std::span<const shared::View> views) {
             const ShotLevels levels =
                 following.levels.follow(following.model, frame, following.show, views, {});
@@ -129,7 +131,7 @@ study::LevelsScene measured(gl::Context& context, const StudyOptions& options, c
   return scene;
 }
 
-void print(const study::LevelsStudy& study) {
+void print_levels_study(const study::LevelsStudy& study) {
   fmt::print("{}; times: the median of {} frame{} of a view, in the mean of {} rounds in turns\n",
              study.device, study.frames, study.frames == 1 ? "" : "s", study::turn_rounds);
   for (const study::LevelsScene& scene : study.scenes) {
@@ -176,7 +178,7 @@ void study_levels(const StudyOptions& options) {
                            .in_db = options.details.front().db.has_value(),
                            .frames = options.frames.value_or(frames_wanted)};
   for (const Listed& scene : scenes) study.scenes.push_back(measured(*context, options, scene, study.frames));
-  print(study);
+  print_levels_study(study);
   save(options, study::to_json(study), study::levels_page(study));
 }
 

@@ -31,7 +31,7 @@ namespace {
 constexpr const char* still_name = "still";
 constexpr std::size_t segments_default = 3;
 
-std::vector<std::string> words(const std::string& text) {
+std::vector<std::string> words_between_commas(const std::string& text) {
   std::vector<std::string> found(1);
   for (const char c : text) {
     if (c == ',') {
@@ -45,7 +45,7 @@ std::vector<std::string> words(const std::string& text) {
 
 /// TH,SOURCE by their names.
 Variant rule_of(const std::string& text) {
-  const std::vector<std::string> names = words(text);
+  const std::vector<std::string> names = words_between_commas(text);
   if (names.size() != 2) fail("--rule {}: expected TH,SOURCE", text);
   const std::string place = "--rule " + text;
   Variant rule{.th = find_choice(place, names[0], th_choices),
@@ -83,7 +83,7 @@ Metre metre(const StudyOptions& options) {
   return {};
 }
 
-Driven open(const StudyOptions& options) {
+Driven open_driven(const StudyOptions& options) {
   Driven driven{.list = listed_cameras(options.scene, options.camera, options.rig),
                 .lens = options.camera.lens,
                 .rig = options.rig};
@@ -178,7 +178,7 @@ std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions
 }
 
 /// A table for a terminal and for documents: dB and % to what can be told apart, the rest to three digits.
-void print(const study::MotionStudy& study, const study::Page& page) {
+void print_motion_study(const study::MotionStudy& study, const study::Page& page) {
   fmt::print("{}: {}, {} x {} x {} px; a metre is {:.4g} units ({})\n", study.device, study.scene, study.eyes,
              study.width, study.height, study.units_per_metre, study.metre_source);
   for (const study::MotionResult& result : study.paths) {
@@ -241,7 +241,7 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
 }
 
 void study_motion(const StudyOptions& options) {
-  const Driven driven = open(options);
+  const Driven driven = open_driven(options);
   const std::vector<study::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
   const std::vector<Variant> rules = rules_for(options);
@@ -269,7 +269,7 @@ void study_motion(const StudyOptions& options) {
         [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
   }
   const study::Page page = study::motion_page(study);
-  print(study, page);
+  print_motion_study(study, page);
   save(options, to_json(study), page);
 }
 

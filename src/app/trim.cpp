@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using study::Calibrator;
-using Kind = study::CalibrationTarget::Kind;
+using BoundKind = study::CalibrationTarget::Kind;
 
 struct TrimOptions : MeasuredOptions {
   TargetOptions bound;
@@ -37,7 +37,7 @@ struct TrimOptions : MeasuredOptions {
   std::string json;
 };
 
-ModelFormat check(const TrimOptions& o) {
+ModelFormat check_trim(const TrimOptions& o) {
   check_target("trim", "a bound", o.bound, o);
   const ModelFormat format = output_format(o.output);
   check_output(o.output);
@@ -56,8 +56,8 @@ std::optional<fs::path> same_format(const TrimOptions& o, const std::string& for
   return same && fs::is_regular_file(file) ? std::optional(file) : std::nullopt;
 }
 
-std::string decibels(Kind kind, double db) {
-  if (kind == Kind::quality && db >= study::equal_db) return "equal";
+std::string decibels_of_bound(BoundKind kind, double db) {
+  if (kind == BoundKind::quality && db >= study::equal_db) return "equal";
   return fmt::format("{:.3f}", db);
 }
 
@@ -65,9 +65,9 @@ std::string size_of(const std::vector<study::CalibrationView>& views) {
   return fmt::format("{} x {} px", views[0].camera.width, views[0].camera.height);
 }
 
-void print(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
-           std::size_t gaussians) {
-  const Kind kind = o.bound.target().kind;
+void print_trimmed(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
+                   std::size_t gaussians) {
+  const BoundKind kind = o.bound.target().kind;
   const bool two_sizes = !views.held_back_own.empty();
   fmt::print(
       "{} views weighed, {} held back, {} of test; bound: {}{}\n", views.training.size(),
@@ -80,15 +80,16 @@ void print(const TrimOptions& o, const study::Trimmed& found, const study::ViewS
                 : "");
   fmt::print("{} of {} Gaussians touch no pixel of the views weighed, {:.1f} %\n\n", found.unseen, gaussians,
              100.0 * static_cast<double>(found.unseen) / static_cast<double>(gaussians));
-  const char* db = kind == Kind::drop ? "drop dB" : "PSNR dB";
+  const char* db = kind == BoundKind::drop ? "drop dB" : "PSNR dB";
   const bool has_test = !views.test.empty();
   fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11}{:>9}{:>9}{:>9}{:>9}", "", "Gaussians", "SH", "bytes", "pairs",
              "ms", db, "worst", has_test ? "test" : "");
   if (two_sizes) fmt::print("{:>9}{:>9}{:>9}", "own dB", "worst", has_test ? "test" : "");
   fmt::print("\n");
   const auto print_db = [&](const Calibrator::Cost& held_back, const Calibrator::Cost& test) {
-    fmt::print("{:>9}{:>9}{:>9}", decibels(kind, held_back.mean_db), decibels(kind, held_back.worst_db),
-               has_test ? decibels(kind, test.mean_db) : "");
+    fmt::print("{:>9}{:>9}{:>9}", decibels_of_bound(kind, held_back.mean_db),
+               decibels_of_bound(kind, held_back.worst_db),
+               has_test ? decibels_of_bound(kind, test.mean_db) : "");
   };
   for (const study::TrimStep& s : found.steps) {
     fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}", s.name, s.gaussians, s.degree,
@@ -100,13 +101,13 @@ void print(const TrimOptions& o, const study::Trimmed& found, const study::ViewS
   const study::TrimStep& last = found.steps.back();
   const auto print_worst = [&](const char* size, const Calibrator::Cost& cost) {
     fmt::print("worst of those held back{}: {}, {} dB\n", size, views.held_back[cost.worst_view].camera.name,
-               decibels(kind, cost.worst_db));
+               decibels_of_bound(kind, cost.worst_db));
   };
   print_worst("", last.held_back);
   if (two_sizes) print_worst(", own size", *last.held_back_own);
 }
 
-ordered_json to_json(const Calibrator::Cost& cost, const std::vector<study::CalibrationView>& views) {
+ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<study::CalibrationView>& views) {
   ordered_json json =
       study::object("mean_db", cost.mean_db, "worst_db", cost.worst_db, "worst_view",
                     views[cost.worst_view].camera.name, "pairs", cost.pairs, "gpu_ms", cost.ms);
@@ -115,8 +116,8 @@ ordered_json to_json(const Calibrator::Cost& cost, const std::vector<study::Cali
   return json;
 }
 
-ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
-                     ModelFormat format, const std::vector<std::string>& losses) {
+ordered_json trimmed_json(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
+                          ModelFormat format, const std::vector<std::string>& losses) {
   ordered_json json = study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
                                     "format", written_format(format).name, "as_it_was", !found.less, "unseen",
                                     found.unseen, "views_weighed", views.training.size(), "losses", losses);
@@ -125,18 +126,18 @@ ordered_json to_json(const TrimOptions& o, const study::Trimmed& found, const st
   for (const study::TrimStep& s : found.steps) {
     ordered_json step = study::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
                                       s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
-                                      to_json(s.held_back, views.held_back));
-    if (!views.test.empty()) step["test"] = to_json(s.test, views.test);
-    if (s.held_back_own) step["held_back_own_size"] = to_json(*s.held_back_own, views.held_back_own);
-    if (s.test_own) step["test_own_size"] = to_json(*s.test_own, views.test_own);
+                                      trimmed_json(s.held_back, views.held_back));
+    if (!views.test.empty()) step["test"] = trimmed_json(s.test, views.test);
+    if (s.held_back_own) step["held_back_own_size"] = trimmed_json(*s.held_back_own, views.held_back_own);
+    if (s.test_own) step["test_own_size"] = trimmed_json(*s.test_own, views.test_own);
     json["steps"].push_back(step);
   }
   return json;
 }
 
 /// Writes what was found; the file itself where nothing of it could be left out.
-std::vector<std::string> write(const TrimOptions& o, const study::Trimmed& found, ModelFormat format,
-                               const std::optional<fs::path>& original) {
+std::vector<std::string> write_trimmed(const TrimOptions& o, const study::Trimmed& found, ModelFormat format,
+                                       const std::optional<fs::path>& original) {
   if (!found.less && original) {
     OutputFile file(o.output);
     const Unfinished unfinished(file.path());
@@ -150,7 +151,7 @@ std::vector<std::string> write(const TrimOptions& o, const study::Trimmed& found
 }
 
 ExitCode trim(const TrimOptions& o) {
-  const ModelFormat format = check(o);
+  const ModelFormat format = check_trim(o);
   const CameraList list = needed_cameras("trim", o);
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
@@ -169,14 +170,14 @@ ExitCode trim(const TrimOptions& o) {
   const study::TrimStep &first = found.steps.front(), &last = found.steps.back();
   const bool no_smaller = found.less && original && last.bytes >= first.bytes;
   if (no_smaller) found.less = false;
-  print(o, found, views, model.count());
+  print_trimmed(o, found, views, model.count());
   if (!found.fits && !original) {
     fail(
         "-o {}: the format alone costs more than the bound allows, {}; choose .ply, which keeps all, or "
         "allow for more",
         o.output, fmt::format("{:.3f} dB", last.worse_db()));
   }
-  const std::vector<std::string> losses = write(o, found, format, original);
+  const std::vector<std::string> losses = write_trimmed(o, found, format, original);
   for (const std::string& loss : losses) log_warning("{}", loss);
   if (found.less) {
     fmt::print("\n{}\n", o.output);
@@ -186,7 +187,7 @@ ExitCode trim(const TrimOptions& o) {
   } else {
     fmt::print("\n{}: the model as it was: nothing can be left out within the bound\n", o.output);
   }
-  if (!o.json.empty()) save_json(o.json, to_json(o, found, views, format, losses));
+  if (!o.json.empty()) save_json(o.json, trimmed_json(o, found, views, format, losses));
   return ExitCode::done;
 }
 

@@ -18,7 +18,7 @@ constexpr const char* refused[] = {"--fov",        "--convergence",     "--cant"
                                    "--decode",     "--exr-depth",       "--tile",        "--only",
                                    "--foveate"};
 
-std::vector<Camera> eyes_of(const Shot& shot, const std::string& axes) {
+std::vector<Camera> eyes_in_axes(const Shot& shot, const std::string& axes) {
   std::vector<Camera> eyes;
   for (const Eye& eye : shot.eyes) eyes.push_back(into_axes(eye.camera, axes));
   return eyes;
@@ -90,7 +90,7 @@ void level(Shot& shot, const glm::dvec3& up) {
 render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double near_plane) {
   const int side = shot.eyes[0].camera.width;
   std::vector<shared::View> views;
-  for (const Camera& eye : eyes_of(shot, model.axes))
+  for (const Camera& eye : eyes_in_axes(shot, model.axes))
     views.push_back(make_view(stereo::panorama_face(side, eye, 0), near_plane));
   render::MemoryNeeds needs = render::memory_needs(render::make_shape(views, {}, model));
   // A ray's place, and its colour and distance for each eye.
@@ -100,7 +100,7 @@ render::MemoryNeeds vr180_memory(const Shot& shot, const Model& model, double ne
 
 render::FrameReport draw(stereo::Panorama& panorama, const Shot& shot, const std::string& axes,
                          double near_plane) {
-  return panorama.draw(eyes_of(shot, axes), near_plane);
+  return panorama.draw(eyes_in_axes(shot, axes), near_plane);
 }
 
 }  // namespace binosplat::app

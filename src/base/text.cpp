@@ -1,8 +1,18 @@
 #include "base/text.h"
 
-#include <cstddef>
-
 namespace binosplat {
+
+std::vector<std::string_view> words_of(std::string_view line, std::size_t most) {
+  constexpr std::string_view blanks = " \t";
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(blanks); at < line.size();) {
+    const bool all = words.size() + 1 == most;
+    const std::size_t end = all ? line.size() : std::min(line.find_first_of(blanks, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(blanks, end);
+  }
+  return words;
+}
 
 std::string base64(std::string_view bytes) {
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

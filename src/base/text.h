@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace binosplat {
 
@@ -20,6 +23,10 @@ inline std::string lowered(std::string text) {
 inline std::string lowered_ending(const std::filesystem::path& path) {
   return lowered(path.extension().string());
 }
+
+/// What stands between blanks; the last of `most` words is all that is left, with the blanks in it.
+std::vector<std::string_view> words_of(std::string_view line,
+                                       std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Bytes as base64 (RFC 4648), filled up by =.
 std::string base64(std::string_view bytes);

@@ -12,19 +12,19 @@ namespace binosplat::procedural {
 
 namespace {
 
-constexpr int degree = 3;
-constexpr int coefficients = sh_count(degree);
+constexpr int bake_degree = 3;
+constexpr int coefficients = sh_count(bake_degree);
 
 /// Within this distance a surface dims what it faces.
 constexpr double occlusion_reach = 0.7;
 /// Rays start this far off their surface: it must not shade itself.
-constexpr double lift = 4e-3;
+constexpr double disc_lift = 4e-3;
 
 double to_linear(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 double to_display(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055; }
 
 /// Linear light to a display value, with the shoulder of a film (Narkowicz's fit of ACES).
-dvec3 developed(const dvec3& light) {
+dvec3 developed_filmic(const dvec3& light) {
   dvec3 out;
   for (int i = 0; i < 3; ++i) {
     const double x = std::max(0.0, light[i]);
@@ -36,7 +36,7 @@ dvec3 developed(const dvec3& light) {
 /// The share of band l in the lobe max(0, cos)^sharpness about an axis: coefficient (l, m) of the lobe is
 /// band(l) times the basis function at the axis (Funk-Hecke). The integrals 2 pi int_0^1 t^s P_l(t) dt have
 /// closed forms.
-std::array<double, degree + 1> lobe_bands(double s) {
+std::array<double, bake_degree + 1> lobe_bands(double s) {
   const double i0 = 1.0 / (s + 1.0), i1 = 1.0 / (s + 2.0), i2 = 1.0 / (s + 3.0), i3 = 1.0 / (s + 4.0);
   return {2.0 * pi * i0, 2.0 * pi * i1, pi * (3.0 * i2 - i0), pi * (5.0 * i3 - 3.0 * i1)};
 }
@@ -231,11 +231,11 @@ void Baker::add_lobe(const Disc& disc, const dvec3& to_light, const dvec3& light
   const double away = 1.0 - facing, fresnel = std::min(0.3, 0.04 + 0.96 * away * away * away * away * away);
   const dvec3 mirrored =
       light * (disc.material.gloss * fresnel * (disc.material.sharpness + 1.0) / (2.0 * pi));
-  const dvec3 rise = developed(diffuse + mirrored) - developed(diffuse);
+  const dvec3 rise = developed_filmic(diffuse + mirrored) - developed_filmic(diffuse);
   const dvec3 from_eye = to_light - 2.0 * facing * disc.axes[2];
   const auto bands = lobe_bands(disc.material.sharpness);
   const auto at_axis = sh_basis(from_eye);
-  for (int l = 0; l <= degree; ++l) {
+  for (int l = 0; l <= bake_degree; ++l) {
     for (int k = l * l; k < (l + 1) * (l + 1); ++k) {
       sh[static_cast<std::size_t>(k)] +=
           rise * (bands[static_cast<std::size_t>(l)] * at_axis[static_cast<std::size_t>(k)]);
@@ -252,15 +252,15 @@ std::array<dvec3, coefficients> Baker::seen(const Disc& disc) const {
   }
   const dvec3 albedo(to_linear(material.colour.r), to_linear(material.colour.g),
                      to_linear(material.colour.b));
-  const dvec3 p = disc.position + lift * disc.axes[2];
+  const dvec3 p = disc.position + disc_lift * disc.axes[2];
   const Received front = received(p, disc.axes);
   dvec3 light = front.irradiance;
   if (material.two_sided) {
     const dmat3 turned_over(disc.axes[0], -disc.axes[1], -disc.axes[2]);
-    light = 0.6 * light + 0.4 * received(disc.position - lift * disc.axes[2], turned_over).irradiance;
+    light = 0.6 * light + 0.4 * received(disc.position - disc_lift * disc.axes[2], turned_over).irradiance;
   }
   const dvec3 diffuse = albedo * (light + material.glow);
-  sh[0] = (developed(diffuse) - 0.5) / sh_c0;
+  sh[0] = (developed_filmic(diffuse) - 0.5) / sh_c0;
   if (material.gloss > 0.0) {
     const dvec2 size =
         (light_.opening_high - light_.opening_low) / std::sqrt(static_cast<double>(opening_.size()));
@@ -294,7 +294,7 @@ void Baker::add(const Disc& disc, Model& model) const {
 
 Model bake(const Stage& stage, const Lighting& light) {
   Model model;
-  model.degree = degree;
+  model.degree = bake_degree;
   model.reserve(stage.discs.size());
   const Baker baker(stage, light);
   for (const Disc& disc : stage.discs) baker.add(disc, model);

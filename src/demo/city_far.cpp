@@ -69,7 +69,7 @@ dvec3 around(double way, double radius) {
   return sky_centre + radius * dvec3(unit.x, 0.0, unit.y);
 }
 
-void add_hills(Builder& builder, std::uint32_t range, double radius, double tallest) {
+void add_city_hills(Builder& builder, std::uint32_t range, double radius, double tallest) {
   constexpr int columns = 96;
   const auto ridge = [&](int k) {
     const double height = tallest * (0.25 + fractal(0.09 * std::abs(k - 0.5 * columns), 3.0 + 8.0 * range));
@@ -91,7 +91,7 @@ void add_hills(Builder& builder, std::uint32_t range, double radius, double tall
 }
 
 /// The upper half of a cube, brought to a ball.
-void add_sky(Builder& builder) {
+void add_city_sky(Builder& builder) {
   constexpr int cells = 8;
   const auto point = [](const dvec3& p) { return sky_centre + sky_distance * glm::normalize(p); };
   const auto face = [&](const dvec3& middle, const dvec3& right, const dvec3& up, int from_row) {
@@ -118,9 +118,9 @@ void add_sky(Builder& builder) {
 
 void add_far_away(Builder& builder) {
   for (std::uint32_t k = 0; k < builder.city.towers.size(); ++k) add_tower(builder, k);
-  add_hills(builder, 0, 2250.0, 75.0);
-  add_hills(builder, 1, 2500.0, 150.0);
-  add_sky(builder);
+  add_city_hills(builder, 0, 2250.0, 75.0);
+  add_city_hills(builder, 1, 2500.0, 150.0);
+  add_city_sky(builder);
 }
 
 }  // namespace binosplat::city

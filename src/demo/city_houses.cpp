@@ -13,7 +13,7 @@ namespace {
 // Coarser than this the houses of a row are drawn together; finer than the second, their windows are deep;
 // finer than the third, they have sills and cornices.
 constexpr double grain_of_rows = 3.5, grain_of_openings = 0.25, grain_of_trim = 0.12;
-constexpr double foot = 0.8;  // how far walls reach below the ground, where it slopes
+constexpr double house_foot = 0.8;  // how far walls reach below the ground, where it slopes
 constexpr double overhang = 0.3;
 constexpr double hidden = 1.6, roof_coarseness = 1.25;  // what streets see little of has fewer Gaussians
 
@@ -92,10 +92,10 @@ class HouseBuilder {
     const Wall& wall = builder_.city.walls[w];
     const double grain = builder_.grain_at(wall.frame.at(0.5 * wall.width, -3.0, 0.0));
     if (grain > grain_of_openings) {
-      piece(w, 0.0, wall.width, -foot, house_.eave);
+      piece(w, 0.0, wall.width, -house_foot, house_.eave);
       return;
     }
-    piece(w, 0.0, wall.width, -foot, 0.0);
+    piece(w, 0.0, wall.width, -house_foot, 0.0);
     const double top = house_.floors * house_.floor_height;
     piece(w, 0.0, wall.width, top, house_.eave);
     for (int floor = 0; floor < house_.floors; ++floor) {
@@ -229,10 +229,10 @@ void add_row(Builder& builder, std::uint32_t number) {
   const dvec3 up(0, -1, 0), in = row.frame.axes[2], from = row.frame.origin;
   const double slope = row.roof_rise / (0.5 * row_depth);
   const dvec3 to_ridge = 0.5 * row_depth * (in + slope * up);
-  Surface s{.corner = from - foot * up, .u = row.along, .v = (row.eave + foot) * up};
+  Surface s{.corner = from - house_foot * up, .u = row.along, .v = (row.eave + house_foot) * up};
   s.subject = number;
   s.paint = paint_row_front;
-  s.at = {0.0, -foot};
+  s.at = {0.0, -house_foot};
   s.borders = border_left | border_right;
   builder.sheet(s);
   s.corner += row.along + row_depth * in;

@@ -17,7 +17,7 @@ constexpr dvec3 bounce{0.30, 0.26, 0.21};  // from sunlit ground and walls
 constexpr dvec3 haze{0.80, 0.85, 0.90};
 
 // Rays start this far off their surface: it must not shade itself, and window panes lie this deep in walls.
-constexpr double lift = 0.3;
+constexpr double point_lift = 0.3;
 
 // Cells of the ground with lists of what casts shadows on them.
 constexpr double cell = 8.0;
@@ -64,7 +64,7 @@ bool shades(const Caster& caster, const dvec3& from) {
 }
 
 /// Linear light to a display value: a soft shoulder, and a gamma of 2.
-dvec3 developed(const dvec3& light) {
+dvec3 developed_city(const dvec3& light) {
   dvec3 out;
   for (int i = 0; i < 3; ++i) {
     const double x = std::max(0.0, light[i]);
@@ -103,7 +103,7 @@ Light::Light(const City& city) : city_(city), cells_(static_cast<std::size_t>(ce
 double Light::sun_at(const dvec3& p, const dvec3& normal, bool leaves) const {
   const double facing = glm::dot(normal, to_sun);
   if (!leaves && facing <= 0.0) return 0.0;
-  const dvec3 from = p + lift * normal;
+  const dvec3 from = p + point_lift * normal;
   const int i = cell_at(cells_x0, from.x, cells_x), j = cell_at(cells_z0, from.z, cells_z);
   double share = 1.0;
   for (const std::uint32_t k : cells_[cell_index(i, j)]) {
@@ -128,7 +128,7 @@ Light::Seen Light::seen(const dvec3& p, const dvec3& normal, const Look& look, b
   const double far = glm::dot(from_camera, from_camera);
   const double hazy = far / (far + 1500.0 * 1500.0);
   Seen seen;
-  seen.colour = mix(developed(look.colour * look.colour * light), haze, hazy);
+  seen.colour = mix(developed_city(look.colour * look.colour * light), haze, hazy);
   if (leaves) {  // the sun shines through
     seen.shine = look.colour * 0.16;
     seen.shine_axis = to_sun;

@@ -15,13 +15,13 @@ constexpr double c0 = 0.28209479177387814, c1 = 0.4886025119029199;
 
 /// Gaussians a cell apart overlap enough to close a surface when their standard deviation is this share of
 /// the cell, although they stand a little off their places.
-constexpr double overlap = 0.78;
+constexpr double city_overlap = 0.78;
 constexpr double unrest = 0.12;  // cells
 /// At a border where a sheet ends its outermost Gaussians lie this many cells inside: half transparent there.
 constexpr double margin_at_end = 0.85;
 /// Thickness of a flat Gaussian as a share of its smaller side, and at most: kilometres of ground must not
 /// become fog.
-constexpr double flatness = 0.08, thickest = 0.25;
+constexpr double city_flatness = 0.08, thickest = 0.25;
 constexpr float opacity = 0.97f;
 
 /// Of leaves in a crown of radius 1.
@@ -111,9 +111,9 @@ void fill_sheet(const City& city, const Light& light, const Surface& s, std::siz
     const std::uint64_t in_row = (j + 1) * n / rows - j * n / rows;
     const Cells wide(length_u, static_cast<std::uint32_t>(in_row), s.borders & border_left,
                      s.borders & border_right);
-    const double flat = std::min(thickest, overlap * flatness * std::min(wide.size, high.size));
+    const double flat = std::min(thickest, city_overlap * city_flatness * std::min(wide.size, high.size));
     const double thin = s.thickness > 0.0 ? s.thickness : flat;
-    const dvec3 scale(overlap * wide.size, overlap * high.size, thin);
+    const dvec3 scale(city_overlap * wide.size, city_overlap * high.size, thin);
     for (std::uint64_t i = 0; i < in_row; ++i, ++at) {
       const auto key = static_cast<std::int64_t>(at);
       const double shift_u = unrest * (2.0 * hash(key, 1) - 1.0),

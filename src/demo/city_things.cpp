@@ -30,7 +30,7 @@ Look paint_lantern(const City&, const Surface&, double, double v) {
   return {.colour = dvec3(0.96, 0.92, 0.80), .gloss = 0.3, .glow = 0.35};
 }
 
-void add_tree(Builder& builder, std::uint32_t number) {
+void add_city_tree(Builder& builder, std::uint32_t number) {
   const Tree& tree = builder.city.trees[number];
   const double grain = builder.grain_at(tree.foot);
   if (grain > grain_of_trees) return;
@@ -148,7 +148,7 @@ void add_car(Builder& builder, std::uint32_t number) {
 
 void add_things(Builder& builder) {
   const City& city = builder.city;
-  for (std::uint32_t k = 0; k < city.trees.size(); ++k) add_tree(builder, k);
+  for (std::uint32_t k = 0; k < city.trees.size(); ++k) add_city_tree(builder, k);
   for (std::uint32_t k = 0; k < city.lamps.size(); ++k) add_lamp(builder, k);
   for (std::uint32_t k = 0; k < city.cars.size(); ++k) add_car(builder, k);
 }

@@ -9,12 +9,12 @@ namespace {
 
 /// Discs a cell apart overlap enough to close the surface when their standard deviation is this share of the
 /// cell: at an opacity of 0.97 the corner between four of them is covered by 99 %.
-constexpr double overlap = 0.74;
+constexpr double patch_overlap = 0.74;
 /// A patch's outermost discs lie this many standard deviations inside its border: half transparent just
 /// there.
 constexpr double inset = 1.1;
 /// Thickness of a disc as a share of its smaller side.
-constexpr double flatness = 0.08;
+constexpr double patch_flatness = 0.08;
 
 /// How a length is divided into a row of discs.
 struct Row {
@@ -28,7 +28,7 @@ struct Row {
       cell = length / count;
       first = 0.5 * cell;
     } else {
-      const double margin = inset * overlap;
+      const double margin = inset * patch_overlap;
       count = std::max(1, static_cast<int>(std::lround(length / grain - 2.0 * margin + 1.0)));
       cell = length / (count - 1 + 2.0 * margin);
       first = margin * cell;
@@ -125,12 +125,13 @@ void Stage::patch(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v,
   const dvec3 u = edge_u / length_u, v = edge_v / length_v;
   const dmat3 axes = axes_from_normal(glm::normalize(glm::cross(u, v)), u);
   const Row row_u(length_u, grain.u, border), row_v(length_v, grain.v, border);
-  const double su = overlap * row_u.cell, sv = overlap * row_v.cell;
+  const double su = patch_overlap * row_u.cell, sv = patch_overlap * row_v.cell;
   for (int j = 0; j < row_v.count; ++j) {
     for (int i = 0; i < row_u.count; ++i) {
       const double a = row_u.first + i * row_u.cell, b = row_v.first + j * row_v.cell;
       const std::optional<Material> material = texture(a, b);
-      if (material) disc(corner + a * u + b * v, axes, {su, sv, flatness * std::min(su, sv)}, *material);
+      if (material)
+        disc(corner + a * u + b * v, axes, {su, sv, patch_flatness * std::min(su, sv)}, *material);
     }
   }
 }
@@ -159,7 +160,7 @@ void Stage::box(const Frame& frame, const dvec3& low, const dvec3& high, Grain g
 void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, const Texture& texture) {
   const double mean = std::cbrt(radii.x * radii.y * radii.z);
   const int count = std::max(12, static_cast<int>(std::lround(4.0 * pi * mean * mean / (grain * grain))));
-  const double sigma = overlap * std::sqrt(4.0 * pi / count);  // on the unit sphere
+  const double sigma = patch_overlap * std::sqrt(4.0 * pi / count);  // on the unit sphere
   const double golden = pi * (3.0 - std::sqrt(5.0));
   for (int i = 0; i < count; ++i) {  // a Fibonacci spiral from pole to pole
     const double y = 1.0 - 2.0 * (i + 0.5) / count, ring = std::sqrt(1.0 - y * y);
@@ -174,7 +175,7 @@ void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, cons
       const dvec3 local = glm::transpose(frame.axes) * axes[k];
       scale[k] = sigma / glm::length(local / radii);
     }
-    scale.z = flatness * std::min(scale.x, scale.y);
+    scale.z = patch_flatness * std::min(scale.x, scale.y);
     // Half the disc's sagitta inwards, so that the silhouette keeps the radius.
     disc(frame.at(p.x * radii.x, p.y * radii.y, p.z * radii.z) - 0.5 * sigma * sigma * mean * normal, axes,
          scale, *material);
@@ -212,7 +213,7 @@ double Stage::smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile
     const dvec2 along = glm::normalize(profile[k] - profile[k - 1]);
     const double round = 2.0 * pi * at.x;
     const int count = std::max(3, static_cast<int>(std::lround(round / grain)));
-    const double su = overlap * round / count, sv = overlap * row.cell;
+    const double su = patch_overlap * round / count, sv = patch_overlap * row.cell;
     for (int i = 0; i < count; ++i) {
       const double angle = 2.0 * pi * (i + 0.5 * (j % 2)) / count;
       const std::optional<Material> material = texture(angle, done + v);
@@ -221,7 +222,7 @@ double Stage::smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile
       const dvec3 normal = frame.axes * (along.y * outwards - dvec3(0.0, along.x, 0.0));
       const dvec3 around = frame.axes * dvec3(-outwards.z, 0.0, outwards.x);
       const dvec3 p = frame.origin + frame.axes * (at.x * outwards + dvec3(0.0, at.y, 0.0));
-      disc(p, axes_from_normal(normal, around), {su, sv, flatness * std::min(su, sv)}, *material);
+      disc(p, axes_from_normal(normal, around), {su, sv, patch_flatness * std::min(su, sv)}, *material);
     }
   }
   return way.back();
@@ -241,9 +242,9 @@ void Stage::tube(const std::vector<dvec3>& path, double radius, double grain, co
       const std::optional<Material> material = texture(angle, way[i] + 0.5 * length);
       if (!material) continue;
       const dvec3 normal = std::cos(angle) * side + std::sin(angle) * up;
-      const double su = overlap * length, sv = overlap * 2.0 * pi * radius / around;
+      const double su = patch_overlap * length, sv = patch_overlap * 2.0 * pi * radius / around;
       disc(0.5 * (path[i] + path[i + 1]) + 0.9 * radius * normal, axes_from_normal(normal, forward),
-           {su, sv, flatness * std::min(su, sv)}, *material);
+           {su, sv, patch_flatness * std::min(su, sv)}, *material);
     }
   }
 }
@@ -266,7 +267,7 @@ void Stage::wire(const std::vector<dvec3>& path, double radius, double grain, co
     const dvec3 normal = glm::normalize(upwards - forward * glm::dot(forward, upwards));
     const double thin = 0.6 * radius;
     disc(path[k - 1] + (at - start) * forward, axes_from_normal(normal, forward),
-         {overlap * length / count, thin, thin}, material);
+         {patch_overlap * length / count, thin, thin}, material);
   }
 }
 

@@ -8,8 +8,6 @@ namespace binosplat::procedural {
 
 namespace {
 
-using Shape = Solid::Shape;
-
 /// Wood with its grain along u.
 Texture wooden(const dvec3& colour, double seed, double gloss = 1.5) {
   return [=](double u, double v) -> std::optional<Material> {

@@ -34,7 +34,7 @@ void along_horizon(double step, const std::function<void(double azimuth, double 
   }
 }
 
-void add_sky(Stage& stage, const dvec3& to_sun) {
+void add_room_sky(Stage& stage, const dvec3& to_sun) {
   constexpr double distance = 420.0, rise = 1.35;
   for (double elevation = -1.0; elevation < 46.0; elevation += rise) {
     along_horizon(rise / std::cos(glm::radians(elevation)), [&](double azimuth, double step) {
@@ -56,8 +56,8 @@ void add_sky(Stage& stage, const dvec3& to_sun) {
 }
 
 /// A range of hills: columns of discs from below the horizon up to a ridge of noise.
-void add_hills(Stage& stage, double distance, double tallest, const dvec3& dark, const dvec3& light,
-               double seed) {
+void add_room_hills(Stage& stage, double distance, double tallest, const dvec3& dark, const dvec3& light,
+                    double seed) {
   along_horizon(0.75, [&](double azimuth, double step) {
     const double ridge =
         tallest * (0.25 + 0.75 * fractal(0.045 * azimuth + seed, seed)) + 0.5 * fractal(0.7 * azimuth, seed);
@@ -96,7 +96,7 @@ void add_meadow(Stage& stage) {
   }
 }
 
-void add_tree(Stage& stage, const dvec3& foot, double size, double seed) {
+void add_room_tree(Stage& stage, const dvec3& foot, double size, double seed) {
   stage.wire({foot, foot - dvec3(0, 0.5 * size, 0)}, 0.035 * size, 0.1 * size, unlit({0.30, 0.22, 0.16}));
   for (int i = 0; i < 420; ++i) {
     const double y = stage.random.uniform(-1.0, 1.0);
@@ -116,16 +116,16 @@ void add_tree(Stage& stage, const dvec3& foot, double size, double seed) {
 }  // namespace
 
 void add_outside(Stage& stage, const dvec3& to_sun) {
-  add_sky(stage, to_sun);
-  add_hills(stage, 380.0, 9.0, {0.50, 0.58, 0.70}, {0.66, 0.70, 0.77}, 4.0);
-  add_hills(stage, 260.0, 6.0, {0.38, 0.50, 0.48}, {0.62, 0.68, 0.54}, 11.0);
-  add_hills(stage, 150.0, 3.2, {0.24, 0.37, 0.20}, {0.62, 0.62, 0.30}, 23.0);
+  add_room_sky(stage, to_sun);
+  add_room_hills(stage, 380.0, 9.0, {0.50, 0.58, 0.70}, {0.66, 0.70, 0.77}, 4.0);
+  add_room_hills(stage, 260.0, 6.0, {0.38, 0.50, 0.48}, {0.62, 0.68, 0.54}, 11.0);
+  add_room_hills(stage, 150.0, 3.2, {0.24, 0.37, 0.20}, {0.62, 0.62, 0.30}, 23.0);
   add_meadow(stage);
   const dvec3 ground(0, 3.2, 0);
-  add_tree(stage, ground + dvec3(-5.5, 0, 17.0), 6.5, 1);
-  add_tree(stage, ground + dvec3(-11.0, 0, 30.0), 7.0, 2);
-  add_tree(stage, ground + dvec3(4.0, 0, 38.0), 6.0, 3);
-  add_tree(stage, ground + dvec3(9.0, 0, 55.0), 7.5, 4);
+  add_room_tree(stage, ground + dvec3(-5.5, 0, 17.0), 6.5, 1);
+  add_room_tree(stage, ground + dvec3(-11.0, 0, 30.0), 7.0, 2);
+  add_room_tree(stage, ground + dvec3(4.0, 0, 38.0), 6.0, 3);
+  add_room_tree(stage, ground + dvec3(9.0, 0, 55.0), 7.5, 4);
 }
 
 }  // namespace binosplat::procedural

@@ -5,6 +5,8 @@
 
 namespace binosplat::procedural {
 
+using Shape = Solid::Shape;
+
 // The room, in metres, y downwards; the window is in the wall at high z.
 constexpr dvec3 room_low{-2.5, -2.8, -2.0};
 constexpr dvec3 room_high{2.5, 0.0, 2.0};

@@ -8,7 +8,7 @@ namespace binosplat::procedural {
 
 namespace {
 
-constexpr double width = room_high.x - room_low.x;
+constexpr double room_width = room_high.x - room_low.x;
 constexpr double height = room_high.y - room_low.y;
 constexpr double depth = room_high.z - room_low.z;
 
@@ -112,7 +112,7 @@ dvec3 woven(double x, double y) {
 
 void add_floor(Stage& stage) {
   constexpr double plank = 0.15, gap = 0.006;
-  for (int k = 0; k * plank < width; ++k) {
+  for (int k = 0; k * plank < room_width; ++k) {
     const double x = room_low.x + k * plank, across = std::min(plank, room_high.x - x) - gap;
     const double joint = 2.0 * hash(k, 7);  // where one board ends and the next one starts
     stage.patch(
@@ -156,13 +156,13 @@ void add_walls(Stage& stage) {
     return x > window_low.x && x < window_high.x && y > window_low.y && y < window_high.y;
   };
   stage.patch(
-      back, width * right, -panelling * down, {0.028, 0.035},
+      back, room_width * right, -panelling * down, {0.028, 0.035},
       [&](double u, double up) {
         return in_window(u, up) ? std::nullopt : std::optional<Material>(boarding(u, up));
       },
       Border::overlaps);
   stage.patch(
-      back - panelling * down, width * right, (panelling - height) * down, Grain(0.028),
+      back - panelling * down, room_width * right, (panelling - height) * down, Grain(0.028),
       [&](double u, double v) {
         return in_window(u, panelling + v) ? std::nullopt
                                            : std::optional<Material>(wallpaper(u, panelling + v));
@@ -178,7 +178,7 @@ void add_walls(Stage& stage) {
   add_bricks(stage);
   // Behind the default camera: plaster, with a door.
   stage.patch(
-      {room_low.x, room_low.y, room_low.z}, width * right, height * down, Grain(0.090),
+      {room_low.x, room_low.y, room_low.z}, room_width * right, height * down, Grain(0.090),
       [](double u, double v) -> std::optional<Material> {
         const double up = height - v, x = std::abs(u - 3.6);
         if (x < 0.45 && up < 2.05) {
@@ -192,7 +192,7 @@ void add_walls(Stage& stage) {
 }
 
 void add_ceiling(Stage& stage) {
-  stage.patch({room_low.x, room_low.y, room_low.z}, depth * away, width * right, Grain(0.14),
+  stage.patch({room_low.x, room_low.y, room_low.z}, depth * away, room_width * right, Grain(0.14),
               plain({.colour = {0.93, 0.92, 0.89}}), Border::overlaps);
   const Frame world;
   const auto stucco = plain({.colour = {0.94, 0.93, 0.90}});

@@ -8,8 +8,6 @@ namespace binosplat::procedural {
 
 namespace {
 
-using Shape = Solid::Shape;
-
 constexpr double table_top = -0.74;
 
 /// A leaf that starts at `from`, leads `along` and bends down; its upper side faces up.

@@ -25,14 +25,12 @@ namespace binosplat {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr double most_pixels = 2147483648.0;
 
 /// One object of the list; every error names the file, the object's number and the key.
 class CameraReader {
  public:
-  CameraReader(const std::filesystem::path& path, std::size_t index, const json& object)
+  CameraReader(const std::filesystem::path& path, std::size_t index, const nlohmann::json& object)
       : path_(path), index_(index), object_(object) {}
 
   Camera read() const {
@@ -62,13 +60,13 @@ class CameraReader {
     fail("{}, camera {} (counted from 0), key '{}': {}", path_.string(), index_, key, text);
   }
 
-  const json& need(const char* key) const {
+  const nlohmann::json& need(const char* key) const {
     const auto found = object_.find(key);
     if (found == object_.end()) fail_key(key, "is missing");
     return *found;
   }
 
-  double number(const json& value, const char* key) const {
+  double number(const nlohmann::json& value, const char* key) const {
     if (!value.is_number() || !std::isfinite(value.get<double>())) fail_key(key, "expected a finite number");
     return value.get<double>();
   }
@@ -81,7 +79,7 @@ class CameraReader {
     return static_cast<int>(value);
   }
 
-  glm::dvec3 vector(const json& value, const char* key) const {
+  glm::dvec3 vector(const nlohmann::json& value, const char* key) const {
     if (!value.is_array() || value.size() != 3)
       fail_key(key, "expected three numbers, or three rows of three");
     return {number(value[0], key), number(value[1], key), number(value[2], key)};
@@ -89,7 +87,7 @@ class CameraReader {
 
   glm::dmat3 rotation() const {
     const char* key = "rotation";
-    const json& rows = need(key);
+    const nlohmann::json& rows = need(key);
     if (!rows.is_array() || rows.size() != 3) fail_key(key, "expected three rows of three numbers");
     glm::dmat3 transposed;
     for (int i = 0; i < 3; ++i) transposed[i] = vector(rows[static_cast<std::size_t>(i)], key);
@@ -100,11 +98,11 @@ class CameraReader {
 
   const std::filesystem::path& path_;
   std::size_t index_;
-  const json& object_;
+  const nlohmann::json& object_;
 };
 
 /// INRIA's cameras.json.
-std::vector<Camera> load_list(const std::filesystem::path& path, const json& root) {
+std::vector<Camera> load_list(const std::filesystem::path& path, const nlohmann::json& root) {
   if (root.empty()) fail("{} holds no cameras", path.string());
   std::vector<Camera> cameras;
   DrawnLenses drawn(path.string());
@@ -143,7 +141,7 @@ std::vector<Camera> load_any(const std::filesystem::path& named, const std::opti
   if (std::filesystem::is_directory(path, ignored)) return load_colmap(path);
   const MappedFile file(path);
   if (content_of(file.bytes()) == Content::ply) return {load_ply_camera(path, file.bytes())};
-  const json root = parse_json(path.string(), as_text(file.bytes()));
+  const nlohmann::json root = parse_json(path.string(), as_text(file.bytes()));
   if (is_transforms(root)) return load_transforms(path, root);
   if (is_camera_path(root)) return load_camera_path(path, root);
   if (is_pose_list(root)) return load_pose_list(path, root, fov_degrees.value_or(default_fov_degrees));

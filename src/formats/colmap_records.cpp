@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/text.h"
 #include "formats/bytes.h"
 #include "formats/content.h"
 
@@ -17,27 +18,27 @@ struct LensModel {
   std::string_view name;
   std::size_t parameters;
 };
-constexpr LensModel models[] = {{"SIMPLE_PINHOLE", 3},
-                                {"PINHOLE", 4},
-                                {"SIMPLE_RADIAL", 4},
-                                {"RADIAL", 5},
-                                {"OPENCV", 8},
-                                {"OPENCV_FISHEYE", 8},
-                                {"FULL_OPENCV", 12},
-                                {"FOV", 5},
-                                {"SIMPLE_RADIAL_FISHEYE", 4},
-                                {"RADIAL_FISHEYE", 5},
-                                {"THIN_PRISM_FISHEYE", 12},
-                                {"RAD_TAN_THIN_PRISM_FISHEYE", 16},
-                                {"SIMPLE_DIVISION", 4},
-                                {"DIVISION", 5},
-                                {"SIMPLE_FISHEYE", 3},
-                                {"FISHEYE", 4},
-                                {"EUCM", 6},
-                                {"EQUIRECTANGULAR", 2}};
+constexpr LensModel colmap_models[] = {{"SIMPLE_PINHOLE", 3},
+                                       {"PINHOLE", 4},
+                                       {"SIMPLE_RADIAL", 4},
+                                       {"RADIAL", 5},
+                                       {"OPENCV", 8},
+                                       {"OPENCV_FISHEYE", 8},
+                                       {"FULL_OPENCV", 12},
+                                       {"FOV", 5},
+                                       {"SIMPLE_RADIAL_FISHEYE", 4},
+                                       {"RADIAL_FISHEYE", 5},
+                                       {"THIN_PRISM_FISHEYE", 12},
+                                       {"RAD_TAN_THIN_PRISM_FISHEYE", 16},
+                                       {"SIMPLE_DIVISION", 4},
+                                       {"DIVISION", 5},
+                                       {"SIMPLE_FISHEYE", 3},
+                                       {"FISHEYE", 4},
+                                       {"EUCM", 6},
+                                       {"EQUIRECTANGULAR", 2}};
 
 std::size_t parameters_of(int model) {
-  return model >= 0 && model < std::ssize(models) ? models[model].parameters : 0;
+  return model >= 0 && model < std::ssize(colmap_models) ? colmap_models[model].parameters : 0;
 }
 
 /// A quaternion of length 1; a pose without one is refused.
@@ -137,21 +138,8 @@ class Lines {
   std::size_t number_ = 0;
 };
 
-/// What stands between blanks; the last of `most` words is all that is left, with the blanks in it.
-std::vector<std::string_view> words_of(std::string_view line,
-                                       std::size_t most = std::numeric_limits<std::size_t>::max()) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(" \t"); at < line.size();) {
-    const bool all = words.size() + 1 == most;
-    const std::size_t end = all ? line.size() : std::min(line.find_first_of(" \t", at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(" \t", end);
-  }
-  return words;
-}
-
 template <typename T>
-T number(const Lines& lines, std::string_view word, const char* what) {
+T parse_number(const Lines& lines, std::string_view word, const char* what) {
   T value{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size())
@@ -180,7 +168,7 @@ void add(std::map<std::uint32_t, ColmapLens>& lenses, const std::string& where, 
 }  // namespace
 
 std::string_view colmap_model_name(int model) {
-  return model >= 0 && model < std::ssize(models) ? models[model].name : std::string_view{};
+  return model >= 0 && model < std::ssize(colmap_models) ? colmap_models[model].name : std::string_view{};
 }
 
 std::map<std::uint32_t, ColmapLens> colmap_lenses(const std::filesystem::path& path) {
@@ -214,16 +202,16 @@ std::map<std::uint32_t, ColmapLens> colmap_lenses_text(const std::filesystem::pa
     const std::vector<std::string_view> words = words_of(line);
     if (words.size() < 4) fail("{}: expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS...", lines.where());
     ColmapLens lens;
-    lens.id = number<std::uint32_t>(lines, words[0], "camera's number");
+    lens.id = parse_number<std::uint32_t>(lines, words[0], "camera's number");
     lens.model = -1;
-    for (int model = 0; model < std::ssize(models); ++model) {
-      if (models[model].name == words[1]) lens.model = model;
+    for (int model = 0; model < std::ssize(colmap_models); ++model) {
+      if (colmap_models[model].name == words[1]) lens.model = model;
     }
     if (lens.model < 0) fail("{}: {} is no model of COLMAP's", lines.where(), quoted(words[1]));
-    lens.width = number<std::uint64_t>(lines, words[2], "number of pixels");
-    lens.height = number<std::uint64_t>(lines, words[3], "number of pixels");
+    lens.width = parse_number<std::uint64_t>(lines, words[2], "number of pixels");
+    lens.height = parse_number<std::uint64_t>(lines, words[3], "number of pixels");
     for (std::size_t k = 4; k < words.size(); ++k)
-      lens.parameters.push_back(number<double>(lines, words[k], "number"));
+      lens.parameters.push_back(parse_number<double>(lines, words[k], "number"));
     if (lens.parameters.size() != parameters_of(lens.model)) {
       fail("{}: {} parameters; the model {} has {}", lines.where(), lens.parameters.size(), words[1],
            parameters_of(lens.model));
@@ -263,14 +251,14 @@ std::vector<ColmapImage> colmap_images_text(const std::filesystem::path& path) {
     const std::vector<std::string_view> words = words_of(line, 10);
     if (words.size() < 10) fail("{}: expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME", lines.where());
     ColmapImage& image = images.emplace_back();
-    image.id = number<std::uint32_t>(lines, words[0], "image's number");
+    image.id = parse_number<std::uint32_t>(lines, words[0], "image's number");
     for (std::size_t c = 0; c < 4; ++c)
-      image.rotation[static_cast<int>(c)] = number<double>(lines, words[1 + c], "number");
+      image.rotation[static_cast<int>(c)] = parse_number<double>(lines, words[1 + c], "number");
     for (std::size_t c = 0; c < 3; ++c)
-      image.translation[static_cast<int>(c)] = number<double>(lines, words[5 + c], "number");
+      image.translation[static_cast<int>(c)] = parse_number<double>(lines, words[5 + c], "number");
     image.rotation = unit(lines.where(), image.rotation);
     check_pose(lines.where(), image);
-    image.lens = number<std::uint32_t>(lines, words[8], "camera's number");
+    image.lens = parse_number<std::uint32_t>(lines, words[8], "camera's number");
     image.name = std::string(words[9]);
     // Where an image was observed; an empty line is one, too.
     std::string_view observations;

@@ -14,17 +14,12 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::size_t chunk_size = 256;
 constexpr std::size_t plain_fields = 12;  // without the bounds of colours
-constexpr const char* chunk_fields[] = {
-    "min_x",       "min_y",       "min_z",       "max_x",       "max_y",       "max_z",
-    "min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z",
-    "min_r",       "min_g",       "min_b",       "max_r",       "max_g",       "max_b"};
 constexpr const char* vertex_fields[] = {"packed_position", "packed_rotation", "packed_scale",
                                          "packed_color"};
 
 /// What is read of an element: where its rows begin, and where in them the wanted properties lie.
-struct Rows {
+struct PackedRows {
   std::size_t at = 0;
   std::size_t bytes = 0;  // of a row
   std::vector<std::size_t> offsets;
@@ -109,9 +104,9 @@ class CompressedPlyReader {
     }
     if (vertices_.offsets.empty()) fail("{}: a compressed ply without element 'vertex'", path_.string());
     if (count_ == 0) fail("{} holds no Gaussians: its header says 'element vertex 0'", path_.string());
-    if (chunks_count_ < (count_ + chunk_size - 1) / chunk_size) {
+    if (chunks_count_ < (count_ + packed_chunk_size - 1) / packed_chunk_size) {
       fail("{}: element 'chunk' has {} rows, too few for {} Gaussians, of which {} share one", path_.string(),
-           chunks_count_, count_, chunk_size);
+           chunks_count_, count_, packed_chunk_size);
     }
     if (degree_ > 0 && harmonics_count_ < count_) {
       fail("{}: element 'sh' has {} rows for {} Gaussians", path_.string(), harmonics_count_, count_);
@@ -136,9 +131,9 @@ class CompressedPlyReader {
     chunks_ = {at, element.row_bytes(), {}};
     chunks_count_ = element.count;
     coloured_ = element.properties.size() > plain_fields;
-    const std::size_t fields = coloured_ ? std::size(chunk_fields) : plain_fields;
+    const std::size_t fields = coloured_ ? std::size(packed_chunk_fields) : plain_fields;
     for (std::size_t i = 0; i < fields; ++i)
-      chunks_.offsets.push_back(offset_of(element, chunk_fields[i], PlyType::float32));
+      chunks_.offsets.push_back(offset_of(element, packed_chunk_fields[i], PlyType::float32));
   }
 
   void take_vertices(const PlyElement& element, std::size_t at) {
@@ -183,7 +178,7 @@ class CompressedPlyReader {
   bool decode(Model& model, std::size_t i) const {
     const std::byte* row = bytes_.data() + vertices_.at + i * vertices_.bytes;
     const auto word = [&](std::size_t k) { return load_number<std::uint32_t>(row + vertices_.offsets[k]); };
-    const std::size_t chunk = i / chunk_size;
+    const std::size_t chunk = i / packed_chunk_size;
     const std::uint32_t rgba = word(3);
     glm::dvec3 colour =
         glm::dvec3(bit_field(rgba, 24, 8), bit_field(rgba, 16, 8), bit_field(rgba, 8, 8)) / 255.0;
@@ -202,7 +197,7 @@ class CompressedPlyReader {
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
   const PlyHeader& header_;
-  Rows chunks_, vertices_, harmonics_;
+  PackedRows chunks_, vertices_, harmonics_;
   std::size_t chunks_count_ = 0, count_ = 0, harmonics_count_ = 0;
   bool coloured_ = false;  // chunks have the bounds of colours
   int degree_ = 0;

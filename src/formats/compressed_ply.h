@@ -14,6 +14,13 @@
 
 namespace binosplat {
 
+/// Gaussians of a chunk, and the properties of its bounds, of which the colours' may be missing.
+inline constexpr std::size_t packed_chunk_size = 256;
+inline constexpr const char* packed_chunk_fields[] = {
+    "min_x",       "min_y",       "min_z",       "max_x",       "max_y",       "max_z",
+    "min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z",
+    "min_r",       "min_g",       "min_b",       "max_r",       "max_g",       "max_b"};
+
 /// Whether the header is one of a compressed ply.
 bool is_compressed_ply(const PlyHeader& header);
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "formats/bytes.h"
+#include "formats/compressed_ply.h"
 #include "formats/model_writers.h"
 #include "formats/morton.h"
 #include "formats/perspective.h"
@@ -13,17 +14,12 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::size_t chunk_size = 256;
-constexpr const char* chunk_fields[] = {
-    "min_x",       "min_y",       "min_z",       "max_x",       "max_y",       "max_z",
-    "min_scale_x", "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z",
-    "min_r",       "min_g",       "min_b",       "max_r",       "max_g",       "max_b"};
 /// Logarithms of scales beyond this are cut, as by PlayCanvas.
-constexpr double log_scale_most = 20.0;
+constexpr double packed_log_scale_most = 20.0;
 /// The higher harmonics reach from -4 to 4.
 constexpr double harmonic_most = 4.0;
 
-struct Box {
+struct PackedBox {
   glm::vec3 low{std::numeric_limits<float>::max()};
   glm::vec3 high{std::numeric_limits<float>::lowest()};
 
@@ -54,10 +50,10 @@ class CompressedPlyWriter {
         values_(3 * static_cast<std::size_t>(sh_count(model.degree))) {}
 
   void write() {
-    const std::size_t n = model_.count(), chunks = (n + chunk_size - 1) / chunk_size;
+    const std::size_t n = model_.count(), chunks = (n + packed_chunk_size - 1) / packed_chunk_size;
     const std::size_t higher = values_ - 3;
     std::string header = fmt::format("ply\nformat binary_little_endian 1.0\nelement chunk {}\n", chunks);
-    for (const char* field : chunk_fields) header += fmt::format("property float {}\n", field);
+    for (const char* field : packed_chunk_fields) header += fmt::format("property float {}\n", field);
     header += fmt::format("element vertex {}\n", n);
     for (const char* field : {"packed_position", "packed_rotation", "packed_scale", "packed_color"})
       header += fmt::format("property uint {}\n", field);
@@ -70,7 +66,7 @@ class CompressedPlyWriter {
     boxes_.resize(chunks);
     RowWriter rows([&](std::span<const std::byte> bytes) { file_.write(bytes); },
                    chunks + (higher > 0 ? 2 : 1) * n);
-    rows.write(chunks, 4 * std::size(chunk_fields),
+    rows.write(chunks, 4 * std::size(packed_chunk_fields),
                [&](std::size_t chunk, std::byte* row) { put_chunk(chunk, row); });
     rows.write(n, 16, [&](std::size_t slot, std::byte* row) { put_vertex(slot, row); });
     if (higher > 0)
@@ -78,7 +74,7 @@ class CompressedPlyWriter {
   }
 
   glm::vec3 log_scale(std::size_t i) const {
-    return glm::clamp(glm::log(glm::dvec3(model_.scale[i])), -log_scale_most, log_scale_most);
+    return glm::clamp(glm::log(glm::dvec3(model_.scale[i])), -packed_log_scale_most, packed_log_scale_most);
   }
 
  private:
@@ -88,14 +84,15 @@ class CompressedPlyWriter {
   }
 
   void put_chunk(std::size_t chunk, std::byte* row) {
-    std::array<Box, 3>& boxes = boxes_[chunk];
-    for (std::size_t k = chunk * chunk_size; k < std::min((chunk + 1) * chunk_size, order_.size()); ++k) {
+    std::array<PackedBox, 3>& boxes = boxes_[chunk];
+    for (std::size_t k = chunk * packed_chunk_size;
+         k < std::min((chunk + 1) * packed_chunk_size, order_.size()); ++k) {
       const std::size_t i = order_[k];
       boxes[0].add(model_.position[i]);
       boxes[1].add(log_scale(i));
       boxes[2].add(colour(i));
     }
-    for (const Box& box : boxes) {
+    for (const PackedBox& box : boxes) {
       for (const glm::vec3& end : {box.low, box.high}) {
         for (int c = 0; c < 3; ++c, row += 4) store_number(row, end[c]);
       }
@@ -104,7 +101,7 @@ class CompressedPlyWriter {
 
   void put_vertex(std::size_t slot, std::byte* row) const {
     const std::size_t i = order_[slot];
-    const std::array<Box, 3>& boxes = boxes_[slot / chunk_size];
+    const std::array<PackedBox, 3>& boxes = boxes_[slot / packed_chunk_size];
     const SmallestThree q = smallest_three(model_.rotation[i]);
     auto rotation = static_cast<std::uint32_t>(q.largest);
     for (int c = 0; c < 3; ++c)
@@ -133,8 +130,8 @@ class CompressedPlyWriter {
   OutputFile& file_;
   const Model& model_;
   std::vector<std::uint32_t> order_;
-  std::size_t values_;                     // coefficients of a Gaussian, all channels
-  std::vector<std::array<Box, 3>> boxes_;  // by chunk: positions, logarithms of scales, base colours
+  std::size_t values_;                           // coefficients of a Gaussian, all channels
+  std::vector<std::array<PackedBox, 3>> boxes_;  // by chunk: positions, logarithms of scales, base colours
 };
 
 }  // namespace
@@ -144,7 +141,7 @@ Losses write_compressed_ply(OutputFile& file, const Model& model) {
   Losses losses;
   count_lost(losses, model, "scales beyond e^-20 to e^20, which a compressed ply cuts", [&](std::size_t i) {
     const glm::dvec3 scale(model.scale[i]);
-    const double most = std::exp(log_scale_most) * 1.000001;  // e^20 itself, as fp32 has it, is none
+    const double most = std::exp(packed_log_scale_most) * 1.000001;  // e^20 itself, as fp32 has it, is none
     return std::min({scale.x, scale.y, scale.z}) * most < 1.0 || std::max({scale.x, scale.y, scale.z}) > most;
   });
   const std::size_t values = model.sh.size() / model.count();

@@ -18,11 +18,11 @@ namespace {
 constexpr double growth = 0.3, growth_most = 8.0;
 
 /// So many times the distance between the Gaussians of a level it reaches out from behind what hides it.
-constexpr double reach = 0.5;
+constexpr double sight_reach = 0.5;
 
 /// How far the box lies beside the picture at least, world units; 0 where it may lie in it, or in some of the
 /// pixels beside it that Gaussians are blurred to.
-double beside(const DetailView& view, const DetailPart& part, double pixel) {
+double distance_beside(const DetailView& view, const DetailPart& part, double pixel) {
   constexpr double blurred_px = 4.0;
   const glm::dvec3 to = 0.5 * (part.low + part.high) - view.eye, half = 0.5 * (part.high - part.low);
   double inside = std::numeric_limits<double>::infinity();
@@ -34,7 +34,7 @@ double beside(const DetailView& view, const DetailPart& part, double pixel) {
 /// How far a level of so many Gaussians reaches out of what its part shows, world units.
 double reach_of(const DetailPart& part, std::size_t count) {
   const double box = glm::distance(part.low, part.high);
-  return reach * box / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
+  return sight_reach * box / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
 }
 
 /// What relative_error says of each level of one part, seen from one place.
@@ -110,7 +110,8 @@ Sights::Sights(const std::vector<DetailPart>& parts, const std::vector<DetailVie
     for (std::size_t v = 0; v < views.size(); ++v) {
       const SeenPart open = unhidden(parts[p], views[v]);
       const bool was_seen = !found.empty() && found[v][p].area > 0.0;
-      const double outside = was_seen ? 0.0 : beside(views[v], parts[p], open.distance / views[v].focal);
+      const double outside =
+          was_seen ? 0.0 : distance_beside(views[v], parts[p], open.distance / views[v].focal);
       if (outside > 0.0 &&
           (parts[p].levels.empty() || outside > reach_of(parts[p], parts[p].levels.back().count)))
         continue;

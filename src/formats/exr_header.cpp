@@ -40,7 +40,7 @@ constexpr FixedType fixed_types[] = {{"box2f", 16},
                                      {"v3f", 12},
                                      {"v3i", 12}};
 
-std::uint32_t number(std::string_view value, std::size_t at) {
+std::uint32_t number_at(std::string_view value, std::size_t at) {
   std::uint32_t bits = 0;
   for (std::size_t i = 4; i > 0; --i) bits = bits << 8 | static_cast<unsigned char>(value[at + i - 1]);
   return bits;
@@ -48,12 +48,12 @@ std::uint32_t number(std::string_view value, std::size_t at) {
 
 /// Length along an axis of a box2i: two corners, both within.
 std::int64_t extent(std::string_view box, std::size_t axis) {
-  const auto corner = [&](std::size_t at) { return static_cast<std::int32_t>(number(box, at)); };
+  const auto corner = [&](std::size_t at) { return static_cast<std::int32_t>(number_at(box, at)); };
   return std::int64_t{corner(8 + 4 * axis)} - corner(4 * axis) + 1;
 }
 
 /// What decides how much memory OpenEXR takes for a part of a file.
-struct Part {
+struct ExrPart {
   std::int64_t width = 0;  // px, of the data window
   std::int64_t height = 0;
   std::int64_t shown_width = 0;  // px, of the display window
@@ -77,7 +77,7 @@ class Walker {
     const bool tiled = (text_[5] & 0x02) != 0;
     const bool many_parts = (text_[5] & 0x10) != 0;
     do {
-      Part part;
+      ExrPart part;
       part.tiled = tiled;
       while (at_ < text_.size() && text_[at_] != '\0') read_attribute(part);
       ++at_;
@@ -105,10 +105,10 @@ class Walker {
     return name;
   }
 
-  void read_attribute(Part& part) {
+  void read_attribute(ExrPart& part) {
     const std::string_view name = take_name();
     const std::string_view type = take_name();
-    const std::uint32_t size = number(take(4), 0);
+    const std::uint32_t size = number_at(take(4), 0);
     for (const FixedType& fixed : fixed_types) {
       if (fixed.name == type && fixed.bytes != size) fail_broken();
     }
@@ -124,8 +124,8 @@ class Walker {
       part.shown_width = extent(value, 0);
       part.shown_height = extent(value, 1);
     } else if (name == "tiles" && type == "tiledesc") {
-      part.tile_width = std::max<std::int64_t>(1, number(value, 0));
-      part.tile_height = std::max<std::int64_t>(1, number(value, 4));
+      part.tile_width = std::max<std::int64_t>(1, number_at(value, 0));
+      part.tile_height = std::max<std::int64_t>(1, number_at(value, 4));
     } else if (name == "compression" && type == "compression") {
       part.compression = static_cast<unsigned char>(value[0]);
     } else if (name == "type") {
@@ -143,7 +143,7 @@ class Walker {
     return count;
   }
 
-  void check_part(const Part& part) const {
+  void check_part(const ExrPart& part) const {
     // Of one colour all over, 7,000 px a byte were seen with DWA, 500 with the others, of up to 4 channels.
     const bool dwa = part.compression == 8 || part.compression == 9;
     const std::int64_t most = (dwa ? 16384 : 1024) * 4 / std::clamp<std::int64_t>(part.channels, 4, 4096);

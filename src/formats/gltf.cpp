@@ -21,14 +21,13 @@ namespace binosplat {
 
 namespace {
 
-constexpr const char* extension = "KHR_gaussian_splatting";
+constexpr const char* splatting_extension = "KHR_gaussian_splatting";
 constexpr const char* packed_names[] = {"KHR_gaussian_splatting_compression_spz_2",
                                         "KHR_gaussian_splatting_compression_spz",
                                         "KHR_spz_gaussian_splats_compression", "KHR_spz_compression"};
-constexpr std::uint64_t most = std::uint64_t{1} << 40;
 
 /// What this reader does as it is asked to: a file that requires anything else must not be drawn.
-constexpr const char* also_known[] = {extension, "EXT_mesh_gpu_instancing", "KHR_node_visibility",
+constexpr const char* also_known[] = {splatting_extension, "EXT_mesh_gpu_instancing", "KHR_node_visibility",
                                       "KHR_mesh_quantization"};
 
 bool is_known(const std::string& name) {
@@ -113,7 +112,7 @@ class GltfReader {
     for (const GltfNode& node : nodes) show(node);
     if (model_.count() == 0 && model_.left_out == 0) {
       fail("{} is a glTF scene without Gaussians ({}) that are to be seen: {} meshes, {} points",
-           path_.string(), extension, others_, points_);
+           path_.string(), splatting_extension, others_, points_);
     }
     if (others_ + points_ > 0) {
       log_warning("{}: only its Gaussians are drawn, and not {} meshes and {} points", path_.string(),
@@ -176,11 +175,11 @@ class GltfReader {
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       const JsonValue primitive = primitives.at(i);
       const bool is_points = primitive.has("mode") && primitive.at("mode").whole(100) == 0;
-      if (!primitive.has("extensions") || !primitive.at("extensions").has(extension)) {
+      if (!primitive.has("extensions") || !primitive.at("extensions").has(splatting_extension)) {
         ++(is_points ? mesh.points : mesh.others);
         continue;
       }
-      const JsonValue splatting = primitive.at("extensions").at(extension);
+      const JsonValue splatting = primitive.at("extensions").at(splatting_extension);
       check(primitive, splatting);
       mesh.morphs = mesh.morphs || primitive.has("targets");
       const auto packed = packed_view(primitive, splatting);
@@ -236,7 +235,7 @@ class GltfReader {
     for (const char* name : packed_names) {
       for (const JsonValue& holder : {splatting, primitive}) {
         if (holder.has("extensions") && holder.at("extensions").has(name))
-          return holder.at("extensions").at(name).at("bufferView").whole(most);
+          return holder.at("extensions").at(name).at("bufferView").whole(gltf_number_most);
       }
     }
     return std::nullopt;
@@ -244,7 +243,7 @@ class GltfReader {
 
   std::vector<float> attribute(const JsonValue& attributes, const std::string& name, std::size_t components,
                                std::size_t count) {
-    const std::size_t accessor = attributes.at(name).whole(most);
+    const std::size_t accessor = attributes.at(name).whole(gltf_number_most);
     if (!unknown_.empty() && !document_.has_numbers(accessor)) {
       attributes.at(name).fail_here(
           "its numbers are in the extension '{}', which is not known; export it without", unknown_);
@@ -264,11 +263,12 @@ class GltfReader {
   }
 
   Model read_points(const JsonValue& attributes) {
-    const bool draft = !attributes.has(fmt::format("{}:ROTATION", extension)) && attributes.has("_ROTATION");
+    const bool draft =
+        !attributes.has(fmt::format("{}:ROTATION", splatting_extension)) && attributes.has("_ROTATION");
     const auto name = [&](const char* end) {
-      return draft ? fmt::format("_{}", end) : fmt::format("{}:{}", extension, end);
+      return draft ? fmt::format("_{}", end) : fmt::format("{}:{}", splatting_extension, end);
     };
-    const std::size_t n = document_.count(attributes.at("POSITION").whole(most));
+    const std::size_t n = document_.count(attributes.at("POSITION").whole(gltf_number_most));
     const std::vector<float> positions = attribute(attributes, "POSITION", 3, n);
     const std::vector<float> rotations = attribute(attributes, name("ROTATION"), 4, n);
     std::vector<float> scales = attribute(attributes, name("SCALE"), 3, n);
@@ -287,7 +287,7 @@ class GltfReader {
     } else {
       opacities = attribute(attributes, name("OPACITY"), 1, n);
       const auto coefficient = [&](int degree, int m) {
-        return fmt::format("{}:SH_DEGREE_{}_COEF_{}", extension, degree, m);
+        return fmt::format("{}:SH_DEGREE_{}_COEF_{}", splatting_extension, degree, m);
       };
       // Of degrees up to the highest there is, all coefficients must be there.
       for (int degree = 1; degree <= 3; ++degree) {

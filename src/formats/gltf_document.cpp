@@ -12,7 +12,6 @@ namespace binosplat {
 namespace {
 
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
-constexpr std::uint64_t most = std::uint64_t{1} << 40;
 
 enum ComponentType { int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, float32 = 5126 };
 
@@ -66,7 +65,7 @@ bool is_stand_in(const JsonValue& buffer) {
 }
 
 std::size_t optional_size(const JsonValue& value, const char* key) {
-  return value.has(key) ? value.at(key).whole(most) : 0;
+  return value.has(key) ? value.at(key).whole(gltf_number_most) : 0;
 }
 
 }  // namespace
@@ -168,8 +167,9 @@ std::vector<std::filesystem::path> GltfDocument::files() const {
 std::span<const std::byte> GltfDocument::view(std::size_t index) {
   // A view that is compressed with meshopt has its bytes as they are, too, unless that is required.
   const JsonValue view = root().at("bufferViews").at(index);
-  const auto bytes = buffer(view.at("buffer").whole(most));
-  const std::size_t offset = optional_size(view, "byteOffset"), length = view.at("byteLength").whole(most);
+  const auto bytes = buffer(view.at("buffer").whole(gltf_number_most));
+  const std::size_t offset = optional_size(view, "byteOffset"),
+                    length = view.at("byteLength").whole(gltf_number_most);
   if (offset > bytes.size() || length > bytes.size() - offset) {
     view.fail_here("{} bytes from byte {} on leave its buffer of {}", length, offset, bytes.size());
   }
@@ -177,7 +177,7 @@ std::span<const std::byte> GltfDocument::view(std::size_t index) {
 }
 
 std::size_t GltfDocument::count(std::size_t accessor) const {
-  return root().at("accessors").at(accessor).at("count").whole(most);
+  return root().at("accessors").at(accessor).at("count").whole(gltf_number_most);
 }
 
 bool GltfDocument::has_numbers(std::size_t accessor) const {
@@ -191,7 +191,7 @@ std::vector<float> GltfDocument::read(std::size_t index, std::size_t components,
   constexpr const char* types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
   if (accessor.at("type").text() != types[components])
     accessor.at("type").fail_here("expected {}, found {}", types[components], accessor.at("type").text());
-  if (accessor.at("count").whole(most) != count)
+  if (accessor.at("count").whole(gltf_number_most) != count)
     accessor.at("count").fail_here("expected {}, as {} have", count, like);
   const int type = static_cast<int>(accessor.at("componentType").whole(65535));
   const std::size_t size = components * size_of_component(type);
@@ -217,7 +217,7 @@ std::vector<float> GltfDocument::zeros(const JsonValue& accessor, std::size_t co
 std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size_t components,
                                             std::size_t count, int type, bool normalized) {
   const std::size_t size = components * size_of_component(type);
-  const std::size_t view_index = accessor.at("bufferView").whole(most);
+  const std::size_t view_index = accessor.at("bufferView").whole(gltf_number_most);
   const auto bytes = view(view_index);
   std::size_t stride = optional_size(root().at("bufferViews").at(view_index), "byteStride");
   if (stride == 0) stride = size;
@@ -238,7 +238,7 @@ std::vector<float> GltfDocument::read_dense(const JsonValue& accessor, std::size
 
 void GltfDocument::read_sparse(const JsonValue& sparse, std::size_t components, int type, bool normalized,
                                std::vector<float>& values) {
-  const std::size_t count = sparse.at("count").whole(most);
+  const std::size_t count = sparse.at("count").whole(gltf_number_most);
   if (count > values.size() / components)
     sparse.fail_here("{} elements are replaced, of {}", count, values.size() / components);
   const JsonValue indices = sparse.at("indices"), replaced = sparse.at("values");
@@ -249,8 +249,8 @@ void GltfDocument::read_sparse(const JsonValue& sparse, std::size_t components, 
                                                         : 0;
   if (index_size == 0) indices.at("componentType").fail_here("{} is no type of an index", index_type);
   const std::size_t component = size_of_component(type), element = components * component;
-  const auto index_bytes = view(indices.at("bufferView").whole(most));
-  const auto value_bytes = view(replaced.at("bufferView").whole(most));
+  const auto index_bytes = view(indices.at("bufferView").whole(gltf_number_most));
+  const auto value_bytes = view(replaced.at("bufferView").whole(gltf_number_most));
   const std::size_t index_at = optional_size(indices, "byteOffset"),
                     value_at = optional_size(replaced, "byteOffset");
   if (index_at > index_bytes.size() || count > (index_bytes.size() - index_at) / index_size ||

@@ -14,6 +14,9 @@
 
 namespace binosplat {
 
+/// Sizes, counts and indices beyond this are damage.
+inline constexpr std::uint64_t gltf_number_most = std::uint64_t{1} << 40;
+
 class GltfDocument {
  public:
   /// `bytes` are the file's and outlive this. Throws Error for a container or JSON that is damaged or cut

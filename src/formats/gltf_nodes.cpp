@@ -9,8 +9,6 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t most = std::uint64_t{1} << 40;
-
 /// Whether a node has an extension, and what it says.
 std::optional<JsonValue> extension_of(const JsonValue& node, const char* name) {
   if (!node.has("extensions") || !node.at("extensions").has(name)) return std::nullopt;
@@ -70,14 +68,14 @@ std::vector<GltfNode> nodes_shown(const JsonValue& root) {
   std::vector<Open> open;
   const auto enter = [&](const JsonValue& list, const glm::dmat4& matrix, bool visible) {
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::size_t index = list.at(i).whole(most);
+      const std::size_t index = list.at(i).whole(gltf_number_most);
       if (index >= seen.size() || seen[index])
         list.at(i).fail_here("node {} is not there, or has two parents", index);
       seen[index] = true;
       open.push_back({index, matrix, visible});
     }
   };
-  const std::size_t number = root.has("scene") ? root.at("scene").whole(most) : 0;
+  const std::size_t number = root.has("scene") ? root.at("scene").whole(gltf_number_most) : 0;
   const JsonValue scene = root.at("scenes").at(number);
   if (scene.has("nodes")) enter(scene.at("nodes"), glm::dmat4(1.0), true);
   std::vector<GltfNode> shown;
@@ -87,7 +85,7 @@ std::vector<GltfNode> nodes_shown(const JsonValue& root) {
     const JsonValue node = root.at("nodes").at(next.node);
     const glm::dmat4 matrix = next.parent * transform_of(node);
     const bool visible = next.visible && is_visible(node);
-    if (visible && node.has("mesh")) shown.push_back({node, matrix, node.at("mesh").whole(most)});
+    if (visible && node.has("mesh")) shown.push_back({node, matrix, node.at("mesh").whole(gltf_number_most)});
     if (node.has("children")) enter(node.at("children"), matrix, visible);
   }
   return shown;
@@ -100,7 +98,7 @@ MeshPlaces::MeshPlaces(GltfDocument& document, const JsonValue& node) : attribut
   std::optional<std::size_t> count;
   for (const auto& [name, value] : attributes_.value().items()) {
     const JsonValue accessor = attributes_.at(name);
-    const std::size_t of_this = document.count(accessor.whole(most));
+    const std::size_t of_this = document.count(accessor.whole(gltf_number_most));
     if (count && of_this != *count)
       accessor.fail_here("it has {} values, and another attribute of these copies {}", of_this, *count);
     count = of_this;
@@ -109,7 +107,8 @@ MeshPlaces::MeshPlaces(GltfDocument& document, const JsonValue& node) : attribut
   count_ = *count;
   const auto read = [&](const char* name, std::size_t components) {
     if (!attributes_.has(name)) return std::vector<float>();
-    return document.read(attributes_.at(name).whole(most), components, count_, "the other attributes");
+    return document.read(attributes_.at(name).whole(gltf_number_most), components, count_,
+                         "the other attributes");
   };
   translations_ = read("TRANSLATION", 3);
   rotations_ = read("ROTATION", 4);

@@ -13,6 +13,9 @@ struct z_stream_s;
 
 namespace binosplat {
 
+/// The best that deflate, which zip archives have, too, reaches: so many bytes of one.
+inline constexpr std::size_t deflate_growth_most = 1032;
+
 class GzipReader {
  public:
   /// Starts with the first member of `bytes`, which outlive this; `source` names them in errors.

@@ -13,9 +13,9 @@ namespace binosplat {
 
 namespace {
 
-class Reader {
+class JpegReader {
  public:
-  Reader(const std::filesystem::path& path, std::span<const std::byte> bytes)
+  JpegReader(const std::filesystem::path& path, std::span<const std::byte> bytes)
       : path_(path), bytes_(bytes), decoder_(tjInitDecompress(), &tjDestroy) {
     if (decoder_ == nullptr) fail("{}: {}", path.string(), tjGetErrorStr2(nullptr));
     int subsampling = 0;
@@ -78,14 +78,14 @@ class Reader {
 }  // namespace
 
 glm::ivec2 jpeg_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  const Reader reader(path, bytes);
+  const JpegReader reader(path, bytes);
   if (!reader.has_end()) fail("{}: broken JPEG: the file is cut short", path.string());
   return reader.size();
 }
 
 Image load_jpeg(const std::filesystem::path& path, std::span<const std::byte> bytes,
                 const PictureLimit& limit) {
-  const Reader reader(path, bytes);
+  const JpegReader reader(path, bytes);
   check_room(path, reader.size().x, reader.size().y, limit);
   return reader.read();
 }

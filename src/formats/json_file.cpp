@@ -8,8 +8,6 @@
 
 namespace binosplat {
 
-using nlohmann::json;
-
 namespace {
 
 /// What is parsed is copied, compared and written by recursion, which must not leave the stack.
@@ -35,22 +33,22 @@ void check_depth(const std::string& source, std::string_view text) {
 
 }  // namespace
 
-json parse_json(const std::string& source, std::string_view text) {
+nlohmann::json parse_json(const std::string& source, std::string_view text) {
   check_depth(source, text);
   try {
-    return json::parse(text.begin(), text.end());
-  } catch (const json::parse_error& error) {
+    return nlohmann::json::parse(text.begin(), text.end());
+  } catch (const nlohmann::json::parse_error& error) {
     const std::size_t byte = std::min<std::size_t>(error.byte, text.size());
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(byte), '\n');
     const Content content = content_of(std::as_bytes(std::span(text)));
     fail("{} is not valid JSON at line {}, byte {}{}", source, line, byte,
          content == Content::json ? "" : fmt::format("; it looks like {}", describe(content)));
-  } catch (const json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     fail("{} is not valid JSON: {}", source, error.what());
   }
 }
 
-JsonValue JsonValue::inner(const json& value, std::string name) const {
+JsonValue JsonValue::inner(const nlohmann::json& value, std::string name) const {
   JsonValue result(*this);
   result.value_ = &value;
   result.step_ = std::make_shared<Step>(Step{step_, std::move(name)});
@@ -100,6 +98,11 @@ JsonValue JsonValue::list_of(std::size_t n) const {
 double JsonValue::number() const {
   if (!value_->is_number() || !std::isfinite(value_->get<double>())) fail_here("expected a finite number");
   return value_->get<double>();
+}
+
+double JsonValue::above_zero() const {
+  if (!(number() > 0.0)) fail_here("expected a number above 0");
+  return number();
 }
 
 std::uint64_t JsonValue::whole(std::uint64_t most) const {

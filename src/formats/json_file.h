@@ -33,6 +33,7 @@ class JsonValue {
   std::size_t size() const;                       // of a list; throws for anything else
   JsonValue list_of(std::size_t n) const;         // itself, if it is a list of n
   double number() const;                          // finite
+  double above_zero() const;                      // finite, too
   std::uint64_t whole(std::uint64_t most) const;  // from 0 to `most`, at most 2^53; 5.0 is whole, too
   std::string text() const;
 

@@ -11,7 +11,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::size_t header_bytes = 4096, section_header_bytes = 1024;
+constexpr std::size_t ksplat_header_bytes = 4096, section_header_bytes = 1024;
 constexpr std::size_t most_sections = 65536;
 
 /// How the three levels store a Gaussian.
@@ -36,8 +36,8 @@ struct Section {
 class KsplatReader {
  public:
   KsplatReader(const std::string& source, std::span<const std::byte> bytes) : source_(source), bytes_(bytes) {
-    if (bytes.size() < header_bytes) {
-      fail("{} is cut short: a .ksplat header has {} bytes, and {} are there", source, header_bytes,
+    if (bytes.size() < ksplat_header_bytes) {
+      fail("{} is cut short: a .ksplat header has {} bytes, and {} are there", source, ksplat_header_bytes,
            bytes.size());
     }
     const int major = std::to_integer<int>(bytes[0]), minor = std::to_integer<int>(bytes[1]);
@@ -84,11 +84,11 @@ class KsplatReader {
   void read_sections() {
     // The number of sections at byte 8 is 0 in some files; those without Gaussians take no room.
     const std::size_t most = word(4), promised = word(16);
-    if (most > most_sections || header_bytes + most * section_header_bytes > bytes_.size()) {
+    if (most > most_sections || ksplat_header_bytes + most * section_header_bytes > bytes_.size()) {
       fail("{} is damaged or cut short: its header has room for {} sections, which {} bytes cannot hold",
            source_, most, bytes_.size());
     }
-    std::size_t at = header_bytes + most * section_header_bytes;
+    std::size_t at = ksplat_header_bytes + most * section_header_bytes;
     for (std::size_t i = 0; i < most; ++i) {
       const Section section = read_section(i, at);
       at = section.data() + section.most * record_bytes(section);
@@ -103,7 +103,7 @@ class KsplatReader {
   }
 
   Section read_section(std::size_t index, std::size_t at) const {
-    const std::size_t header = header_bytes + index * section_header_bytes;
+    const std::size_t header = ksplat_header_bytes + index * section_header_bytes;
     Section s;
     s.count = word(header);
     s.most = word(header + 4);
@@ -215,7 +215,7 @@ class KsplatReader {
 }  // namespace
 
 bool is_ksplat(std::span<const std::byte> bytes) {
-  return bytes.size() >= header_bytes + section_header_bytes && bytes[0] == std::byte{0} &&
+  return bytes.size() >= ksplat_header_bytes + section_header_bytes && bytes[0] == std::byte{0} &&
          bytes[1] == std::byte{1} && bytes[2] == std::byte{0} && bytes[3] == std::byte{0} &&
          load_number<std::uint32_t>(&bytes[4]) > 0 && load_number<std::uint32_t>(&bytes[4]) <= most_sections;
 }

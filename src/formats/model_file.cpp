@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* known =
+constexpr const char* known_formats =
     "a ply, spz, .splat, .ksplat, glTF, or a SOG (meta.json, lod-meta.json or .sog)";
 
 /// Of the files folder/BEFORE N AFTER, or of those of the name `inside` in such folders, the one of the
@@ -91,7 +91,7 @@ Model load_json_model(const fs::path& path, std::string_view text, const ModelOp
 Model load_unmarked(const fs::path& path, std::span<const std::byte> bytes) {
   if (is_ksplat(bytes) || path.extension() == ".ksplat") return load_ksplat(path.string(), bytes);
   if (is_splat(bytes) || path.extension() == ".splat") return load_splat(path.string(), bytes);
-  fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(), known,
+  fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(), known_formats,
        describe(Content::unknown));
 }
 
@@ -115,8 +115,8 @@ Model load_content(const fs::path& path, const ModelOptions& options) {
     case Content::unknown:
       return load_unmarked(path, file.bytes());
     default:
-      fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(), known,
-           describe(content));
+      fail("{} is not a model that can be read: expected {}, but it looks like {}", path.string(),
+           known_formats, describe(content));
   }
 }
 

@@ -10,7 +10,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr int bits = 21;
+constexpr int morton_bits = 21;
 
 /// The bits of a number of 21 bits, two zeros between each.
 std::uint64_t spread(std::uint64_t v) {
@@ -36,7 +36,7 @@ std::vector<std::uint32_t> morton_order(std::span<const glm::vec3> positions) {
     for (int c = 0; c < 3; ++c) {
       const double extent = high[c] - low[c];
       const double fraction = extent > 0.0 ? (positions[i][c] - low[c]) / extent : 0.0;
-      key |= spread(static_cast<std::uint64_t>(fraction * ((1 << bits) - 1))) << c;
+      key |= spread(static_cast<std::uint64_t>(fraction * ((1 << morton_bits) - 1))) << c;
     }
     keys[i] = {key, static_cast<std::uint32_t>(i)};
   });

@@ -56,11 +56,6 @@ void place(Camera& camera, const JsonValue& value, bool is_keyframe) {
   place_as_opengl(camera, {axes, matrix[3]});
 }
 
-double above_zero(const JsonValue& value) {
-  if (!(value.number() > 0.0)) value.fail_here("expected a number above 0");
-  return value.number();
-}
-
 void set_vertical_fov(Camera& camera, double degrees) {
   camera.fx = camera.fy = 0.5 * camera.height / std::tan(0.5 * glm::radians(degrees));
   camera.cx = 0.5 * camera.width;
@@ -69,8 +64,8 @@ void set_vertical_fov(Camera& camera, double degrees) {
 
 /// Seconds from one frame to the next, where the path tells.
 std::optional<double> seconds_a_frame(const JsonValue& root, std::size_t frames) {
-  if (root.has("seconds")) return above_zero(root.at("seconds")) / static_cast<double>(frames);
-  if (root.has("fps")) return 1.0 / above_zero(root.at("fps"));
+  if (root.has("seconds")) return root.at("seconds").above_zero() / static_cast<double>(frames);
+  if (root.has("fps")) return 1.0 / root.at("fps").above_zero();
   return std::nullopt;
 }
 
@@ -78,8 +73,8 @@ std::optional<double> seconds_a_frame(const JsonValue& root, std::size_t frames)
 std::optional<double> transition(const JsonValue& root, const JsonValue& keyframe) {
   const bool overrides = keyframe.has("override_transition_enabled") &&
                          keyframe.at("override_transition_enabled").value() == true;
-  if (overrides) return above_zero(keyframe.at("override_transition_sec"));
-  if (root.has("default_transition_sec")) return above_zero(root.at("default_transition_sec"));
+  if (overrides) return keyframe.at("override_transition_sec").above_zero();
+  if (root.has("default_transition_sec")) return root.at("default_transition_sec").above_zero();
   return std::nullopt;
 }
 

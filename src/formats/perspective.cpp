@@ -27,7 +27,7 @@ int number_of(const char* key, std::string_view word, const std::array<std::stri
 }
 
 // key: word, for what is not 3D-GS's.
-std::vector<std::pair<std::string, std::string>> words_of(const Perspective& perspective) {
+std::vector<std::pair<std::string, std::string>> words_of_perspective(const Perspective& perspective) {
   std::vector<std::pair<std::string, std::string>> words;
   if (perspective.order != ORDER_DEPTH)
     words.emplace_back(order_key, order_words[static_cast<std::size_t>(perspective.order)]);
@@ -50,7 +50,7 @@ Perspective read_perspective(const JsonValue& holder, const Perspective& unless_
 }
 
 void write_perspective(const Perspective& perspective, nlohmann::ordered_json& holder) {
-  for (const auto& [key, word] : words_of(perspective)) holder[key] = word;
+  for (const auto& [key, word] : words_of_perspective(perspective)) holder[key] = word;
 }
 
 Perspective read_perspective(const std::vector<std::string>& comments) {
@@ -74,7 +74,8 @@ Perspective read_perspective(const std::vector<std::string>& comments) {
 
 std::string perspective_comments(const Perspective& perspective) {
   std::string lines;
-  for (const auto& [key, word] : words_of(perspective)) lines += fmt::format("comment {}: {}\n", key, word);
+  for (const auto& [key, word] : words_of_perspective(perspective))
+    lines += fmt::format("comment {}: {}\n", key, word);
   return lines;
 }
 

@@ -20,9 +20,9 @@ namespace {
 using Numbers = std::vector<double>;
 
 /// Goes to an element's first row, and reads rows of one number.
-class Rows {
+class CameraRows {
  public:
-  Rows(const std::filesystem::path& path, std::span<const std::byte> bytes, const PlyHeader& header)
+  CameraRows(const std::filesystem::path& path, std::span<const std::byte> bytes, const PlyHeader& header)
       : path_(path), bytes_(bytes), header_(header) {}
 
   /// The numbers of the element and its property `name`; none where there is no such element.
@@ -98,13 +98,13 @@ class Rows {
   const PlyHeader& header_;
 };
 
-int pixels(const Rows& rows, const char* element, double value) {
+int pixels(const CameraRows& rows, const char* element, double value) {
   if (!(value >= 1.0 && value <= 2147483647.0) || value != std::floor(value))
     rows.fail(element, fmt::format("{} is no number of pixels", value));
   return static_cast<int>(value);
 }
 
-void set_lens(const Rows& rows, const Numbers& intrinsic, Camera& camera) {
+void set_lens(const CameraRows& rows, const Numbers& intrinsic, Camera& camera) {
   const auto size = rows.read("image_size");
   if (!size) {
     if (intrinsic.size() != 4)
@@ -130,7 +130,7 @@ void set_lens(const Rows& rows, const Numbers& intrinsic, Camera& camera) {
   camera.cy = intrinsic[5];
 }
 
-void set_pose(const Rows& rows, Camera& camera) {
+void set_pose(const CameraRows& rows, Camera& camera) {
   const auto extrinsic = rows.read("extrinsic");
   if (!extrinsic) return;
   const bool first_version = extrinsic->size() == 12;
@@ -168,7 +168,7 @@ bool has_ply_camera(const std::filesystem::path& path) {
 
 Camera load_ply_camera(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   const PlyHeader header = read_ply_header(path, bytes);
-  const Rows rows(path, bytes, header);
+  const CameraRows rows(path, bytes, header);
   const auto intrinsic = rows.read("intrinsic");
   if (!intrinsic)
     fail("{} is a model that tells no camera: it has no element 'intrinsic', as SHARP writes it",

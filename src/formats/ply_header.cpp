@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "formats/content.h"
 
 namespace binosplat {
@@ -24,17 +25,6 @@ constexpr TypeName type_names[] = {
     {"int32", PlyType::int32},     {"uint", PlyType::uint32},     {"uint32", PlyType::uint32},
     {"half", PlyType::float16},    {"float16", PlyType::float16}, {"float", PlyType::float32},
     {"float32", PlyType::float32}, {"double", PlyType::float64},  {"float64", PlyType::float64}};
-
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  constexpr std::string_view blanks = " \t";
-  for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(blanks, end);
-  }
-  return words;
-}
 
 /// Reads one line after the other into a header.
 class HeaderReader {

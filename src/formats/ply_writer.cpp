@@ -25,7 +25,7 @@ float float_for(float wanted, double start, double step, const Decode& decode) {
 }
 
 /// The logarithm as which a scale is stored; that of 0 is finite, but becomes 0 again.
-float log_scale(float scale) {
+float ply_log_scale(float scale) {
   const double start = std::max(std::log(static_cast<double>(scale)), -110.0);
   return float_for(scale, start, 0x1p-26, [](float raw) { return std::exp(raw); });
 }
@@ -73,7 +73,7 @@ Losses write_ply(OutputFile& file, const Model& model) {
       for (std::size_t k = 1; k <= higher; ++k) put(sh[3 * k + c]);
     }
     put(logit(model.opacity[i]));
-    for (int c = 0; c < 3; ++c) put(log_scale(model.scale[i][c]));
+    for (int c = 0; c < 3; ++c) put(ply_log_scale(model.scale[i][c]));
     for (int c = 0; c < 4; ++c) put(model.rotation[i][c]);
   });
   return {};

@@ -20,7 +20,7 @@ namespace binosplat {
 
 namespace {
 
-struct Reader {
+struct PngReader {
   const std::filesystem::path& path;
   std::span<const std::byte> bytes;
   std::size_t at = 0;
@@ -30,10 +30,10 @@ struct Reader {
   std::vector<png_byte> values;
   std::vector<png_bytep> rows;
 
-  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-struct Writer {
+struct PngWriter {
   std::string encoded;
   std::string error;
   png_structp png = nullptr;
@@ -41,7 +41,7 @@ struct Writer {
   std::vector<png_byte> row;
   std::vector<png_text> texts;
 
-  ~Writer() { png_destroy_write_struct(&png, &info); }
+  ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
 template <typename Owner>
@@ -53,17 +53,17 @@ template <typename Owner>
 void on_warning(png_structp, png_const_charp) {}
 
 void read_bytes(png_structp png, png_bytep out, std::size_t size) {
-  Reader& reader = *static_cast<Reader*>(png_get_io_ptr(png));
+  PngReader& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
   if (size > reader.bytes.size() - reader.at) png_error(png, "the file is cut short");
   std::memcpy(out, reader.bytes.data() + reader.at, size);
   reader.at += size;
 }
 
 void write_bytes(png_structp png, png_bytep data, std::size_t size) {
-  static_cast<Writer*>(png_get_io_ptr(png))->encoded.append(reinterpret_cast<const char*>(data), size);
+  static_cast<PngWriter*>(png_get_io_ptr(png))->encoded.append(reinterpret_cast<const char*>(data), size);
 }
 
-bool read_header(Reader& reader) {
+bool read_png_header(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_user_limits(reader.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_set_read_fn(reader.png, &reader, read_bytes);
@@ -72,7 +72,7 @@ bool read_header(Reader& reader) {
 }
 
 /// To 8 or 16 bits of grey, RGB or RGBA.
-bool expand(Reader& reader) {
+bool expand(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_expand(reader.png);
   const bool alpha = (png_get_color_type(reader.png, reader.info) & PNG_COLOR_MASK_ALPHA) != 0 ||
@@ -83,7 +83,7 @@ bool expand(Reader& reader) {
   return true;
 }
 
-bool read_rows(Reader& reader) {
+bool read_rows(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_read_image(reader.png, reader.rows.data());
   png_read_end(reader.png, nullptr);
@@ -105,7 +105,7 @@ void encode_row(const Image& image, int y, int bits, std::vector<png_byte>& row)
   }
 }
 
-bool write_image(Writer& writer, const Image& image, int bits) {
+bool write_image(PngWriter& writer, const Image& image, int bits) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
   const int colour = image.channels == 1   ? PNG_COLOR_TYPE_GRAY
                      : image.channels == 3 ? PNG_COLOR_TYPE_RGB
@@ -134,11 +134,11 @@ bool write_image(Writer& writer, const Image& image, int bits) {
 namespace {
 
 /// Reads all up to the pixels, and returns the picture's size.
-glm::ivec2 begin(Reader& reader) {
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error<Reader>, on_warning);
+glm::ivec2 begin(PngReader& reader) {
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error<PngReader>, on_warning);
   if (reader.png == nullptr || (reader.info = png_create_info_struct(reader.png)) == nullptr)
     throw std::bad_alloc();
-  if (!read_header(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
+  if (!read_png_header(reader)) fail("{}: broken PNG: {}", reader.path.string(), reader.error);
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const int bits = png_get_bit_depth(reader.png, reader.info) * png_get_channels(reader.png, reader.info);
@@ -169,7 +169,7 @@ bool is_whole_png(std::span<const std::byte> bytes, bool by_sums) {
 }
 
 glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  Reader reader{path, bytes};
+  PngReader reader{path, bytes};
   const glm::ivec2 size = begin(reader);
   if (!is_whole_png(bytes, false)) fail("{}: broken PNG: the file is cut short", path.string());
   return size;
@@ -177,7 +177,7 @@ glm::ivec2 png_size(const std::filesystem::path& path, std::span<const std::byte
 
 Image load_png(const std::filesystem::path& path, std::span<const std::byte> bytes,
                const PictureLimit& limit) {
-  Reader reader{path, bytes};
+  PngReader reader{path, bytes};
   const glm::ivec2 size = begin(reader);
   check_room(path, size.x, size.y, limit);
   if (!expand(reader)) fail("{}: broken PNG: {}", path.string(), reader.error);
@@ -204,8 +204,8 @@ Image load_png(const std::filesystem::path& path, std::span<const std::byte> byt
 
 std::string png_bytes(const Image& image, int bits, const Notes& notes) {
   if (bits != 8 && bits != 16) fail("a PNG has 8 or 16 bits, not {}", bits);
-  Writer writer;
-  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error<Writer>, on_warning);
+  PngWriter writer;
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error<PngWriter>, on_warning);
   if (writer.png == nullptr || (writer.info = png_create_info_struct(writer.png)) == nullptr)
     throw std::bad_alloc();
   writer.row.resize(static_cast<std::size_t>(image.width) *

@@ -10,15 +10,7 @@
 
 namespace binosplat {
 
-namespace {
-
-double above_zero(const JsonValue& value) {
-  const double number = value.number();
-  if (!(number > 0.0)) value.fail_here("expected a number above zero");
-  return number;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::filesystem::path pose_path(const std::filesystem::path& model) {
   std::filesystem::path path = model.has_filename() ? model : model.parent_path();
@@ -37,10 +29,10 @@ SavedPose load_pose(const std::filesystem::path& path) {
   for (int k = 0; k < 3; ++k) pose.up[k] = up.at(static_cast<std::size_t>(k)).number();
   const double length = glm::length(pose.up);
   if (!(length > 0.0 && std::isfinite(length))) up.fail_here("expected a direction");
-  pose.units_per_metre = above_zero(saved.at("units_per_metre"));
+  pose.units_per_metre = saved.at("units_per_metre").above_zero();
   pose.ipd = saved.at("ipd_metres").number();
   if (!(pose.ipd >= 0.0)) saved.at("ipd_metres").fail_here("expected zero or more");
-  pose.near_plane = above_zero(saved.at("near"));
+  pose.near_plane = saved.at("near").above_zero();
   return pose;
 }
 

@@ -10,6 +10,9 @@
 
 namespace binosplat {
 
+/// The higher harmonics of up to so many entries, which labels of 16 bits name, lie in rows of so many.
+inline constexpr std::size_t sog_palette_columns = 64, sog_palette_most = 65536;
+
 /// Whether a JSON file is the meta.json of a SOG.
 bool is_sog_meta(const nlohmann::json& root);
 

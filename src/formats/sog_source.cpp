@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "formats/perspective.h"
 #include "formats/plausible.h"
+#include "formats/sog.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
 #include "scene/reduce.h"
@@ -14,10 +15,6 @@
 namespace binosplat {
 
 namespace {
-
-constexpr std::uint64_t widest = 16383;  // of a WebP picture
-constexpr std::size_t palette_columns = 64;
-constexpr std::size_t palette_most = 65536;  // labels have 16 bits
 
 enum Texture { means_l, means_u, quats, scales, sh0, labels, texture_count };
 
@@ -67,9 +64,9 @@ SogSource::SogSource(std::string source, const nlohmann::json& json, ReadFile re
   const std::uint64_t version = meta.has("version") ? meta.at("version").whole(1000) : 1;
   if (version > 2) meta.at("version").fail_here("SOG of version {} is not known; 1 and 2 are", version);
   if (version == 2) {
-    count_ = meta.at("count").whole(widest * widest);
+    count_ = meta.at("count").whole(std::uint64_t{webp_side_most} * webp_side_most);
   } else {
-    count_ = meta.at("means").at("shape").at(0).whole(widest * widest);
+    count_ = meta.at("means").at("shape").at(0).whole(std::uint64_t{webp_side_most} * webp_side_most);
   }
   if (count_ == 0) fail("{} holds no Gaussians: its count is 0", source_);
   if (meta.has("model")) {
@@ -139,20 +136,20 @@ void SogSource::read_harmonics(const JsonValue& sh) {
     degree_ = static_cast<int>(sh.at("bands").whole(3));
     if (degree_ == 0) sh.at("bands").fail_here("expected 1, 2 or 3");
   } else {
-    while (degree_ < 3 && palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1) <
+    while (degree_ < 3 && sog_palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1) <
                               static_cast<std::size_t>(size.width))
       ++degree_;
   }
-  const std::size_t width = palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1);
-  const std::size_t room = palette_columns * static_cast<std::size_t>(size.height);
-  palette_ = sh.has("count") ? sh.at("count").whole(palette_most) : std::min(room, palette_most);
-  if (static_cast<std::size_t>(size.width) != width || palette_ > room || room > 2 * palette_most) {
+  const std::size_t width = sog_palette_columns * static_cast<std::size_t>(sh_count(degree_) - 1);
+  const std::size_t room = sog_palette_columns * static_cast<std::size_t>(size.height);
+  palette_ = sh.has("count") ? sh.at("count").whole(sog_palette_most) : std::min(room, sog_palette_most);
+  if (static_cast<std::size_t>(size.width) != width || palette_ > room || room > 2 * sog_palette_most) {
     fail(
         "{}: its {} x {} texels are no palette of {} entries for harmonics of degree {}, which is {} texels "
         "wide "
         "and {} or a few more high",
         named(centroids), size.width, size.height, palette_, degree_, width,
-        (palette_ + palette_columns - 1) / palette_columns);
+        (palette_ + sog_palette_columns - 1) / sog_palette_columns);
   }
   palette_texels_ = webp_texels(named(centroids), bytes);
 }
@@ -209,9 +206,9 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
     const std::uint8_t* label = texel(labels);
     const std::size_t entry = label[0] + 256u * label[1];
     const std::size_t values = static_cast<std::size_t>(sh_count(degree_) - 1);
-    const std::size_t row = entry / palette_columns * palette_columns * values;
+    const std::size_t row = entry / sog_palette_columns * sog_palette_columns * values;
     for (std::size_t k = 0; entry < palette_ && k < values; ++k) {
-      const std::uint8_t* rgb = &palette_texels_[4 * (row + entry % palette_columns * values + k)];
+      const std::uint8_t* rgb = &palette_texels_[4 * (row + entry % sog_palette_columns * values + k)];
       for (std::size_t c = 0; c < 3; ++c) sh[3 + 3 * k + c] = sh_[rgb[c]];
     }
   }

@@ -16,6 +16,7 @@
 #include "formats/model_writers.h"
 #include "formats/morton.h"
 #include "formats/perspective.h"
+#include "formats/sog.h"
 #include "formats/webp.h"
 #include "formats/zip_file.h"
 
@@ -23,20 +24,18 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::size_t widest = 16383;  // of a WebP picture
-constexpr std::size_t palette_columns = 64, palette_most = 65536;
 /// Logarithms of scales beyond this are cut, as by PlayCanvas.
-constexpr double log_scale_most = 20.0;
+constexpr double sog_log_scale_most = 20.0;
 
 using Rgba = std::array<std::uint8_t, 4>;
 
 /// A picture, a texel a Gaussian but for the palette's, and its name in the archive.
-struct Texture {
+struct TableTexture {
   std::string name;
   int width = 0, height = 0;
   std::vector<std::uint8_t> texels;
 
-  Texture(std::string name_, std::size_t width_, std::size_t height_)
+  TableTexture(std::string name_, std::size_t width_, std::size_t height_)
       : name(std::move(name_)),
         width(static_cast<int>(width_)),
         height(static_cast<int>(height_)),
@@ -44,9 +43,9 @@ struct Texture {
   void set(std::size_t i, const Rgba& value) { std::copy(value.begin(), value.end(), &texels[4 * i]); }
 };
 
-float log_scale(float scale) {
+float sog_log_scale(float scale) {
   return static_cast<float>(
-      std::clamp(std::log(static_cast<double>(scale)), -log_scale_most, log_scale_most));
+      std::clamp(std::log(static_cast<double>(scale)), -sog_log_scale_most, sog_log_scale_most));
 }
 
 /// What positions are stored as.
@@ -59,9 +58,9 @@ class SogWriter {
     const auto n = static_cast<double>(model.count());
     width_ = 4 * static_cast<std::size_t>(std::ceil(std::sqrt(n) / 4.0));
     height_ = (model.count() + 4 * width_ - 1) / (4 * width_) * 4;
-    if (width_ > widest || height_ > widest)
-      fail("{}: {} Gaussians do not fit the {} x {} texels of a SOG", model.name, model.count(), widest,
-           widest);
+    if (width_ > webp_side_most || height_ > webp_side_most)
+      fail("{}: {} Gaussians do not fit the {} x {} texels of a SOG", model.name, model.count(),
+           webp_side_most, webp_side_most);
     meta_ = {{"version", 2}, {"asset", {{"generator", "binosplat"}}}, {"count", model.count()}};
     if (model.antialiased) meta_["model"] = "antialiased";
     write_perspective(model.perspective, meta_);
@@ -83,7 +82,7 @@ class SogWriter {
     std::mutex counting;
     std::size_t done = 0;
     parallel_for(textures_.size(), [&](std::size_t k) {
-      const Texture& t = textures_[k];
+      const TableTexture& t = textures_[k];
       entries[k + 1] = {t.name, webp_file(t.texels, t.width, t.height)};
       const std::lock_guard lock(counting);
       tell(++done, textures_.size());
@@ -95,7 +94,7 @@ class SogWriter {
   /// A picture with value(i) for Gaussian i, under a name that it returns.
   template <typename Value>
   std::string add(const std::string& name, const Value& value) {
-    Texture& texture = textures_.emplace_back(name + ".webp", width_, height_);
+    TableTexture& texture = textures_.emplace_back(name + ".webp", width_, height_);
     parallel_for(order_.size(), [&](std::size_t k) { texture.set(k, value(order_[k])); });
     return texture.name;
   }
@@ -136,7 +135,7 @@ class SogWriter {
 
   void add_scales() {
     const auto get = [&](std::size_t i, std::size_t c) {
-      return log_scale(model_.scale[i][static_cast<glm::length_t>(c)]);
+      return sog_log_scale(model_.scale[i][static_cast<glm::length_t>(c)]);
     };
     const Codebook book = codebook(get);
     const std::string file = add("scales", [&](std::size_t i) -> Rgba {
@@ -171,11 +170,12 @@ class SogWriter {
 
   void add_harmonics() {
     const std::size_t higher = values_ - 3, coefficients = higher / 3;
-    const Palette palette = make_palette(model_.count(), higher, palette_most,
+    const Palette palette = make_palette(model_.count(), higher, sog_palette_most,
                                          [&](std::size_t i) { return &model_.sh[i * values_ + 3]; });
     const Codebook book(palette.entries);
-    const std::size_t rows = (palette.count + palette_columns - 1) / palette_columns;
-    Texture& centroids = textures_.emplace_back("shN_centroids.webp", palette_columns * coefficients, rows);
+    const std::size_t rows = (palette.count + sog_palette_columns - 1) / sog_palette_columns;
+    TableTexture& centroids =
+        textures_.emplace_back("shN_centroids.webp", sog_palette_columns * coefficients, rows);
     for (std::size_t k = 0; k < palette.count * coefficients; ++k) {
       const float* rgb = &palette.entries[3 * k];
       centroids.set(k, {book.nearest(rgb[0]), book.nearest(rgb[1]), book.nearest(rgb[2]), 255});
@@ -195,7 +195,7 @@ class SogWriter {
   std::size_t values_;  // coefficients of a Gaussian, degree 0 included
   std::size_t width_ = 0, height_ = 0;
   nlohmann::ordered_json meta_;
-  std::deque<Texture> textures_;
+  std::deque<TableTexture> textures_;
 };
 
 }  // namespace
@@ -208,7 +208,7 @@ ZipEntries sog_files(const Model& model) {
 
 Losses sog_losses(const Model& model) {
   Losses losses;
-  const double thin = std::exp(-log_scale_most), thick = std::exp(log_scale_most);
+  const double thin = std::exp(-sog_log_scale_most), thick = std::exp(sog_log_scale_most);
   count_lost(losses, model, "scales beyond e^-20 to e^20, which a SOG cuts", [&](std::size_t i) {
     const glm::vec3& s = model.scale[i];
     return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;

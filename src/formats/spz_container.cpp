@@ -16,14 +16,12 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::size_t header_bytes = 16, header_bytes_4 = 32;
+constexpr std::size_t spz_header_bytes = 16, header_bytes_4 = 32;
 constexpr std::uint32_t magic = 0x5053474e;  // NGSP
 constexpr std::uint8_t antialiased_flag = 1, extensions_flag = 2, levels_flag = 0x80;
 constexpr std::uint32_t axes_extension = 0xadbe0003;
 constexpr const char* axes_names[] = {"LDB", "RDB", "LUB", "RUB", "LDF", "RDF", "LUF", "RUF",
                                       "LFD", "RFD", "LFU", "RFU", "LBD", "RBD", "LBU", "RBU"};
-/// The best that deflate reaches.
-constexpr std::size_t most_growth = 1032;
 constexpr std::size_t most_extensions = std::size_t{1} << 20;
 
 struct Header {
@@ -32,9 +30,10 @@ struct Header {
   std::uint8_t streams = 0;
 };
 
-Header read_header(const std::string& source, std::span<const std::byte> bytes) {
-  if (bytes.size() < header_bytes) {
-    fail("{} is cut short: an spz header has {} bytes, and {} are there", source, header_bytes, bytes.size());
+Header read_spz_header(const std::string& source, std::span<const std::byte> bytes) {
+  if (bytes.size() < spz_header_bytes) {
+    fail("{} is cut short: an spz header has {} bytes, and {} are there", source, spz_header_bytes,
+         bytes.size());
   }
   if (load_number<std::uint32_t>(&bytes[0]) != magic) {
     fail("{} holds no spz model: it is compressed like one, but does not begin with NGSP", source);
@@ -65,7 +64,7 @@ Header read_header(const std::string& source, std::span<const std::byte> bytes) 
 /// each: room is made for no more than that.
 std::size_t attribute_bytes(const std::string& source, const SpzContents& contents, std::size_t least,
                             std::size_t packed) {
-  if (contents.count > most_gaussians_in(packed) || contents.count * least / most_growth > packed) {
+  if (contents.count > most_gaussians_in(packed) || contents.count * least / deflate_growth_most > packed) {
     fail(
         "{} is damaged or cut short: its header promises {} Gaussians of degree {}, which {} bytes cannot "
         "hold{}",
@@ -108,11 +107,11 @@ void warn_of_rest(const std::string& source, bool there) {
 }
 
 SpzContents unpack_plain(const std::string& source, std::span<const std::byte> bytes) {
-  Header header = read_header(source, bytes);
+  Header header = read_spz_header(source, bytes);
   SpzContents& contents = header.contents;
   const std::size_t all = spz_sizes(contents.version, contents.degree).sum();
   const std::size_t needed = attribute_bytes(source, contents, all, bytes.size());
-  const auto rest = bytes.subspan(header_bytes);
+  const auto rest = bytes.subspan(spz_header_bytes);
   if (rest.size() < needed) fail_short(source, contents, needed, rest.size());
   contents.attributes.assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(needed));
   if ((header.flags & extensions_flag) != 0) {
@@ -125,7 +124,7 @@ SpzContents unpack_plain(const std::string& source, std::span<const std::byte> b
 
 SpzContents unpack_gzip(const std::string& source, std::span<const std::byte> bytes) {
   GzipReader gzip(source, bytes);
-  Header header = read_header(source, gzip.read(header_bytes));
+  Header header = read_spz_header(source, gzip.read(spz_header_bytes));
   SpzContents& contents = header.contents;
   if (contents.version == 4)
     fail("{}: spz of version 4 within gzip; that version has none around it", source);
@@ -178,7 +177,7 @@ void unpack_streams(const std::string& source, std::span<const std::byte> bytes,
 }
 
 SpzContents unpack_4(const std::string& source, std::span<const std::byte> bytes) {
-  Header header = read_header(source, bytes);
+  Header header = read_spz_header(source, bytes);
   SpzContents& contents = header.contents;
   if (bytes.size() < header_bytes_4) {
     fail("{} is cut short: the header has {} bytes, and {} are there", source, header_bytes_4, bytes.size());
@@ -210,7 +209,7 @@ SpzSizes spz_sizes(std::uint32_t version, int degree) {
 std::vector<std::byte> spz_header(std::uint32_t version, std::size_t count, int degree, int fraction_bits,
                                   bool antialiased) {
   if (count > 0x7fffffff) fail("{} Gaussians are more than an spz file can hold", count);
-  std::vector<std::byte> header(header_bytes);
+  std::vector<std::byte> header(spz_header_bytes);
   store_number(&header[0], magic);
   store_number(&header[4], version);
   store_number(&header[8], static_cast<std::uint32_t>(count));

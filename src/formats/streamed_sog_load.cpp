@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Taken = SogLevels::TakenOfFile;
 
 /// A SOG and what is taken of it.
-struct Part {
+struct LoadedPart {
   SogSource source;
   Taken taken;
 };
@@ -100,9 +100,9 @@ Selection choose_one(const fs::path& path, const SogLevels& levels, std::optiona
   return {levels.taken(level), fmt::format("streamed SOG, level {} of {}", level, levels.count())};
 }
 
-std::vector<Part> open_parts(const fs::path& lod_meta, const SogLevels& levels,
-                             const std::vector<Taken>& taken) {
-  std::vector<Part> parts;
+std::vector<LoadedPart> open_parts(const fs::path& lod_meta, const SogLevels& levels,
+                                   const std::vector<Taken>& taken) {
+  std::vector<LoadedPart> parts;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (taken[i].empty()) continue;
     parts.push_back({open_part(levels.files()[i]), taken[i]});
@@ -123,13 +123,13 @@ Model load_streamed_sog(const fs::path& lod_meta, const nlohmann::json& root, st
   const SogLevels levels(lod_meta, root);
   const Selection choice =
       budget ? choose(lod_meta, levels, root, *budget) : choose_one(lod_meta, levels, lod);
-  std::vector<Part> parts = open_parts(lod_meta, levels, choice.taken);
+  std::vector<LoadedPart> parts = open_parts(lod_meta, levels, choice.taken);
   Model model;
   model.name = lod_meta.filename().string();
   model.format = choice.name;
   std::size_t total = 0;
   std::uint64_t bytes = 0;
-  for (Part& part : parts) {
+  for (LoadedPart& part : parts) {
     bytes += part.source.bytes();
     model.degree = std::max(model.degree, part.source.degree());
     model.antialiased = model.antialiased || part.source.antialiased();

@@ -97,10 +97,10 @@ ordered_json box_json(const Box& b) {
   return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
 }
 
-class Writer {
+class LevelsWriter {
  public:
-  Writer(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
-         const JudgeLevels& judge)
+  LevelsWriter(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
+               const JudgeLevels& judge)
       : model_(model),
         settings_(settings),
         folder_(folder),
@@ -393,7 +393,7 @@ class Writer {
 
 LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
                                  const JudgeLevels& judge) {
-  return Writer(model, settings, folder, judge).write();
+  return LevelsWriter(model, settings, folder, judge).write();
 }
 
 }  // namespace binosplat

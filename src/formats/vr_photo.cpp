@@ -20,6 +20,8 @@ namespace binosplat {
 
 namespace {
 
+using namespace std::string_literals;
+
 constexpr int jpeg_quality = 95;
 
 std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
@@ -36,14 +38,14 @@ std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
   return {reinterpret_cast<const char*>(made), size};
 }
 
-std::string number(std::uint32_t value, int bytes) {
+std::string big_endian(std::uint32_t value, int bytes) {
   std::string out;
   while (bytes-- > 0) out += static_cast<char>(value >> (8 * bytes));
   return out;
 }
 
 std::string app1(const std::string& content) {
-  return "\xff\xe1" + number(static_cast<std::uint32_t>(content.size() + 2), 2) + content;
+  return "\xff\xe1" + big_endian(static_cast<std::uint32_t>(content.size() + 2), 2) + content;
 }
 
 std::string described(const std::string& attributes) {
@@ -55,7 +57,7 @@ std::string described(const std::string& attributes) {
 // What readers find at once.
 std::string packet(int side, const std::string& rest) {
   return app1(
-      std::string("http://ns.adobe.com/xap/1.0/") + '\0' +
+      "http://ns.adobe.com/xap/1.0/\0"s +
       described(fmt::format("xmlns:GPano=\"http://ns.google.com/photos/1.0/panorama/\" "
                             "xmlns:GImage=\"http://ns.google.com/photos/1.0/image/\" "
                             "xmlns:xmpNote=\"http://ns.adobe.com/xmp/note/\" "
@@ -68,13 +70,13 @@ std::string packet(int side, const std::string& rest) {
 }
 
 // What is too long for one segment of 64 KiB, in many that name the whole.
-std::string extension(const std::string& whole, const std::string& name) {
+std::string extension_segments(const std::string& whole, const std::string& name) {
   constexpr std::size_t part = 65000;
   std::string segments;
   for (std::size_t at = 0; at < whole.size(); at += part) {
-    segments += app1(std::string("http://ns.adobe.com/xmp/extension/") + '\0' + name +
-                     number(static_cast<std::uint32_t>(whole.size()), 4) +
-                     number(static_cast<std::uint32_t>(at), 4) + whole.substr(at, part));
+    segments += app1("http://ns.adobe.com/xmp/extension/\0"s + name +
+                     big_endian(static_cast<std::uint32_t>(whole.size()), 4) +
+                     big_endian(static_cast<std::uint32_t>(at), 4) + whole.substr(at, part));
   }
   return segments;
 }
@@ -93,7 +95,7 @@ void save_vr_photo(const std::filesystem::path& path, const Image& left, const I
   const std::size_t jfif_end =
       4U + (static_cast<unsigned char>(first[4]) << 8) + static_cast<unsigned char>(first[5]);
   OutputFile file(path);
-  file.write(first.substr(0, jfif_end) + packet(left.width, name) + extension(rest, name) +
+  file.write(first.substr(0, jfif_end) + packet(left.width, name) + extension_segments(rest, name) +
              first.substr(jfif_end));
   file.commit();
 }

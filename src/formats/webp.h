@@ -9,6 +9,9 @@
 
 namespace binosplat {
 
+/// Texels of the longest side that the format has.
+inline constexpr std::size_t webp_side_most = 16383;
+
 struct WebpSize {
   int width = 0;  // texels
   int height = 0;

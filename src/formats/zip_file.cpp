@@ -7,13 +7,11 @@
 
 #include "base/error.h"
 #include "formats/content.h"
+#include "formats/gzip.h"
 
 namespace binosplat {
 
 namespace {
-
-/// Deflate's best: a byte becomes 1032 at most.
-constexpr std::uint64_t most_growth = 1032;
 
 struct CloseEntry {
   void operator()(zip_file_t* entry) const { zip_fclose(entry); }
@@ -121,7 +119,7 @@ std::vector<std::byte> ZipFile::read(const std::string& name, std::size_t bytes_
     fail_entry(name, fmt::format("promises {} compressed bytes in an archive of {}; it is damaged",
                                  status.comp_size, bytes_));
   }
-  if (status.size / most_growth > status.comp_size) {
+  if (status.size / deflate_growth_most > status.comp_size) {
     fail_entry(name, fmt::format("promises {} bytes, which {} compressed ones cannot hold; it is damaged",
                                  status.size, status.comp_size));
   }

@@ -16,7 +16,7 @@ namespace binosplat::gl {
 
 namespace {
 
-constexpr const char* what_to_install =
+constexpr const char* egl_to_install =
     "On Debian: apt install libegl1 and, for a GPU, its driver with EGL (NVIDIA: libnvidia-egl or the .run "
     "installer), or "
     "libegl-mesa0 libgl1-mesa-dri for software rendering.";
@@ -37,34 +37,30 @@ struct Egl {
   PFNEGLQUERYDEVICESTRINGEXTPROC query_device_string = nullptr;  // may be absent
 };
 
-template <typename F>
-void load(void* library, const char* name, F& function) {
-  function = reinterpret_cast<F>(dlsym(library, name));
-  if (function == nullptr)
-    throw Error(ExitCode::no_gl, fmt::format("libEGL.so.1 has no {}. {}", name, what_to_install));
-}
-
 const Egl& egl() {
   static const Egl loaded = [] {
     void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) fail_to_load("EGL", what_to_install);
+    if (library == nullptr) fail_to_load("EGL", egl_to_install);
     Egl e;
-    load(library, "eglGetProcAddress", e.get_proc_address);
-    load(library, "eglInitialize", e.initialize);
-    load(library, "eglTerminate", e.terminate);
-    load(library, "eglBindAPI", e.bind_api);
-    load(library, "eglChooseConfig", e.choose_config);
-    load(library, "eglCreateContext", e.create_context);
-    load(library, "eglDestroyContext", e.destroy_context);
-    load(library, "eglMakeCurrent", e.make_current);
-    load(library, "eglGetError", e.get_error);
+    const auto load = [&](const char* name, auto& function) {
+      load_function(library, "libEGL.so.1", name, egl_to_install, function);
+    };
+    load("eglGetProcAddress", e.get_proc_address);
+    load("eglInitialize", e.initialize);
+    load("eglTerminate", e.terminate);
+    load("eglBindAPI", e.bind_api);
+    load("eglChooseConfig", e.choose_config);
+    load("eglCreateContext", e.create_context);
+    load("eglDestroyContext", e.destroy_context);
+    load("eglMakeCurrent", e.make_current);
+    load("eglGetError", e.get_error);
     e.get_platform_display =
         reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(e.get_proc_address("eglGetPlatformDisplayEXT"));
     e.query_devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(e.get_proc_address("eglQueryDevicesEXT"));
     e.query_device_string =
         reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(e.get_proc_address("eglQueryDeviceStringEXT"));
     if (e.get_platform_display == nullptr) {
-      throw Error(ExitCode::no_gl, fmt::format("this EGL cannot choose a platform. {}", what_to_install));
+      throw Error(ExitCode::no_gl, fmt::format("this EGL cannot choose a platform. {}", egl_to_install));
     }
     return e;
   }();
@@ -110,7 +106,7 @@ class EglContext final : public Context {
     const EGLint error = egl().get_error();
     if (context_ != EGL_NO_CONTEXT) egl().destroy_context(display_, context_);
     throw Error(ExitCode::no_gl,
-                fmt::format("{}: {} (EGL error 0x{:04x}). {}", backend, why, error, what_to_install));
+                fmt::format("{}: {} (EGL error 0x{:04x}). {}", backend, why, error, egl_to_install));
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;
@@ -156,7 +152,7 @@ std::unique_ptr<Context> open_egl_device(int device) {
     }
   }
   if (reasons.empty())
-    reasons = fmt::format("EGL device platform: no GPU among {} device(s). {}", list.size(), what_to_install);
+    reasons = fmt::format("EGL device platform: no GPU among {} device(s). {}", list.size(), egl_to_install);
   throw Error(ExitCode::no_gl, reasons);
 }
 

@@ -15,7 +15,7 @@ namespace binosplat::gl {
 
 namespace {
 
-constexpr const char* what_to_install = "On Debian: apt install libosmesa6.";
+constexpr const char* osmesa_to_install = "On Debian: apt install libosmesa6.";
 
 // GL/osmesa.h.
 constexpr int osmesa_format = 0x22;
@@ -32,22 +32,18 @@ struct OsMesa {
   GetProcAddress get_proc_address = nullptr;
 };
 
-template <typename F>
-void load(void* library, const char* name, F& function) {
-  function = reinterpret_cast<F>(dlsym(library, name));
-  if (function == nullptr)
-    throw Error(ExitCode::no_gl, fmt::format("OSMesa: the library has no {}. {}", name, what_to_install));
-}
-
 const OsMesa& osmesa() {
   static const OsMesa loaded = [] {
     void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr) fail_to_load("OSMesa", what_to_install);
+    if (library == nullptr) fail_to_load("OSMesa", osmesa_to_install);
     OsMesa o;
-    load(library, "OSMesaCreateContextAttribs", o.create_context);
-    load(library, "OSMesaDestroyContext", o.destroy_context);
-    load(library, "OSMesaMakeCurrent", o.make_current);
-    load(library, "OSMesaGetProcAddress", o.get_proc_address);
+    const auto load = [&](const char* name, auto& function) {
+      load_function(library, "OSMesa", name, osmesa_to_install, function);
+    };
+    load("OSMesaCreateContextAttribs", o.create_context);
+    load("OSMesaDestroyContext", o.destroy_context);
+    load("OSMesaMakeCurrent", o.make_current);
+    load("OSMesaGetProcAddress", o.get_proc_address);
     return o;
   }();
   return loaded;

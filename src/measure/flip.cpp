@@ -37,7 +37,7 @@ using Planes = std::array<Plane, 3>;
 
 /// Fills a plane's pixels by `value(x, y)`.
 template <typename Value>
-void fill(Plane& plane, const Value& value) {
+void fill_plane(Plane& plane, const Value& value) {
   parallel_for(plane.height, [&](int y) {
     for (int x = 0; x < plane.width; ++x) plane.at(x, y) = value(x, y);
   });
@@ -47,13 +47,13 @@ void fill(Plane& plane, const Value& value) {
 Plane filtered(const Plane& in, const Kernel& along_x, const Kernel& along_y) {
   Plane rows(in.width, in.height), out(in.width, in.height);
   const int rx = static_cast<int>(along_x.size() / 2), ry = static_cast<int>(along_y.size() / 2);
-  fill(rows, [&](int x, int y) {
+  fill_plane(rows, [&](int x, int y) {
     double sum = 0.0;
     int at = x - rx;
     for (const double weight : along_x) sum += weight * in.at(std::clamp(at++, 0, in.width - 1), y);
     return sum;
   });
-  fill(out, [&](int x, int y) {
+  fill_plane(out, [&](int x, int y) {
     double sum = 0.0;
     int at = y - ry;
     for (const double weight : along_y) sum += weight * rows.at(x, std::clamp(at++, 0, in.height - 1));
@@ -175,12 +175,12 @@ Features features(const Plane& luminance, double ppd) {
 }
 
 /// What FLIP compares of one picture.
-struct Seen {
+struct SeenByEye {
   Planes lab;  // after the eye's resolution, with the Hunt effect
   Features features;
 };
 
-Seen see(const Image& image, double ppd) {
+SeenByEye see(const Image& image, double ppd) {
   const Plane empty(image.width, image.height);
   Planes planes = {empty, empty, empty};
   Plane luminance = empty;
@@ -215,7 +215,7 @@ double colour_difference(const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 Image map_of_colours(const Image& a, const Image& b, double ppd) {
-  const Seen sa = see(a, ppd), sb = see(b, ppd);
+  const SeenByEye sa = see(a, ppd), sb = see(b, ppd);
   Image map(a.width, a.height, 1);
   parallel_for(a.height, [&](int y) {
     for (int x = 0; x < a.width; ++x) {

@@ -27,11 +27,11 @@ constexpr double coarsest = 0.25;
 constexpr double ring_ends[] = {0, 5, 10, 20, 30, 40, 60, 90};
 
 // The rays of a picture and where the eye looks.
-struct Seen {
+struct GazeRays {
   double focal, x, y;  // px
   glm::dvec3 gaze;
 
-  Seen(const Image& picture, const Gaze& at)
+  GazeRays(const Image& picture, const Gaze& at)
       : focal(0.5 * picture.width / std::tan(0.5 * glm::radians(at.fov_degrees))),
         x(0.5 * picture.width),
         y(0.5 * picture.height),
@@ -129,7 +129,7 @@ double finest_seen(double eccentricity_degrees) {
 Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
   require_comparable(a, b);
   check(a, gaze);
-  const Seen seen(a, gaze);
+  const GazeRays seen(a, gaze);
   Image out(a.width, a.height, 1);
   Image of_a = luminance(a), of_b = luminance(b);
   // Bands of an octave each, and what is left below them. Of a band's frequencies the one that it passes best
@@ -174,7 +174,7 @@ Image times_threshold(const Image& a, const Image& b, const Gaze& gaze) {
 
 FoveatedComparison compare_foveated(const Image& a, const Image& b, const Gaze& gaze) {
   const Image times = times_threshold(a, b, gaze);
-  const Seen seen(a, gaze);
+  const GazeRays seen(a, gaze);
   constexpr std::size_t count = std::size(ring_ends);
   std::vector<double> of_ring[count];
   double squares[count] = {};

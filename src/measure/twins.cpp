@@ -262,8 +262,8 @@ void upload_ranges(const FrameShape& shape, const std::vector<Pair>& sorted, Fra
   buffers.ranges.upload(ranges);
 }
 
-std::vector<Picture> fill(Stage until, const Model& model, const FrameShape& shape,
-                          ModelBuffers& model_buffers, FrameBuffers& buffers) {
+std::vector<Picture> fill_until(Stage until, const Model& model, const FrameShape& shape,
+                                ModelBuffers& model_buffers, FrameBuffers& buffers) {
   const std::uint32_t groups_max = buffers.context().limits().groups;
   std::vector<Picture> pictures;
   if (until == Stage::decode) {
@@ -303,7 +303,7 @@ std::vector<Picture> fill(Stage until, const Model& model, const FrameShape& sha
 render::StandIn reference_until(Stage until) {
   return {until,
           [until](const Model& model, const FrameShape& shape, ModelBuffers& model_buffers,
-                  FrameBuffers& buffers) { return fill(until, model, shape, model_buffers, buffers); }};
+                  FrameBuffers& buffers) { return fill_until(until, model, shape, model_buffers, buffers); }};
 }
 
 }  // namespace binosplat::measure

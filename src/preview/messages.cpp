@@ -9,13 +9,13 @@ namespace binosplat::preview {
 namespace {
 
 constexpr double seconds_read = 5.0, seconds_of_trouble = 12.0;
-constexpr std::size_t most = 4;
+constexpr std::size_t messages_most = 4;
 
 }  // namespace
 
 void Messages::tell(const std::string& text, bool trouble, double now) {
   std::erase_if(messages_, [&](const Message& m) { return m.text == text || (!trouble && !m.trouble); });
-  if (messages_.size() == most) messages_.erase(messages_.begin());
+  if (messages_.size() == messages_most) messages_.erase(messages_.begin());
   messages_.push_back({text, trouble, now + (trouble ? seconds_of_trouble : seconds_read)});
 }
 

@@ -97,7 +97,7 @@ py::array_t<double> to_array(const glm::dmat3& matrix) {
   return py::array_t<double>({3, 3}, &rows[0].x);
 }
 
-std::string describe(const Camera& c) {
+std::string describe_camera(const Camera& c) {
   return fmt::format("<binosplat.Camera {}: {} x {} px at {:.4g}, {:.4g}, {:.4g}>", c.name, c.width, c.height,
                      c.position.x, c.position.y, c.position.z);
 }
@@ -145,7 +145,7 @@ void add_camera(py::module_& module) {
           },
           py::arg("width"), py::arg("height"),
           "The same at another size in px, as `--size` does: the vertical field of view is kept.")
-      .def("__repr__", &describe);
+      .def("__repr__", &describe_camera);
   module.def(
       "look_at",
       [](const Three& eye, const Three& at, int width, int height, const Three& up, double fov) {

@@ -60,7 +60,7 @@ Comparison compare(const py::object& a, const py::object& b, double pixels_per_d
   return measure::compare(first, second, pixels_per_degree);
 }
 
-std::string describe(const Comparison& found) {
+std::string describe_comparison(const Comparison& found) {
   return fmt::format("Comparison(psnr={:.4f}, ssim={:.6f}, flip={:.6f}, largest_error={:.6f})", found.psnr,
                      found.ssim, found.flip, found.largest.max);
 }
@@ -137,7 +137,7 @@ void add_images(py::module_& module) {
           "at",
           [](const Comparison& c) { return py::make_tuple(c.largest.y, c.largest.x, c.largest.channel); },
           "Row, column and channel of the largest error.")
-      .def("__repr__", &describe);
+      .def("__repr__", &describe_comparison);
   module.def(
       "compare", &compare, py::arg("a"), py::arg("b"), py::arg("ppd") = measure::flip_pixels_per_degree,
       py::arg("background") = py::none(),

@@ -44,14 +44,15 @@ int depth_of(const FrameShape& shape) {
 }
 
 // Pixels that an invocation draws, one below the other, and splats whose alphas it finds at once.
-struct Columns {
+struct BlendColumns {
   int height, ahead;
 };
 
 // Found by trying (README.md). With a loss blend_blocks.comp has blocks of so many rows (docs/method.md 5.2);
 // without, longer columns anywhere else would cost llvmpipe more of the 65,535 rounds that it grants all
 // loops. What blend.comp has at once divides BLEND_UNROLL.
-Columns columns_of(const std::string& program, const FrameShape& shape, int depth, bool is_long, Size size) {
+BlendColumns columns_of_program(const std::string& program, const FrameShape& shape, int depth, bool is_long,
+                                Size size) {
   if (program == "blend_blocks.comp") return {is_long && shape.is_lossy() ? 4 : 8, 2};
   if (is_long) return {1, 8};
   if (program != "blend_subgroups.comp") return {2, 4};
@@ -66,7 +67,7 @@ const gl::Program& program(gl::Context& context, const FrameShape& shape, const 
   const bool is_long = lists == Lists::of_long;
   const std::string name = name_of_program(context, shape, variant);
   const int depth = variant.draws() ? depth_of(shape) : DEPTH_NONE;
-  const Columns columns = columns_of(name, shape, depth, is_long, size);
+  const BlendColumns columns = columns_of_program(name, shape, depth, is_long, size);
   const bool on_canvases = variant.draws() && !shape.canvases.empty();
   gl::Defines defines = {{"TILE_SIZE", std::to_string(shape.settings.tile_size)},
                          {"SUPERTILE_SIDE", std::to_string(shape.supertile_side)},

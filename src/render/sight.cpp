@@ -37,11 +37,11 @@ FrameSettings exact_in_precision(const FrameSettings& settings) {
 }
 
 /// px, which end between cells, as windows do (ViewPart); none where a band is narrower.
-struct Columns {
+struct BandColumns {
   std::uint32_t left, right;
 };
 
-Columns columns_of(const Band& band, const shared::View& view) {
+BandColumns columns_of_band(const Band& band, const shared::View& view) {
   constexpr std::uint32_t cell = BLEND_CELL;
   const std::uint32_t cells = (view.width + cell - 1) / cell;
   const auto column = [&](double share) {
@@ -90,7 +90,7 @@ std::vector<std::vector<SeenPart>> Sight::look(std::span<const shared::View> vie
     const glm::dvec2 size(view.width, view.height);
     view = shrunk(view, std::clamp(shrink, 1, shrink_most));
     pixel_areas.push_back(size.x / view.width * size.y / view.height);
-    const Columns columns = columns_of(band, view);
+    const BandColumns columns = columns_of_band(band, view);
     if (columns.left == columns.right) return seen;
     exact.parts.push_back({.low_pass_share = static_cast<float>(1.0 / pixel_areas.back())});
     if (!band.is_all()) {

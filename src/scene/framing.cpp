@@ -19,7 +19,7 @@ namespace {
 /// Cameras look down on the model by this angle, unless others tell of a better one.
 constexpr double elevation_degrees = 15.0;
 /// More Gaussians than this tell no more about what stands in the way.
-constexpr std::size_t sample_count = 200000;
+constexpr std::size_t framing_sample = 200000;
 
 /// The place on the circle around the core where a camera at `turn` radians stands.
 struct Ring {
@@ -67,7 +67,7 @@ struct Ring {
 /// of the Gaussians' solid angles times opacity.
 double obstruction(const Model& model, const Ring& ring, const glm::dvec3& eye) {
   const glm::dvec3 forward = (ring.core.middle - eye) / ring.distance;
-  const std::size_t stride = model.count() / sample_count + 1;
+  const std::size_t stride = model.count() / framing_sample + 1;
   double sum = 0.0;
   for (std::size_t i = 0; i < model.count(); i += stride) {
     const glm::dvec3 v = glm::dvec3(model.position[i]) - eye;

@@ -17,7 +17,7 @@ namespace binosplat {
 namespace {
 
 /// More Gaussians than this tell no more.
-constexpr std::size_t sample_count = 50000;
+constexpr std::size_t ground_sample = 50000;
 /// Flat is what is at most so thick beside its second axis; of less opacity it is air.
 constexpr float flat = 0.3f, opaque = 0.5f;
 /// Fewer flat Gaussians say nothing.
@@ -42,7 +42,7 @@ std::vector<Piece> pieces_of(const CoredModel& cored) {
   const Core& core = cored.core;
   const glm::dmat3 world = world_from_axes(model.axes);
   std::vector<Piece> pieces;
-  for (std::size_t i = 0; i < model.count(); i += model.count() / sample_count + 1) {
+  for (std::size_t i = 0; i < model.count(); i += model.count() / ground_sample + 1) {
     const glm::vec3& s = model.scale[i];
     const int thin = s.x <= s.y && s.x <= s.z ? 0 : s.y <= s.z ? 1 : 2;
     const float wide = s[(thin + 1) % 3], other = s[(thin + 2) % 3];

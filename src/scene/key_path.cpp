@@ -15,7 +15,7 @@ namespace {
 /// rounding of times makes keys of frames that are 0.1 s apart.
 constexpr double keys_apart = 0.1 * (1.0 + 1e-3);
 /// More frames would hardly fit in memory.
-constexpr double frames_most = 1e6;
+constexpr double key_path_frames_most = 1e6;
 
 // Focal lengths by their logarithms, so that a zoom is even, and the middle; of a picture of 1 by 1.
 glm::dvec4 lens_of(const Camera& camera) {
@@ -24,7 +24,7 @@ glm::dvec4 lens_of(const Camera& camera) {
 }
 
 /// The axis of a turn, as long as its angle.
-glm::dvec3 turn_of(const glm::dquat& turn) {
+glm::dvec3 rotation_vector(const glm::dquat& turn) {
   const glm::dvec3 axis(turn.x, turn.y, turn.z);
   const double sine = glm::length(axis);
   return sine > 0.0 ? axis * (2.0 * std::atan2(sine, turn.w) / sine) : glm::dvec3(0.0);
@@ -94,7 +94,7 @@ void KeyPath::pace(double seconds) {
   double all = 0.0;
   for (std::size_t k = 1; k < knots_.size(); ++k) {
     ways.push_back(glm::distance(knots_[k].place, knots_[k - 1].place));
-    turns.push_back(glm::length(turn_of(glm::conjugate(knots_[k - 1].turned) * knots_[k].turned)));
+    turns.push_back(glm::length(rotation_vector(glm::conjugate(knots_[k - 1].turned) * knots_[k].turned)));
     all += ways.back();
   }
   const double usual = all > 0.0 ? all / static_cast<double>(ways.size()) : 1.0;
@@ -118,7 +118,8 @@ void KeyPath::find_slopes() {
     const Knot &a = knots_[k - 1], &b = knots_[k];
     const double apart = b.at - a.at;
     chords.push_back({apart, (b.place - a.place) / apart,
-                      turn_of(glm::conjugate(a.turned) * b.turned) / apart, (b.lens - a.lens) / apart});
+                      rotation_vector(glm::conjugate(a.turned) * b.turned) / apart,
+                      (b.lens - a.lens) / apart});
   }
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const Chord& in = chords[k == 0 ? 0 : k - 1];
@@ -157,7 +158,7 @@ Camera KeyPath::at(double seconds) const {
 std::vector<Camera> frames_of(const KeyPath& path, double frames_per_second) {
   // The last key is a frame, too, however its time was rounded.
   const double count = std::floor(path.seconds() * frames_per_second + 1e-6) + 1.0;
-  if (!(count <= frames_most)) {
+  if (!(count <= key_path_frames_most)) {
     fail("a path of {:.4g} s at {} frames a second: {:.3g} frames are too many: take fewer a second",
          path.seconds(), frames_per_second, count);
   }

@@ -17,6 +17,14 @@
 
 namespace binosplat {
 
+/// What takes part in merging.
+struct MergedPart {
+  glm::dvec3 mean{0.0};
+  glm::dmat3 covariance{0.0};
+  double weight = 0.0;     // opacity times area
+  glm::dvec3 colour{0.0};  // harmonics of degree 0
+};
+
 namespace {
 
 constexpr std::size_t neighbours = 8;
@@ -27,14 +35,6 @@ constexpr double thinnest = 0.5;
 constexpr double opaque_most = 0.999;
 // Of a square that is filled evenly, its area over the integral of the Gaussian with its moments.
 constexpr double even_share = 6.0 / std::numbers::pi;
-
-/// What takes part in merging.
-struct Part {
-  glm::dvec3 mean{0.0};
-  glm::dmat3 covariance{0.0};
-  double weight = 0.0;     // opacity times area
-  glm::dvec3 colour{0.0};  // harmonics of degree 0
-};
 
 double shadow(const glm::dvec3& deviations) {
   constexpr double p = 1.6075;
@@ -59,7 +59,7 @@ struct Axes {
   glm::dvec3 deviations{0.0};
 };
 
-Axes axes_of(const glm::dmat3& covariance) {
+Axes axes_of_covariance(const glm::dmat3& covariance) {
   Eigen::Matrix3d m;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) m(r, c) = covariance[c][r];
@@ -75,20 +75,20 @@ Axes axes_of(const glm::dmat3& covariance) {
 }
 
 /// `area` is that of its shadow.
-Part part_of(const Model& model, std::uint32_t i, double area) {
+MergedPart part_of(const Model& model, std::uint32_t i, double area) {
   const glm::vec4& q = model.rotation[i];
   const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
   const glm::dvec3 s(model.scale[i]);
   const glm::dmat3 scaled(turn[0] * s.x, turn[1] * s.y, turn[2] * s.z);
-  Part part{.mean = model.position[i], .covariance = scaled * glm::transpose(scaled)};
+  MergedPart part{.mean = model.position[i], .covariance = scaled * glm::transpose(scaled)};
   part.weight = opacity_of(model, i) * area;
   const std::size_t first = std::size_t{i} * 3 * static_cast<std::size_t>(sh_count(model.degree));
   for (int c = 0; c < 3; ++c) part.colour[c] = sh_c0 * model.sh[first + static_cast<std::size_t>(c)];
   return part;
 }
 
-Part sum_of(const Part& a, const Part& b) {
-  Part sum{.weight = a.weight + b.weight};
+MergedPart sum_of(const MergedPart& a, const MergedPart& b) {
+  MergedPart sum{.weight = a.weight + b.weight};
   const double share = b.weight / sum.weight;
   const glm::dvec3 apart = b.mean - a.mean;
   sum.mean = a.mean + share * apart;
@@ -105,8 +105,8 @@ double log_det(glm::dmat3 covariance, double least) {
 }
 
 /// What it costs to merge two.
-double cost_of(const Part& a, const Part& b) {
-  const Part sum = sum_of(a, b);
+double cost_of(const MergedPart& a, const MergedPart& b) {
+  const MergedPart sum = sum_of(a, b);
   const double trace = sum.covariance[0][0] + sum.covariance[1][1] + sum.covariance[2][2];
   const double least = std::max(thinnest * thinnest * trace, 1e-40);
   const double shape =
@@ -117,7 +117,7 @@ double cost_of(const Part& a, const Part& b) {
 }
 
 struct Means {
-  const std::vector<Part>& parts;
+  const std::vector<MergedPart>& parts;
   const std::vector<std::uint32_t>& chosen;
 
   std::size_t kdtree_get_point_count() const { return chosen.size(); }
@@ -256,7 +256,7 @@ class Merger::Clusters {
   }
 
   const Model& model_;
-  std::vector<Part> parts_;
+  std::vector<MergedPart> parts_;
   std::vector<std::uint32_t> next_, last_;  // members of a cluster, from its first
   std::vector<std::uint32_t> into_;         // itself, or what it was merged into
   std::vector<std::uint32_t> ages_;         // merges so far
@@ -271,17 +271,17 @@ void append_merged(Model& merged, const Model& model, std::span<const std::uint3
     append(merged, model, members.front(), 1);
     return;
   }
-  Part sum;
+  MergedPart sum;
   double depth = 0.0;  // optical, times area
   std::vector<double> sh(values);
   for (const std::uint32_t i : members) {
     const double area = seen_area(model, model.scale[i], pixel);
-    const Part part = part_of(model, i, area);
+    const MergedPart part = part_of(model, i, area);
     sum = i == members.front() ? part : sum_of(sum, part);
     depth -= std::log(1.0 - opacity_of(model, i)) * area;
     for (std::size_t k = 0; k < values; ++k) sh[k] += part.weight * model.sh[i * values + k];
   }
-  const Axes axes = axes_of(sum.covariance);
+  const Axes axes = axes_of_covariance(sum.covariance);
   const double area = seen_area(model, axes.deviations, pixel), square = even_share * area;
   const double opacity = std::min(sum.weight, square * (1.0 - std::exp(-depth / square))) / area;
   const glm::dquat turn = glm::normalize(glm::quat_cast(axes.turn));

@@ -13,21 +13,21 @@ namespace binosplat {
 namespace {
 
 /// Cells from the middle of the map to its border, which is a radius of the core away.
-constexpr int half = 50;
-constexpr int side = 2 * half + 1;
+constexpr int space_half = 50;
+constexpr int space_side = 2 * space_half + 1;
 /// What of a cell's face must be covered for nobody to stand or look there.
 constexpr double covered = 0.25;
 
 /// A map of the floor, in cells.
 struct Map {
-  std::vector<double> cover = std::vector<double>(std::size_t{side} * side);
-  std::vector<char> floor = std::vector<char>(std::size_t{side} * side);
+  std::vector<double> cover = std::vector<double>(std::size_t{space_side} * space_side);
+  std::vector<char> floor = std::vector<char>(std::size_t{space_side} * space_side);
 
   static bool inside(const glm::ivec2& cell) {
-    return cell.x >= 0 && cell.y >= 0 && cell.x < side && cell.y < side;
+    return cell.x >= 0 && cell.y >= 0 && cell.x < space_side && cell.y < space_side;
   }
   static std::size_t index(const glm::ivec2& cell) {
-    return static_cast<std::size_t>(cell.y) * side + static_cast<std::size_t>(cell.x);
+    return static_cast<std::size_t>(cell.y) * space_side + static_cast<std::size_t>(cell.x);
   }
   bool taken(const glm::ivec2& cell) const { return cover[index(cell)] > covered; }
   bool stands(const glm::ivec2& cell) const {
@@ -49,7 +49,7 @@ struct Plan {
   double level, cell;
 
   Plan(const CoredModel& cored, const Ground& ground)
-      : core(cored.core), world(world_from_axes(cored.model.axes)), cell(core.radius / half) {
+      : core(cored.core), world(world_from_axes(cored.model.axes)), cell(core.radius / space_half) {
     up = glm::transpose(world) * ground.up;
     aside = glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
     ahead = glm::cross(up, aside);
@@ -57,7 +57,8 @@ struct Plan {
   }
 
   glm::dvec3 place(const glm::dvec2& at, double height) const {
-    return core.middle + cell * ((at.x - half) * aside + (at.y - half) * ahead) + (level + height) * up;
+    return core.middle + cell * ((at.x - space_half) * aside + (at.y - space_half) * ahead) +
+           (level + height) * up;
   }
 };
 
@@ -65,8 +66,8 @@ Map map_of(const Model& model, const Plan& plan, double eyes) {
   Map map;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const glm::dvec3 v = glm::dvec3(model.position[i]) - plan.core.middle;
-    const glm::ivec2 cell =
-        glm::floor(glm::dvec2(glm::dot(v, plan.aside), glm::dot(v, plan.ahead)) / plan.cell + (half + 0.5));
+    const glm::ivec2 cell = glm::floor(
+        glm::dvec2(glm::dot(v, plan.aside), glm::dot(v, plan.ahead)) / plan.cell + (space_half + 0.5));
     if (!Map::inside(cell)) continue;
     const double height = glm::dot(v, plan.up) - plan.level;
     const std::size_t at = Map::index(cell);
@@ -84,15 +85,15 @@ Map map_of(const Model& model, const Plan& plan, double eyes) {
 /// How far, in cells, from each cell to the nearest that is taken or has no floor; 0 for those themselves.
 std::vector<double> room_in(const Map& map) {
   std::vector<glm::ivec2> closed;
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
+  for (int y = 0; y < space_side; ++y) {
+    for (int x = 0; x < space_side; ++x) {
       if (map.taken({x, y}) || !map.stands({x, y})) closed.emplace_back(x, y);
     }
   }
-  std::vector<double> room(std::size_t{side} * side);
-  parallel_for(side, [&](int y) {
-    for (int x = 0; x < side; ++x) {
-      int least = side * side;
+  std::vector<double> room(std::size_t{space_side} * space_side);
+  parallel_for(space_side, [&](int y) {
+    for (int x = 0; x < space_side; ++x) {
+      int least = space_side * space_side;
       for (const glm::ivec2& cell : closed) {
         const glm::ivec2 d = cell - glm::ivec2(x, y);
         least = std::min(least, d.x * d.x + d.y * d.y);
@@ -106,7 +107,7 @@ std::vector<double> room_in(const Map& map) {
 /// How far one sees, in cells.
 double sight(const Map& map, const glm::dvec2& from, const glm::dvec2& towards) {
   double way = 0.0;
-  for (; way < 2.0 * side; way += 0.5) {
+  for (; way < 2.0 * space_side; way += 0.5) {
     const glm::ivec2 cell = glm::floor(from + way * towards + 0.5);
     if (!Map::inside(cell) || map.taken(cell)) break;
   }
@@ -123,10 +124,10 @@ std::optional<Capture::Around> open_space(const CoredModel& cored, const Ground&
   const double enough = 3.0 * eyes / plan.cell, least = 0.3 * eyes / plan.cell;
   glm::dvec2 middle{0.0};
   double best = -std::numeric_limits<double>::infinity(), radius = 0.0;
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
+  for (int y = 0; y < space_side; ++y) {
+    for (int x = 0; x < space_side; ++x) {
       const double here = room[Map::index({x, y})];
-      const double score = std::min(here, enough) - 0.1 * std::hypot(x - half, y - half);
+      const double score = std::min(here, enough) - 0.1 * std::hypot(x - space_half, y - space_half);
       if (here < least || score <= best) continue;
       best = score;
       middle = {x, y};

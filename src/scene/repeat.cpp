@@ -13,7 +13,7 @@ namespace binosplat {
 
 namespace {
 
-constexpr std::uint64_t most = std::uint64_t{1} << 31;
+constexpr std::uint64_t copies_most = std::uint64_t{1} << 31;
 
 /// Makes `values` so many copies of itself, one after the other.
 template <typename T>
@@ -64,7 +64,7 @@ std::shared_ptr<Scaffold> repeat(Scaffold s, const Grid& grid) {
 Model repeat(Model model, int nx, int nz, double spacing) {
   if (nx < 1 || nz < 1) fail("--repeat {}x{}: expected at least 1x1", nx, nz);
   const std::uint64_t copies = static_cast<std::uint64_t>(nx) * static_cast<std::uint64_t>(nz);
-  if (model.count() > most / copies) {
+  if (model.count() > copies_most / copies) {
     fail("--repeat {}x{} of {} Gaussians: more than 2^31 Gaussians; repeat fewer times", nx, nz,
          model.count());
   }

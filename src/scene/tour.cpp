@@ -31,7 +31,7 @@ constexpr double samples_least = 64.0;
 /// differs from the last where the curve turns back. Other bends do not feel it.
 constexpr double seconds_to_full_speed = 0.25;
 /// More would hardly fit in memory.
-constexpr double frames_most = 1e6;
+constexpr double tour_frames_most = 1e6;
 
 /// Where the head stops by, in metres.
 struct Stop {
@@ -294,10 +294,10 @@ void check_length(const std::vector<Stop>& stops, const TourSettings& settings) 
   for (std::size_t k = 1; k < stops.size(); ++k)
     least += time_between(stops[k - 1], stops[k], settings.motion);
   const double frames = std::min(least, settings.seconds) * settings.frames_per_second;
-  if (frames < frames_most) return;
+  if (frames < tour_frames_most) return;
   fail(
       "a tour of {:.2g} frames or more, and {:.0e} fit: go faster, for less time or at fewer frames a second",
-      frames, frames_most);
+      frames, tour_frames_most);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ glm::dquat quaternion(const glm::vec4& wxyz) { return {wxyz.x, wxyz.y, wxyz.z, w
 glm::vec4 wxyz(const glm::dquat& q) { return glm::dvec4(q.w, q.x, q.y, q.z); }
 
 /// A rotation's axes, of which one may have another sense: an ellipsoid is the same then.
-glm::dquat turn_of(const glm::dmat3& orthogonal) {
+glm::dquat quaternion_of(const glm::dmat3& orthogonal) {
   return glm::normalize(glm::quat_cast(glm::determinant(orthogonal) < 0.0 ? -orthogonal : orthogonal));
 }
 
@@ -64,7 +64,7 @@ void map_ellipsoid(const glm::dmat3& linear, glm::vec4& rotation, glm::vec3& sca
   for (int c = 0; c < 3; ++c) axes[c] *= scale[c];
   const auto svd = decomposed(axes);
   for (int k = 0; k < 3; ++k) scale[k] = static_cast<float>(svd.singularValues()[k]);
-  rotation = wxyz(turn_of(from_eigen(svd.matrixU())));
+  rotation = wxyz(quaternion_of(from_eigen(svd.matrixU())));
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ bool transform(Model& model, const glm::dmat4& map) {
     q = from_eigen(svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose());
   const bool even = largest - smallest <= even_enough * largest;
   const bool turns = farthest(q, glm::dmat3(1.0)) > even_enough;
-  const glm::dquat turn = turn_of(q);
+  const glm::dquat turn = quaternion_of(q);
   const double size = svd.singularValues()[1];
   std::optional<HarmonicsTurn> harmonics;  // which takes as long as many a small model
   if (turns && model.degree > 0) harmonics.emplace(q);

@@ -68,7 +68,7 @@ Section systems(const Analysis& a) {
           plot, table};
 }
 
-Section pictures(const Analysis& a) {
+Section systems_pictures(const Analysis& a) {
   Section section{
       "pictures", "The systems' pictures",
       fmt::format("Test view {}: drag across it to see what the systems differ in. The numbers are means "
@@ -108,8 +108,8 @@ Section skipping(const Analysis& a) {
 }
 
 /// A plot of one of the values by depth.
-Section by_depth(const Analysis& a, Spread DepthBin::*value, const char* id, const std::string& title,
-                 const std::string& label, const std::string& sentence) {
+Section section_by_depth(const Analysis& a, Spread DepthBin::*value, const char* id, const std::string& title,
+                         const std::string& label, const std::string& sentence) {
   const std::vector<DepthBin>& bins = a.contributions.by_depth;
   Plot plot{{"view depth", "world units"}, {label, ""}, {}};
   Table table{{"from", "to", "Gaussians", "median", "90 of 100 below", "largest"}, {}};
@@ -226,18 +226,20 @@ Page analysis_page(const Analysis& a) {
       scene(a),
       systems(a),
       skipping(a),
-      by_depth(a, &DepthBin::contribution, "contributions", "Contribution against depth (figure 4b)",
-               "largest alpha T of a Gaussian",
-               "What each Gaussian contributes to the pixel that shows it best, by its depth in the view."),
-      by_depth(a, &DepthBin::transmittance, "light", "Light against depth (figure 6)", "max(T) of a Gaussian",
-               fmt::format("In {} bins of depth some Gaussian is lit by more than half: there a table by "
-                           "depth can tell little, and what each Gaussian measured tells much.",
-                           lit_bins(a))),
+      section_by_depth(
+          a, &DepthBin::contribution, "contributions", "Contribution against depth (figure 4b)",
+          "largest alpha T of a Gaussian",
+          "What each Gaussian contributes to the pixel that shows it best, by its depth in the view."),
+      section_by_depth(
+          a, &DepthBin::transmittance, "light", "Light against depth (figure 6)", "max(T) of a Gaussian",
+          fmt::format("In {} bins of depth some Gaussian is lit by more than half: there a table by "
+                      "depth can tell little, and what each Gaussian measured tells much.",
+                      lit_bins(a))),
       real_drops(a),
       removed(a),
       speed(a)};
   page.sentence = page.sections[6].sentence;
-  if (Section seen = pictures(a); seen.figures.size() > 1)
+  if (Section seen = systems_pictures(a); seen.figures.size() > 1)
     page.sections.insert(page.sections.begin() + 2, std::move(seen));  // after the systems
   return page;
 }

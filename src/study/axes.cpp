@@ -21,12 +21,10 @@ namespace binosplat::study {
 
 namespace {
 
-using nlohmann::json;
-
 /// An object of the file with a place for errors; every key must be a known one.
 class Block {
  public:
-  Block(std::string place, const json& object, const std::set<std::string>& known)
+  Block(std::string place, const nlohmann::json& object, const std::set<std::string>& known)
       : place_(std::move(place)), object_(object) {
     if (!object_.is_object()) fail("{}: expected an object in braces", place_);
     for (const auto& [key, value] : object_.items()) {
@@ -35,14 +33,14 @@ class Block {
   }
 
   /// The key's values: a list, a single one, or `otherwise`.
-  std::vector<json> values(const std::string& key, const json& otherwise) const {
-    const json value = object_.contains(key) ? object_.at(key) : otherwise;
+  std::vector<nlohmann::json> values(const std::string& key, const nlohmann::json& otherwise) const {
+    const nlohmann::json value = object_.contains(key) ? object_.at(key) : otherwise;
     if (!value.is_array()) return {value};
     if (value.empty()) fail("{}: '{}' is an empty list", place_, key);
     return {value.begin(), value.end()};
   }
 
-  int whole(const std::string& key, const json& value, int low, int high) const {
+  int whole(const std::string& key, const nlohmann::json& value, int low, int high) const {
     const bool good =
         value.is_number_integer() && value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high;
     if (!good)
@@ -54,7 +52,7 @@ class Block {
     return object_.contains(key) ? whole(key, object_.at(key), low, high) : otherwise;
   }
 
-  double number(const std::string& key, const json& value) const {
+  double number(const std::string& key, const nlohmann::json& value) const {
     const double number = value.is_number() ? value.get<double>() : -1.0;
     const bool good = number >= 0.0 && std::isfinite(static_cast<float>(number));
     if (!good) fail("{}: '{}' {}: expected a number of 0 or more", place_, key, value.dump());
@@ -63,7 +61,7 @@ class Block {
 
   bool has(const std::string& key) const { return object_.contains(key); }
 
-  int choice(const std::string& key, const json& value, std::span<const Choice> choices) const {
+  int choice(const std::string& key, const nlohmann::json& value, std::span<const Choice> choices) const {
     return find_choice(place_ + ", '" + key + "'",
                        value.is_string() ? value.get<std::string>() : value.dump(), choices);
   }
@@ -72,14 +70,14 @@ class Block {
 
  private:
   std::string place_;
-  const json& object_;
+  const nlohmann::json& object_;
 };
 
 /// One key of a block: how a value of it is set.
 struct Key {
   const char* name;
-  json otherwise;
-  std::function<void(BenchSettings&, const json&)> set;
+  nlohmann::json otherwise;
+  std::function<void(BenchSettings&, const nlohmann::json&)> set;
 };
 
 constexpr std::size_t most_settings = 10000;  // of all blocks; nobody measures that many
@@ -89,9 +87,10 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
   using S = BenchSettings;
   const auto choice = [&block](const char* key, int render::FrameSettings::*member,
                                std::span<const Choice> choices) {
-    return Key{
-        key, choices[static_cast<std::size_t>(S{}.*member)].name,
-        [&block, key, member, choices](S& s, const json& v) { s.*member = block.choice(key, v, choices); }};
+    return Key{key, choices[static_cast<std::size_t>(S{}.*member)].name,
+               [&block, key, member, choices](S& s, const nlohmann::json& v) {
+                 s.*member = block.choice(key, v, choices);
+               }};
   };
   const Key keys[] = {
       choice("th", &S::th, th_choices),
@@ -99,28 +98,30 @@ void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
       choice("tiles", &S::tiles, tiles_choices),
       choice("precision", &S::precision, precision_choices),
       {"tile", TILE_SIZE_DEFAULT,
-       [&block](S& s, const json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
+       [&block](S& s, const nlohmann::json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
       {"inset", nullptr,
-       [&block](S& s, const json& v) {
+       [&block](S& s, const nlohmann::json& v) {
          if (block.has("inset")) s.foveation = stereo::Foveation{.inset_degrees = block.number("inset", v)};
        }},
       {"context", stereo::Foveation{}.context_scale,
-       [&block](S& s, const json& v) {
+       [&block](S& s, const nlohmann::json& v) {
          if (s.foveation) s.foveation->context_scale = block.number("context", v);
        }},
       {"tolerance", 0.0,
-       [&block](S& s, const json& v) { s.tolerance = static_cast<float>(block.number("tolerance", v)); }},
+       [&block](S& s, const nlohmann::json& v) {
+         s.tolerance = static_cast<float>(block.number("tolerance", v));
+       }},
   };
   if (block.has("context") && !block.has("inset"))
     fail("{}: 'context' has no effect without 'inset', its degrees", block.place());
   std::vector<S> all(1);
   for (const Key& key : keys) {
-    const std::vector<json> values = block.values(key.name, key.otherwise);
+    const std::vector<nlohmann::json> values = block.values(key.name, key.otherwise);
     if (settings.size() + all.size() * values.size() > most_settings)
       fail("{}: from here on there are more than {} combinations", block.place(), most_settings);
     std::vector<S> next;
     for (const S& before : all) {
-      for (const json& value : values) key.set(next.emplace_back(before), value);
+      for (const nlohmann::json& value : values) key.set(next.emplace_back(before), value);
     }
     all = std::move(next);
   }
@@ -141,7 +142,7 @@ std::vector<std::string> sizes_of(const Block& top) {
            (two && side(two->first) && side(two->second));
   };
   std::vector<std::string> sizes;
-  for (const json& value : top.values("sizes", "own")) {
+  for (const nlohmann::json& value : top.values("sizes", "own")) {
     if (!value.is_string() || !is_size(value.get<std::string>()))
       fail("{}: 'sizes' {}: expected own, WxH in px, preview or headset", top.place(), value.dump());
     sizes.push_back(value.get<std::string>());
@@ -152,7 +153,7 @@ std::vector<std::string> sizes_of(const Block& top) {
 }  // namespace
 
 Axes parse_axes(const std::string& name, const std::string& text) {
-  const json root = parse_json(name, text);
+  const nlohmann::json root = parse_json(name, text);
   const Block top(name, root, {"views", "frames", "repeats", "eyes", "sizes", "settings"});
   Axes axes;
   axes.name = name;
@@ -160,13 +161,14 @@ Axes parse_axes(const std::string& name, const std::string& text) {
   axes.frames = top.one("frames", axes.frames, 1, 100000);
   axes.repeats = top.one("repeats", axes.repeats, 1, 1000);
   axes.eyes.clear();
-  for (const json& value : top.values("eyes", 1)) axes.eyes.push_back(top.whole("eyes", value, 1, 2));
+  for (const nlohmann::json& value : top.values("eyes", 1))
+    axes.eyes.push_back(top.whole("eyes", value, 1, 2));
   axes.sizes = sizes_of(top);
   if (!root.contains("settings") || !root["settings"].is_array() || root["settings"].empty())
     fail("{}: expected a list 'settings' of blocks", name);
   int number = 0;
-  for (const json& object : root["settings"]) {
-    const json present = with_present_names(object);
+  for (const nlohmann::json& object : root["settings"]) {
+    const nlohmann::json present = with_present_names(object);
     const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), present,
                       {"tiles", "tile", "th", "precision", "transmittance", "inset", "context", "tolerance"});
     const std::size_t before = axes.settings.size();

@@ -39,9 +39,9 @@ constexpr double wake_ms = 1000.0;
 const glm::vec3 black(0.0f);
 
 /// Draws by settings, whole pictures or foveated ones.
-class Drawer {
+class BenchDrawer {
  public:
-  Drawer(std::shared_ptr<render::GpuModel> model, const BenchSettings& settings)
+  BenchDrawer(std::shared_ptr<render::GpuModel> model, const BenchSettings& settings)
       : foveated_(std::move(model)), settings_(settings) {}
 
   render::FrameReport draw(std::span<const shared::View> eyes) {
@@ -119,7 +119,7 @@ double mean_signed(const Image& a, const Image& b) {
 }
 
 /// Draws until the GPU's clock has settled. Returns whether it did in time; a software renderer's always has.
-bool warm_up(Drawer& drawer, const BenchView& view, bool software) {
+bool warm_up(BenchDrawer& drawer, const BenchView& view, bool software) {
   const auto start = Clock::now();
   int drawn = 0;
   const auto goes_on = [&] {
@@ -243,7 +243,7 @@ std::string Bench::verify(const BenchSettings& settings) {
                          small_.width, small_.height, db, needed);
   }
   const BenchView& view = views_.front();
-  Drawer drawer(gpu_model_, settings);
+  BenchDrawer drawer(gpu_model_, settings);
   drawer.draw(view.eyes);
   const std::vector<Picture> pictures = drawer.read_pictures();
   for (const Picture& picture : pictures) {
@@ -289,7 +289,7 @@ ViewNumbers Bench::compare(const BenchView& view, const Exact& exact,
 }
 
 void Bench::time(const BenchSettings& settings, BenchNumbers& point) {
-  Drawer drawer(gpu_model_, settings);
+  BenchDrawer drawer(gpu_model_, settings);
   Times all;
   render::FrameReport report;
   std::vector<double> repeats;  // means over the views
@@ -326,7 +326,7 @@ void Bench::time(const BenchSettings& settings, BenchNumbers& point) {
 }
 
 void Bench::judge(const BenchSettings& settings, BenchNumbers& point) {
-  Drawer drawer(gpu_model_, settings);
+  BenchDrawer drawer(gpu_model_, settings);
   std::vector<ViewNumbers> photographed;
   std::vector<measure::FoveatedComparison> seen;
   FrameWork work{.precision = settings.precision};

@@ -40,7 +40,7 @@ static void fields(const auto& io, Some<PhotoNumbers> auto& p) {
 
 namespace {
 
-void numbers(const auto& io, Some<BenchNumbers> auto& n) {
+void numbers_fields(const auto& io, Some<BenchNumbers> auto& n) {
   io("frame_ms", n.frame_ms, "p99_ms", n.p99_ms, "noise_ms", n.noise_ms, "settled", n.settled, "frames",
      n.frames, "gpu_bytes", n.gpu_bytes, "submit_ms", n.submit_ms, "stages_ms", n.stages, "pairs", n.pairs,
      "visible", n.visible, "alphas", n.alphas, "alphas_visible", n.alphas_visible, "profile", n.profile,
@@ -58,7 +58,7 @@ void to_json(ordered_json& json, const BenchNumbers& n) {
   if (n.device.empty()) return;
   json["device"] = n.device;
   if (n.measured()) {
-    numbers(FieldWriter{json}, n);
+    numbers_fields(FieldWriter{json}, n);
   } else {
     json["problem"] = n.problem;
   }
@@ -66,7 +66,7 @@ void to_json(ordered_json& json, const BenchNumbers& n) {
 
 void from_json(const ordered_json& json, BenchNumbers& n) {
   FieldReader{json}("device", n.device, "problem", n.problem);
-  numbers(FieldReader{json}, n);
+  numbers_fields(FieldReader{json}, n);
 }
 
 void to_json(ordered_json& json, const BenchPoint& point) {

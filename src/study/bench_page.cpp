@@ -147,7 +147,7 @@ Section stages(const Chart& chart) {
   return {chart.id + "-stages", chart.title + ": stages", sentence + ".", plot};
 }
 
-Section numbers(const Chart& chart) {
+Section numbers_section(const Chart& chart) {
   Table table{{"setting", "front", "frame ms", "p99 ms", "noise ms", "submit ms", "pairs", "alphas a pixel",
                "visible", "GPU MB", "PSNR dB", "worst view dB", "SSIM", "FLIP", "signed"},
               {}};
@@ -176,7 +176,7 @@ Section numbers(const Chart& chart) {
 }
 
 /// The exact picture and those of the points on the front; nothing where there are not two.
-std::optional<Section> pictures(const Chart& chart) {
+std::optional<Section> chart_pictures(const Chart& chart) {
   Section section{chart.id + "-pictures", chart.title + ": pictures", ""};
   section.compared = true;
   std::string view;
@@ -259,10 +259,10 @@ Page bench_page(const BenchResults& results) {
   for (const Chart& chart : charts) {
     page.sections.push_back(accuracy(chart));
     if (auto section = seen(chart)) page.sections.push_back(std::move(*section));
-    if (auto section = pictures(chart)) page.sections.push_back(std::move(*section));
+    if (auto section = chart_pictures(chart)) page.sections.push_back(std::move(*section));
     if (!chart.measured.empty()) {
       page.sections.push_back(stages(chart));
-      page.sections.push_back(numbers(chart));
+      page.sections.push_back(numbers_section(chart));
       if (auto section = floors(chart)) page.sections.push_back(std::move(*section));
     }
     if (!chart.others.empty()) page.sections.push_back(missing(chart));

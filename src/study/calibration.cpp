@@ -20,7 +20,6 @@ namespace binosplat::study {
 
 namespace {
 
-using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t table_max = 100000;  // bins: more is no table of depths
@@ -43,16 +42,16 @@ class Hash {
 /// An object of the file; errors name the file and the key.
 class Reader {
  public:
-  Reader(std::string place, const json& object) : place_(std::move(place)), object_(object) {
+  Reader(std::string place, const nlohmann::json& object) : place_(std::move(place)), object_(object) {
     if (!object_.is_object()) fail("{}: expected an object in braces", place_);
   }
 
-  const json& need(const char* key) const {
+  const nlohmann::json& need(const char* key) const {
     if (!object_.contains(key)) fail("{}: '{}' is missing", place_, key);
     return object_.at(key);
   }
   double number(const char* key, double low = -std::numeric_limits<double>::infinity()) const {
-    const json& value = need(key);
+    const nlohmann::json& value = need(key);
     const double v = value.is_number() ? value.get<double>() : NAN;
     if (!(std::isfinite(v) && v >= low))
       fail("{}: '{}' {}: expected a number of {} or more", place_, key, value.dump(), low);
@@ -62,7 +61,7 @@ class Reader {
     if (!need(key).is_string()) fail("{}: '{}' {}: expected a text", place_, key, need(key).dump());
     return need(key).get<std::string>();
   }
-  const json& list(const char* key) const {
+  const nlohmann::json& list(const char* key) const {
     if (!need(key).is_array()) fail("{}: '{}': expected a list", place_, key);
     return need(key);
   }
@@ -75,7 +74,7 @@ class Reader {
 
  private:
   std::string place_;
-  const json& object_;
+  const nlohmann::json& object_;
 };
 
 std::uint64_t parse_hash(const Reader& model) {
@@ -87,7 +86,7 @@ std::uint64_t parse_hash(const Reader& model) {
 
 render::DepthTable parse_table(const Reader& table) {
   render::DepthTable out{static_cast<float>(table.number("far", 1e-30)), {}};
-  for (const json& value : table.list("upper")) {
+  for (const nlohmann::json& value : table.list("upper")) {
     const double v = value.is_number() ? value.get<double>() : NAN;
     if (!(v >= 0.0 && v <= 1.0))
       fail("{}: 'upper' {}: expected numbers from 0 to 1", table.place(), value.dump());
@@ -127,7 +126,7 @@ CalibrationEntry parse_entry(const Reader& entry) {
 }
 
 CalibratedView parse_view(const Reader& view) {
-  const json& p = view.list("position");
+  const nlohmann::json& p = view.list("position");
   const bool good = p.size() == 3 && p[0].is_number() && p[1].is_number() && p[2].is_number();
   if (!good) fail("{}: 'position' {}: expected three numbers", view.place(), p.dump());
   return {view.text("name"), {p[0].get<double>(), p[1].get<double>(), p[2].get<double>()}};
@@ -177,7 +176,7 @@ ordered_json to_json(const Calibration& c) {
 }
 
 Calibration parse_calibration(const std::string& name, const std::string& text) {
-  const json root = parse_json(name, text);
+  const nlohmann::json root = parse_json(name, text);
   const Reader top(name, root);
   if (top.text("format") != "binosplat calibration" || top.number("version") != 1)
     fail("{}: not a calibration of this version: make it with binosplat calibrate", name);
@@ -198,10 +197,10 @@ Calibration parse_calibration(const std::string& name, const std::string& text) 
   c.depth_table = parse_table(table);
   c.depth_table_seconds = table.number("seconds", 0.0);
   int number = 0;
-  for (const json& view : top.list("views"))
+  for (const nlohmann::json& view : top.list("views"))
     c.views.push_back(parse_view({fmt::format("{}, view {}", name, ++number), view}));
   number = 0;
-  for (const json& entry : top.list("entries"))
+  for (const nlohmann::json& entry : top.list("entries"))
     c.entries.push_back(parse_entry({fmt::format("{}, entry {}", name, ++number), entry}));
   return c;
 }

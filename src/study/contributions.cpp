@@ -14,12 +14,12 @@ namespace binosplat::study {
 
 namespace {
 
-constexpr std::array shares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+constexpr std::array skipped_shares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
 constexpr std::array known = {"alpha T", "alpha max(T)", "alpha T_upper(depth)", "alpha"};
 constexpr std::size_t depth_bins = 40;
 
 /// A Gaussian that a pixel of a view blends.
-struct Shown {
+struct ShownGaussian {
   double depth;          // world units
   double contribution;   // the largest alpha T
   double transmittance;  // max(T)
@@ -50,14 +50,15 @@ Spread spread(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.9), quantile(values, 1.0)};
 }
 
-std::vector<DepthBin> by_depth(const std::vector<Shown>& shown, const render::DepthTable& table) {
+std::vector<DepthBin> bins_by_depth(const std::vector<ShownGaussian>& shown,
+                                    const render::DepthTable& table) {
   std::vector<DepthBin> bins;
   if (shown.empty()) return bins;
   std::vector<double> depths;
-  for (const Shown& one : shown) depths.push_back(one.depth);
+  for (const ShownGaussian& one : shown) depths.push_back(one.depth);
   const double far = quantile(depths, 0.95), width = far / depth_bins;
   std::array<std::vector<double>, depth_bins> contribution, transmittance;
-  for (const Shown& one : shown) {
+  for (const ShownGaussian& one : shown) {
     if (one.depth > far) continue;
     const auto b = std::min<std::size_t>(static_cast<std::size_t>(one.depth / width), depth_bins - 1);
     contribution[b].push_back(one.contribution);
@@ -79,8 +80,8 @@ Contributions contributions(const Model& model, std::span<const ContributionView
                             const render::DepthTable& table, const std::function<void()>& progress) {
   Contributions found;
   for (const char* by : known)
-    found.skipping.push_back({by, std::vector<SkippingCurve::Point>(shares.size())});
-  std::vector<Shown> shown;
+    found.skipping.push_back({by, std::vector<SkippingCurve::Point>(skipped_shares.size())});
+  std::vector<ShownGaussian> shown;
   const auto count = static_cast<double>(views.size());
   const bool photos =
       std::all_of(views.begin(), views.end(), [](const ContributionView& v) { return v.photo; });
@@ -95,8 +96,8 @@ Contributions contributions(const Model& model, std::span<const ContributionView
     const Image exact = on_black(reference::blend(splats, lists, one.view));
     const auto bounds = bounds_by(splats, transmittance, table);
     for (std::size_t by = 0; by < known.size(); ++by) {
-      const auto skipped = reference::skip_lowest(splats, lists, one.view, bounds[by], shares);
-      for (std::size_t k = 0; k < shares.size(); ++k) {
+      const auto skipped = reference::skip_lowest(splats, lists, one.view, bounds[by], skipped_shares);
+      for (std::size_t k = 0; k < skipped_shares.size(); ++k) {
         const Image image = on_black(skipped[k].picture);
         SkippingCurve::Point& mean = found.skipping[by].points[k];
         mean.share += skipped[k].share / count;
@@ -110,7 +111,7 @@ Contributions contributions(const Model& model, std::span<const ContributionView
     }
     progress();
   }
-  found.by_depth = by_depth(shown, table);
+  found.by_depth = bins_by_depth(shown, table);
   return found;
 }
 

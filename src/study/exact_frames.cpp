@@ -9,7 +9,7 @@ namespace binosplat::study {
 
 namespace {
 
-bool same_views(const std::vector<shared::View>& a, const std::vector<shared::View>& b) {
+bool equal_views(const std::vector<shared::View>& a, const std::vector<shared::View>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(shared::View)) == 0;
 }
 
@@ -33,7 +33,7 @@ void ExactFrames::draw(render::Frame& frame, const MotionPath& path) {
   for (const MotionSegment& segment : path.segments) {
     auto& of_segment = segments_.emplace_back();
     for (const std::vector<shared::View>& views : segment.frames) {
-      if (of_segment.empty() || !same_views(poses_.back().views, views)) {
+      if (of_segment.empty() || !equal_views(poses_.back().views, views)) {
         Pose& pose = poses_.emplace_back(Pose{views});
         pose.pairs = static_cast<double>(frame.draw(views).pairs);
         pose.pictures = room_for(views);

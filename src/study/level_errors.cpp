@@ -58,9 +58,9 @@ struct Grid {
 };
 
 /// Draws models one after the other, in the same buffers: making new ones takes as long as drawing.
-class Drawer {
+class LevelDrawer {
  public:
-  explicit Drawer(gl::Context& context)
+  explicit LevelDrawer(gl::Context& context)
       : context_(context),
         dispatcher_(context),
         finest_(context, "the finest level"),
@@ -143,11 +143,11 @@ class Sheet {
     camera_.rotation = glm::dmat3(right, glm::cross(direction, right), direction);
   }
 
-  std::vector<float> draw_finest(Drawer& drawer) const {
+  std::vector<float> draw_finest(LevelDrawer& drawer) const {
     fill(drawer.model(), 0);
     return drawer.draw_finest(make_view(camera_), grid_);
   }
-  std::vector<float> draw(Drawer& drawer, std::size_t level) const {
+  std::vector<float> draw(LevelDrawer& drawer, std::size_t level) const {
     fill(drawer.model(), level);
     return drawer.draw(make_view(camera_), grid_);
   }
@@ -202,7 +202,7 @@ void fill_in(LeafErrors& leaf) {
   }
 }
 
-void judge(Drawer& drawer, std::span<const Part> parts) {
+void judge_parts(LevelDrawer& drawer, std::span<const Part> parts) {
   const std::size_t levels = parts.front().levels.size();
   for (const Part& part : parts) {
     part.errors->seen.assign(detail_directions, std::vector<double>(widths));
@@ -238,14 +238,14 @@ std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::
       errors[i].pixels.push_back((diagonal > 0.0 ? diagonal / across : 1.0) * std::pow(wider, k));
     parts.push_back({leaves[i], box, &errors[i], static_cast<int>(across) + 2 * margin});
   }
-  Drawer drawer(context);
+  LevelDrawer drawer(context);
   // The squares of a sheet are all as large as its largest.
   std::stable_sort(parts.begin(), parts.end(),
                    [](const Part& a, const Part& b) { return a.square > b.square; });
   for (std::size_t first = 0, count = 0; first < parts.size(); first += count) {
     const auto row = static_cast<std::size_t>(std::max(1, side_most / parts[first].square));
     count = std::min(parts.size() - first, row * row);
-    judge(drawer, std::span(parts).subspan(first, count));
+    judge_parts(drawer, std::span(parts).subspan(first, count));
   }
   return errors;
 }

@@ -45,8 +45,8 @@ std::vector<Picture> drawn(render::Frame& frame, const LevelsShot& shot) {
   return frame.read_pictures();
 }
 
-void compare(const LevelsShot& shot, std::span<const Picture> finest, std::span<const Picture> coarser,
-             LevelsNumbers& numbers) {
+void judge_levels(const LevelsShot& shot, std::span<const Picture> finest, std::span<const Picture> coarser,
+                  LevelsNumbers& numbers) {
   const FrameErrors errors = judge(shot.views, finest, coarser, TILE_SIZE_DEFAULT);
   numbers.psnr_db = errors.psnr;
   if (!std::isnan(errors.disagreement)) numbers.disagreement_db = errors.disagreement;
@@ -56,16 +56,17 @@ void compare(const LevelsShot& shot, std::span<const Picture> finest, std::span<
   numbers.flip = mean(flips);
 }
 
-struct Timed {
+struct TimedLevels {
   render::Frame& frame;
   LevelsNumbers& into;
 };
 
-void time_in_turns(gl::Context& context, const LevelsShot& shot, std::span<const Timed> all, int frames) {
+void time_in_turns(gl::Context& context, const LevelsShot& shot, std::span<const TimedLevels> all,
+                   int frames) {
   // It slept while files were read and pictures compared.
   wake(context, 1000.0, [&] { all.front().frame.draw(shot.views); });
   for (int round = 0; round < turn_rounds; ++round) {
-    for (const Timed& timed : all) {
+    for (const TimedLevels& timed : all) {
       timed.frame.draw(shot.views);
       Run run;
       for (int n = 0; n < frames; ++n) run.add(timed.frame.draw(shot.views));
@@ -163,10 +164,10 @@ void measure_levels(LevelsScene& scene, gl::Context& context, std::span<const Le
       });
       if (!scene.problem.empty()) finest.reset();
     }
-    std::vector<Timed> timed;
+    std::vector<TimedLevels> timed;
     for (std::size_t k = 0; k < models.size(); ++k) {
       LevelsNumbers& numbers = scene.rows[k].shots.back();
-      if (finest) compare(shot, pictures, drawn(*of_models[k], shot), numbers);
+      if (finest) judge_levels(shot, pictures, drawn(*of_models[k], shot), numbers);
       timed.push_back({*of_models[k], numbers});
     }
     if (finest) {

@@ -63,7 +63,7 @@ Section losses(const LevelsStudy& study) {
   return {"losses", "What is lost", sentence, plot, levels_table(study)};
 }
 
-Section times(const LevelsStudy& study) {
+Section levels_times(const LevelsStudy& study) {
   Plot plot{{"Gaussians drawn", "thousands"}, {"GPU time of a frame", "ms"}, {}};
   for (const LevelsScene& scene : study.scenes) {
     Series line{series_name(study, scene, ""), {}, true};
@@ -225,7 +225,7 @@ Page levels_page(const LevelsStudy& study) {
       over_detail(study, "disagreement", "What only one eye sees",
                   "Disagreement: the part of the error that the eyes do not share; more dB are less of it.",
                   {"disagreement", "dB"}, &LevelsNumbers::disagreement_db),
-      times(study)};
+      levels_times(study)};
   if (study.scenes.size() > 1) page.sections.push_back(growth(study));
   page.sections.push_back(views(study));
   return page;

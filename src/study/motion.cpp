@@ -140,7 +140,7 @@ void Drive::bring_to_target(const MotionPath& path, MovedRule& rule) {
 }
 
 // What is timed: frames drawn without a word, and where their times go.
-struct Timed {
+struct TimedMotion {
   const MotionPath* path;
   render::FrameSettings settings;
   MovedPass* into;
@@ -148,7 +148,7 @@ struct Timed {
   std::size_t differs = 0;  // frames that made other pairs than when they were judged
 };
 
-void draw_segment(render::Frame& frame, Timed& timed, std::size_t s) {
+void draw_segment(render::Frame& frame, TimedMotion& timed, std::size_t s) {
   const MotionSegment& segment = timed.path->segments[s];
   frame.start_over();
   for (std::size_t n = 0; n < segment.frames.size(); ++n) {
@@ -160,14 +160,14 @@ void draw_segment(render::Frame& frame, Timed& timed, std::size_t s) {
 
 void Drive::time(MotionResult& result) {
   const MotionPath moving = without_stops(result.path);
-  std::vector<Timed> all = {{&result.path, settings_of({.th = TH_TAU}, 0.0f), &result.exact, {}, 0}};
+  std::vector<TimedMotion> all = {{&result.path, settings_of({.th = TH_TAU}, 0.0f), &result.exact, {}, 0}};
   for (MovedRule& rule : result.rules) {
     all.push_back({&result.path, settings_of(rule.variant, rule.asked.request), &rule.asked, {}, 0});
     if (rule.equal)
       all.push_back({&moving, settings_of(rule.variant, rule.equal->request), &*rule.equal, {}, 0});
   }
   const std::size_t segments = result.path.segments.size();
-  for (Timed& timed : all) {
+  for (TimedMotion& timed : all) {
     for (const MotionSegment& segment : timed.path->segments) timed.ms.emplace_back(segment.frames.size());
   }
   // It slept while sums were read.
@@ -175,13 +175,13 @@ void Drive::time(MotionResult& result) {
   std::size_t done = 0;
   for (int round = 0; round < settings_.rounds; ++round) {
     for (std::size_t s = 0; s < segments; ++s) {
-      for (Timed& timed : all) {
+      for (TimedMotion& timed : all) {
         draw_segment(frame_, timed, s);
         tell_(result.path.name + ": timing", ++done, settings_.rounds * segments * all.size());
       }
     }
   }
-  for (const Timed& timed : all) {
+  for (const TimedMotion& timed : all) {
     for (std::size_t s = 0; s < segments; ++s) {
       for (std::size_t n = 0; n < timed.ms[s].size(); ++n)
         timed.into->frames[s][n].ms = quantile(timed.ms[s][n], 0.5);

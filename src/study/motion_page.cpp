@@ -180,7 +180,7 @@ Section pairs(const MotionStudy& study, const MotionResult& path) {
   return section;
 }
 
-Section times(const MotionStudy& study, const MotionResult& path) {
+Section motion_times(const MotionStudy& study, const MotionResult& path) {
   return {"times-" + path.path.name, fmt::format("{}: time", path.path.name),
           fmt::format("GPU time of a frame, the median of {} rounds in which rules took turns.",
                       study.settings.rounds),
@@ -253,7 +253,7 @@ Page motion_page(const MotionStudy& study) {
   for (const MotionResult& path : study.paths) {
     page.sections.push_back(asked(study, path));
     page.sections.push_back(pairs(study, path));
-    page.sections.push_back(times(study, path));
+    page.sections.push_back(motion_times(study, path));
   }
   return page;
 }

@@ -42,13 +42,13 @@ double against_photos(render::Frame& frame, const PerspectiveViews& views, const
 }
 
 /// Frames of a path, and what they show.
-struct Shown {
+struct ShownView {
   const shared::View& view;
   const Picture& picture;
 };
 
 /// Adds what `now` shows against what was shown earlier, warped to it. False where they share nothing.
-bool add_pair(Popping& popping, const Shown& now, const Shown& earlier) {
+bool add_pair(Popping& popping, const ShownView& now, const ShownView& earlier) {
   const std::array black = {uncoloured(now.picture), uncoloured(earlier.picture)};
   const std::array coloured = {now.picture, earlier.picture};
   const stereo::Disagreement warped = stereo::disagreement({now.view, earlier.view}, black, coloured);

@@ -34,7 +34,7 @@ double dot(const Vector& a, const Vector& b) {
 }
 
 /// a + factor * b.
-void add(Vector& a, double factor, const Vector& b) {
+void add_scaled(Vector& a, double factor, const Vector& b) {
   const auto f = static_cast<float>(factor);
   parallel_for(
       a.size(), [&](std::size_t k) { a[k] += f * b[k]; }, chunk);
@@ -205,8 +205,8 @@ class Refit {
     const Vector curved = curvature();
     const double bend = dot(direction_, curved);
     if (!(bend > 0.0)) return false;
-    add(candidate_.sh, slope / bend, direction_);
-    add(gradient_, -slope / bend, curved);
+    add_scaled(candidate_.sh, slope / bend, direction_);
+    add_scaled(gradient_, -slope / bend, curved);
     return true;
   }
 

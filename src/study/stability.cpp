@@ -21,7 +21,7 @@ struct Exact {
   render::DepthTable table;
 };
 
-bool same_views(const stereo::EyePair& a, const stereo::EyePair& b) {
+bool equal_eyes(const stereo::EyePair& a, const stereo::EyePair& b) {
   return a.cameras[0].position == b.cameras[0].position && a.cameras[0].rotation == b.cameras[0].rotation;
 }
 
@@ -29,7 +29,7 @@ bool same_views(const stereo::EyePair& a, const stereo::EyePair& b) {
 Exact exact_frames(render::Frame& frame, const StabilityCase& one) {
   Exact exact;
   for (std::size_t n = 0; n < one.frames.size(); ++n) {
-    if (n > 0 && same_views(one.frames[n], one.frames[n - 1])) {
+    if (n > 0 && equal_eyes(one.frames[n], one.frames[n - 1])) {
       exact.pairs.push_back(exact.pairs.back());
       continue;
     }
@@ -98,7 +98,7 @@ StabilityResult run_variant(render::Frame& frame, const StabilityCase& one, cons
   double pairs = 0.0, exact_pairs = 0.0;
   std::size_t at = 0;
   for (std::size_t n = 0; n < one.frames.size(); ++n) {
-    if (n > 0 && !same_views(one.frames[n], one.frames[n - 1])) ++at;
+    if (n > 0 && !equal_eyes(one.frames[n], one.frames[n - 1])) ++at;
     pairs += static_cast<double>(frame.draw(one.frames[n].views, settings).pairs);
     exact_pairs += exact.pairs[n];
     errors.push_back(

@@ -14,8 +14,8 @@ constexpr double focal = 96.0;
 constexpr double sh_c0 = 0.28209479177387814;
 constexpr std::size_t sway_frames = 24, still_frames = 300, turn_frames = 30;
 
-void add(Model& model, const glm::vec3& position, const glm::vec3& scale, float opacity,
-         const glm::vec3& colour) {
+void add_gaussian(Model& model, const glm::vec3& position, const glm::vec3& scale, float opacity,
+                  const glm::vec3& colour) {
   model.position.push_back(position);
   model.scale.push_back(scale);
   model.rotation.emplace_back(1.0f, 0.0f, 0.0f, 0.0f);
@@ -30,8 +30,8 @@ void add_wall(Model& model, double z, double step, double size, float opacity,
   const double unit = z / focal;  // of a px at that depth
   for (double y = -0.75 * height; y <= 0.75 * height; y += step) {
     for (double x = from_x; x <= 0.75 * width; x += step) {
-      add(model, glm::dvec3(x * unit, y * unit, z), glm::vec3(static_cast<float>(size * step * unit)),
-          opacity, colour(x, y));
+      add_gaussian(model, glm::dvec3(x * unit, y * unit, z),
+                   glm::vec3(static_cast<float>(size * step * unit)), opacity, colour(x, y));
     }
   }
 }
@@ -92,7 +92,8 @@ Model clutter() {
     const double x = random.uniform(-0.9, 0.9) * z, y = random.uniform(-0.7, 0.7) * z;
     const double a = std::exp(random.uniform(-5.5, -2.2)), b = std::exp(random.uniform(-5.5, -2.2));
     const double opacity = random.uniform(0.1, 1.0);
-    add(model, glm::dvec3(x, y, z), glm::dvec3(a, b, a), static_cast<float>(opacity), random_colour(random));
+    add_gaussian(model, glm::dvec3(x, y, z), glm::dvec3(a, b, a), static_cast<float>(opacity),
+                 random_colour(random));
   }
   add_wall(model, 8.0, 6.0, 0.7, 0.95f, checks);
   return model;
@@ -112,7 +113,7 @@ Model thin_occluder() {
            [](double x, double y) { return glm::vec3(0.6f) + 0.4f * checks(x, y); });
   for (double x = -1.2; x <= 1.2; x += 0.12) {  // dark bars, 1.5 px wide
     for (double y = -1.0; y <= 1.0; y += 0.04)
-      add(model, glm::dvec3(x, y, 1.5), {0.008f, 0.03f, 0.008f}, 0.95f, glm::vec3(0.05f));
+      add_gaussian(model, glm::dvec3(x, y, 1.5), {0.008f, 0.03f, 0.008f}, 0.95f, glm::vec3(0.05f));
   }
   return model;
 }
@@ -131,7 +132,8 @@ Model mist() {
   for (int i = 0; i < 6000; ++i) {
     const double z = random.uniform(1.0, 8.0);
     const double x = random.uniform(-0.8, 0.8) * z, y = random.uniform(-0.6, 0.6) * z;
-    add(model, glm::dvec3(x, y, z), glm::vec3(static_cast<float>(0.05 * z)), 0.03f, random_colour(random));
+    add_gaussian(model, glm::dvec3(x, y, z), glm::vec3(static_cast<float>(0.05 * z)), 0.03f,
+                 random_colour(random));
   }
   return model;
 }
@@ -142,7 +144,8 @@ Model soft_discs() {
   for (int i = 0; i < 60; ++i) {
     const double z = random.uniform(2.0, 5.0);
     const double x = random.uniform(-0.6, 0.6) * z, y = random.uniform(-0.45, 0.45) * z;
-    add(model, glm::dvec3(x, y, z), glm::vec3(static_cast<float>(0.12 * z)), 0.6f, random_colour(random));
+    add_gaussian(model, glm::dvec3(x, y, z), glm::vec3(static_cast<float>(0.12 * z)), 0.6f,
+                 random_colour(random));
   }
   return model;
 }
@@ -152,7 +155,7 @@ Model near_cloud() {
   Model model;
   for (int i = 0; i < 500; ++i) {
     const double x = random.uniform(-0.6, 0.6), y = random.uniform(-0.5, 0.5), z = random.uniform(0.1, 1.2);
-    add(model, glm::dvec3(x, y, z), {0.05f, 0.05f, 0.15f}, 0.5f, random_colour(random));
+    add_gaussian(model, glm::dvec3(x, y, z), {0.05f, 0.05f, 0.15f}, 0.5f, random_colour(random));
   }
   add_wall(model, 4.0, 6.0, 0.7, 0.95f, checks);
   return model;
@@ -161,8 +164,8 @@ Model near_cloud() {
 Model veil() {
   Model model;
   add_wall(model, 4.0, 4.0, 0.7, 0.9f, checks);
-  add(model, {0.0f, 0.0f, 1.0f}, glm::vec3(3.0f), 0.3f, {0.9f, 0.4f, 0.3f});
-  add(model, {0.2f, 0.1f, 1.2f}, glm::vec3(4.0f), 0.015f, {0.1f, 0.9f, 0.9f});
+  add_gaussian(model, {0.0f, 0.0f, 1.0f}, glm::vec3(3.0f), 0.3f, {0.9f, 0.4f, 0.3f});
+  add_gaussian(model, {0.2f, 0.1f, 1.2f}, glm::vec3(4.0f), 0.015f, {0.1f, 0.9f, 0.9f});
   return model;
 }
 

@@ -41,8 +41,8 @@ std::vector<glm::dvec2> field_of(const Camera& camera, const TurningSettings& s)
   return points;
 }
 
-Turned compare(const std::vector<glm::vec3>& straight, const std::vector<glm::vec3>& turned,
-               const std::vector<std::size_t>& shown, const TurningSettings& s) {
+Turned compare_turned(const std::vector<glm::vec3>& straight, const std::vector<glm::vec3>& turned,
+                      const std::vector<std::size_t>& shown, const TurningSettings& s) {
   Turned result;
   result.rays = shown.size();
   Image a(s.columns, s.rows, 3), b(s.columns, s.rows, 3);
@@ -126,8 +126,8 @@ void measure_turning(TurningStudy& study, render::Frame& frame, const Camera& ca
           shown.push_back(k);
           there.push_back(at);
         }
-        Turned& turn = study.turns.emplace_back(
-            compare(straight, measure::colours_at(frame, head, there, settings, near_plane), shown, s));
+        Turned& turn = study.turns.emplace_back(compare_turned(
+            straight, measure::colours_at(frame, head, there, settings, near_plane), shown, s));
         turn.seen = seen;
         turn.about = axis.name;
         turn.degrees = degrees;

@@ -1,17 +1,10 @@
 #include "xr/binding.h"
 
-#define XR_USE_GRAPHICS_API_OPENGL
-#define XR_USE_PLATFORM_EGL
-#define XR_USE_PLATFORM_XLIB
-#include <EGL/egl.h>
-#include <GL/glx.h>
-#include <X11/Xlib.h>
 #include <dlfcn.h>
 
-#include <openxr/openxr_platform.h>
-#include "xr/instance.h"
-
 #include "base/error.h"
+#include "xr/instance.h"
+#include "xr/platform.h"
 
 namespace binosplat::xr {
 

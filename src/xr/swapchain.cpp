@@ -1,10 +1,7 @@
 #include "xr/swapchain.h"
 
-#define XR_USE_GRAPHICS_API_OPENGL
-#include <GL/gl.h>
-#include <openxr/openxr_platform.h>
-
 #include "base/error.h"
+#include "xr/platform.h"
 
 namespace binosplat::xr {
 

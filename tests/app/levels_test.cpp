@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using Files = std::map<std::string, std::string>;
 
 /// Names of files, and the lengths and hashes of what is in them.
-Files contents(const fs::path& folder) {
+Files hashed_contents(const fs::path& folder) {
   Files files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file()) continue;
@@ -100,7 +100,7 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
   const Outcome outcome = levels(out);
   ASSERT_TRUE(good(outcome));
   EXPECT_NE(outcome.err.find("of 3 SOGs were in"), std::string::npos) << outcome.err;
-  EXPECT_EQ(contents(out), contents(whole));
+  EXPECT_EQ(hashed_contents(out), hashed_contents(whole));
   const Outcome again = levels(out);
   ASSERT_TRUE(good(again));
   EXPECT_NE(again.err.find("3 of 3 SOGs were in"), std::string::npos) << again.err;
@@ -108,10 +108,10 @@ TEST_F(LevelsTest, GoOnAfterAnInterruption) {
 
 TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   ASSERT_TRUE(good(levels(out)));
-  const Files before = contents(out);
+  const Files before = hashed_contents(out);
   const auto refused = [&](const Arguments& more, const std::string& said) {
     EXPECT_TRUE(ended(levels(out, more), 2, said));
-    EXPECT_EQ(contents(out), before);
+    EXPECT_EQ(hashed_contents(out), before);
   };
   refused({"--axes", "rub"}, "says other axes");
   EXPECT_TRUE(ended(run_program({"levels", model, "-o", out}), 2, "says other leaf, levels"));
@@ -124,7 +124,7 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   EXPECT_TRUE(ended(levels(folder.path()), 2, "has other files"));
   EXPECT_TRUE(ended(levels(model), 2, "is a file where a folder is needed"));
   EXPECT_TRUE(ended(run_program({"levels", out, "-o", out}), 2, ""));
-  EXPECT_EQ(contents(out), before);
+  EXPECT_EQ(hashed_contents(out), before);
 }
 
 // 35.4 and 30.7 dB; where areas leave the low-pass out 32.5 and less (docs/levels.md).

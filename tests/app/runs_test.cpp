@@ -23,7 +23,7 @@ using test::write_text;
 using Arguments = std::vector<std::string>;
 using Files = std::map<std::string, std::string>;
 
-Files contents(const fs::path& folder) {
+Files contents_of_folder(const fs::path& folder) {
   Files files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file()) files[entry.path().lexically_relative(folder)] = read_text(entry.path());
@@ -44,7 +44,7 @@ struct Runs : test::SceneTest {
     Files alone[2];
     for (int k = 0; k < 2; ++k) {
       ASSERT_TRUE(good(run_program(k == 0 ? a : b)));
-      alone[k] = contents(out);
+      alone[k] = contents_of_folder(out);
       fs::remove_all(out);
     }
     ASSERT_NE(alone[0], alone[1]) << "planted: files of both would go unnoticed";
@@ -54,7 +54,7 @@ struct Runs : test::SceneTest {
       const bool first_won = outcomes[0].code == 0;
       EXPECT_TRUE(good(outcomes[first_won ? 0 : 1]));
       EXPECT_TRUE(ended(outcomes[first_won ? 1 : 0], 2, said));
-      EXPECT_EQ(contents(out), alone[first_won == (round % 2 == 0) ? 0 : 1]);
+      EXPECT_EQ(contents_of_folder(out), alone[first_won == (round % 2 == 0) ? 0 : 1]);
       fs::remove_all(out);
     }
   }
@@ -96,12 +96,12 @@ TEST_F(Runs, PointsOfTwoScenesDoNotMix) {
 TEST_F(Runs, OfOneKindShareAFolder) {
   for (const Arguments& line : {levels_of(model), pictures()}) {
     ASSERT_TRUE(good(run_program(line)));
-    const Files alone = contents(out);
+    const Files alone = contents_of_folder(out);
     fs::remove_all(out);
     Program first(line), second(line);
     EXPECT_TRUE(good(first.wait()));
     EXPECT_TRUE(good(second.wait()));
-    EXPECT_EQ(contents(out), alone);
+    EXPECT_EQ(contents_of_folder(out), alone);
     fs::remove_all(out);
   }
 }
@@ -117,7 +117,7 @@ TEST_F(Runs, ThatDrawOverOneAnotherSaySo) {
 struct CutRuns : Runs {
   void expect_whole_again(const Arguments& line, const std::string& run_file) const {
     ASSERT_TRUE(good(run_program(line)));
-    const Files whole = contents(out);
+    const Files whole = contents_of_folder(out);
     std::size_t made_again = 0;
     for (const auto& [name, bytes] : whole) {
       if (name == run_file || bytes.size() < 10) continue;
@@ -125,7 +125,7 @@ struct CutRuns : Runs {
           std::array{std::size_t{0}, bytes.size() / 2, bytes.size() - 3}[made_again++ % 3];
       write_text(fs::path(out) / name, bytes.substr(0, left));
       EXPECT_TRUE(good(run_program(line))) << name << " of " << left << " bytes";
-      EXPECT_EQ(contents(out), whole) << name << " of " << left << " bytes";
+      EXPECT_EQ(contents_of_folder(out), whole) << name << " of " << left << " bytes";
     }
     EXPECT_GT(made_again, 5);
     write_text(fs::path(out) / run_file, "");

@@ -32,20 +32,22 @@ std::string image(int id, const std::string& name) {
   return std::to_string(id) + " 1 0 0 0 0 0 0 1 " + name + "\n\n";
 }
 
-using Names = std::vector<std::string>;
+using CameraNames = std::vector<std::string>;
 
 TEST(CameraNames, OfColmapsTextAreAllThatIsLeftOfTheLine) {
   EXPECT_EQ(names_in(image(1, "IMG.jpg") + image(2, "IMG (1).jpg") + image(3, "IMG (2).jpg")),
-            (Names{"IMG (1).jpg", "IMG (2).jpg", "IMG.jpg"}));
+            (CameraNames{"IMG (1).jpg", "IMG (2).jpg", "IMG.jpg"}));
   EXPECT_EQ(names_in(image(1, "left/0001.jpg") + image(2, "right/0001.jpg") + image(3, "left/0001.png")),
-            (Names{"left/0001.jpg", "left/0001.png", "right/0001.jpg"}));
-  EXPECT_EQ(names_in(image(1, "Bild  3 \xc3\xa4.jpg")), Names{"Bild  3 \xc3\xa4.jpg"}) << "two blanks, UTF-8";
+            (CameraNames{"left/0001.jpg", "left/0001.png", "right/0001.jpg"}));
+  EXPECT_EQ(names_in(image(1, "Bild  3 \xc3\xa4.jpg")), CameraNames{"Bild  3 \xc3\xa4.jpg"})
+      << "two blanks, UTF-8";
   // Blanks and tabs between fields and at the end of a line are none of a name's; neither is CR.
   EXPECT_EQ(names_in("1\t1 0 0 0  0 0 0 1\t  a b.jpg \t\r\n\r\n2 1 0 0 0 0 0 0 1 c d\r\n"),
-            (Names{"a b.jpg", "c d"}));
-  EXPECT_EQ(names_in("\xef\xbb\xbf# a comment\r\n  # another\n\n" + image(1, "# 1.jpg")), Names{"# 1.jpg"});
+            (CameraNames{"a b.jpg", "c d"}));
+  EXPECT_EQ(names_in("\xef\xbb\xbf# a comment\r\n  # another\n\n" + image(1, "# 1.jpg")),
+            CameraNames{"# 1.jpg"});
   EXPECT_EQ(names_in("1 1 0 0 0 0 0 0 1 a b\n1.5 2.5 -1 3 4 17\n" + image(2, "3 4 5")),
-            (Names{"3 4 5", "a b"}));
+            (CameraNames{"3 4 5", "a b"}));
 }
 
 TEST(CameraNames, AnImageIsNotTakenForThePointsOfAnother) {
@@ -108,7 +110,7 @@ TEST(CameraNames, ThatOccurTwiceStopEveryReader) {
 
 TEST(CameraNames, NoTwoViewsTakeOnePhoto) {
   const TempFolder folder;
-  const auto check = [&](const Names& names) {
+  const auto check = [&](const CameraNames& names) {
     std::vector<Camera> views(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) views[i].name = names[i];
     check_photos_apart(folder.path(), views);

@@ -25,15 +25,15 @@ json one_camera() {
           {"fx", 501.5}};
 }
 
-std::vector<Camera> load(const std::string& text) {
+std::vector<Camera> load_list(const std::string& text) {
   const test::TempFolder folder;
   test::write_text(folder / "cameras.json", text);
   return load_cameras(folder / "cameras.json");
 }
 
-testing::AssertionResult refuses(const std::string& text, std::initializer_list<std::string> parts) {
-  if (auto named = test::fails_saying([&] { load(text); }, {"cameras.json"}); !named) return named;
-  return test::fails_saying([&] { load(text); }, parts);
+testing::AssertionResult refuses_list(const std::string& text, std::initializer_list<std::string> parts) {
+  if (auto named = test::fails_saying([&] { load_list(text); }, {"cameras.json"}); !named) return named;
+  return test::fails_saying([&] { load_list(text); }, parts);
 }
 
 /// The second of two cameras is changed by a JSON merge patch.
@@ -41,11 +41,11 @@ testing::AssertionResult refuses_with(const json& change, std::initializer_list<
   json list = json::array({one_camera(), one_camera()});
   list[1]["img_name"] = "0002";
   list[1].merge_patch(change);
-  return refuses(list.dump(), parts);
+  return refuses_list(list.dump(), parts);
 }
 
 TEST(Cameras, AreReadAsTheyStand) {
-  const std::vector<Camera> cameras = load(json::array({one_camera()}).dump());
+  const std::vector<Camera> cameras = load_list(json::array({one_camera()}).dump());
   ASSERT_EQ(cameras.size(), 1u);
   const Camera& camera = cameras[0];
   EXPECT_EQ(camera.name, "0001");
@@ -66,7 +66,7 @@ TEST(Cameras, ColumnsAreTheAxes) {
   // A turn about y by 90 degrees: its rows and columns differ.
   json object = one_camera();
   object["rotation"] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
-  const Camera camera = load(json::array({object}).dump())[0];
+  const Camera camera = load_list(json::array({object}).dump())[0];
   EXPECT_EQ(camera.rotation[2], glm::dvec3(1, 0, 0));
   EXPECT_NE(glm::transpose(camera.rotation)[2], glm::dvec3(1, 0, 0));  // the planted fault
 }
@@ -74,7 +74,7 @@ TEST(Cameras, ColumnsAreTheAxes) {
 TEST(Cameras, MayHavePrincipalPointTimeAndMore) {
   json object = one_camera();
   object.update({{"cx", 300.25}, {"cy", -3}, {"time", 1.5}, {"width", 640.0}, {"note", nullptr}});
-  const Camera camera = load("\xef\xbb\xbf \n" + json::array({object}).dump())[0];
+  const Camera camera = load_list("\xef\xbb\xbf \n" + json::array({object}).dump())[0];
   EXPECT_EQ(camera.cx, 300.25);
   EXPECT_EQ(camera.cy, -3.0);
   EXPECT_EQ(camera.time, 1.5);
@@ -84,12 +84,13 @@ TEST(Cameras, MayHavePrincipalPointTimeAndMore) {
 TEST(Cameras, RotationsAreKeptToTheDigit) {
   json object = one_camera();
   object["rotation"] = {{0, 0, 1}, {0.0003, -1.0001, 0}, {0.9999, 0, 0}};
-  const Camera camera = load(json::array({object}).dump())[0];
+  const Camera camera = load_list(json::array({object}).dump())[0];
   EXPECT_EQ(camera.rotation[0], glm::dvec3(0, 0.0003, 0.9999));
 }
 
 TEST(Cameras, NamesTellThemApart) {
-  EXPECT_TRUE(refuses(json::array({one_camera(), one_camera()}).dump(), {"two cameras are called '0001'"}));
+  EXPECT_TRUE(
+      refuses_list(json::array({one_camera(), one_camera()}).dump(), {"two cameras are called '0001'"}));
 }
 
 TEST(Cameras, ErrorsNameTheCameraAndTheKey) {
@@ -118,21 +119,22 @@ TEST(Cameras, ErrorsNameTheCameraAndTheKey) {
 }
 
 TEST(Cameras, ErrorsOfTheWholeFile) {
-  EXPECT_TRUE(refuses("[]", {"holds no cameras"}));
-  EXPECT_TRUE(refuses("[1]", {"camera 0", "expected an object"}));
-  EXPECT_TRUE(refuses(one_camera().dump(), {"expected a list", "object"}));
-  EXPECT_TRUE(refuses("7", {"expected a list", "number"}));
-  EXPECT_TRUE(refuses("[\n{\"a\": 1},\n]", {"not valid JSON at line 3, byte 13"}));
-  EXPECT_TRUE(refuses("[{", {"line 1"}));
-  EXPECT_TRUE(refuses("", {"an empty file"}));
-  EXPECT_TRUE(refuses("<html>", {"line 1, byte 1", "an HTML or XML page"}));
-  EXPECT_TRUE(refuses("[1e999]", {"not valid JSON"}));
-  EXPECT_TRUE(refuses("[\n" + std::string(300000, '['), {"nested more than 500 deep, at line 2, byte 502"}));
+  EXPECT_TRUE(refuses_list("[]", {"holds no cameras"}));
+  EXPECT_TRUE(refuses_list("[1]", {"camera 0", "expected an object"}));
+  EXPECT_TRUE(refuses_list(one_camera().dump(), {"expected a list", "object"}));
+  EXPECT_TRUE(refuses_list("7", {"expected a list", "number"}));
+  EXPECT_TRUE(refuses_list("[\n{\"a\": 1},\n]", {"not valid JSON at line 3, byte 13"}));
+  EXPECT_TRUE(refuses_list("[{", {"line 1"}));
+  EXPECT_TRUE(refuses_list("", {"an empty file"}));
+  EXPECT_TRUE(refuses_list("<html>", {"line 1, byte 1", "an HTML or XML page"}));
+  EXPECT_TRUE(refuses_list("[1e999]", {"not valid JSON"}));
+  EXPECT_TRUE(
+      refuses_list("[\n" + std::string(300000, '['), {"nested more than 500 deep, at line 2, byte 502"}));
   // Neither brackets in quotes nor those that are closed again count.
-  EXPECT_TRUE(refuses("[\"\\\"" + std::string(300, '[') + "\"]", {"camera 0", "expected an object"}));
+  EXPECT_TRUE(refuses_list("[\"\\\"" + std::string(300, '[') + "\"]", {"camera 0", "expected an object"}));
   std::string wide = "[[]";
   for (int i = 0; i < 300; ++i) wide += ",[{}]";
-  EXPECT_TRUE(refuses(wide + "]", {"camera 0", "expected an object"}));
+  EXPECT_TRUE(refuses_list(wide + "]", {"camera 0", "expected an object"}));
   EXPECT_TRUE(
       test::fails_saying([] { load_cameras("/nowhere/cameras.json"); }, {"/nowhere", "No such file"}));
 }

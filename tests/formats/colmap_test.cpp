@@ -19,7 +19,7 @@ using test::near3;
 using test::patched;
 using test::replaced;
 
-bool agrees(const Camera& camera, const json& truth) {
+bool agrees_in_pose_and_lens(const Camera& camera, const json& truth) {
   return near3(camera.position, truth["center"], 1e-6, 1e-6) &&
          near3(camera.rotation[2], truth["forward"], 1e-6) && near3(-camera.rotation[1], truth["up"], 1e-6) &&
          camera.fx == truth["fx"] && camera.fy == truth["fy"] && camera.cx == truth["cx"] &&
@@ -44,14 +44,14 @@ TEST(Colmap, RealPosesAgreeWithAnIndependentReader) {
     ASSERT_EQ(cameras.size(), truth["count"].get<std::size_t>());
     for (const json& expected : truth["cameras"]) {
       const Camera& camera = named(cameras, expected["name"]);
-      EXPECT_TRUE(agrees(camera, expected)) << camera.name;
+      EXPECT_TRUE(agrees_in_pose_and_lens(camera, expected)) << camera.name;
       // Planted faults: rows taken for columns, the translation for the position.
       Camera faulty = camera;
       faulty.rotation = glm::transpose(camera.rotation);
-      EXPECT_FALSE(agrees(faulty, expected));
+      EXPECT_FALSE(agrees_in_pose_and_lens(faulty, expected));
       faulty = camera;
       faulty.position = -(glm::transpose(camera.rotation) * camera.position);
-      EXPECT_FALSE(agrees(faulty, expected));
+      EXPECT_FALSE(agrees_in_pose_and_lens(faulty, expected));
     }
     EXPECT_TRUE(
         std::is_sorted(cameras.begin(), cameras.end(), [](auto& a, auto& b) { return a.name < b.name; }));
@@ -81,7 +81,7 @@ TEST(Colmap, LensesAgreeWithAnIndependentReader) {
     EXPECT_EQ(said.find("cameras.txt: lenses are distorted") != std::string::npos, model >= 2) << said;
     ASSERT_EQ(cameras.size(), 1u);
     EXPECT_EQ(cameras[0].name, expected["name"].get<std::string>());
-    EXPECT_TRUE(agrees(cameras[0], expected)) << model;
+    EXPECT_TRUE(agrees_in_pose_and_lens(cameras[0], expected)) << model;
   }
   // All of them: fisheyes are left out.
   for (const char* kind : {"cameras/colmap-models/txt", "cameras/colmap-models/bin"}) {

@@ -12,7 +12,8 @@ namespace {
 using test::replaced;
 
 /// Loading `bytes` ends in an error that names the file and says `parts`.
-testing::AssertionResult refuses(const std::string& bytes, std::initializer_list<std::string> parts) {
+testing::AssertionResult refuses_compressed(const std::string& bytes,
+                                            std::initializer_list<std::string> parts) {
   const test::TempFolder folder;
   test::write_text(folder / "bad.ply", bytes);
   const auto load = [&] { load_model(folder / "bad.ply"); };
@@ -23,32 +24,36 @@ testing::AssertionResult refuses(const std::string& bytes, std::initializer_list
 TEST(CompressedPlyErrors, CountsAndProperties) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "cply/supersplat-guitar-cut-sh0.compressed.ply");
-  EXPECT_TRUE(refuses(replaced(good, "element chunk 9", "element chunk 8"),
-                      {"element 'chunk' has 8 rows, too few for 2148"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "element chunk 9", "element chunk 8"),
+                                 {"element 'chunk' has 8 rows, too few for 2148"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "float max_b", "float other"),
+                                 {"element 'chunk' has no property 'max_b'"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "float max_scale_x", "float other"),
+                                 {"element 'chunk' has no property 'max_scale_x'"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "float min_x", "int min_x"),
+                                 {"property 'min_x' of element 'chunk' has the wrong type"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "uint packed_scale", "uint other"),
+                                 {"element 'vertex' has no property 'packed_scale'"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "element vertex 2148", "element vertex 18446744073709551615"),
+                                 {"cut short", "'vertex'"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "element vertex 2148", "element vertex 4000000000"),
+                                 {"cut short", "4000000000 rows of 16"}));
   EXPECT_TRUE(
-      refuses(replaced(good, "float max_b", "float other"), {"element 'chunk' has no property 'max_b'"}));
-  EXPECT_TRUE(refuses(replaced(good, "float max_scale_x", "float other"),
-                      {"element 'chunk' has no property 'max_scale_x'"}));
-  EXPECT_TRUE(refuses(replaced(good, "float min_x", "int min_x"),
-                      {"property 'min_x' of element 'chunk' has the wrong type"}));
-  EXPECT_TRUE(refuses(replaced(good, "uint packed_scale", "uint other"),
-                      {"element 'vertex' has no property 'packed_scale'"}));
-  EXPECT_TRUE(refuses(replaced(good, "element vertex 2148", "element vertex 18446744073709551615"),
-                      {"cut short", "'vertex'"}));
-  EXPECT_TRUE(refuses(replaced(good, "element vertex 2148", "element vertex 4000000000"),
-                      {"cut short", "4000000000 rows of 16"}));
-  EXPECT_TRUE(refuses(replaced(good, "element vertex 2148", "element vertex 0"), {"holds no Gaussians"}));
-  EXPECT_TRUE(
-      refuses(replaced(good, "element vertex 2148", "element other 2148"), {"without element 'vertex'"}));
-  EXPECT_TRUE(refuses(replaced(good, "binary_little_endian", "binary_big_endian"), {"binary_little_endian"}));
-  EXPECT_TRUE(refuses(replaced(good, "uint packed_scale", "list uchar uint packed_scale"), {"has a list"}));
+      refuses_compressed(replaced(good, "element vertex 2148", "element vertex 0"), {"holds no Gaussians"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "element vertex 2148", "element other 2148"),
+                                 {"without element 'vertex'"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "binary_little_endian", "binary_big_endian"),
+                                 {"binary_little_endian"}));
+  EXPECT_TRUE(refuses_compressed(replaced(good, "uint packed_scale", "list uchar uint packed_scale"),
+                                 {"has a list"}));
 
   const std::string sh = test::read_text(folder / "cply/st-train-sh1.compressed.ply");
+  EXPECT_TRUE(refuses_compressed(replaced(sh, "element sh 1000", "element sh 999"),
+                                 {"element 'sh' has 999 rows for 1000"}));
+  EXPECT_TRUE(refuses_compressed(replaced(sh, "uchar f_rest_8", "uchar f_rest_9"),
+                                 {"element 'sh' has no property 'f_rest_8'"}));
   EXPECT_TRUE(
-      refuses(replaced(sh, "element sh 1000", "element sh 999"), {"element 'sh' has 999 rows for 1000"}));
-  EXPECT_TRUE(
-      refuses(replaced(sh, "uchar f_rest_8", "uchar f_rest_9"), {"element 'sh' has no property 'f_rest_8'"}));
-  EXPECT_TRUE(refuses(replaced(sh, "property uchar f_rest_8\n", ""), {"element 'sh' has 8 properties"}));
+      refuses_compressed(replaced(sh, "property uchar f_rest_8\n", ""), {"element 'sh' has 8 properties"}));
 }
 
 TEST(CompressedPlyErrors, CutShort) {
@@ -57,12 +62,15 @@ TEST(CompressedPlyErrors, CutShort) {
   const std::size_t data = good.find("end_header\n") + 11;
   const std::size_t vertices = data + 4 * 72, harmonics = vertices + 16000;
   ASSERT_EQ(good.size(), harmonics + 9000);
-  EXPECT_TRUE(refuses(good.substr(0, data), {"cut short", "element 'chunk' needs 4 rows of 72 bytes"}));
-  EXPECT_TRUE(refuses(good.substr(0, vertices - 1), {"element 'chunk' needs", "but 287 bytes are there"}));
-  EXPECT_TRUE(refuses(good.substr(0, vertices), {"element 'vertex' needs 1000 rows of 16", "but 0 bytes"}));
-  EXPECT_TRUE(refuses(good.substr(0, harmonics - 1), {"element 'vertex'"}));
-  EXPECT_TRUE(refuses(good.substr(0, harmonics), {"element 'sh' needs 1000 rows of 9"}));
-  EXPECT_TRUE(refuses(good.substr(0, good.size() - 1), {"element 'sh'"}));
+  EXPECT_TRUE(
+      refuses_compressed(good.substr(0, data), {"cut short", "element 'chunk' needs 4 rows of 72 bytes"}));
+  EXPECT_TRUE(
+      refuses_compressed(good.substr(0, vertices - 1), {"element 'chunk' needs", "but 287 bytes are there"}));
+  EXPECT_TRUE(refuses_compressed(good.substr(0, vertices),
+                                 {"element 'vertex' needs 1000 rows of 16", "but 0 bytes"}));
+  EXPECT_TRUE(refuses_compressed(good.substr(0, harmonics - 1), {"element 'vertex'"}));
+  EXPECT_TRUE(refuses_compressed(good.substr(0, harmonics), {"element 'sh' needs 1000 rows of 9"}));
+  EXPECT_TRUE(refuses_compressed(good.substr(0, good.size() - 1), {"element 'sh'"}));
 }
 
 TEST(CompressedPly, WhatIsOddButLoads) {

@@ -20,7 +20,7 @@ using nlohmann::json;
 using test::TempFolder;
 using test::write_text;
 
-json rows(const glm::dmat3& rotation, const glm::dvec3& shift) {
+json rows_of_pose(const glm::dmat3& rotation, const glm::dvec3& shift) {
   json all;
   for (int r = 0; r < 3; ++r) all.push_back({rotation[0][r], rotation[1][r], rotation[2][r], shift[r]});
   return all;
@@ -31,13 +31,13 @@ glm::dmat3 turn(double degrees, const glm::dvec3& axis) {
 }
 
 // INRIA's cameras.json of one.
-const json list = {{{"img_name", "a"},
-                    {"width", 64},
-                    {"height", 48},
-                    {"position", {1, 2, 3}},
-                    {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
-                    {"fx", 50},
-                    {"fy", 50}}};
+const json list_of_one = {{{"img_name", "a"},
+                           {"width", 64},
+                           {"height", 48},
+                           {"position", {1, 2, 3}},
+                           {"rotation", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                           {"fx", 50},
+                           {"fy", 50}}};
 
 struct Dataparser : testing::Test {
   TempFolder folder;
@@ -49,7 +49,7 @@ struct Dataparser : testing::Test {
   const double scale = 0.3;
 
   Dataparser() {
-    const json transforms = {{"transform", rows(trained, trained_shift)}, {"scale", scale}};
+    const json transforms = {{"transform", rows_of_pose(trained, trained_shift)}, {"scale", scale}};
     write_text(folder / "dataparser_transforms.json", transforms.dump());
   }
 
@@ -68,10 +68,11 @@ struct Dataparser : testing::Test {
 
 TEST_F(Dataparser, MovesCamerasOfTransforms) {
   const glm::dmat3 world = applied * pose;
-  json file = {{"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows(applied, applied_shift)}};
+  json file = {
+      {"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows_of_pose(applied, applied_shift)}};
   file["frames"] = {{{"file_path", "a.png"},
-                     {"transform_matrix",
-                      rows(glm::dmat3(world[0], -world[1], -world[2]), applied * place + applied_shift)}}};
+                     {"transform_matrix", rows_of_pose(glm::dmat3(world[0], -world[1], -world[2]),
+                                                       applied * place + applied_shift)}}};
   write_text(folder / "transforms.json", file.dump());
   EXPECT_TRUE(is_trained(moved(folder / "transforms.json")[0]));
   // Planted fault: what was applied is not taken back.
@@ -93,24 +94,25 @@ TEST_F(Dataparser, MovesCamerasOfColmap) {
 
 TEST_F(Dataparser, TakesCamerasForWhatTheyAreWhateverLiesBeside) {
   const glm::dmat3 world = applied * pose;
-  json file = {{"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows(applied, applied_shift)}};
+  json file = {
+      {"w", 64}, {"h", 48}, {"fl_x", 50}, {"applied_transform", rows_of_pose(applied, applied_shift)}};
   file["frames"] = {{{"file_path", "a.png"},
-                     {"transform_matrix",
-                      rows(glm::dmat3(world[0], -world[1], -world[2]), applied * place + applied_shift)}}};
+                     {"transform_matrix", rows_of_pose(glm::dmat3(world[0], -world[1], -world[2]),
+                                                       applied * place + applied_shift)}}};
   fs::create_directories(folder / "data");
   write_text(folder / "data/transforms.json", file.dump());
   EXPECT_TRUE(is_trained(moved(folder / "data")[0])) << "the folder stands for its transforms.json";
   // A reconstruction in the same folder says nothing of files that are none of its own.
   for (const char* name : {"cameras.bin", "images.bin"}) write_text(folder / "data" / name, "");
   EXPECT_TRUE(is_trained(moved(folder / "data/transforms.json")[0]));
-  write_text(folder / "data/cameras.json", list.dump());
+  write_text(folder / "data/cameras.json", list_of_one.dump());
   std::vector<Camera> cameras = load_cameras(folder / "data/cameras.json");
   EXPECT_FALSE(
       move_into_training(folder / "dataparser_transforms.json", folder / "data/cameras.json", cameras));
 }
 
 TEST_F(Dataparser, LeavesCamerasThatAreToldInTheModelsWorld) {
-  write_text(folder / "cameras.json", list.dump());
+  write_text(folder / "cameras.json", list_of_one.dump());
   std::vector<Camera> cameras = load_cameras(folder / "cameras.json");
   EXPECT_FALSE(move_into_training(folder / "dataparser_transforms.json", folder / "cameras.json", cameras));
   EXPECT_EQ(cameras[0].position, glm::dvec3(1, 2, 3));

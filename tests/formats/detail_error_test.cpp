@@ -24,7 +24,7 @@ std::vector<double> in_all_directions(const std::vector<double>& by_width) {
 }
 
 /// Boxes of 1 along x, of four levels each; what a coarser one loses is up to chance.
-std::vector<DetailPart> row(int count, unsigned seed = 1) {
+std::vector<DetailPart> row_with_errors(int count, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> factor(1.5, 6.0);
   std::vector<DetailPart> parts;
@@ -55,7 +55,7 @@ DetailView along_x(double x, double forward = 1.0) {
   return {.eye = {x, 0.5, 0.5}, .inward = inward_of({forward, 0, 0}, 1.0), .focal = 100.0, .pixels = 1e4};
 }
 
-std::size_t total(const std::vector<DetailPart>& parts, const Levels& chosen) {
+std::size_t total_with_errors(const std::vector<DetailPart>& parts, const Levels& chosen) {
   std::size_t sum = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!parts[i].levels.empty()) sum += parts[i].levels[chosen[i]].count;
@@ -88,7 +88,8 @@ std::size_t fewest(const std::vector<DetailPart>& parts, const DetailView& view,
   Levels chosen(parts.size(), 0);
   for (std::size_t n = 0; n < std::size_t{1} << (2 * parts.size()); ++n) {
     for (std::size_t p = 0; p < parts.size(); ++p) chosen[p] = n >> (2 * p) & 3;
-    if (total(parts, chosen) < best && loss(parts, chosen, view) <= error) best = total(parts, chosen);
+    if (total_with_errors(parts, chosen) < best && loss(parts, chosen, view) <= error)
+      best = total_with_errors(parts, chosen);
   }
   return best;
 }
@@ -128,7 +129,7 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
   double worst = 1.0;
   std::size_t planted = 0, cases = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
-    const std::vector<DetailPart> parts = row(6, seed);
+    const std::vector<DetailPart> parts = row_with_errors(6, seed);
     const DetailView near = along_x(-1.0), far = along_x(-40.0);
     for (const double error : {1e-5, 1e-4, 3e-4, 1e-3}) {
       const DetailChoice choice = choose_levels_within(parts, {near}, error, any);
@@ -136,7 +137,7 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
       EXPECT_NEAR(choice.error(), loss(parts, choice.levels, near), 1e-12);
       const Levels others(parts.size(), 2);
       EXPECT_NEAR(choice.error_of(others), loss(parts, others, near), 1e-9 * choice.error_of(others));
-      worst = std::max(worst, static_cast<double>(total(parts, choice.levels)) /
+      worst = std::max(worst, static_cast<double>(total_with_errors(parts, choice.levels)) /
                                   static_cast<double>(fewest(parts, near, error)));
       // Planted faults: levels for another place, and for a bound that is ignored.
       planted += loss(parts, choose_levels_within(parts, {far}, error, any).levels, near) > error;
@@ -149,18 +150,18 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
 }
 
 TEST(DetailErrors, MoreDecibelsAreMoreGaussians) {
-  const std::vector<DetailPart> parts = row(20);
+  const std::vector<DetailPart> parts = row_with_errors(20);
   std::size_t last = 0;
   for (double db = 20.0; db <= 80.0; db += 1.0) {
     const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, std::pow(10, -0.1 * db), any);
-    EXPECT_GE(total(parts, choice.levels), last) << db;
-    last = total(parts, choice.levels);
+    EXPECT_GE(total_with_errors(parts, choice.levels), last) << db;
+    last = total_with_errors(parts, choice.levels);
   }
   EXPECT_EQ(last, 20u * 400);
 }
 
 TEST(DetailErrors, OneChoiceForAllViews) {
-  const std::vector<DetailPart> parts = row(8);
+  const std::vector<DetailPart> parts = row_with_errors(8);
   const DetailView first = along_x(-1.0), last = along_x(16.0, -1.0);
   const DetailChoice both = choose_levels_within(parts, {first, last}, 1e-4, any);
   EXPECT_EQ(both.levels, choose_levels_within(parts, {last, first}, 1e-4, any).levels);
@@ -171,7 +172,7 @@ TEST(DetailErrors, OneChoiceForAllViews) {
 }
 
 TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
-  const std::vector<DetailPart> parts = row(8);
+  const std::vector<DetailPart> parts = row_with_errors(8);
   const DetailView ahead = along_x(6.5), beside = along_x(-1.0, -1.0);
   const DetailChoice one = choose_levels_within(parts, {ahead}, 1e-4, any);
   EXPECT_LE(one.error(), 1e-4);
@@ -182,8 +183,8 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   const DetailChoice nothing = choose_levels_within(parts, {beside}, 1e-4, any);
   EXPECT_EQ(nothing.error(), 0.0);
   EXPECT_LT(nothing.levels.front(), 3u);
-  EXPECT_LT(total(parts, nothing.levels),
-            total(parts, choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any).levels));
+  EXPECT_LT(total_with_errors(parts, nothing.levels),
+            total_with_errors(parts, choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any).levels));
   // A single picture needs none of it, and has the same of what it sees.
   const DetailChoice still = choose_levels_within(parts, {ahead}, 1e-4, any, {}, {}, false);
   EXPECT_EQ(still.levels[2], 3u);
@@ -191,7 +192,7 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   EXPECT_LE(still.error(), 1e-4);
   EXPECT_EQ(choose_levels_within(parts, {beside}, 1e-4, any, {}, {}, false).levels, Levels(parts.size(), 3));
   // A part beside the picture is seen whose coarsest Gaussians reach into it.
-  const std::vector<DetailPart> at_edge = {row(1).front()};
+  const std::vector<DetailPart> at_edge = {row_with_errors(1).front()};
   DetailView view{.eye = {0.5, 0.5, -2.0},
                   .inward = inward_of({std::sin(0.79), 0, std::cos(0.79)}, 0.5),
                   .focal = 100.0,
@@ -233,7 +234,7 @@ TEST(DetailErrors, GoByThePicturesSides) {
 
 // What is hidden, or out of the picture, need not be fine.
 TEST(DetailErrors, GoByWhatIsSeen) {
-  const std::vector<DetailPart> parts = row(8);
+  const std::vector<DetailPart> parts = row_with_errors(8);
   const DetailView view = along_x(-1.0);
   const DetailChoice blind = choose_levels_within(parts, {view}, 1e-4, any);
   std::vector<SeenPart> seen;
@@ -272,7 +273,7 @@ TEST(DetailErrors, GoByWhatIsSeen) {
 }
 
 TEST(DetailErrors, KeepToWhatWasChosenBefore) {
-  const std::vector<DetailPart> parts = row(20);
+  const std::vector<DetailPart> parts = row_with_errors(20);
   std::size_t anew = 0;
   for (double x = -12.0; x < -0.5; x += 0.25) {
     Levels here = choose_levels_within(parts, {along_x(x)}, 1e-4, any).levels;
@@ -292,7 +293,7 @@ TEST(DetailErrors, KeepToWhatWasChosenBefore) {
 
 // Of what does not come in time many parts get some, not a few all.
 TEST(DetailErrors, WantNoMoreThanComesInTime) {
-  const std::vector<DetailPart> parts = row(200);
+  const std::vector<DetailPart> parts = row_with_errors(200);
   const DetailView view = along_x(-1.0);
   const Levels coarsest(parts.size(), 3);
   const auto wanted = [&](std::size_t to_come, const Levels& drawn) {
@@ -334,7 +335,7 @@ TEST(DetailErrors, WantNoMoreThanComesInTime) {
 }
 
 TEST(DetailErrors, TellWhatAnotherLevelSaves) {
-  const std::vector<DetailPart> parts = row(4);
+  const std::vector<DetailPart> parts = row_with_errors(4);
   const DetailView near = along_x(-1.0), far = along_x(-9.0), away = along_x(-1.0, -1.0);
   const DetailChoice choice = choose_levels_within(parts, {near, far}, 1e-3, any);
   const DetailChoice unseen = choose_levels_within(parts, {away}, 1e-3, any);
@@ -350,14 +351,14 @@ TEST(DetailErrors, TellWhatAnotherLevelSaves) {
 }
 
 TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
-  std::vector<DetailPart> parts = row(6);
+  std::vector<DetailPart> parts = row_with_errors(6);
   for (std::size_t most = 300; most < 2500; most += 50) {
     Levels chosen = choose_levels_within(parts, {along_x(-1.0)}, 1e-9, most).levels;
-    EXPECT_LE(total(parts, chosen), most);
+    EXPECT_LE(total_with_errors(parts, chosen), most);
     for (std::size_t& level : chosen) {
       if (level == 0) continue;
       --level;
-      EXPECT_GT(total(parts, chosen), most) << "room for a step is left";
+      EXPECT_GT(total_with_errors(parts, chosen), most) << "room for a step is left";
       ++level;
     }
   }

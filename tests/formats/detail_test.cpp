@@ -9,14 +9,14 @@ namespace binosplat {
 namespace {
 
 // Boxes of 1 along x, each with levels of 400, 100 and 25 Gaussians.
-std::vector<DetailPart> row(int count) {
+std::vector<DetailPart> row_of_parts(int count) {
   std::vector<DetailPart> parts;
   for (int i = 0; i < count; ++i)
     parts.push_back({{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {{0, 400}, {1, 100}, {2, 25}}});
   return parts;
 }
 
-std::size_t total(const std::vector<DetailPart>& parts, const std::vector<std::size_t>& chosen) {
+std::size_t total_of_parts(const std::vector<DetailPart>& parts, const std::vector<std::size_t>& chosen) {
   std::size_t sum = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!parts[i].levels.empty()) sum += parts[i].levels[chosen[i]].count;
@@ -25,7 +25,7 @@ std::size_t total(const std::vector<DetailPart>& parts, const std::vector<std::s
 }
 
 TEST(Detail, WhatIsNearComesFirst) {
-  const std::vector<DetailPart> parts = row(6);
+  const std::vector<DetailPart> parts = row_of_parts(6);
   const std::vector<std::size_t> chosen = choose_levels(parts, {{-1, 0.5, 0.5}}, 899);
   EXPECT_EQ(chosen, (std::vector<std::size_t>{0, 1, 1, 1, 1, 2}));
   // From the other end, and with an eye at either end, one choice for both.
@@ -35,9 +35,9 @@ TEST(Detail, WhatIsNearComesFirst) {
 }
 
 TEST(Detail, KeepsToTheBudget) {
-  const std::vector<DetailPart> parts = row(6);
+  const std::vector<DetailPart> parts = row_of_parts(6);
   for (std::size_t most = 150; most < 2500; most += 25) {
-    const std::size_t used = total(parts, choose_levels(parts, {}, most));
+    const std::size_t used = total_of_parts(parts, choose_levels(parts, {}, most));
     EXPECT_LE(used, most);
     EXPECT_GE(used + 300, std::min<std::size_t>(most, 2400)) << "room for one more step is left";
   }
@@ -60,14 +60,14 @@ bool as_needed(const std::vector<DetailPart>& parts, const std::vector<std::size
 }
 
 TEST(Detail, FineEnoughIsEnough) {
-  const std::vector<DetailPart> parts = row(6);
+  const std::vector<DetailPart> parts = row_of_parts(6);
   const glm::dvec3 eye(-1, 0.5, 0.5);
   std::size_t last = 6 * 400 + 1;
   for (const double enough : {0.005, 0.02, 0.04, 0.08, 0.16, 1.0}) {
     const std::vector<std::size_t> chosen = choose_levels(parts, {eye}, 10000, enough);
     EXPECT_TRUE(as_needed(parts, chosen, eye, enough)) << enough;
-    EXPECT_LT(total(parts, chosen), last) << enough;
-    last = total(parts, chosen);
+    EXPECT_LT(total_of_parts(parts, chosen), last) << enough;
+    last = total_of_parts(parts, chosen);
   }
   // Planted faults: what is near as if it were far, and a part that is too fine.
   std::vector<std::size_t> wrong = choose_levels(parts, {eye}, 10000, 0.04);
@@ -79,7 +79,7 @@ TEST(Detail, FineEnoughIsEnough) {
 }
 
 TEST(Detail, KeepsToWhatWasChosenBefore) {
-  const std::vector<DetailPart> parts = row(6);
+  const std::vector<DetailPart> parts = row_of_parts(6);
   const auto choose = [&](double x, std::span<const std::size_t> before) {
     return choose_levels(parts, {{x, 0.5, 0.5}}, 10000, 0.04, before);
   };
@@ -95,12 +95,12 @@ TEST(Detail, KeepsToWhatWasChosenBefore) {
 }
 
 TEST(Detail, PartsThatLackLevels) {
-  std::vector<DetailPart> parts = row(3);
+  std::vector<DetailPart> parts = row_of_parts(3);
   parts[0].levels.clear();
   parts[1].levels = {{1, 100}};
   const std::vector<std::size_t> chosen = choose_levels(parts, {{0.5, 0.5, 0.5}}, 10000);
   EXPECT_EQ(chosen[1], 0u);
-  EXPECT_EQ(total(parts, chosen), 500u);
+  EXPECT_EQ(total_of_parts(parts, chosen), 500u);
   EXPECT_TRUE(choose_levels({}, {}, 10).empty());
 }
 

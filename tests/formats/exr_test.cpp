@@ -65,7 +65,7 @@ std::string attribute(const fs::path& path, const char* name) {
 }
 
 /// Largest difference, relative above 1; a difference of sizes is infinite.
-double difference(const std::vector<float>& a, const std::vector<float>& b) {
+double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double worst = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -100,8 +100,8 @@ TEST(Exr, HoldsWhatTheMethodSaysWithABackground) {
     const char* names[] = {"R", "G", "B"};
     const Channel channel = read_channel(folder / "a.exr", names[c]);
     EXPECT_EQ(channel.type, Imf::FLOAT);
-    EXPECT_LE(difference(channel.values, linear), 1e-7);
-    EXPECT_GT(difference(channel.values, without_eotf), 0.01);  // planted fault
+    EXPECT_LE(relative_difference(channel.values, linear), 1e-7);
+    EXPECT_GT(relative_difference(channel.values, without_eotf), 0.01);  // planted fault
   }
   std::vector<float> coverage;
   for (const glm::vec4& colour : picture.colour) coverage.push_back(1.0f - colour.a);
@@ -121,8 +121,8 @@ TEST(Exr, HoldsAssociatedAlphaWithoutABackground) {
     associated.push_back(static_cast<float>(a > 0 ? a * srgb_to_linear(colour.g / a) : 0));
   }
   const std::vector<float> stored = read_channel(folder / "a.exr", "G").values;
-  EXPECT_LE(difference(stored, associated), 1e-6);
-  EXPECT_GT(difference(stored, straight), 0.01);  // planted fault
+  EXPECT_LE(relative_difference(stored, associated), 1e-6);
+  EXPECT_GT(relative_difference(stored, straight), 0.01);  // planted fault
   EXPECT_EQ(read_channel(folder / "a.exr", "A").values, coverage);
   EXPECT_EQ(read_channel(folder / "a.exr", "coverage").type, Imf::NUM_PIXELTYPES);
 }
@@ -156,7 +156,8 @@ TEST(Exr, RoundTripGivesTheDisplayValues) {
         const Image shown = composite(picture, background);
         EXPECT_EQ(loaded.channels, background ? 3 : 4);
         const double bound = half ? 2e-3 : 1e-6;
-        EXPECT_LE(difference(loaded.data, shown.data), bound) << half << display << background.has_value();
+        EXPECT_LE(relative_difference(loaded.data, shown.data), bound)
+            << half << display << background.has_value();
         // Planted fault: the other encoding.
         Image faulty = shown;
         for (std::size_t i = 0; i < faulty.data.size(); ++i) {
@@ -164,7 +165,7 @@ TEST(Exr, RoundTripGivesTheDisplayValues) {
           faulty.data[i] =
               static_cast<float>(display ? linear_to_srgb(faulty.data[i]) : srgb_to_linear(faulty.data[i]));
         }
-        EXPECT_GT(difference(loaded.data, faulty.data), 10 * bound);
+        EXPECT_GT(relative_difference(loaded.data, faulty.data), 10 * bound);
       }
     }
   }
@@ -180,7 +181,7 @@ TEST(Exr, AgreesWithPngOfTheSameFrame) {
     const Image exr = load_image(folder / "a.exr");
     const Image png = load_image(folder / "a.png");
     EXPECT_EQ(exr.channels, png.channels);
-    EXPECT_LE(difference(exr.data, png.data), 0.51 / 65535);
+    EXPECT_LE(relative_difference(exr.data, png.data), 0.51 / 65535);
   }
 }
 

@@ -65,7 +65,7 @@ void write_exr(const fs::path& path, const ExrFile& file) {
 }
 
 /// What a file's picture is, from its windows alone.
-Image expected(const ExrFile& file) {
+Image expected_window(const ExrFile& file) {
   const bool alpha = file.channels.find('A') != std::string::npos, grey = file.channels[0] == 'Y';
   const V2i size = file.display.size();
   Image image(size.x + 1, size.y + 1, alpha ? 4 : grey ? 1 : 3);
@@ -84,7 +84,7 @@ Image expected(const ExrFile& file) {
 }
 
 /// Infinite where the sizes differ.
-double difference(const Image& a, const Image& b) {
+double picture_difference(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels != b.channels) return INFINITY;
   double worst = 0.0;
   for (std::size_t i = 0; i < a.data.size(); ++i)
@@ -109,7 +109,7 @@ TEST(ExrWindows, ThePictureIsTheDisplayWindow) {
           const ExrFile file{.display = display, .data = data, .channels = channels, .tiled = tiled};
           write_exr(folder / "a.exr", file);
           const Image image = load_image(folder / "a.exr");
-          EXPECT_LE(difference(image, expected(file)), 1e-5)
+          EXPECT_LE(picture_difference(image, expected_window(file)), 1e-5)
               << channels << " x " << data.min.x << " to " << data.max.x;
           EXPECT_EQ(picture_size(folder / "a.exr"), glm::ivec2(40, 30));
           if (data == frame_window || !display.intersects(data)) continue;
@@ -117,7 +117,7 @@ TEST(ExrWindows, ThePictureIsTheDisplayWindow) {
           ExrFile moved = file;
           moved.display.min.x += 1;
           moved.display.max.x += 1;
-          EXPECT_GT(difference(image, expected(moved)), 1e-3);
+          EXPECT_GT(picture_difference(image, expected_window(moved)), 1e-3);
         }
       }
     }
@@ -133,7 +133,7 @@ TEST(ExrWindows, ThatDoNotMeetShowNothing) {
   EXPECT_NE(
       testing::internal::GetCapturedStderr().find("a.exr: none of its pixels lies in its display window"),
       std::string::npos);
-  EXPECT_EQ(difference(image, Image(40, 30, 4)), 0.0);
+  EXPECT_EQ(picture_difference(image, Image(40, 30, 4)), 0.0);
 }
 
 TEST(ExrWindows, HugeOnesTakeNoMemory) {

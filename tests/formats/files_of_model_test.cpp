@@ -13,20 +13,20 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::set<std::string>;
+using FileNames = std::set<std::string>;
 
 /// By their names in a folder.
-Names files_of(const fs::path& path, const fs::path& folder) {
-  Names names;
+FileNames names_of_files(const fs::path& path, const fs::path& folder) {
+  FileNames names;
   for (const fs::path& file : files_of_model(path)) names.insert(file.lexically_relative(folder).string());
   return names;
 }
 
 /// Whether a model in `folder` is read from these files, and from nothing else.
 testing::AssertionResult is_read_from(const fs::path& folder, const std::string& model,
-                                      const Names& expected) {
+                                      const FileNames& expected) {
   const fs::path path = model.empty() ? folder : folder / model;
-  const Names names = files_of(path, folder);
+  const FileNames names = names_of_files(path, folder);
   if (names != expected)
     return testing::AssertionFailure() << "others are told: " << testing::PrintToString(names);
   const Model whole = load_model(path);
@@ -91,10 +91,10 @@ TEST(FilesOfModel, OfSogAreItsPictures) {
   const test::TempFolder folder;
   fs::copy(fixtures / "sog/st-lod/0_0", folder.path());
   for (const char* other : {"notes.webp", "other.ply"}) test::write_text(folder / other, "not of it");
-  const Names names = {"meta.json",   "means_l.webp", "means_u.webp",       "quats.webp",
-                       "scales.webp", "sh0.webp",     "shN_centroids.webp", "shN_labels.webp"};
+  const FileNames names = {"meta.json",   "means_l.webp", "means_u.webp",       "quats.webp",
+                           "scales.webp", "sh0.webp",     "shN_centroids.webp", "shN_labels.webp"};
   EXPECT_TRUE(is_read_from(folder.path(), "meta.json", names));
-  EXPECT_EQ(files_of(folder.path(), folder.path()), names);
+  EXPECT_EQ(names_of_files(folder.path(), folder.path()), names);
 }
 
 TEST(FilesOfModel, OfStreamedSogAreThoseOfAllLevels) {
@@ -103,14 +103,14 @@ TEST(FilesOfModel, OfStreamedSogAreThoseOfAllLevels) {
   fs::copy(fixtures / "sog/st-lod", folder.path(), fs::copy_options::recursive);
   for (const char* other : {"0_0/notes.webp", "meta.webp"}) test::write_text(folder / other, "not of it");
   fs::copy(folder / "0_0", folder / "2_0");  // that no level has
-  Names names = {"lod-meta.json"};
+  FileNames names = {"lod-meta.json"};
   for (const char* level : {"0_0/", "1_0/"}) {
     for (const char* name : {"meta.json", "means_l.webp", "means_u.webp", "quats.webp", "scales.webp",
                              "sh0.webp", "shN_centroids.webp", "shN_labels.webp"})
       names.insert(std::string(level) + name);
   }
-  EXPECT_EQ(files_of(folder.path(), folder.path()), names);
-  EXPECT_EQ(files_of(folder / "lod-meta.json", folder.path()), names);
+  EXPECT_EQ(names_of_files(folder.path(), folder.path()), names);
+  EXPECT_EQ(names_of_files(folder / "lod-meta.json", folder.path()), names);
   // A level that is not there, as where it is still being fetched.
   fs::remove_all(folder / "0_0");
   std::erase_if(names, [](const std::string& name) { return name.starts_with("0_0/"); });

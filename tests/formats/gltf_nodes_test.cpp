@@ -21,7 +21,7 @@ using test::Glb;
 using test::load_gltf_bytes;
 using test::refuses_gltf;
 
-json list(const glm::dmat4& matrix) {
+json list_of_matrix(const glm::dmat4& matrix) {
   return std::vector<double>(glm::value_ptr(matrix), glm::value_ptr(matrix) + 16);
 }
 
@@ -58,7 +58,7 @@ TEST_F(GltfNodes, TurnWhatIsInThem) {
   // Planted faults: turned the other way, and not at all.
   EXPECT_FALSE(follows_at(found, 0, map, glm::transpose(quarter)));
   EXPECT_FALSE(follows_at(found, 0, map, glm::dmat3(1.0)));
-  glb.node() = {{"mesh", 0}, {"matrix", list(map)}};
+  glb.node() = {{"mesh", 0}, {"matrix", list_of_matrix(map)}};
   EXPECT_TRUE(follows_at(load(), 0, map, quarter));
 }
 
@@ -156,7 +156,8 @@ TEST_F(GltfNodes, HaveTransformsThatAreSome) {
   EXPECT_TRUE(refuses("scale", {1, 1, "x"}, {"key 'nodes[0].scale[2]'", "finite number"}));
   glm::dmat4 projective(1.0);
   projective[2][3] = 0.5;
-  EXPECT_TRUE(refuses("matrix", list(projective), {"key 'nodes[0].matrix'", "last row is not 0 0 0 1"}));
+  EXPECT_TRUE(
+      refuses("matrix", list_of_matrix(projective), {"key 'nodes[0].matrix'", "last row is not 0 0 0 1"}));
   EXPECT_TRUE(refuses("scale", {1e90, 1, 1}, {"key 'nodes[0]'", "beyond the largest number"}));
   EXPECT_TRUE(refuses("mesh", 4, {"key 'meshes'", "more than 4 values"}));
   EXPECT_TRUE(refuses("skin", 0, {"key 'nodes[0].skin'", "joints"}));

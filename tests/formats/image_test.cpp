@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Image noise(int width, int height, int channels, std::uint32_t seed = 1) {
+Image noise_beyond(int width, int height, int channels, std::uint32_t seed = 1) {
   Image image(width, height, channels);
   test::Uniform uniform(seed);
   for (float& value : image.data) value = static_cast<float>(uniform(-0.1, 1.1));
   return image;
 }
 
-bool equal(const Image& a, const Image& b) {
+bool equal_images(const Image& a, const Image& b) {
   return a.width == b.width && a.height == b.height && a.channels == b.channels && a.data == b.data;
 }
 
@@ -71,7 +71,7 @@ Image load_png_file(const PngFile& file) {
   return load_image(folder / "image.png");
 }
 
-Image expected(int width, int height, int channels, const std::vector<double>& values) {
+Image image_of(int width, int height, int channels, const std::vector<double>& values) {
   Image image(width, height, channels);
   EXPECT_EQ(values.size(), image.data.size());
   std::copy(values.begin(), values.end(), image.data.begin());
@@ -84,14 +84,14 @@ TEST(Png, RoundTripIsExactToTheLevel) {
     for (const int channels : {1, 3, 4}) {
       for (const auto& [width, height] :
            {std::pair(1, 1), std::pair(7, 5), std::pair(1, 40), std::pair(300, 200)}) {
-        const Image image = noise(width, height, channels);
+        const Image image = noise_beyond(width, height, channels);
         save_png(folder / "image.png", image, bits);
         const Image loaded = load_image(folder / "image.png");
         Image kept = quantised(image, bits == 8 ? 256 : 65536);
-        EXPECT_TRUE(equal(loaded, kept)) << bits << " bits, " << channels << " channels";
+        EXPECT_TRUE(equal_images(loaded, kept)) << bits << " bits, " << channels << " channels";
         // Planted fault: one value of the last pixel by one level.
         kept.data.back() += kept.data.back() > 0.5f ? -1.0f / 65535 : 1.0f / 65535;
-        EXPECT_FALSE(equal(loaded, kept));
+        EXPECT_FALSE(equal_images(loaded, kept));
       }
     }
   }
@@ -107,13 +107,14 @@ TEST(Png, RoundsAndClamps) {
                 std::numeric_limits<float>::quiet_NaN(),
                 std::numeric_limits<float>::infinity()};
   save_png(folder / "image.png", image, 8);
-  EXPECT_TRUE(
-      equal(load_image(folder / "image.png"), expected(6, 1, 1, {0, 1, 127.0f / 255, 128.0f / 255, 0, 1})));
+  EXPECT_TRUE(equal_images(load_image(folder / "image.png"),
+                           image_of(6, 1, 1, {0, 1, 127.0f / 255, 128.0f / 255, 0, 1})));
 }
 
 TEST(Png, CarriesNotesAndSaysThatItIsSrgb) {
   const test::TempFolder folder;
-  save_png(folder / "image.png", noise(2, 2, 3), 8, {{"units-per-metre", "1.5"}, {"view", "caf\xc3\xa9"}});
+  save_png(folder / "image.png", noise_beyond(2, 2, 3), 8,
+           {{"units-per-metre", "1.5"}, {"view", "caf\xc3\xa9"}});
   const std::string bytes = test::read_text(folder / "image.png");
   EXPECT_NE(bytes.find("sRGB"), std::string::npos);
   EXPECT_NE(bytes.find("units-per-metre"), std::string::npos);
@@ -123,27 +124,28 @@ TEST(Png, CarriesNotesAndSaysThatItIsSrgb) {
 TEST(Png, SmallGreyDepthsAreSpread) {
   PngFile file{.width = 4, .height = 1, .bits = 2, .colour = PNG_COLOR_TYPE_GRAY};
   file.rows = {{0b00011011}};
-  EXPECT_TRUE(equal(load_png_file(file), expected(4, 1, 1, {0, 85.0f / 255, 170.0f / 255, 1})));
+  EXPECT_TRUE(equal_images(load_png_file(file), image_of(4, 1, 1, {0, 85.0f / 255, 170.0f / 255, 1})));
 }
 
 TEST(Png, PalettesBecomeColours) {
   PngFile file{.width = 3, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_PALETTE};
   file.palette = {{255, 0, 51}, {0, 102, 255}};
   file.rows = {{1, 0, 1}};
-  EXPECT_TRUE(equal(load_png_file(file), expected(3, 1, 3, {0, 0.4f, 1, 1, 0, 0.2f, 0, 0.4f, 1})));
+  EXPECT_TRUE(equal_images(load_png_file(file), image_of(3, 1, 3, {0, 0.4f, 1, 1, 0, 0.2f, 0, 0.4f, 1})));
   file.palette_alpha = {51};
   EXPECT_TRUE(
-      equal(load_png_file(file), expected(3, 1, 4, {0, 0.4f, 1, 1, 1, 0, 0.2f, 0.2f, 0, 0.4f, 1, 1})));
+      equal_images(load_png_file(file), image_of(3, 1, 4, {0, 0.4f, 1, 1, 1, 0, 0.2f, 0.2f, 0, 0.4f, 1, 1})));
 }
 
 TEST(Png, GreyWithAlphaBecomesRgba) {
   PngFile file{.width = 2, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_GRAY_ALPHA};
   file.rows = {{51, 102, 255, 0}};
-  EXPECT_TRUE(equal(load_png_file(file), expected(2, 1, 4, {0.2f, 0.2f, 0.2f, 0.4f, 1, 1, 1, 0})));
+  EXPECT_TRUE(equal_images(load_png_file(file), image_of(2, 1, 4, {0.2f, 0.2f, 0.2f, 0.4f, 1, 1, 1, 0})));
   PngFile keyed{.width = 2, .height = 1, .bits = 8, .colour = PNG_COLOR_TYPE_GRAY};
   keyed.transparent = png_color_16{0, 0, 0, 0, 51};
   keyed.rows = {{51, 102}};
-  EXPECT_TRUE(equal(load_png_file(keyed), expected(2, 1, 4, {0.2f, 0.2f, 0.2f, 0, 0.4f, 0.4f, 0.4f, 1})));
+  EXPECT_TRUE(
+      equal_images(load_png_file(keyed), image_of(2, 1, 4, {0.2f, 0.2f, 0.2f, 0, 0.4f, 0.4f, 0.4f, 1})));
 }
 
 TEST(Png, MayBeInterlaced) {
@@ -154,17 +156,17 @@ TEST(Png, MayBeInterlaced) {
   }
   const Image plain = load_png_file(file);
   file.interlace = PNG_INTERLACE_ADAM7;
-  EXPECT_TRUE(equal(load_png_file(file), plain));
+  EXPECT_TRUE(equal_images(load_png_file(file), plain));
   EXPECT_FLOAT_EQ(plain.at(0, 1, 0), (54 * 256 + 55) / 65535.0f);  // the high byte comes first
 }
 
 std::string png_bytes() {
   const test::TempFolder folder;
-  save_png(folder / "image.png", noise(40, 30, 3), 8);
+  save_png(folder / "image.png", noise_beyond(40, 30, 3), 8);
   return test::read_text(folder / "image.png");
 }
 
-testing::AssertionResult refuses(const std::string& bytes, std::initializer_list<std::string> parts) {
+testing::AssertionResult refuses_picture(const std::string& bytes, std::initializer_list<std::string> parts) {
   const test::TempFolder folder;
   test::write_text(folder / "picture", bytes);
   const auto load = [&] { load_image(folder / "picture"); };
@@ -175,12 +177,12 @@ testing::AssertionResult refuses(const std::string& bytes, std::initializer_list
 TEST(Png, BrokenFilesAreRefused) {
   const std::string good = png_bytes();
   for (std::size_t size = 8; size < good.size(); size += size < 200 ? 1 : 97) {
-    EXPECT_TRUE(refuses(good.substr(0, size), {"broken PNG"})) << size;
+    EXPECT_TRUE(refuses_picture(good.substr(0, size), {"broken PNG"})) << size;
   }
-  EXPECT_TRUE(refuses(good.substr(0, 1000), {"broken PNG: the file is cut short"}));
+  EXPECT_TRUE(refuses_picture(good.substr(0, 1000), {"broken PNG: the file is cut short"}));
   std::string flipped = good;
   flipped[1000] = static_cast<char>(flipped[1000] ^ 1);
-  EXPECT_TRUE(refuses(flipped, {"broken PNG"}));
+  EXPECT_TRUE(refuses_picture(flipped, {"broken PNG"}));
 }
 
 TEST(Png, ForgedSizesTakeNoMemory) {
@@ -194,13 +196,13 @@ TEST(Png, ForgedSizesTakeNoMemory) {
     test::append_bytes(checksum,
                        static_cast<std::uint32_t>(crc32(0, reinterpret_cast<Bytef*>(&bytes[12]), 17)), true);
     bytes.replace(29, 4, checksum);
-    EXPECT_TRUE(refuses(bytes, {fmt::format("{} x {} px", side, side)}));
+    EXPECT_TRUE(refuses_picture(bytes, {fmt::format("{} x {} px", side, side)}));
   }
 }
 
 TEST(Png, FullDisksAreReported) {
   const test::TempFolder folder;
-  const Image image = noise(40, 30, 3);
+  const Image image = noise_beyond(40, 30, 3);
   const std::size_t size = png_bytes().size();
   for (std::size_t room = 0; room < size; room += size / 7) {
     const test::FullDisk disk(room);
@@ -215,8 +217,8 @@ TEST(Png, FullDisksAreReported) {
 
 TEST(Png, OtherBitsAreRefused) {
   const test::TempFolder folder;
-  EXPECT_TRUE(
-      test::fails_saying([&] { save_png(folder / "a.png", noise(1, 1, 3), 12); }, {"8 or 16 bits, not 12"}));
+  EXPECT_TRUE(test::fails_saying([&] { save_png(folder / "a.png", noise_beyond(1, 1, 3), 12); },
+                                 {"8 or 16 bits, not 12"}));
   EXPECT_TRUE(folder.names().empty());
 }
 
@@ -235,7 +237,7 @@ std::string jpeg_bytes(int format, int subsampling, Image& image) {
   return test::encode_jpeg(levels, 48, 32, format, subsampling, 98, TJFLAG_ACCURATEDCT);
 }
 
-double largest_difference(const Image& a, const Image& b) {
+double largest_in_images(const Image& a, const Image& b) {
   double worst = a.data.size() == b.data.size() && a.channels == b.channels ? 0 : 9;
   for (std::size_t i = 0; worst < 9 && i < a.data.size(); ++i) {
     worst = std::max(worst, std::abs(double{a.data[i]} - b.data[i]));
@@ -251,10 +253,10 @@ TEST(Jpeg, IsReadInColourAndGrey) {
     const test::TempFolder folder;
     test::write_text(folder / "image.png", bytes);  // the content decides
     const Image loaded = load_image(folder / "image.png");
-    EXPECT_LT(largest_difference(loaded, image), 4.0 / 255);
+    EXPECT_LT(largest_in_images(loaded, image), 4.0 / 255);
     // Planted fault: all pixels one and a half rows further.
     std::rotate(image.data.begin(), image.data.end() - 72 * image.channels, image.data.end());
-    EXPECT_GT(largest_difference(loaded, image), 4.0 / 255);
+    EXPECT_GT(largest_in_images(loaded, image), 4.0 / 255);
   }
 }
 
@@ -262,24 +264,24 @@ TEST(Jpeg, BrokenFilesAreRefused) {
   Image image;
   const std::string good = jpeg_bytes(TJPF_RGB, TJSAMP_420, image);
   for (std::size_t size = 3; size + 2 < good.size(); size += 13) {
-    EXPECT_TRUE(refuses(good.substr(0, size), {"broken JPEG"})) << size;
+    EXPECT_TRUE(refuses_picture(good.substr(0, size), {"broken JPEG"})) << size;
   }
   // A header of 65,500 x 65,500 px.
   std::string forged = good;
   const std::size_t frame = forged.find("\xff\xc0");
   for (const std::size_t at : {frame + 5, frame + 7}) forged.replace(at, 2, "\xff\xdc");
-  EXPECT_TRUE(refuses(forged, {"65500 x 65500 px"}));
+  EXPECT_TRUE(refuses_picture(forged, {"65500 x 65500 px"}));
 }
 
 TEST(Jpeg, CmykIsRefused) {
   const std::vector<unsigned char> levels(16 * 16 * 4, 99);
-  EXPECT_TRUE(refuses(test::encode_jpeg(levels, 16, 16, TJPF_CMYK, TJSAMP_444, 90), {"CMYK"}));
+  EXPECT_TRUE(refuses_picture(test::encode_jpeg(levels, 16, 16, TJPF_CMYK, TJSAMP_444, 90), {"CMYK"}));
 }
 
 TEST(Images, OtherFilesAreNamed) {
-  EXPECT_TRUE(refuses("ply\nformat ascii 1.0\n", {"expected PNG, JPEG or OpenEXR", "a ply file"}));
-  EXPECT_TRUE(refuses("", {"an empty file"}));
-  EXPECT_TRUE(refuses("version https://git-lfs.github.com/spec/v1", {"git lfs pull"}));
+  EXPECT_TRUE(refuses_picture("ply\nformat ascii 1.0\n", {"expected PNG, JPEG or OpenEXR", "a ply file"}));
+  EXPECT_TRUE(refuses_picture("", {"an empty file"}));
+  EXPECT_TRUE(refuses_picture("version https://git-lfs.github.com/spec/v1", {"git lfs pull"}));
   EXPECT_TRUE(test::fails_saying([] { load_image("/nowhere/a.png"); }, {"/nowhere/a.png", "No such file"}));
 }
 

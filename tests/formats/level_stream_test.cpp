@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-shared::View at(const glm::dvec3& eye) {
+shared::View view_at(const glm::dvec3& eye) {
   shared::View view{};
   view.anchor = glm::vec4(eye, 0.2f);
   view.lens = {100, 100, 0, 0};
@@ -39,7 +39,7 @@ LevelStream::Need for_db(double db) {
 
 /// Takes what comes for a view, so many Gaussians at a time; how many there were after each that came.
 std::vector<std::size_t> follow(LevelStream& stream, Model& model, const glm::dvec3& eye, std::size_t most) {
-  stream.want(std::vector{at(eye)}, {});
+  stream.want(std::vector{view_at(eye)}, {});
   std::vector<std::size_t> counts;
   const auto start = std::chrono::steady_clock::now();
   while (!stream.settled()) {
@@ -63,7 +63,7 @@ std::vector<float> positions(const Model& model) {
 
 /// Of all parts, in a picture of 100 x 100 px.
 shared::View before_all() {
-  shared::View view = at({0, 0, -30});
+  shared::View view = view_at({0, 0, -30});
   view.row_x = {1, 0, 0, 0};
   view.row_y = {0, 1, 0, 0};
   view.row_z = {0, 0, 1, 0};
@@ -85,7 +85,7 @@ bool frames_until(LevelStream& stream, Model& model, const shared::View& view, c
   return true;
 }
 
-const glm::dvec3 beside_first = {-14, -1, 0}, beside_last = {6, 0, 15}, far_away = {0, 0, -400};
+const glm::dvec3 stream_first = {-14, -1, 0}, stream_last = {6, 0, 15}, stream_far = {0, 0, -400};
 
 TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
   REQUIRE_FIXTURES(folder);
@@ -93,12 +93,12 @@ TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
   Model model = stream.coarsest();
   EXPECT_EQ(stream.gaussians(), 250u);
   EXPECT_TRUE(stream.settled());
-  EXPECT_TRUE(follow(stream, model, far_away, 1).empty());
-  EXPECT_EQ(follow(stream, model, beside_last, 1), (std::vector<std::size_t>{120u + 65 + 248}));
-  EXPECT_EQ(follow(stream, model, beside_first, 1), (std::vector<std::size_t>{250, 505 + 65 + 65}))
+  EXPECT_TRUE(follow(stream, model, stream_far, 1).empty());
+  EXPECT_EQ(follow(stream, model, stream_last, 1), (std::vector<std::size_t>{120u + 65 + 248}));
+  EXPECT_EQ(follow(stream, model, stream_first, 1), (std::vector<std::size_t>{250, 505 + 65 + 65}))
       << "what shrinks comes first";
-  EXPECT_TRUE(follow(stream, model, beside_first, 1).empty());
-  EXPECT_EQ(follow(stream, model, beside_last, 100'000).back(), 120u + 65 + 248);
+  EXPECT_TRUE(follow(stream, model, stream_first, 1).empty());
+  EXPECT_EQ(follow(stream, model, stream_last, 100'000).back(), 120u + 65 + 248);
   // Each part is what the file says.
   const Model fine = load_model(folder / "sog/st-lod", {.lod = 0});
   std::size_t same = 0;
@@ -116,7 +116,7 @@ TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
 TEST(LevelStream, EndsWithWhatWasWantedLast) {
   REQUIRE_FIXTURES(folder);
   const fs::path path = folder / "sog/st-lod";
-  const std::vector<glm::dvec3> places = {far_away, beside_first, beside_last, {-8, 0, 4}, {0, 0, 12}};
+  const std::vector<glm::dvec3> places = {stream_far, stream_first, stream_last, {-8, 0, 4}, {0, 0, 12}};
   std::vector<std::vector<float>> alone;
   for (const glm::dvec3& place : places) {
     LevelStream stream(path, coarse_to_30_px);
@@ -130,7 +130,7 @@ TEST(LevelStream, EndsWithWhatWasWantedLast) {
   std::set<std::vector<float>> met;
   for (int n = 0; n < 400; ++n) {
     const std::size_t place = random() % places.size();
-    stream.want(std::vector{at(places[place])}, {});
+    stream.want(std::vector{view_at(places[place])}, {});
     for (std::size_t k = random() % 4; k > 0; --k) {
       std::this_thread::sleep_for(std::chrono::microseconds(random() % 2000));
       stream.take(model, 1);
@@ -152,8 +152,8 @@ TEST(LevelStream, ALevelWithoutGaussiansIsALevel) {
   LevelStream stream(copy.path(), coarse_to_30_px);
   Model model = stream.coarsest();
   EXPECT_EQ(stream.gaussians(), 120u + 65);
-  EXPECT_EQ(follow(stream, model, beside_last, 1).back(), 120u + 65 + 248);
-  EXPECT_EQ(follow(stream, model, far_away, 1).back(), 120u + 65);
+  EXPECT_EQ(follow(stream, model, stream_last, 1).back(), 120u + 65 + 248);
+  EXPECT_EQ(follow(stream, model, stream_far, 1).back(), 120u + 65);
 }
 
 // By dB it looks when the views change, and again once what they needed is there, but not for ever.
@@ -739,7 +739,7 @@ TEST(LevelStream, EndsInTheMidstOfIt) {
     LevelStream stream(folder / "sog/st-lod", coarse_to_30_px);
     Model model = stream.coarsest();
     for (int k = 0; k < n; ++k) {
-      stream.want(std::vector{at(k % 2 == 0 ? beside_first : beside_last)}, {});
+      stream.want(std::vector{view_at(k % 2 == 0 ? stream_first : stream_last)}, {});
       stream.take(model, 300);
     }
   }
@@ -753,7 +753,7 @@ TEST(LevelStream, TellsWhatIsWrong) {
   EXPECT_TRUE(test::fails_saying([&] { LevelStream(copy.path(), for_db(40.0)).coarsest(); },
                                  {"--detail 40dB", "has no errors of its levels to go by"}));
   std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
-  EXPECT_TRUE(test::fails_saying([&] { follow(stream, model, beside_first, 1); }, {"0_0", "means_l.webp"}));
+  EXPECT_TRUE(test::fails_saying([&] { follow(stream, model, stream_first, 1); }, {"0_0", "means_l.webp"}));
   EXPECT_EQ(stream.gaussians(), 250u);
   EXPECT_TRUE(test::fails_saying([&] { stream.take(model, 1); }, {"0_0", "means_l.webp"})) << "still";
 }

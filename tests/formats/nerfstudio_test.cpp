@@ -20,8 +20,8 @@ using test::TempFolder;
 using test::write_text;
 
 /// OpenGL's camera at (1, 2, 3) that looks along world x, with world z up: its right is -y.
-const json rows = {0, 0, -1, 1, -1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};
-const json columns = {0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 2, 3, 1};
+const json pose_rows = {0, 0, -1, 1, -1, 0, 0, 2, 0, 1, 0, 3, 0, 0, 0, 1};
+const json pose_columns = {0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 1, 2, 3, 1};
 
 bool looks_as_meant(const Camera& c) {
   return c.position == glm::dvec3(1, 2, 3) && c.rotation[0] == glm::dvec3(0, -1, 0) &&
@@ -38,25 +38,25 @@ json path_of(int frames) {
                {"smoothness_value", 0.5},
                {"keyframes", json::array()}};
   for (int i = 0; i < frames; ++i)
-    path["camera_path"].push_back({{"camera_to_world", rows}, {"fov", 90}, {"aspect", 1.0}});
+    path["camera_path"].push_back({{"camera_to_world", pose_rows}, {"fov", 90}, {"aspect", 1.0}});
   return path;
 }
 
-std::vector<Camera> load(const json& root) {
+std::vector<Camera> load_path(const json& root) {
   const TempFolder folder;
   write_text(folder / "camera_path.json", root.dump());
   return load_cameras(folder / "camera_path.json");
 }
 
-testing::AssertionResult refuses(const json& root, std::initializer_list<std::string> parts) {
-  if (auto named = test::fails_saying([&] { load(root); }, {"camera_path.json"}); !named) return named;
-  return test::fails_saying([&] { load(root); }, parts);
+testing::AssertionResult refuses_path(const json& root, std::initializer_list<std::string> parts) {
+  if (auto named = test::fails_saying([&] { load_path(root); }, {"camera_path.json"}); !named) return named;
+  return test::fails_saying([&] { load_path(root); }, parts);
 }
 
 TEST(CameraPath, FramesAreViews) {
   json path = path_of(4);
   path["camera_path"][1]["fov"] = 2 * 180 / M_PI * std::atan(0.5);
-  const std::vector<Camera> cameras = load(path);
+  const std::vector<Camera> cameras = load_path(path);
   ASSERT_EQ(cameras.size(), 4u);
   EXPECT_EQ(cameras[0].name, "00000");
   EXPECT_EQ(cameras[3].name, "00003");
@@ -76,23 +76,23 @@ TEST(CameraPath, FramesAreViews) {
   EXPECT_FALSE(looks_as_meant(faulty));
 
   path.erase("seconds");
-  EXPECT_EQ(load(path)[3].time, 3.0 / 24);
-  EXPECT_FALSE(are_keys(load(path)));
+  EXPECT_EQ(load_path(path)[3].time, 3.0 / 24);
+  EXPECT_FALSE(are_keys(load_path(path)));
   path.erase("fps");
-  EXPECT_EQ(load(path)[3].time, std::nullopt);
+  EXPECT_EQ(load_path(path)[3].time, std::nullopt);
 }
 
 TEST(CameraPath, WithoutFramesIsItsKeyframes) {
   json path = path_of(0);
   path["camera_path"] = json::array();
   path["default_transition_sec"] = 0.5;
-  const json list = {{"matrix", rows}, {"fov", 90}, {"aspect", 1.5}};
+  const json list = {{"matrix", pose_rows}, {"fov", 90}, {"aspect", 1.5}};
   json by_columns = list, in_quotes = list, slow = list;
-  by_columns["matrix"] = columns;
-  in_quotes["matrix"] = columns.dump();
+  by_columns["matrix"] = pose_columns;
+  in_quotes["matrix"] = pose_columns.dump();
   slow.update({{"override_transition_enabled", true}, {"override_transition_sec", 2}});
   path["keyframes"] = {list, by_columns, in_quotes, slow};
-  const std::vector<Camera> cameras = load(path);
+  const std::vector<Camera> cameras = load_path(path);
   ASSERT_EQ(cameras.size(), 4u);
   for (const Camera& camera : cameras) EXPECT_TRUE(looks_as_meant(camera)) << camera.name;
   EXPECT_EQ(cameras[3].name, "key_003");
@@ -101,7 +101,7 @@ TEST(CameraPath, WithoutFramesIsItsKeyframes) {
   EXPECT_EQ(cameras[3].time, 3.0);
   EXPECT_TRUE(are_keys(cameras));
   // Where the camera is at the origin, its last row does not tell: quotes do.
-  json turned = rows, turned_in_quotes = columns;
+  json turned = pose_rows, turned_in_quotes = pose_columns;
   for (const int i : {3, 7, 11}) turned[i] = 0;
   for (const int i : {12, 13, 14}) turned_in_quotes[i] = 0;
   path["keyframes"] = {list, list};
@@ -109,7 +109,7 @@ TEST(CameraPath, WithoutFramesIsItsKeyframes) {
   path["keyframes"][1]["matrix"] = turned_in_quotes.dump();
   path.erase("camera_path");
   path.erase("default_transition_sec");
-  for (const Camera& camera : load(path)) {
+  for (const Camera& camera : load_path(path)) {
     EXPECT_EQ(camera.rotation[2], glm::dvec3(1, 0, 0)) << camera.name;
     EXPECT_EQ(camera.time, std::nullopt);
   }
@@ -121,42 +121,43 @@ TEST(CameraPath, ErrorsNameTheKeyAndWhatWasExpected) {
     edit(path, path["camera_path"][1]);
     return path;
   };
+  EXPECT_TRUE(refuses_path(with([](json& p, json&) { p["camera_path"] = json::array(); }),
+                           {"'keyframes'", "no cameras"}));
   EXPECT_TRUE(
-      refuses(with([](json& p, json&) { p["camera_path"] = json::array(); }), {"'keyframes'", "no cameras"}));
-  EXPECT_TRUE(
-      refuses(with([](json& p, json&) { p["camera_path"] = 3; }), {"'camera_path'", "expected a list"}));
+      refuses_path(with([](json& p, json&) { p["camera_path"] = 3; }), {"'camera_path'", "expected a list"}));
   for (const char* key : {"camera_to_world", "fov"})
-    EXPECT_TRUE(refuses(with([&](json&, json& f) { f.erase(key); }),
-                        {fmt::format("'camera_path[1].{}' is missing", key)}));
+    EXPECT_TRUE(refuses_path(with([&](json&, json& f) { f.erase(key); }),
+                             {fmt::format("'camera_path[1].{}' is missing", key)}));
   for (const char* key : {"render_width", "render_height"}) {
-    EXPECT_TRUE(refuses(with([&](json& p, json&) { p.erase(key); }), {fmt::format("'{}' is missing", key)}));
-    EXPECT_TRUE(refuses(with([&](json& p, json&) { p[key] = 0.5; }), {key, "expected a whole number"}));
-    EXPECT_TRUE(refuses(with([&](json& p, json&) { p[key] = 0; }), {"from 1 px"}));
+    EXPECT_TRUE(
+        refuses_path(with([&](json& p, json&) { p.erase(key); }), {fmt::format("'{}' is missing", key)}));
+    EXPECT_TRUE(refuses_path(with([&](json& p, json&) { p[key] = 0.5; }), {key, "expected a whole number"}));
+    EXPECT_TRUE(refuses_path(with([&](json& p, json&) { p[key] = 0; }), {"from 1 px"}));
   }
   for (const json& fov : {json(0), json(180), json(-5)})
-    EXPECT_TRUE(refuses(with([&](json&, json& f) { f["fov"] = fov; }),
-                        {"'camera_path[1].fov'", "degrees between 0 and 180"}));
+    EXPECT_TRUE(refuses_path(with([&](json&, json& f) { f["fov"] = fov; }),
+                             {"'camera_path[1].fov'", "degrees between 0 and 180"}));
   EXPECT_TRUE(
-      refuses(with([](json&, json& f) { f["fov"] = "50"; }), {"camera_path[1].fov", "finite number"}));
-  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"].erase(0); }),
-                      {"camera_path[1].camera_to_world", "expected 16 values, found 15"}));
-  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"][5] = "x"; }),
-                      {"camera_path[1].camera_to_world[5]", "finite number"}));
-  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"] = columns; }),
-                      {"camera_path[1].camera_to_world", "row by row, the last of which is 0 0 0 1"}));
-  EXPECT_TRUE(refuses(with([](json&, json& f) { f["camera_to_world"][2] = -2; }),
-                      {"camera_path[1].camera_to_world", "orthogonal"}));
-  EXPECT_TRUE(
-      refuses(with([](json&, json& f) { f["camera_to_world"][2] = 1; }), {"camera_to_world", "mirrors"}));
-  EXPECT_TRUE(refuses(with([](json& p, json&) { p["seconds"] = 0; }), {"'seconds'", "above 0"}));
-  EXPECT_TRUE(refuses(with([](json& p, json&) {
-                        p.erase("camera_path");
-                        p["keyframes"] = {{{"matrix", "[1, 2]"}, {"fov", 50}}};
-                      }),
-                      {"'keyframes[0].matrix'", "a list of 16 numbers"}));
+      refuses_path(with([](json&, json& f) { f["fov"] = "50"; }), {"camera_path[1].fov", "finite number"}));
+  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"].erase(0); }),
+                           {"camera_path[1].camera_to_world", "expected 16 values, found 15"}));
+  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"][5] = "x"; }),
+                           {"camera_path[1].camera_to_world[5]", "finite number"}));
+  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"] = pose_columns; }),
+                           {"camera_path[1].camera_to_world", "row by row, the last of which is 0 0 0 1"}));
+  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"][2] = -2; }),
+                           {"camera_path[1].camera_to_world", "orthogonal"}));
+  EXPECT_TRUE(refuses_path(with([](json&, json& f) { f["camera_to_world"][2] = 1; }),
+                           {"camera_to_world", "mirrors"}));
+  EXPECT_TRUE(refuses_path(with([](json& p, json&) { p["seconds"] = 0; }), {"'seconds'", "above 0"}));
+  EXPECT_TRUE(refuses_path(with([](json& p, json&) {
+                             p.erase("camera_path");
+                             p["keyframes"] = {{{"matrix", "[1, 2]"}, {"fov", 50}}};
+                           }),
+                           {"'keyframes[0].matrix'", "a list of 16 numbers"}));
   for (const char* type : {"fisheye", "equirectangular", "omnidirectional", "VR180"})
-    EXPECT_TRUE(refuses(with([&](json& p, json&) { p["camera_type"] = type; }),
-                        {"key 'camera_type'", type, "only pinhole lenses can be drawn"}));
+    EXPECT_TRUE(refuses_path(with([&](json& p, json&) { p["camera_type"] = type; }),
+                             {"key 'camera_type'", type, "only pinhole lenses can be drawn"}));
 }
 
 json poses() {
@@ -190,10 +191,11 @@ TEST(Poses, ErrorsNameTheKeyAndWhatWasExpected) {
     edit(list[1]);
     return list;
   };
-  EXPECT_TRUE(refuses(with([](json& p) { p.erase("file_path"); }), {"'[1].file_path' is missing"}));
-  EXPECT_TRUE(refuses(with([](json& p) { p.erase("transform"); }), {"'[1].transform' is missing"}));
-  EXPECT_TRUE(refuses(with([](json& p) { p["transform"].erase(0); }), {"'[1].transform'", "3 or 4 rows"}));
-  EXPECT_TRUE(refuses(with([](json& p) { p["transform"][0][2] = 1; }), {"'[1].transform'", "mirrors"}));
+  EXPECT_TRUE(refuses_path(with([](json& p) { p.erase("file_path"); }), {"'[1].file_path' is missing"}));
+  EXPECT_TRUE(refuses_path(with([](json& p) { p.erase("transform"); }), {"'[1].transform' is missing"}));
+  EXPECT_TRUE(
+      refuses_path(with([](json& p) { p["transform"].erase(0); }), {"'[1].transform'", "3 or 4 rows"}));
+  EXPECT_TRUE(refuses_path(with([](json& p) { p["transform"][0][2] = 1; }), {"'[1].transform'", "mirrors"}));
 }
 
 TEST(Poses, AreInTheModelsWorldAlready) {

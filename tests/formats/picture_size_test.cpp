@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Image noise(int width, int height, int channels) {
+Image noise_image(int width, int height, int channels) {
   Image image(width, height, channels);
   test::Uniform uniform(3);
   for (float& value : image.data) value = static_cast<float>(uniform(0, 1));
@@ -52,7 +52,7 @@ struct PictureSize : testing::Test {
 TEST_F(PictureSize, IsThatOfTheHeader) {
   for (const int channels : {1, 3, 4}) {
     for (const int bits : {8, 16})
-      EXPECT_EQ(size_of(png_bytes(noise(40, 30, channels), bits)), glm::ivec2(40, 30));
+      EXPECT_EQ(size_of(png_bytes(noise_image(40, 30, channels), bits)), glm::ivec2(40, 30));
   }
   EXPECT_EQ(size_of(jpeg_of(TJPF_RGB, TJSAMP_420)), glm::ivec2(40, 30));
   EXPECT_EQ(size_of(jpeg_of(TJPF_RGB, TJSAMP_444, TJFLAG_PROGRESSIVE)), glm::ivec2(40, 30));
@@ -62,7 +62,7 @@ TEST_F(PictureSize, IsThatOfTheHeader) {
 }
 
 TEST_F(PictureSize, WhatIsCutShortIsFound) {
-  const std::string files[] = {png_bytes(noise(40, 30, 3)), jpeg_of(TJPF_RGB, TJSAMP_420),
+  const std::string files[] = {png_bytes(noise_image(40, 30, 3)), jpeg_of(TJPF_RGB, TJSAMP_420),
                                jpeg_of(TJPF_RGB, TJSAMP_444, TJFLAG_PROGRESSIVE), exr_of({})};
   for (const std::string& good : files) {
     for (const std::size_t left : {good.size() - 2, good.size() - 20, good.size() / 2, good.size() / 4}) {

@@ -23,7 +23,7 @@ bool same(const Network& a, const Network& b) {
 }
 
 template <typename Vector>
-double largest_difference(const std::vector<Vector>& a, const std::vector<Vector>& b) {
+double largest_in_vectors(const std::vector<Vector>& a, const std::vector<Vector>& b) {
   if (a.size() != b.size()) return INFINITY;
   double most = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -37,10 +37,10 @@ testing::AssertionResult same(const Scaffold& a, const Scaffold& b) {
   if (a.position != b.position || a.offset != b.offset || a.feature != b.feature)
     return testing::AssertionFailure() << "positions, offsets or features";
   // Logarithms, and quaternions of any length, are stored.
-  if (largest_difference(a.offset_scale, b.offset_scale) > 1e-6)
+  if (largest_in_vectors(a.offset_scale, b.offset_scale) > 1e-6)
     return testing::AssertionFailure() << "offset scales";
-  if (largest_difference(a.scale, b.scale) > 1e-6) return testing::AssertionFailure() << "scales";
-  if (largest_difference(a.rotation, b.rotation) > 1e-6) return testing::AssertionFailure() << "rotations";
+  if (largest_in_vectors(a.scale, b.scale) > 1e-6) return testing::AssertionFailure() << "scales";
+  if (largest_in_vectors(a.rotation, b.rotation) > 1e-6) return testing::AssertionFailure() << "rotations";
   if (!same(a.opacity, b.opacity) || !same(a.covariance, b.covariance) || !same(a.colour, b.colour))
     return testing::AssertionFailure() << "networks";
   if (a.appearance_size != b.appearance_size || a.appearances != b.appearances)

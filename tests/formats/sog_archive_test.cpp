@@ -7,6 +7,7 @@
 #include "scene/reduce.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
+#include "support/ply_models.h"
 
 namespace binosplat {
 namespace {
@@ -14,29 +15,26 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using test::Copy;
-using Files = std::vector<std::pair<std::string, std::string>>;
-
-bool equal(const Model& a, const Model& b) {
-  return a.position == b.position && a.scale == b.scale && a.rotation == b.rotation &&
-         a.opacity == b.opacity && a.sh == b.sh && a.degree == b.degree;
-}
+using ArchivedFiles = std::vector<std::pair<std::string, std::string>>;
 
 /// The files of a folder, their names after `before`.
-Files files_of(const fs::path& folder, const std::string& before = "") {
-  Files files;
+ArchivedFiles files_in(const fs::path& folder, const std::string& before = "") {
+  ArchivedFiles files;
   for (const auto& entry : fs::directory_iterator(folder))
     files.emplace_back(before + entry.path().filename().string(), test::read_text(entry.path()));
   return files;
 }
 
-void add(Files& files, const Files& more) { files.insert(files.end(), more.begin(), more.end()); }
+void add(ArchivedFiles& files, const ArchivedFiles& more) {
+  files.insert(files.end(), more.begin(), more.end());
+}
 
 struct SogArchive : testing::Test {
-  Model load(const Files& files, bool deflated = false) const {
+  Model load(const ArchivedFiles& files, bool deflated = false) const {
     test::write_text(folder / "m.sog", test::zipped(files, deflated));
     return load_model(folder / "m.sog");
   }
-  bool refused(const Files& files, std::initializer_list<std::string> parts) const {
+  bool refused(const ArchivedFiles& files, std::initializer_list<std::string> parts) const {
     return test::fails_saying([&] { load(files); }, parts);
   }
   const test::TempFolder folder;
@@ -48,9 +46,9 @@ TEST_F(SogArchive, FilesMayLieInAFolderOfIt) {
   const Model whole = load_model(sog);
   for (const char* before : {"", "./", "scene/", "./scene/", "a/b/c d/", "scene\\", ".\\a\\b\\", "/scene/"}) {
     for (const bool deflated : {false, true})
-      EXPECT_TRUE(equal(load(files_of(sog, before), deflated), whole)) << before;
+      EXPECT_TRUE(test::equal(load(files_in(sog, before), deflated), whole)) << before;
     // Planted fault: the pictures of another folder.
-    Files files = files_of(sog, before);
+    ArchivedFiles files = files_in(sog, before);
     for (auto& [name, bytes] : files) {
       if (!name.ends_with("json")) name = "other/" + name;
     }
@@ -62,12 +60,13 @@ TEST_F(SogArchive, MayHoldMoreThanItsModel) {
   REQUIRE_FIXTURES(fixtures);
   const fs::path sog = fixtures / "sog/playbot-lod6";
   const Model whole = load_model(sog);
-  Files files = {{"__MACOSX/scene/._meta.json", "x"}, {"__MACOSX/meta.json", "x"}, {"read me.txt", "x"}};
-  add(files, files_of(sog, "scene/"));
-  EXPECT_TRUE(equal(load(files), whole));
+  ArchivedFiles files = {
+      {"__MACOSX/scene/._meta.json", "x"}, {"__MACOSX/meta.json", "x"}, {"read me.txt", "x"}};
+  add(files, files_in(sog, "scene/"));
+  EXPECT_TRUE(test::equal(load(files), whole));
   // The one that lies least deep, wherever it stands.
   add(files, {{"scene/old/meta.json", "x"}, {"a/b/meta.json", "x"}});
-  EXPECT_TRUE(equal(load(files), whole));
+  EXPECT_TRUE(test::equal(load(files), whole));
   files.emplace_back("other/meta.json", "x");
   EXPECT_TRUE(refused(files, {"m.sog holds several SOG models", "'other/meta.json'", "'scene/meta.json'"}));
 }
@@ -88,7 +87,7 @@ void pack(const Copy& copy, const std::string& before) {
       const fs::path chunk = copy.path() / fs::path(name.get<std::string>()).parent_path();
       const std::string archive = chunk.filename().string() + ".sog";
       if (fs::exists(chunk)) {
-        copy.write(test::zipped(files_of(chunk, before)), archive);
+        copy.write(test::zipped(files_in(chunk, before)), archive);
         fs::remove_all(chunk);
       }
       name = archive;
@@ -109,13 +108,13 @@ TEST(StreamedSogArchives, AreTheSameAsFolders) {
     EXPECT_FALSE(fs::exists(archives.path() / "0_0")) << before;
     for (const int lod : {0, 1}) {
       const Model model = load_model(folders.path(), {.lod = lod});
-      EXPECT_TRUE(equal(load_model(archives.path(), {.lod = lod}), model)) << before;
+      EXPECT_TRUE(test::equal(load_model(archives.path(), {.lod = lod}), model)) << before;
       // Planted fault: the other level.
-      EXPECT_FALSE(equal(load_model(archives.path(), {.lod = 1 - lod}), model)) << before;
+      EXPECT_FALSE(test::equal(load_model(archives.path(), {.lod = 1 - lod}), model)) << before;
     }
     const DetailBudget budget{[](int) { return std::size_t{2500}; }, {}};
-    EXPECT_TRUE(equal(load_model(archives.path(), {.budget = budget}),
-                      load_model(folders.path(), {.budget = budget})));
+    EXPECT_TRUE(test::equal(load_model(archives.path(), {.budget = budget}),
+                            load_model(folders.path(), {.budget = budget})));
     // As it is read while frames are drawn.
     const auto read = [](const fs::path& path) {
       StreamedSog scene(path);
@@ -125,7 +124,7 @@ TEST(StreamedSogArchives, AreTheSameAsFolders) {
       return all;
     };
     EXPECT_TRUE(is_streamed_sog(archives.path()));
-    EXPECT_TRUE(equal(read(archives.path()), read(folders.path()))) << before;
+    EXPECT_TRUE(test::equal(read(archives.path()), read(folders.path()))) << before;
   }
 }
 

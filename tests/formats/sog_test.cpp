@@ -15,7 +15,7 @@ using nlohmann::json;
 using test::Copy;
 
 /// Whether the Gaussians of `a` from `first` on are those of `b`, to the bit.
-bool equal(const Model& a, std::size_t first, const Model& b) {
+bool equal_from(const Model& a, std::size_t first, const Model& b) {
   const std::size_t values = b.sh.size() / b.count();
   for (std::size_t i = 0; i < b.count(); ++i) {
     const std::size_t k = first + i;
@@ -34,12 +34,12 @@ TEST(Sog, FoldersAndArchivesAreTheSame) {
        {"sog/playbot-lod6/meta.json", "sog/playbot-lod6-stored.sog", "sog/playbot-lod6-deflated.sog"}) {
     const Model other = load_model(folder / name);
     ASSERT_EQ(other.count(), whole.count()) << name;
-    EXPECT_TRUE(equal(other, 0, whole)) << name;
+    EXPECT_TRUE(equal_from(other, 0, whole)) << name;
   }
   // Planted fault.
   Model faulty = whole;
   faulty.sh[500] += 1e-6f;
-  EXPECT_FALSE(equal(faulty, 0, whole));
+  EXPECT_FALSE(equal_from(faulty, 0, whole));
 }
 
 TEST(Sog, LevelsOfDetail) {
@@ -48,11 +48,11 @@ TEST(Sog, LevelsOfDetail) {
   const Model fine = load_model(lod / "0_0"), coarse = load_model(lod / "1_0");
   const Model chosen = load_model(lod);
   ASSERT_EQ(chosen.count(), 1000u);
-  EXPECT_TRUE(equal(chosen, 0, fine));
-  EXPECT_TRUE(equal(load_model(lod / "lod-meta.json", {.lod = 0}), 0, fine));
+  EXPECT_TRUE(equal_from(chosen, 0, fine));
+  EXPECT_TRUE(equal_from(load_model(lod / "lod-meta.json", {.lod = 0}), 0, fine));
   const Model level = load_model(lod, {.lod = 1});
   ASSERT_EQ(level.count(), 250u);
-  EXPECT_TRUE(equal(level, 0, coarse));
+  EXPECT_TRUE(equal_from(level, 0, coarse));
   EXPECT_TRUE(
       test::fails_saying([&] { load_model(lod, {.lod = 2}); }, {"--lod 2", "lod-meta.json", "0 to 1"}));
   EXPECT_TRUE(
@@ -71,7 +71,7 @@ TEST(Sog, PartsOfLevelsAndTheEnvironment) {
   ASSERT_EQ(model.count(), 495u + 250u);
   EXPECT_EQ(model.position[0], fine.position[505]);
   EXPECT_EQ(model.opacity[494], fine.opacity[999]);
-  EXPECT_TRUE(equal(model, 495, coarse));
+  EXPECT_TRUE(equal_from(model, 495, coarse));
 }
 
 // Leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
@@ -83,8 +83,8 @@ TEST(Sog, LevelsThatFitABudget) {
     const auto gaussians = [most](int degree) { return degree == 3 ? most : 0; };
     return load_model(lod, {.budget = DetailBudget{gaussians, {eye}}});
   };
-  EXPECT_TRUE(equal(load(1000, {0, 0, 0}), 0, fine));
-  EXPECT_TRUE(equal(load(250, {0, 0, 0}), 0, coarse));
+  EXPECT_TRUE(equal_from(load(1000, {0, 0, 0}), 0, fine));
+  EXPECT_TRUE(equal_from(load(250, {0, 0, 0}), 0, coarse));
   // Beside the second leaf, the last in the files, and beside the first.
   const Model last = load(450, {6, 0, 13});
   ASSERT_EQ(last.count(), 120u + 65 + 248);
@@ -103,7 +103,7 @@ TEST(Sog, LevelsThatFitABudget) {
   const Copy copy(lod);  // what is not there is not chosen
   fs::remove_all(copy.path() / "0_0");
   const auto all = [](int) { return std::size_t{5000}; };
-  EXPECT_TRUE(equal(load_model(copy.path(), {.budget = DetailBudget{all, {}}}), 0, coarse));
+  EXPECT_TRUE(equal_from(load_model(copy.path(), {.budget = DetailBudget{all, {}}}), 0, coarse));
   fs::remove_all(copy.path() / "1_0");
   EXPECT_TRUE(test::fails_saying(
       [&] {
@@ -131,8 +131,8 @@ TEST(Sog, LevelsThatAreNotThere) {
 
 /// Damages a copy of a file or folder and tells whether loading it ends in an error that says `parts`.
 template <typename Damage>
-testing::AssertionResult refuses(const fs::path& original, const Damage& damage,
-                                 std::initializer_list<std::string> parts) {
+testing::AssertionResult refuses_damaged(const fs::path& original, const Damage& damage,
+                                         std::initializer_list<std::string> parts) {
   const Copy copy(original);
   damage(copy);
   return test::fails_saying([&] { load_model(copy.path()); }, parts);
@@ -141,7 +141,7 @@ testing::AssertionResult refuses(const fs::path& original, const Damage& damage,
 TEST(SogErrors, Meta) {
   REQUIRE_FIXTURES(folder);
   const auto edited = [&](auto edit, std::initializer_list<std::string> parts) {
-    return refuses(
+    return refuses_damaged(
         folder / "sog/playbot-lod6", [&](const Copy& copy) { copy.edit("meta.json", edit); }, parts);
   };
   EXPECT_TRUE(edited([](json& m) { m["count"] = 5000; },
@@ -165,7 +165,8 @@ TEST(SogErrors, Meta) {
   EXPECT_TRUE(edited([](json& m) { m["shN"]["bands"] = 4; }, {"key 'shN.bands'"}));
   EXPECT_TRUE(edited([](json& m) { m["shN"]["count"] = 65536; }, {"no palette of 65536 entries"}));
   EXPECT_TRUE(edited([](json& m) { m["model"] = "2dgs"; }, {"2D Gaussian Splatting"}));
-  EXPECT_TRUE(refuses(folder / "sog/playbot-lod6",
+  EXPECT_TRUE(
+      refuses_damaged(folder / "sog/playbot-lod6",
                       [](const Copy& c) { c.write(c.read("meta.json").substr(0, 7000), "meta.json"); },
                       {"meta.json is not valid JSON at line 1, byte 7000"}));
 }
@@ -197,7 +198,7 @@ TEST(SogErrors, Pictures) {
   REQUIRE_FIXTURES(folder);
   const auto replaced = [&](const std::string& name, const std::string& bytes,
                             std::initializer_list<std::string> parts) {
-    return refuses(
+    return refuses_damaged(
         folder / "sog/playbot-lod6", [&](const Copy& copy) { copy.write(bytes, name); }, parts);
   };
   const std::vector<std::uint8_t> grey(std::size_t{4} * 128 * 128, 77);
@@ -216,9 +217,9 @@ TEST(SogErrors, Pictures) {
     const std::string bytes = whole.read(name);
     EXPECT_TRUE(
         replaced(name, bytes.substr(0, bytes.size() / 2), {"meta.json", name, "damaged or cut short"}));
-    EXPECT_TRUE(refuses(folder / "sog/playbot-lod6",
-                        [&](const Copy& copy) { fs::remove(copy.path() / name); },
-                        {"meta.json", name, "is missing"}));
+    EXPECT_TRUE(refuses_damaged(folder / "sog/playbot-lod6",
+                                [&](const Copy& copy) { fs::remove(copy.path() / name); },
+                                {"meta.json", name, "is missing"}));
   }
 }
 
@@ -324,7 +325,7 @@ TEST(SogErrors, Archives) {
 TEST(SogErrors, Levels) {
   REQUIRE_FIXTURES(folder);
   const auto edited = [&](auto edit, std::initializer_list<std::string> parts) {
-    return refuses(
+    return refuses_damaged(
         folder / "sog/st-lod", [&](const Copy& copy) { copy.edit("lod-meta.json", edit); }, parts);
   };
   const auto leaf = [](json& m) -> json& { return m["tree"]["children"][0]["lods"]["0"]; };
@@ -348,9 +349,9 @@ TEST(SogErrors, Levels) {
   std::string deep = R"({"lodLevels": 1, "filenames": [], "tree": )";
   for (int i = 0; i < 100000; ++i) deep += R"({"children":[)";
   for (int i = 0; i < 100000; ++i) deep += "]}";
-  EXPECT_TRUE(refuses(folder / "sog/st-lod",
-                      [&](const Copy& copy) { copy.write(deep + "}", "lod-meta.json"); },
-                      {"lod-meta.json", "nested more than 500 deep"}));
+  EXPECT_TRUE(refuses_damaged(folder / "sog/st-lod",
+                              [&](const Copy& copy) { copy.write(deep + "}", "lod-meta.json"); },
+                              {"lod-meta.json", "nested more than 500 deep"}));
 }
 
 }  // namespace

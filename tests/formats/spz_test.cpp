@@ -20,21 +20,21 @@ std::string unpacked(const std::string& text) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Model load(const std::string& bytes) {
+Model load_spz(const std::string& bytes) {
   const test::TempFolder folder;
   test::write_text(folder / "bad.spz", bytes);
   return load_model(folder / "bad.spz");
 }
 
-testing::AssertionResult refuses(const std::string& bytes, std::initializer_list<std::string> parts) {
-  if (auto named = test::fails_saying([&] { load(bytes); }, {"bad.spz"}); !named) return named;
-  return test::fails_saying([&] { load(bytes); }, parts);
+testing::AssertionResult refuses_spz(const std::string& bytes, std::initializer_list<std::string> parts) {
+  if (auto named = test::fails_saying([&] { load_spz(bytes); }, {"bad.spz"}); !named) return named;
+  return test::fails_saying([&] { load_spz(bytes); }, parts);
 }
 
 /// What is said on standard error while `bytes` are loaded.
 std::string said_of(const std::string& bytes) {
   testing::internal::CaptureStderr();
-  load(bytes);
+  load_spz(bytes);
   return testing::internal::GetCapturedStderr();
 }
 
@@ -43,24 +43,27 @@ TEST(SpzErrors, Gzip) {
   const std::string good = test::read_text(folder / "spz/st-train-v3-sh3.spz"), raw = unpacked(good);
   ASSERT_EQ(raw.size(), 16u + 1000 * 65);
   for (const std::size_t size : {1u, 10u, 20u, 3000u, 10000u, 21655u}) {
-    EXPECT_TRUE(refuses(good.substr(0, size),
-                        size == 1 ? std::initializer_list<std::string>{"bad.spz"}
-                                  : std::initializer_list<std::string>{"is cut short: its gzip data ends"}));
+    EXPECT_TRUE(refuses_spz(good.substr(0, size), size == 1 ? std::initializer_list<std::string>{"bad.spz"}
+                                                            : std::initializer_list<std::string>{
+                                                                  "is cut short: its gzip data ends"}));
   }
   std::string flipped = good;
   flipped[good.size() - 8] ^= 1;
-  EXPECT_TRUE(refuses(flipped, {"is damaged: incorrect data check"}));
-  EXPECT_TRUE(refuses(test::gzipped("hello, this is no model"), {"holds no spz model", "NGSP"}));
-  EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, 15)), {"an spz header has 16 bytes, and 15 are there"}));
-  EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, 16)), {"promises 1000 Gaussians of degree 3, which"}));
+  EXPECT_TRUE(refuses_spz(flipped, {"is damaged: incorrect data check"}));
+  EXPECT_TRUE(refuses_spz(test::gzipped("hello, this is no model"), {"holds no spz model", "NGSP"}));
+  EXPECT_TRUE(
+      refuses_spz(test::gzipped(raw.substr(0, 15)), {"an spz header has 16 bytes, and 15 are there"}));
+  EXPECT_TRUE(refuses_spz(test::gzipped(raw.substr(0, 16)), {"promises 1000 Gaussians of degree 3, which"}));
   // Every boundary between attributes, and a byte before it.
   for (const std::size_t bytes : {9u, 10u, 13u, 16u, 20u, 65u}) {
     const std::size_t end = 16 + std::size_t{1000} * bytes;
     if (bytes < 65) {
-      EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, end)),
-                          {fmt::format("take 65000 bytes after the header, and {} are there", end - 16)}));
+      EXPECT_TRUE(
+          refuses_spz(test::gzipped(raw.substr(0, end)),
+                      {fmt::format("take 65000 bytes after the header, and {} are there", end - 16)}));
     }
-    EXPECT_TRUE(refuses(test::gzipped(raw.substr(0, end - 1)), {fmt::format("and {} are there", end - 17)}));
+    EXPECT_TRUE(
+        refuses_spz(test::gzipped(raw.substr(0, end - 1)), {fmt::format("and {} are there", end - 17)}));
   }
 }
 
@@ -70,20 +73,21 @@ TEST(SpzErrors, Header) {
   const auto with = [&](std::size_t at, const std::string& bytes) {
     return test::gzipped(patched(raw, at, bytes));
   };
-  EXPECT_TRUE(refuses(with(4, little(9u)), {"spz of version 9 is not known"}));
-  EXPECT_TRUE(refuses(with(4, little(0u)), {"spz of version 0"}));
-  EXPECT_TRUE(refuses(with(4, little(4u)), {"version 4 within gzip"}));
-  EXPECT_TRUE(refuses(with(8, little(1001u)),
-                      {"its 1001 Gaussians of degree 3 take 65065 bytes", "65000 are there"}));
-  EXPECT_TRUE(refuses(with(8, little(0x80000000u)), {"promises 2147483648 Gaussians of degree 3, which"}));
-  EXPECT_TRUE(refuses(with(8, little(0u)), {"holds no Gaussians"}));
-  EXPECT_TRUE(refuses(with(12, "\x07"), {"degree 7, at byte 12"}));
-  EXPECT_TRUE(refuses(with(13, "\xff"), {"255 bits of fraction, at byte 13"}));
-  EXPECT_TRUE(refuses(with(14, "\x80"), {"tree of levels of detail (Spark)"}));
+  EXPECT_TRUE(refuses_spz(with(4, little(9u)), {"spz of version 9 is not known"}));
+  EXPECT_TRUE(refuses_spz(with(4, little(0u)), {"spz of version 0"}));
+  EXPECT_TRUE(refuses_spz(with(4, little(4u)), {"version 4 within gzip"}));
+  EXPECT_TRUE(refuses_spz(with(8, little(1001u)),
+                          {"its 1001 Gaussians of degree 3 take 65065 bytes", "65000 are there"}));
+  EXPECT_TRUE(
+      refuses_spz(with(8, little(0x80000000u)), {"promises 2147483648 Gaussians of degree 3, which"}));
+  EXPECT_TRUE(refuses_spz(with(8, little(0u)), {"holds no Gaussians"}));
+  EXPECT_TRUE(refuses_spz(with(12, "\x07"), {"degree 7, at byte 12"}));
+  EXPECT_TRUE(refuses_spz(with(13, "\xff"), {"255 bits of fraction, at byte 13"}));
+  EXPECT_TRUE(refuses_spz(with(14, "\x80"), {"tree of levels of detail (Spark)"}));
   // The same without gzip, as some have it.
-  EXPECT_EQ(load(raw).count(), 1000u);
-  EXPECT_TRUE(refuses(raw.substr(0, 60000), {"take 65000 bytes after the header, and 59984 are there"}));
-  EXPECT_TRUE(refuses(raw.substr(0, 12), {"an spz header has 16 bytes, and 12 are there"}));
+  EXPECT_EQ(load_spz(raw).count(), 1000u);
+  EXPECT_TRUE(refuses_spz(raw.substr(0, 60000), {"take 65000 bytes after the header, and 59984 are there"}));
+  EXPECT_TRUE(refuses_spz(raw.substr(0, 12), {"an spz header has 16 bytes, and 12 are there"}));
 }
 
 TEST(SpzErrors, NothingUnfoldsBeyondItsHeader) {
@@ -92,43 +96,44 @@ TEST(SpzErrors, NothingUnfoldsBeyondItsHeader) {
   const std::string bomb = test::gzipped(raw + std::string(std::size_t{1} << 28, '\0'));
   EXPECT_LT(bomb.size(), 1000000u);
   EXPECT_NE(said_of(bomb).find("bytes after the last attribute are ignored"), std::string::npos);
-  EXPECT_EQ(load(bomb).count(), 4u);
+  EXPECT_EQ(load_spz(bomb).count(), 4u);
   // The same as extensions, of which there may be a megabyte.
   const std::string extended = patched(raw, 14, "\x02");
-  EXPECT_TRUE(refuses(
+  EXPECT_TRUE(refuses_spz(
       test::gzipped(extended + little(1u) + little(0xfffffff0u) + std::string(std::size_t{1} << 22, '\0')),
       {"an extension of 4294967280 bytes runs past"}));
-  EXPECT_EQ(load(test::gzipped(extended + little(0xadbe0003u) + little(4u) + little(7u))).axes, "LUF");
+  EXPECT_EQ(load_spz(test::gzipped(extended + little(0xadbe0003u) + little(4u) + little(7u))).axes, "LUF");
 }
 
 TEST(SpzErrors, Streams) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "spz/adobe-train-v4-sh3-rdf2rub-aa.spz");
   const std::size_t toc = 32;
-  EXPECT_TRUE(refuses(patched(good, 16, little(31u)), {"table of 6 streams stands at byte 31"}));
-  EXPECT_TRUE(refuses(patched(good, 16, little(static_cast<std::uint32_t>(good.size()))),
-                      {"table of 6 streams stands at byte 37656 of"}));
-  EXPECT_TRUE(refuses(patched(good, 16, little(0xffffffffu)), {"stands at byte 4294967295"}));
-  EXPECT_TRUE(refuses(patched(good, 15, "\x05"), {"5 streams, at byte 15; a model of degree 3 has 6"}));
-  EXPECT_TRUE(refuses(patched(good, 15, "\x07"), {"7 streams, at byte 15"}));
-  EXPECT_TRUE(refuses(patched(good, toc, little(std::uint64_t{1} << 63)),
-                      {"its positions take 9223372036854775808 bytes"}));
+  EXPECT_TRUE(refuses_spz(patched(good, 16, little(31u)), {"table of 6 streams stands at byte 31"}));
+  EXPECT_TRUE(refuses_spz(patched(good, 16, little(static_cast<std::uint32_t>(good.size()))),
+                          {"table of 6 streams stands at byte 37656 of"}));
+  EXPECT_TRUE(refuses_spz(patched(good, 16, little(0xffffffffu)), {"stands at byte 4294967295"}));
+  EXPECT_TRUE(refuses_spz(patched(good, 15, "\x05"), {"5 streams, at byte 15; a model of degree 3 has 6"}));
+  EXPECT_TRUE(refuses_spz(patched(good, 15, "\x07"), {"7 streams, at byte 15"}));
+  EXPECT_TRUE(refuses_spz(patched(good, toc, little(std::uint64_t{1} << 63)),
+                          {"its positions take 9223372036854775808 bytes"}));
   EXPECT_TRUE(
-      refuses(patched(good, toc + 8, little(std::uint64_t{9001})), {"promises 9001 bytes of positions"}));
+      refuses_spz(patched(good, toc + 8, little(std::uint64_t{9001})), {"promises 9001 bytes of positions"}));
   const std::size_t frames = toc + 96;
-  EXPECT_TRUE(refuses(patched(good, frames, "?"), {"is damaged: its positions", "cannot be unpacked"}));
+  EXPECT_TRUE(refuses_spz(patched(good, frames, "?"), {"is damaged: its positions", "cannot be unpacked"}));
   EXPECT_NE(said_of(good + "!").find("bytes after the last attribute are ignored"), std::string::npos);
-  EXPECT_TRUE(refuses(patched(good, 8, little(0x7fffffffu)), {"2147483647 Gaussians of degree 3, which"}));
+  EXPECT_TRUE(
+      refuses_spz(patched(good, 8, little(0x7fffffffu)), {"2147483647 Gaussians of degree 3, which"}));
   // Truncation at every boundary.
   std::size_t end = frames;
-  EXPECT_TRUE(refuses(good.substr(0, 20), {"the header has 32 bytes, and 20 are there"}));
-  EXPECT_TRUE(refuses(good.substr(0, frames - 1), {"table of 6 streams"}));
+  EXPECT_TRUE(refuses_spz(good.substr(0, 20), {"the header has 32 bytes, and 20 are there"}));
+  EXPECT_TRUE(refuses_spz(good.substr(0, frames - 1), {"table of 6 streams"}));
   for (int stream = 0; stream < 6; ++stream) {
-    EXPECT_TRUE(refuses(good.substr(0, end), {"is cut short: its"}));
+    EXPECT_TRUE(refuses_spz(good.substr(0, end), {"is cut short: its"}));
     std::uint64_t size = 0;
     std::memcpy(&size, &good[toc + 16 * static_cast<std::size_t>(stream)], 8);
     end += size;
-    EXPECT_TRUE(refuses(good.substr(0, end - 1), {"is cut short: its"}));
+    EXPECT_TRUE(refuses_spz(good.substr(0, end - 1), {"is cut short: its"}));
   }
   EXPECT_EQ(end, good.size());
 }
@@ -157,25 +162,25 @@ TEST(SpzErrors, GaussiansThatBytesCannotHold) {
     return "NGSP" + little(4u) + little(count) + std::string("\0\x0c\0\x05", 4) + little(32u) +
            std::string(12, '\0') + table + streams + std::string(20000, '\0');
   };
-  EXPECT_EQ(load(of_zeros(100000)).count(), 100000u);
+  EXPECT_EQ(load_spz(of_zeros(100000)).count(), 100000u);
   EXPECT_TRUE(
-      refuses(of_zeros(2000000), {"promises 2000000 Gaussians of degree 0, which 2", "--max-memory"}));
+      refuses_spz(of_zeros(2000000), {"promises 2000000 Gaussians of degree 0, which 2", "--max-memory"}));
   gaussians_allowed = 2000000;
-  EXPECT_EQ(load(of_zeros(2000000)).count(), 2000000u);
-  EXPECT_TRUE(refuses(of_zeros(2100000), {"promises 2100000 Gaussians"}));
+  EXPECT_EQ(load_spz(of_zeros(2000000)).count(), 2000000u);
+  EXPECT_TRUE(refuses_spz(of_zeros(2100000), {"promises 2100000 Gaussians"}));
   gaussians_allowed = 0;
 }
 
 TEST(SpzErrors, Extensions) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "spz/synthetic-v4-extensions.spz");
-  EXPECT_EQ(load(good).axes, "RDF");
+  EXPECT_EQ(load_spz(good).axes, "RDF");
   EXPECT_TRUE(
-      refuses(patched(good, 36, little(0xfffffff0u)), {"an extension of 4294967280 bytes runs past"}));
+      refuses_spz(patched(good, 36, little(0xfffffff0u)), {"an extension of 4294967280 bytes runs past"}));
   const std::size_t axes = good.find(little(0xadbe0003u));
   ASSERT_NE(axes, std::string::npos);
-  EXPECT_TRUE(refuses(patched(good, axes + 8, little(17u)), {"names the coordinate system 17"}));
-  EXPECT_EQ(load(patched(good, axes + 8, little(0u))).axes, "RUB");
+  EXPECT_TRUE(refuses_spz(patched(good, axes + 8, little(17u)), {"names the coordinate system 17"}));
+  EXPECT_EQ(load_spz(patched(good, axes + 8, little(0u))).axes, "RUB");
 }
 
 TEST(Spz, SaysWhatItIs) {

@@ -22,13 +22,13 @@ namespace binosplat {
 namespace {
 
 using nlohmann::json;
-using Files = std::map<std::string, std::string>;
+using WrittenFiles = std::map<std::string, std::string>;
 
 struct StreamedSogWriter : testing::Test {
   StreamedSogWriter() { model.name = "model"; }
 
   /// Files go to `files`; after `most` of them nothing more can be written.
-  LevelsWritten write(Files& files, std::size_t most = SIZE_MAX) const {
+  LevelsWritten write(WrittenFiles& files, std::size_t most = SIZE_MAX) const {
     std::mutex one_at_a_time;
     return write_streamed_sog(
         model, settings,
@@ -87,7 +87,7 @@ struct StreamedSogWriter : testing::Test {
     return {{1.0, 1.0 + 0.4 * std::sin(sum)}};
   }
 
-  Model read(const Files& files, int lod) const {
+  Model read(const WrittenFiles& files, int lod) const {
     const test::TempFolder folder;
     for (const auto& [name, bytes] : files) {
       std::filesystem::create_directories((folder / name).parent_path());
@@ -110,7 +110,7 @@ void for_leaves(const json& node, const std::function<void(const json&)>& see) {
 }
 
 TEST_F(StreamedSogWriter, JudgesWhatTheFilesHave) {
-  Files files;
+  WrittenFiles files;
   write(files);
   for (int lod = 0; lod < 4; ++lod) {
     const Model drawn = read(files, lod);
@@ -146,7 +146,7 @@ int outside(const json& meta, const Model& level, int lod) {
 
 TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
   together.emplace();  // no pictures
-  Files files;
+  WrittenFiles files;
   const LevelsWritten written = write(files);
   json meta = json::parse(files.at("lod-meta.json"));
   EXPECT_EQ(meta["version"], 1);
@@ -203,7 +203,7 @@ TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
   settings.piece = 700;
   settings.together = 1500;  // two pieces
   together = {{1e-4, 2e-4}, {1e-4, 9e-4}, {1e-4, 1e-6}, {0.0, 0.0}};
-  Files files;
+  WrittenFiles files;
   write(files);
   const auto scenes = pictures.size();
   EXPECT_GE(scenes, 2u);
@@ -228,10 +228,10 @@ TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
 TEST_F(StreamedSogWriter, GoesOnWithThePicturesThatAreLeft) {
   settings.piece = 700;
   settings.together = 1500;  // two pieces, or more
-  Files files;
+  WrittenFiles files;
   write(files);
   EXPECT_FALSE(files.contains("together_2.json"));
-  Files again = files;
+  WrittenFiles again = files;
   again.erase("lod-meta.json");
   again.erase("together_1.json");
   pictures.clear();
@@ -257,7 +257,7 @@ std::vector<std::size_t> by_x(const Model& model) {
 TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
   for (std::size_t i = 0; i < model.count(); ++i)  // farther apart than a step
     model.position[i].x = static_cast<float>((i * 977) % model.count()) / 300.0f;
-  Files files;
+  WrittenFiles files;
   write(files);
   const Model level = read(files, 0);
   ASSERT_EQ(level.count(), model.count());
@@ -279,11 +279,11 @@ TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
 }
 
 TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
-  Files whole;
+  WrittenFiles whole;
   write(whole);
   ASSERT_EQ(whole.size(), 4u * 8 + 3);  // seven pictures and meta.json each
   for (const std::size_t most : {0, 1, 8, 9, 20, 32, 33, 34}) {
-    Files files;
+    WrittenFiles files;
     EXPECT_THROW(write(files, most), std::runtime_error);
     ASSERT_EQ(files.size(), most);
     EXPECT_FALSE(files.contains("lod-meta.json"));
@@ -300,7 +300,7 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
     EXPECT_EQ(write(files).kept, complete);
     EXPECT_EQ(files, whole) << most;
   }
-  Files again = whole;
+  WrittenFiles again = whole;
   again.erase("lod-meta.json");
   EXPECT_EQ(write(again).kept, 4u);
   EXPECT_EQ(again, whole);
@@ -313,7 +313,7 @@ TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
 TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
   settings.file = 1000;   // five leaves of the finest level, or more
   settings.piece = 1500;  // seven leaves, or more
-  Files files;
+  WrittenFiles files;
   const std::size_t count = write(files).files;
   EXPECT_GT(count, 4u * 2);
   const json meta = json::parse(files.at("lod-meta.json"));
@@ -334,7 +334,7 @@ TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
   for (int lod = 0; lod < 4; ++lod)
     EXPECT_EQ(read(files, lod).count(), meta["counts"][static_cast<std::size_t>(lod)]);
   // The second half goes on by itself.
-  Files half = files;
+  WrittenFiles half = files;
   half.erase("lod-meta.json");
   std::erase_if(half, [](const auto& file) { return file.first.starts_with("1_1/"); });
   EXPECT_EQ(write(half).kept, count - 1);
@@ -343,7 +343,7 @@ TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
 
 TEST_F(StreamedSogWriter, TakesOneGaussian) {
   model = test::random_model(1, 1, 0);
-  Files files;
+  WrittenFiles files;
   EXPECT_EQ(write(files).gaussians, std::vector<std::size_t>(4, 1));
   for (int lod = 0; lod < 4; ++lod) EXPECT_EQ(read(files, lod).count(), 1u);
 }
@@ -354,7 +354,7 @@ TEST_F(StreamedSogWriter, TakesWhatIsFarAway) {
     model.position[i] *= 3e37f;
     model.scale[i] = glm::vec3(3e38f);
   }
-  Files files;
+  WrittenFiles files;
   const LevelsWritten written = write(files);
   ASSERT_EQ(written.losses.size(), 1u);
   EXPECT_NE(written.losses[0].find("30 of 3000 Gaussians have scales beyond e^-20 to e^20"),
@@ -365,7 +365,7 @@ TEST_F(StreamedSogWriter, TakesWhatIsFarAway) {
 
 TEST_F(StreamedSogWriter, WritesTheSameByOneThread) {
   settings.file = 1000;
-  Files many, one;
+  WrittenFiles many, one;
   write(many);
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   write(one);

@@ -17,7 +17,7 @@ using nlohmann::json;
 using test::Copy;
 using test::near3;
 
-bool agrees(const Camera& camera, const json& truth) {
+bool agrees_in_pose(const Camera& camera, const json& truth) {
   return near3(camera.position, truth["center"], 1e-6, 1e-6) &&
          near3(camera.rotation[2], truth["forward"], 1e-6) && near3(-camera.rotation[1], truth["up"], 1e-6);
 }
@@ -33,7 +33,7 @@ TEST(Transforms, AgreeWithAnIndependentReader) {
       const json& expected = truth[name]["cameras"][i];
       const Camera& camera = cameras[i];
       EXPECT_EQ(camera.name, expected["name"].get<std::string>());
-      EXPECT_TRUE(agrees(camera, expected)) << camera.name;
+      EXPECT_TRUE(agrees_in_pose(camera, expected)) << camera.name;
       for (const auto& [key, value] : std::map<std::string, double>{{"fx", camera.fx},
                                                                     {"fy", camera.fy},
                                                                     {"cx", camera.cx},
@@ -44,7 +44,7 @@ TEST(Transforms, AgreeWithAnIndependentReader) {
       // Planted fault: OpenGL's axes taken for ours.
       Camera faulty = camera;
       faulty.rotation = glm::dmat3(camera.rotation[0], -camera.rotation[1], -camera.rotation[2]);
-      EXPECT_FALSE(agrees(faulty, expected));
+      EXPECT_FALSE(agrees_in_pose(faulty, expected));
     }
   }
 }
@@ -65,7 +65,7 @@ TEST(Transforms, SizesComeFromThePictureBeside) {
   EXPECT_EQ(camera.cx, 40.0);
   const json truth =
       test::load_json(folder / "truth.json")["cameras"]["cameras/blender-lego-transforms_train.json"];
-  EXPECT_TRUE(agrees(camera, truth["cameras"][0]));
+  EXPECT_TRUE(agrees_in_pose(camera, truth["cameras"][0]));
   EXPECT_EQ(find_cameras(temporary / "model.ply"), file);
   EXPECT_EQ(find_photos(file), temporary.path());
 }

@@ -13,54 +13,54 @@ namespace {
 using test::little;
 using test::patched;
 
-Model load(const std::string& bytes, const std::string& name) {
+Model load_named(const std::string& bytes, const std::string& name) {
   const test::TempFolder folder;
   test::write_text(folder / name, bytes);
   return load_model(folder / name);
 }
 
-testing::AssertionResult refuses(const std::string& bytes, const std::string& name,
-                                 std::initializer_list<std::string> parts) {
-  if (auto named = test::fails_saying([&] { load(bytes, name); }, {name}); !named) return named;
-  return test::fails_saying([&] { load(bytes, name); }, parts);
+testing::AssertionResult refuses_named(const std::string& bytes, const std::string& name,
+                                       std::initializer_list<std::string> parts) {
+  if (auto named = test::fails_saying([&] { load_named(bytes, name); }, {name}); !named) return named;
+  return test::fails_saying([&] { load_named(bytes, name); }, parts);
 }
 
 TEST(Splat, ContentDecides) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "splat/antimatter15-train.splat");
-  EXPECT_EQ(load(good, "model").count(), 1000u);
-  EXPECT_EQ(load(good, "model.ply").count(), 1000u);
+  EXPECT_EQ(load_named(good, "model").count(), 1000u);
+  EXPECT_EQ(load_named(good, "model.ply").count(), 1000u);
   test::Uniform uniform(1);
   std::string noise;
   for (int i = 0; i < 3200; ++i) noise += static_cast<char>(uniform(0, 256));
-  EXPECT_TRUE(refuses(noise, "noise", {"something unknown"}));
-  EXPECT_TRUE(refuses(noise, "noise.splat", {"does not hold .splat's records"}));
-  EXPECT_TRUE(refuses("", "empty.splat", {"an empty file"}));
+  EXPECT_TRUE(refuses_named(noise, "noise", {"something unknown"}));
+  EXPECT_TRUE(refuses_named(noise, "noise.splat", {"does not hold .splat's records"}));
+  EXPECT_TRUE(refuses_named("", "empty.splat", {"an empty file"}));
 }
 
 TEST(Splat, Damaged) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "splat/antimatter15-train.splat");
-  EXPECT_TRUE(
-      refuses(good + "1234567", "a.splat", {"32007 bytes are no whole number of .splat's records of 32"}));
-  EXPECT_TRUE(refuses(good.substr(0, 31), "a.splat", {"31 bytes are no whole number"}));
-  EXPECT_EQ(load(good.substr(0, 32), "a.splat").count(), 1u);
-  const Model model = load(patched(good, 12, "\xff\xff\xff\xff"), "a.splat");
+  EXPECT_TRUE(refuses_named(good + "1234567", "a.splat",
+                            {"32007 bytes are no whole number of .splat's records of 32"}));
+  EXPECT_TRUE(refuses_named(good.substr(0, 31), "a.splat", {"31 bytes are no whole number"}));
+  EXPECT_EQ(load_named(good.substr(0, 32), "a.splat").count(), 1u);
+  const Model model = load_named(patched(good, 12, "\xff\xff\xff\xff"), "a.splat");
   EXPECT_EQ(model.count(), 999u);
   EXPECT_EQ(model.left_out, 1u);
-  EXPECT_EQ(load(patched(good, 32 + 16, little(-0.5f)), "a.splat").left_out, 1u);  // a negative scale
+  EXPECT_EQ(load_named(patched(good, 32 + 16, little(-0.5f)), "a.splat").left_out, 1u);  // a negative scale
 }
 
 TEST(Ksplat, ContentDecides) {
   REQUIRE_FIXTURES(folder);
-  EXPECT_EQ(load(test::read_text(folder / "ksplat/gs3d-train-l1-sh1.ksplat"), "model").count(), 1000u);
+  EXPECT_EQ(load_named(test::read_text(folder / "ksplat/gs3d-train-l1-sh1.ksplat"), "model").count(), 1000u);
 }
 
 TEST(Ksplat, Damaged) {
   REQUIRE_FIXTURES(folder);
   const std::string good = test::read_text(folder / "ksplat/gs3d-train-l1-sh1.ksplat");
   const auto with = [&](std::size_t at, const std::string& bytes, std::initializer_list<std::string> parts) {
-    return refuses(patched(good, at, bytes), "a.ksplat", parts);
+    return refuses_named(patched(good, at, bytes), "a.ksplat", parts);
   };
   const std::size_t section = 4096;
   EXPECT_TRUE(with(1, std::string(1, '\0'), {".ksplat of version 0.0 is not known"}));
@@ -82,9 +82,9 @@ TEST(Ksplat, Damaged) {
   EXPECT_TRUE(with(section + 32, little(0x00ffffffu), {"full and"}));
   // Truncation at every boundary.
   for (const std::size_t end : {std::size_t{4}, std::size_t{4095}, section, data - 1})
-    EXPECT_TRUE(refuses(good.substr(0, end), "a.ksplat", {"cut short"}));
+    EXPECT_TRUE(refuses_named(good.substr(0, end), "a.ksplat", {"cut short"}));
   for (const std::size_t end : {data, data + 4, data + 40, good.size() - 1})
-    EXPECT_TRUE(refuses(good.substr(0, end), "a.ksplat", {"is cut short: section 0 takes"}));
+    EXPECT_TRUE(refuses_named(good.substr(0, end), "a.ksplat", {"is cut short: section 0 takes"}));
 }
 
 }  // namespace

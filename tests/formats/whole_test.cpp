@@ -16,7 +16,7 @@ using test::read_text;
 using test::write_text;
 
 /// Of noise, which no format packs well.
-Picture noise() {
+Picture noise_picture() {
   Picture picture(61, 45);
   Random random(1);
   for (glm::vec4& colour : picture.colour) {
@@ -44,7 +44,7 @@ struct Whole : testing::Test {
 };
 
 TEST_F(Whole, PicturesOfOurs) {
-  const Picture picture = noise();
+  const Picture picture = noise_picture();
   save_png(folder / "8.png", composite(picture, glm::vec3(0.0f)));
   save_png(folder / "16.png", composite(picture, std::nullopt), 16, {{"Software", "test"}});
   save_exr(folder / "half.exr", picture, {.half = true});

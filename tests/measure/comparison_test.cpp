@@ -7,7 +7,7 @@
 namespace binosplat {
 namespace {
 
-Image noise(int channels, std::uint32_t seed) {
+Image noise_pair(int channels, std::uint32_t seed) {
   Image image(13, 11, channels);
   test::Uniform uniform(seed);
   for (float& value : image.data) value = static_cast<float>(uniform(-0.2, 1.2));
@@ -22,7 +22,7 @@ Image with_alpha(Image image, float alpha) {
 const glm::vec3 green(0.1f, 0.8f, 0.2f);
 
 TEST(MadeShown, WhatIsSeenThroughIsBeforeTheBackground) {
-  const Image image = noise(4, 1);
+  const Image image = noise_pair(4, 1);
   const Image shown = measure::before(green, image);
   ASSERT_EQ(shown.channels, 3);
   for (int y = 0; y < 11; ++y) {
@@ -35,7 +35,7 @@ TEST(MadeShown, WhatIsSeenThroughIsBeforeTheBackground) {
   }
   // Planted fault: premultiplied, as OpenEXR has it.
   EXPECT_GT(std::abs(shown.at(3, 3, 0) - (image.at(3, 3, 0) + (1 - image.at(3, 3, 3)) * green[0])), 1e-3);
-  const Image grey = noise(1, 2);
+  const Image grey = noise_pair(1, 2);
   const Image colour = measure::before(green, grey);
   for (std::size_t i = 0; i < colour.data.size(); ++i) EXPECT_EQ(colour.data[i], grey.data[i / 3]);
 }
@@ -51,9 +51,9 @@ Made made(Image a, Image b, const Background& background = {}) {
 }
 
 TEST(MadeShown, AlphaOfOneIsLeftOut) {
-  const Image opaque = with_alpha(noise(4, 1), 1.0f), rgb = measure::before(green, opaque);
-  const Image grey = noise(1, 3);
-  for (const Image& other : {rgb, grey, with_alpha(noise(4, 4), 1.0f)}) {
+  const Image opaque = with_alpha(noise_pair(4, 1), 1.0f), rgb = measure::before(green, opaque);
+  const Image grey = noise_pair(1, 3);
+  for (const Image& other : {rgb, grey, with_alpha(noise_pair(4, 4), 1.0f)}) {
     for (const bool first : {true, false}) {
       const Made of = first ? made(opaque, other) : made(other, opaque);
       EXPECT_EQ(of.a.channels, 3);
@@ -65,8 +65,8 @@ TEST(MadeShown, AlphaOfOneIsLeftOut) {
 }
 
 TEST(MadeShown, AlphaOfOnePictureIsBeforeBlackOrAsAsked) {
-  const Image see_through = with_alpha(noise(4, 1), 0.5f);
-  for (const Image& other : {noise(3, 2), noise(1, 3)}) {
+  const Image see_through = with_alpha(noise_pair(4, 1), 0.5f);
+  for (const Image& other : {noise_pair(3, 2), noise_pair(1, 3)}) {
     const Made of = made(see_through, other);
     EXPECT_TRUE(of.before_background);
     const Image black = measure::before(glm::vec3(0.0f), see_through);
@@ -78,21 +78,21 @@ TEST(MadeShown, AlphaOfOnePictureIsBeforeBlackOrAsAsked) {
 }
 
 TEST(MadeShown, AlphaOfBothCounts) {
-  const Image a = with_alpha(noise(4, 1), 0.5f), b = with_alpha(noise(4, 1), 0.25f);
+  const Image a = with_alpha(noise_pair(4, 1), 0.5f), b = with_alpha(noise_pair(4, 1), 0.25f);
   const Made of = made(a, b);
   EXPECT_EQ(of.a.channels, 4);
   EXPECT_EQ(of.b.channels, 4);
   EXPECT_FALSE(of.before_background);
   EXPECT_NE(of.a.data, of.b.data);
   // One that is opaque has alpha all the same.
-  EXPECT_EQ(made(a, with_alpha(noise(4, 1), 1.0f)).b.channels, 4);
+  EXPECT_EQ(made(a, with_alpha(noise_pair(4, 1), 1.0f)).b.channels, 4);
   // Unless a background is given.
   EXPECT_EQ(made(a, b, green).a.channels, 3);
   EXPECT_TRUE(made(a, b, green).before_background);
 }
 
 TEST(MadeShown, GreyStaysGreyBesideGrey) {
-  const Made of = made(noise(1, 1), noise(1, 2));
+  const Made of = made(noise_pair(1, 1), noise_pair(1, 2));
   EXPECT_EQ(of.a.channels, 1);
   EXPECT_EQ(of.b.channels, 1);
   for (const float v : of.a.data) EXPECT_TRUE(v >= 0.0f && v <= 1.0f);

@@ -22,7 +22,7 @@ Image filled(int width, int height, int channels, float value) {
   return image;
 }
 
-Image noise(int width, int height, int channels, std::uint32_t seed) {
+Image even_noise(int width, int height, int channels, std::uint32_t seed) {
   std::mt19937 engine(seed);
   Image image(width, height, channels);
   for (float& v : image.data) v = static_cast<float>(engine() * 0x1p-32);
@@ -51,7 +51,7 @@ TEST(Psnr, OfSeveralIsThatOfTheirMeanSquaredError) {
 }
 
 TEST(Psnr, EqualIsInfinite) {
-  const Image image = noise(7, 5, 3, 1);
+  const Image image = even_noise(7, 5, 3, 1);
   EXPECT_EQ(psnr(image, image), infinite);
   Image other = image;
   other.at(6, 4, 2) = std::nextafter(other.at(6, 4, 2), 0.0f);
@@ -111,7 +111,7 @@ double ssim_2d(const Image& a, const Image& b, double sigma = 1.5) {
 TEST(Ssim, AgreesWithItsDefinition) {
   for (const auto& [width, height, channels] :
        {std::array{23, 17, 3}, std::array{11, 11, 1}, std::array{12, 40, 4}}) {
-    const Image a = noise(width, height, channels, 5), b = noise(width, height, channels, 6);
+    const Image a = even_noise(width, height, channels, 5), b = even_noise(width, height, channels, 6);
     Image near = a;
     for (std::size_t k = 0; k < near.data.size(); ++k) near.data[k] = 0.8f * a.data[k] + 0.2f * b.data[k];
     EXPECT_NEAR(ssim(a, b), ssim_2d(a, b), 1e-12);
@@ -121,7 +121,7 @@ TEST(Ssim, AgreesWithItsDefinition) {
 }
 
 TEST(Ssim, ByHand) {
-  const Image image = noise(20, 20, 3, 9);
+  const Image image = even_noise(20, 20, 3, 9);
   EXPECT_EQ(ssim(image, image), 1.0);
   // Flat pictures: only the term of the means is left, (2 * 0.5 * 0.6 + c1) / (0.25 + 0.36 + c1).
   EXPECT_NEAR(ssim(filled(15, 15, 1, 0.5f), filled(15, 15, 1, 0.6f)), 0.6001 / 0.6101, 1e-7);
@@ -140,7 +140,7 @@ TEST(Ssim, IsNotANumberWhereItHasNoMeaning) {
 }
 
 TEST(Difference, LargestAndWhere) {
-  Image a = noise(9, 6, 3, 3), b = a;
+  Image a = even_noise(9, 6, 3, 3), b = a;
   EXPECT_EQ(largest_difference(a, b).max, 0.0);
   b.at(2, 1, 0) += 0.25f;
   b.at(7, 4, 2) = a.at(7, 4, 2) - 0.75f;

@@ -19,7 +19,7 @@ using render::FrameSettings;
 using test::same_bits;
 
 /// Anchors whose Gaussians are opaque: a wall of them, and as many behind it that nobody sees.
-Model wall() {
+Model wall_of_anchors() {
   Scaffold s = test::random_scaffold(5, {.anchors = 1200, .offsets = 6});
   for (std::size_t n = 0; n < s.anchor_count(); ++n) {
     const float z = n < 600 ? 2.0f : 4.0f + static_cast<float>(n % 7);
@@ -33,14 +33,14 @@ Model wall() {
   return stand_in(std::make_shared<Scaffold>(std::move(s)));
 }
 
-std::vector<shared::View> eyes(double near_plane = near_default) {
+std::vector<shared::View> eyes_at_anchors(double near_plane = near_default) {
   const auto rig = stereo::make_rig(test::front_camera(96, 80, 90), {.ipd = 0.05, .near_plane = near_plane});
   return {rig.views.begin(), rig.views.end()};
 }
 
 /// Anchors that are not decoded in the second frame of a camera that stands still, over all decodings.
 std::size_t reused(const Model& model, const FrameSettings& settings,
-                   const std::vector<shared::View>& views = eyes()) {
+                   const std::vector<shared::View>& views = eyes_at_anchors()) {
   render::Frame frame(test::gl_context(), model);
   frame.draw(views, settings);
   frame.draw_until(render::Stage::decode, views, settings);
@@ -55,12 +55,12 @@ std::size_t reused(const Model& model, const FrameSettings& settings,
   return count;
 }
 
-const FrameSettings squared{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.1f};
+const FrameSettings squared_last{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.1f};
 const FrameSettings peripheral{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST, .tolerance = 8.0f};
 
 TEST(AnchorReuse, WhatIsHiddenIsNotDecodedAgain) {
-  const Model model = wall();
-  for (const FrameSettings& way : {squared, peripheral}) {
+  const Model model = wall_of_anchors();
+  for (const FrameSettings& way : {squared_last, peripheral}) {
     EXPECT_GT(reused(model, way), 500u) << th_choices[way.th].name;
     FrameSettings other = way;
     other.decode = DECODE_CYCLOPEAN;
@@ -75,14 +75,14 @@ TEST(AnchorReuse, WhatIsHiddenIsNotDecodedAgain) {
 }
 
 TEST(AnchorReuse, ChangesNoBitWhileNothingMoves) {
-  const Model model = wall();
-  for (FrameSettings way : {squared, peripheral}) {
+  const Model model = wall_of_anchors();
+  for (FrameSettings way : {squared_last, peripheral}) {
     render::Frame with(test::gl_context(), model), without(test::gl_context(), model);
     for (int n = 0; n < 12; ++n) {
       way.anchor_reuse = true;
-      const render::FrameReport report = with.draw(eyes(), way);
+      const render::FrameReport report = with.draw(eyes_at_anchors(), way);
       way.anchor_reuse = false;
-      EXPECT_EQ(without.draw(eyes(), way).pairs, report.pairs) << n;
+      EXPECT_EQ(without.draw(eyes_at_anchors(), way).pairs, report.pairs) << n;
       const std::vector<Picture> a = with.read_pictures(), b = without.read_pictures();
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(a[v], b[v])) << th_choices[way.th].name << n;
     }
@@ -90,35 +90,35 @@ TEST(AnchorReuse, ChangesNoBitWhileNothingMoves) {
 }
 
 TEST(AnchorReuse, AnchorsLeftOutTooSoonAreSeen) {
-  const Model model = wall();
+  const Model model = wall_of_anchors();
   render::Frame right(test::gl_context(), model);
-  for (int n = 0; n < 4; ++n) right.draw(eyes(), squared);
+  for (int n = 0; n < 4; ++n) right.draw(eyes_at_anchors(), squared_last);
   const Picture expected = right.read_pictures()[0];
   const test::FaultyShaders faulty("decode.comp", "bound) > 1.0", "bound) > 0.1");
   render::Frame wrong(test::gl_context(), model);
-  for (int n = 0; n < 4; ++n) wrong.draw(eyes(), squared);
+  for (int n = 0; n < 4; ++n) wrong.draw(eyes_at_anchors(), squared_last);
   EXPECT_FALSE(same_bits(wrong.read_pictures()[0], expected));
 }
 
 TEST(AnchorReuse, ChangesNoBitWhenBuffersHaveToGrow) {
-  const Model model = wall();
+  const Model model = wall_of_anchors();
   render::Frame tight(test::gl_context(), model), ample(test::gl_context(), model);
   for (int n = 0; n < 4; ++n) {
-    ample.draw(eyes(), squared);
-    EXPECT_GT(tight.draw(eyes(), squared, {.slots = 100}).redrawn, 0);
+    ample.draw(eyes_at_anchors(), squared_last);
+    EXPECT_GT(tight.draw(eyes_at_anchors(), squared_last, {.slots = 100}).redrawn, 0);
     EXPECT_TRUE(same_bits(tight.read_pictures()[1], ample.read_pictures()[1])) << n;
   }
 }
 
 TEST(AnchorReuse, WhatComesOutFromBehindIsDecodedAgain) {
-  const Model model = wall();
+  const Model model = wall_of_anchors();
   render::Frame frame(test::gl_context(), model);
-  for (int n = 0; n < 5; ++n) frame.draw(eyes(), squared);
+  for (int n = 0; n < 5; ++n) frame.draw(eyes_at_anchors(), squared_last);
   // The wall is gone: what is nearer than 3 is not drawn.
-  const Picture exact = test::draw(model, eyes(3.0))[0];
-  frame.draw(eyes(3.0), squared);
+  const Picture exact = test::draw(model, eyes_at_anchors(3.0))[0];
+  frame.draw(eyes_at_anchors(3.0), squared_last);
   const double at_once = test::psnr(frame.read_pictures()[0], exact);
-  for (int n = 0; n < 25; ++n) frame.draw(eyes(3.0), squared);
+  for (int n = 0; n < 25; ++n) frame.draw(eyes_at_anchors(3.0), squared_last);
   EXPECT_GT(test::psnr(frame.read_pictures()[0], exact), 30.0);
   EXPECT_LT(at_once, 25.0) << "the first frame still goes by what was hidden";
 }
@@ -133,7 +133,7 @@ TEST(AnchorReuse, OfARealModel) {
   ASSERT_NE(found, cameras.end());
   const auto rig = stereo::make_rig(resized(*found, 259, 472), {.ipd = 0.11});
   const std::vector<shared::View> views(rig.views.begin(), rig.views.end());
-  FrameSettings settings = squared;
+  FrameSettings settings = squared_last;
   settings.tolerance = 0.148f;  // about 40 dB
   const double share = double(reused(model, settings, views)) / double(2 * model.scaffold->anchor_count());
   RecordProperty("share", std::to_string(share));

@@ -8,7 +8,7 @@ namespace {
 const render::Workings only_blend = test::given(render::Stage::ranges);
 
 // Many opaque layers, so that most pixels end early.
-Model layers() {
+Model layers_of_light() {
   Model model;
   test::Uniform uniform(31);
   for (int i = 0; i < 400; ++i) {
@@ -22,7 +22,7 @@ Model layers() {
 
 TEST(Blend, EqualsTheReference) {
   const shared::View view = make_view(test::front_camera(96, 80, 90));
-  for (const Model& model : {test::random_model(32, 2000, 0), layers()}) {
+  for (const Model& model : {test::random_model(32, 2000, 0), layers_of_light()}) {
     const Picture expected = reference::render(model, view);
     const Picture drawn = test::draw(model, view, {}, only_blend);
     EXPECT_GE(test::psnr(drawn, expected), 100.0);
@@ -36,7 +36,7 @@ TEST(Blend, EqualsTheReference) {
 }
 
 TEST(Blend, TheComparisonCatchesAnEarlyStopOneGaussianLate) {
-  const Model model = layers();
+  const Model model = layers_of_light();
   const shared::View view = make_view(test::front_camera(96, 80, 90));
   const auto splats = reference::project_all(model, view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);

@@ -46,8 +46,8 @@ struct Difference {
   std::size_t alone = 0;  // kept by one of them whose alpha is not within 1e-5 of 0
 };
 
-Difference compare(const std::map<std::size_t, reference::Decoded>& found,
-                   const std::vector<reference::Decoded>& expected) {
+Difference compare_decoded(const std::map<std::size_t, reference::Decoded>& found,
+                           const std::vector<reference::Decoded>& expected) {
   Difference difference;
   const auto apart = [&](const auto& a, const auto& b) {
     for (int c = 0; c < a.length(); ++c) difference.value = std::max(difference.value, std::abs(a[c] - b[c]));
@@ -93,7 +93,7 @@ Difference difference_of(const Model& model, const std::vector<shared::View>& vi
     const std::span<const shared::View> own =
         std::span(views).subspan(d * each, std::min<std::size_t>(each, views.size() - d * each));
     const Difference one =
-        compare(read_decoding(run, d), reference::decode(*model.scaffold, own, settings.anchor_cull));
+        compare_decoded(read_decoding(run, d), reference::decode(*model.scaffold, own, settings.anchor_cull));
     all.value = std::max(all.value, one.value);
     all.kept += one.kept;
     all.alone += one.alone;
@@ -136,7 +136,8 @@ TEST(DecodeStage, PlantedFaultsAreSeen) {
     const Model model = model_of(std::move(wrong));
     test::StageRun run(model, views);
     run.run_until(render::Stage::decode);
-    const Difference difference = compare(read_decoding(run, 0), reference::decode(*good.scaffold, views));
+    const Difference difference =
+        compare_decoded(read_decoding(run, 0), reference::decode(*good.scaffold, views));
     return difference.value > 1e-5 || difference.alone > 0;
   };
   EXPECT_FALSE(differs([](Scaffold&) {}));
@@ -158,7 +159,7 @@ TEST(DecodeStage, SharedByTheEyesOfAPair) {
   test::StageRun run(model, views, cyclopean);
   run.run_until(render::Stage::decode);
   const Difference own =
-      compare(read_decoding(run, 0), reference::decode(*model.scaffold, std::span(views).first(1)));
+      compare_decoded(read_decoding(run, 0), reference::decode(*model.scaffold, std::span(views).first(1)));
   EXPECT_GT(own.value, 1e-3);
 }
 
@@ -179,8 +180,8 @@ TEST(DecodeStage, PagesMakeNoDifference) {
   run.run_until(render::Stage::decode);
   ASSERT_EQ(run.drawn.model_buffers().pages.size(), 15u);  // 7 anchors each
   for (std::uint32_t d = 0; d < 2; ++d) {
-    const Difference difference =
-        compare(read_decoding(run, d), reference::decode(*model.scaffold, std::span(views).subspan(d, 1)));
+    const Difference difference = compare_decoded(
+        read_decoding(run, d), reference::decode(*model.scaffold, std::span(views).subspan(d, 1)));
     EXPECT_LT(difference.value, 1e-5);
     EXPECT_EQ(difference.alone, 0u);
   }

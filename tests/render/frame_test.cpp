@@ -145,7 +145,7 @@ Model fog(int count) {
 }
 
 // The share of pixels whose colour, coverage or depth is another one.
-double differing(const Picture& a, const Picture& b) {
+double differing_share(const Picture& a, const Picture& b) {
   std::size_t count = 0;
   for (std::size_t k = 0; k < a.colour.size(); ++k) {
     const glm::vec4 off = glm::abs(a.colour[k] - b.colour[k]);
@@ -173,7 +173,7 @@ TEST(Frame, ALossLeavesOutBlocksAndWhatIsBehindDarkOnes) {
     const Picture drawn = draw(model, view, settings);
     const auto off = [&](const reference::Loss& loss) {
       lists.loss = loss;
-      return differing(drawn, reference::blend(splats, lists, view));
+      return differing_share(drawn, reference::blend(splats, lists, view));
     };
     const reference::Loss loss = reference::loss_of(TILES_ELLIPSE, TH_SQUARED, tolerance);
     EXPECT_LE(off(loss), 0.002) << width << " " << tile_size;

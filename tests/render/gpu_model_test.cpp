@@ -9,7 +9,7 @@ namespace {
 using render::Frame;
 using render::GpuModel;
 
-const render::FrameSettings half{.precision = PRECISION_HALF};
+const render::FrameSettings half_precision{.precision = PRECISION_HALF};
 
 struct SharedModel : testing::Test {
   Model model = test::random_model(93, 20000, 2);
@@ -20,11 +20,11 @@ TEST_F(SharedModel, FramesDrawItAsTheyDrawTheirOwn) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model);
   Frame one(gpu_model), other(gpu_model);
   for (int n = 0; n < 2; ++n) {
-    one.draw(views, half);
+    one.draw(views, half_precision);
     other.draw(views);
   }
   const Picture in_half = one.read_pictures()[0], in_full = other.read_pictures()[0];
-  EXPECT_TRUE(test::same_bits(in_half, test::draw(model, views, half)[0]));
+  EXPECT_TRUE(test::same_bits(in_half, test::draw(model, views, half_precision)[0]));
   EXPECT_TRUE(test::same_bits(in_full, test::draw(model, views)[0]));
   EXPECT_FALSE(test::same_bits(in_half, in_full)) << "planted: one frame's precision for the other's";
 }
@@ -48,7 +48,7 @@ TEST_F(SharedModel, IsOnTheGpuOnceInEachPrecisionThatAFrameHolds) {
 TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
   const auto gpu_model = std::make_shared<GpuModel>(test::gl_context(), model, PRECISION_HALF);
   Frame frame(gpu_model);
-  frame.draw(views, half);
+  frame.draw(views, half_precision);
   const std::int64_t in_half = test::gl_context().allocated_bytes();
   gpu_model->in(PRECISION_FULL);  // for a frame that is gone
   EXPECT_GT(test::gl_context().allocated_bytes(), in_half);
@@ -57,8 +57,8 @@ TEST_F(SharedModel, ReloadsWhatFramesHoldHoweverOften) {
     gpu_model->reload();
     EXPECT_EQ(test::gl_context().allocated_bytes(), in_half) << n;
   }
-  frame.draw(views, half);
-  EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, views, half)[0]));
+  frame.draw(views, half_precision);
+  EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, views, half_precision)[0]));
 }
 
 TEST(ModelOfParts, ReloadsWhatHasChangedOfIt) {

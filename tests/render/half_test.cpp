@@ -10,9 +10,9 @@
 namespace binosplat {
 namespace {
 
-constexpr render::FrameSettings half = {.precision = PRECISION_HALF};
+constexpr render::FrameSettings in_half = {.precision = PRECISION_HALF};
 
-std::vector<shared::View> eyes() {
+std::vector<shared::View> eyes_for_half() {
   const Camera camera = test::front_camera(97, 81, 90);
   Camera right = camera;
   right.position.x += 0.06;
@@ -22,8 +22,8 @@ std::vector<shared::View> eyes() {
 TEST(Half, IsOf60DbAndNotFull) {
   for (const int degree : {0, 1, 3}) {
     const Model model = test::random_model(41, 3000, degree);
-    for (const shared::View& view : eyes()) {
-      const double db = test::psnr(test::draw(model, view, half), reference::render(model, view));
+    for (const shared::View& view : eyes_for_half()) {
+      const double db = test::psnr(test::draw(model, view, in_half), reference::render(model, view));
       EXPECT_GE(db, 60.0) << degree;
       EXPECT_LT(db, 100.0) << degree;
     }
@@ -32,13 +32,13 @@ TEST(Half, IsOf60DbAndNotFull) {
 
 TEST(Half, IsTheSameInEveryTileTestAndSize) {
   const Model model = test::random_model(42, 2000, 2);
-  const std::vector<Picture> expected = test::draw(model, eyes(), half);
+  const std::vector<Picture> expected = test::draw(model, eyes_for_half(), in_half);
   for (const int tiles : {TILES_ALL, TILES_SNUG, TILES_ELLIPSE}) {
     for (const int size : {8, 16, 32}) {
-      render::FrameSettings settings = half;
+      render::FrameSettings settings = in_half;
       settings.tiles = tiles;
       settings.tile_size = size;
-      const std::vector<Picture> drawn = test::draw(model, eyes(), settings);
+      const std::vector<Picture> drawn = test::draw(model, eyes_for_half(), settings);
       for (std::size_t eye = 0; eye < 2; ++eye)
         EXPECT_TRUE(test::same_bits(drawn[eye], expected[eye])) << tiles << ", " << size;
     }
@@ -47,41 +47,41 @@ TEST(Half, IsTheSameInEveryTileTestAndSize) {
 
 TEST(Half, TheBarCatchesScalesOfEightBits) {
   Model model = test::random_model(43, 3000, 0);
-  const Picture right = reference::render(model, eyes()[0]);
+  const Picture right = reference::render(model, eyes_for_half()[0]);
   for (glm::vec3& scale : model.scale) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto bits = std::bit_cast<std::uint32_t>(scale[axis]);
       scale[axis] = std::bit_cast<float>(bits & 0xFFF80000u);  // five of fp16's eleven
     }
   }
-  EXPECT_LT(test::psnr(test::draw(model, eyes()[0], half), right), 60.0);
+  EXPECT_LT(test::psnr(test::draw(model, eyes_for_half()[0], in_half), right), 60.0);
 }
 
 TEST(Half, AFrameDrawsInEitherPrecision) {
   const Model model = test::random_model(44, 1000, 1);
   render::Frame frame(test::gl_context(), model);
-  frame.draw(eyes());
+  frame.draw(eyes_for_half());
   const std::vector<Picture> full = frame.read_pictures();
-  frame.draw(eyes(), half);
-  EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, eyes(), half)[0]));
+  frame.draw(eyes_for_half(), in_half);
+  EXPECT_TRUE(test::same_bits(frame.read_pictures()[0], test::draw(model, eyes_for_half(), in_half)[0]));
   EXPECT_FALSE(test::same_bits(frame.read_pictures()[0], full[0]));
-  frame.draw(eyes());
+  frame.draw(eyes_for_half());
   EXPECT_TRUE(test::same_bits(frame.read_pictures()[1], full[1]));
 }
 
 TEST(Half, TakesTheReferencesStages) {
   const Model model = test::random_model(45, 500, 1);
-  const shared::View view = eyes()[0];
+  const shared::View view = eyes_for_half()[0];
   const Picture right = reference::render(model, view);
   for (const render::Stage until : {render::Stage::project, render::Stage::order, render::Stage::ranges}) {
-    EXPECT_GE(test::psnr(test::draw(model, view, half, test::given(until)), right), 60.0);
+    EXPECT_GE(test::psnr(test::draw(model, view, in_half, test::given(until)), right), 60.0);
   }
 }
 
 TEST(Half, NeedsLessMemory) {
   const Model model = test::random_model(46, 1000, 3);
   const auto needs = [&](int precision) {
-    return render::memory_needs(render::make_shape(eyes(), {.precision = precision}, model));
+    return render::memory_needs(render::make_shape(eyes_for_half(), {.precision = precision}, model));
   };
   EXPECT_EQ(needs(PRECISION_FULL).model, 1000 * (48 + 192));
   EXPECT_EQ(needs(PRECISION_HALF).model, 1000 * (32 + 96));

@@ -17,16 +17,16 @@ namespace {
 using render::FrameSettings;
 using render::LinearBlend;
 
-constexpr int width = 96, height = 80;
-constexpr std::size_t pixels = std::size_t{width} * height;
+constexpr int blend_width = 96, blend_height = 80;
+constexpr std::size_t pixels = std::size_t{blend_width} * blend_height;
 
-shared::View front() { return make_view(test::front_camera(width, height, 90)); }
+shared::View blend_view() { return make_view(test::front_camera(blend_width, blend_height, 90)); }
 
 // What a picture of one value shows of each Gaussian of the model: 0 of those that are not drawn.
-std::vector<double> shown(const Model& model, float value, const FrameSettings& settings = {},
-                          const render::Workings& workings = {}) {
+std::vector<double> shown_values(const Model& model, float value, const FrameSettings& settings = {},
+                                 const render::Workings& workings = {}) {
   LinearBlend blend(test::gl_context(), model);
-  blend.set_view(front(), settings, workings);
+  blend.set_view(blend_view(), settings, workings);
   blend.set_picture(std::vector<glm::vec4>(pixels, {0, 0, value, 0}));
   const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
   std::vector<double> found(model.count());
@@ -38,8 +38,8 @@ std::vector<double> shown(const Model& model, float value, const FrameSettings& 
 }
 
 // How many weights differ from the reference's by more than the steps of the pixels and fp32 explain.
-std::size_t differing(const std::vector<double>& weights, const Model& model) {
-  const shared::View view = front();
+std::size_t differing_weights(const std::vector<double>& weights, const Model& model) {
+  const shared::View view = blend_view();
   const auto splats = reference::project_all(model, view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
   const std::vector<double> expected = reference::measure_weights(splats, lists, view);
@@ -54,19 +54,19 @@ TEST(LinearBlends, WeighWhatTheReferenceWeighs) {
   Model fainter = model;  // a weight that is a little off is told apart
   for (float& opacity : fainter.opacity) opacity *= 0.995f;
   for (const int tile : {8, 16, 32}) {
-    const std::vector<double> weights = shown(model, 1.0f, {.tile_size = tile});
+    const std::vector<double> weights = shown_values(model, 1.0f, {.tile_size = tile});
     // A few may lie where fp32 blends a pixel more or less.
     const std::size_t few = model.count() / 500;
-    EXPECT_LE(differing(weights, model), few) << tile;
-    EXPECT_GT(differing(weights, fainter), 10 * few) << tile;
+    EXPECT_LE(differing_weights(weights, model), few) << tile;
+    EXPECT_GT(differing_weights(weights, fainter), 10 * few) << tile;
     // All of them, and the light that is left, make up the picture.
-    const Picture picture = test::draw(model, front());
+    const Picture picture = test::draw(model, blend_view());
     double left = 0.0, sum = 0.0;
     for (const glm::vec4& colour : picture.colour) left += colour.a;
     for (const double weight : weights) sum += weight;
     EXPECT_NEAR(sum + left, static_cast<double>(pixels), 0.1) << tile;
-    EXPECT_EQ(weights, shown(model, 1.0f, {.tile_size = tile})) << "not the same bits twice";
-    EXPECT_EQ(weights, shown(model, 1.0f, {.tile_size = tile}, {.supertile_side = 1, .slots = 10}))
+    EXPECT_EQ(weights, shown_values(model, 1.0f, {.tile_size = tile})) << "not the same bits twice";
+    EXPECT_EQ(weights, shown_values(model, 1.0f, {.tile_size = tile}, {.supertile_side = 1, .slots = 10}))
         << "drawn again, in lists of other tiles";
   }
 }
@@ -80,7 +80,7 @@ TEST(LinearBlends, LargeSumsCarry) {
   test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);
   const auto right = [&] {
     for (const float sign : {1.0f, -1.0f}) {
-      const std::vector<double> sums = shown(model, sign);
+      const std::vector<double> sums = shown_values(model, sign);
       if (std::abs(sign * sums[0] - 0.99 * pixels) > 0.1 ||
           std::abs(sign * sums[1] - 0.01 * 0.9 * pixels) > 0.02)
         return false;
@@ -118,7 +118,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
   };
   const auto find = [&](const Perspective& seen) {
     LinearBlend blend(test::gl_context(), model);
-    blend.set_view(front(), {.order = seen.order, .projection = seen.projection});
+    blend.set_view(blend_view(), {.order = seen.order, .projection = seen.projection});
     std::vector<glm::vec3> colours;
     for (const auto& drawn : blend.drawn()) colours.push_back(of_all[drawn.index]);
     blend.set_colours(colours);
@@ -126,7 +126,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
 
     Model as_seen = model;
     as_seen.perspective = seen;
-    const shared::View view = front();
+    const shared::View view = blend_view();
     auto splats = reference::project_all(as_seen, view);
     for (std::size_t i = 0; i < splats.size(); ++i) splats[i].colour = of_all[i];
     const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
@@ -165,7 +165,7 @@ TEST(LinearBlends, AreLinearAndTheirTransposeIsOne) {
 // Against pictures that the reference blends without one Gaussian after the other.
 TEST(LinearBlends, KnowWhatChangesWithoutOne) {
   const Model model = test::random_model(94, 250, 1);
-  const shared::View view = front();
+  const shared::View view = blend_view();
   const auto splats = reference::project_all(model, view);
   const auto order = reference::depth_order(splats);
   const auto picture_of = [&](const std::vector<reference::Splat>& some) {
@@ -209,13 +209,13 @@ TEST(LinearBlends, OfLongListsAreWhole) {
   }
   const auto right = [&] {
     LinearBlend blend(test::gl_context(), model);
-    blend.set_view(front());
+    blend.set_view(blend_view());
     blend.set_picture(std::vector<glm::vec4>(pixels, {1, 0, 0, 0}));
     std::vector<double> weights(model.count());
     const std::vector<glm::dvec4> sums = blend.transposed(1.0f);
     for (std::size_t k = 0; k < sums.size(); ++k) weights[blend.drawn()[k].index] = sums[k].x;
     const std::vector<double> changes = blend.changes();
-    return differing(weights, model) <= model.count() / 500 && blend.changes() == changes;
+    return differing_weights(weights, model) <= model.count() / 500 && blend.changes() == changes;
   };
   EXPECT_TRUE(right());
   const test::FaultyShaders faulty("blend_long_lists.comp", "atomicAdd(counters.long_lists, 1u)",
@@ -230,7 +230,7 @@ TEST(LinearBlends, ChangesOfWholeTilesAddUp) {
   test::add(model, {0, 0, 3}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.9f, glm::vec3(0.0f));
   for (const int tile : {8, 16, 32}) {
     LinearBlend blend(test::gl_context(), model);
-    blend.set_view(front(), {.tile_size = tile});
+    blend.set_view(blend_view(), {.tile_size = tile});
     EXPECT_EQ(blend.changes()[0], CHANGE_MOST * pixels) << tile;
   }
 }
@@ -239,7 +239,7 @@ TEST(LinearBlends, OfNothingAreNothing) {
   Model model;
   test::add(model, {0, 0, -4}, glm::vec3(0.1f), 0.99f);
   LinearBlend blend(test::gl_context(), model);
-  blend.set_view(front());
+  blend.set_view(blend_view());
   EXPECT_TRUE(blend.drawn().empty());
   blend.set_colours({});
   EXPECT_EQ(blend.read_picture()[7], glm::vec4(0, 0, 0, 1));

@@ -60,15 +60,15 @@ TEST(Lists, OfSeveralTilesOfferEachWhatItsOwnHolds) {
 }
 
 // The sequence of frames that these settings draw.
-struct Drawn {
+struct DrawnLists {
   std::vector<Picture> pictures;
   std::uint64_t pairs = 0;   // of the last, of tiles
   std::uint64_t listed = 0;  // and of lists
 };
 
-Drawn draw_frames(const Model& model, const FrameSettings& settings, int supertile_side, int count) {
+DrawnLists draw_frames(const Model& model, const FrameSettings& settings, int supertile_side, int count) {
   render::Frame frame(test::gl_context(), model);
-  Drawn drawn;
+  DrawnLists drawn;
   for (int n = 0; n < count; ++n) {
     const render::FrameReport report = frame.draw(two_views(), settings, {.supertile_side = supertile_side});
     drawn.pairs = report.pairs;
@@ -78,7 +78,7 @@ Drawn draw_frames(const Model& model, const FrameSettings& settings, int superti
   return drawn;
 }
 
-bool same_pictures(const Drawn& own, const Drawn& shared) {
+bool same_pictures(const DrawnLists& own, const DrawnLists& shared) {
   bool same = true;
   for (std::size_t k = 0; k < own.pictures.size(); ++k)
     same = same && same_bits(own.pictures[k], shared.pictures[k]);
@@ -86,7 +86,8 @@ bool same_pictures(const Drawn& own, const Drawn& shared) {
 }
 
 bool same_frames(const Model& model, const FrameSettings& settings, int count = 1) {
-  const Drawn own = draw_frames(model, settings, 1, count), shared = draw_frames(model, settings, 2, count);
+  const DrawnLists own = draw_frames(model, settings, 1, count),
+                   shared = draw_frames(model, settings, 2, count);
   EXPECT_EQ(shared.pairs, own.pairs);
   EXPECT_LT(shared.listed, own.listed);
   return same_pictures(own, shared);
@@ -126,7 +127,7 @@ TEST(Lists, OfSplatsOverThousandsOfThemAreWhole) {
 }
 
 // Whether a fault in a shader changes what a model looks like, drawn by supertiles of so many tiles.
-bool is_noticed(const Model& model, const Drawn& own, int supertile_side, const char* shader,
+bool is_noticed(const Model& model, const DrawnLists& own, int supertile_side, const char* shader,
                 const char* sought, const char* fault) {
   const test::FaultyShaders faulty(shader, sought, fault);
   return !same_pictures(own, draw_frames(model, {}, supertile_side, 1));
@@ -134,7 +135,7 @@ bool is_noticed(const Model& model, const Drawn& own, int supertile_side, const 
 
 TEST(Lists, FaultsInWhatIsLeftForPairsAreNoticed) {
   const Model model = test::random_model(52, 4000, 1);
-  const Drawn own = draw_frames(model, {}, 1, 1);
+  const DrawnLists own = draw_frames(model, {}, 1, 1);
   const auto fails = [&](const char* shader, const char* sought, const char* fault) {
     return is_noticed(model, own, 2, shader, sought, fault);
   };
@@ -147,7 +148,7 @@ TEST(Lists, FaultsInWhatIsLeftForPairsAreNoticed) {
 // Of the program that draws here, the blocks' lists: with subgroups or without.
 TEST(Lists, ABlockThatMissesASplatIsNoticed) {
   const Model model = test::random_model(52, 4000, 1);
-  const Drawn own = draw_frames(model, {}, 1, 1);
+  const DrawnLists own = draw_frames(model, {}, 1, 1);
   const auto misses = [&](const char* shader, const char* sought, const char* fault) {
     return is_noticed(model, own, 1, shader, sought, fault);
   };

@@ -32,7 +32,7 @@ Model wires(const Needle& needle, std::uint32_t seed, double kernel_px2 = KERNEL
   return model;
 }
 
-shared::View view_of(double focal) { return make_view(test::front_camera(128, 96, focal)); }
+shared::View view_of_focal(double focal) { return make_view(test::front_camera(128, 96, focal)); }
 
 // The least over needles, focal lengths and seeds.
 double least_db(const render::FrameSettings& settings, double kernel_px2 = KERNEL_PX2) {
@@ -41,8 +41,8 @@ double least_db(const render::FrameSettings& settings, double kernel_px2 = KERNE
     for (const double focal : {300.0, 1536.0, 4000.0}) {
       for (std::uint32_t seed = 1; seed <= 3; ++seed) {
         const Model model = wires(needle, seed, kernel_px2);
-        const double db =
-            test::psnr(test::draw(model, view_of(focal), settings), reference::render(model, view_of(focal)));
+        const double db = test::psnr(test::draw(model, view_of_focal(focal), settings),
+                                     reference::render(model, view_of_focal(focal)));
         if (db < least) fmt::print("{} x {} m, {} px: {:.1f} dB\n", needle.length, needle.width, focal, db);
         least = std::min(least, db);
       }
@@ -72,9 +72,9 @@ TEST(Needles, LeaveNoTileOut) {
   for (const Needle& needle : {shortest, longest}) {
     for (const double focal : {300.0, 4000.0}) {
       const Model model = wires(needle, 9);
-      const Picture all = test::draw(model, view_of(focal), {.tiles = TILES_ALL});
+      const Picture all = test::draw(model, view_of_focal(focal), {.tiles = TILES_ALL});
       for (const int tiles : {TILES_SNUG, TILES_ELLIPSE})
-        EXPECT_TRUE(test::same_bits(test::draw(model, view_of(focal), {.tiles = tiles}), all)) << tiles;
+        EXPECT_TRUE(test::same_bits(test::draw(model, view_of_focal(focal), {.tiles = tiles}), all)) << tiles;
     }
   }
 }

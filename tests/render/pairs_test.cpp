@@ -50,7 +50,7 @@ Lists reference_lists(const Model& model, const render::FrameShape& shape) {
 }
 
 // Pairs that only one of the two has.
-std::size_t differing(const Lists& a, const Lists& b) {
+std::size_t differing_entries(const Lists& a, const Lists& b) {
   std::size_t count = 0;
   for (std::size_t t = 0; t < a.size(); ++t) {
     const std::set<std::uint32_t> in_a(a[t].begin(), a[t].end());
@@ -83,11 +83,11 @@ TEST_P(Pairs, EqualTheReferences) {
   ASSERT_EQ(lists.size(), expected.size());
   EXPECT_GT(total(expected), 5000u);
   // fp32 may decide otherwise only at a boundary: 0.02 % (docs/method.md 8).
-  EXPECT_LE(differing(lists, expected), total(expected) / 5000 + 1);
+  EXPECT_LE(differing_entries(lists, expected), total(expected) / 5000 + 1);
 
   Lists shifted = expected;  // every list one tile further: what an index off by one would do
   std::rotate(shifted.begin(), shifted.begin() + 1, shifted.end());
-  EXPECT_GT(differing(lists, shifted), total(expected) / 100);
+  EXPECT_GT(differing_entries(lists, shifted), total(expected) / 100);
 }
 
 TEST_P(Pairs, AreInDepthOrderWithTiesByIndex) {
@@ -140,7 +140,7 @@ TEST(PairsOf, SplatsOnTileEdgesAndBeyondThePictureEqualTheReferences) {
   for (const int tile_size : {8, 16, 32}) {
     test::StageRun run(model, views, {.tile_size = tile_size});
     const Lists lists = gpu_lists(run);
-    EXPECT_LE(differing(lists, reference_lists(model, run.shape)), 1u) << tile_size;
+    EXPECT_LE(differing_entries(lists, reference_lists(model, run.shape)), 1u) << tile_size;
     EXPECT_GT(total(lists), 100u);
   }
 }

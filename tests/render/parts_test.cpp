@@ -20,7 +20,7 @@ using test::same_bits;
 
 constexpr glm::ivec2 size{200, 150};
 
-shared::View view_of(double cx) {
+shared::View view_of_centre(double cx) {
   Camera camera = test::front_camera(size.x, size.y, 180);
   camera.cx = cx;
   return make_view(camera);
@@ -46,7 +46,7 @@ FrameSettings with(FrameSettings settings, std::vector<ViewPart> parts) {
 // Whether windows of a picture, drawn in one frame, are what the whole picture has there.
 testing::AssertionResult windows_are_right(const Model& model, const FrameSettings& settings,
                                            int supertile_side = 1) {
-  const shared::View view = view_of(87.3);
+  const shared::View view = view_of_centre(87.3);
   const render::Workings workings{.supertile_side = supertile_side};
   const Picture whole = draw(model, view, settings, workings);
   struct Window {
@@ -124,7 +124,7 @@ Picture masked(Picture whole, const ViewPart& part, int tile) {
 
 TEST(Parts, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
   const Model model = test::random_model(42, 3000, 1, 0.75);
-  const std::vector views = {view_of(100), view_of(70)};
+  const std::vector views = {view_of_centre(100), view_of_centre(70)};
   for (const auto& [settings, side] :
        {std::pair{FrameSettings{}, 1},
         {FrameSettings{}, 2},
@@ -144,7 +144,7 @@ TEST(Parts, WhatIsNotShownIsBackgroundAndTheRestAsBefore) {
 // How long the lists of a view's tiles are; only those that no hole hides.
 std::vector<std::uint32_t> list_sizes(const Model& model, const FrameSettings& settings, int supertile_side,
                                       const ViewPart& shown) {
-  test::StageRun run(model, {view_of(100)}, settings, supertile_side);
+  test::StageRun run(model, {view_of_centre(100)}, settings, supertile_side);
   run.run_until(render::Stage::ranges);
   const auto counters = run.frame.counters.read<shared::Counters>(1).front();
   EXPECT_EQ(counters.overflow, 0u);
@@ -204,7 +204,7 @@ TEST(Parts, AColumnTooManyOrTooFewIsCaught) {
 TEST(Parts, AHoleIsPairedOnlyByWhatReachesOverIt) {
   const Model model = test::random_model(44, 3000, 0, 0.75);
   render::Frame frame(test::gl_context(), model);
-  const std::vector views = {view_of(100)};
+  const std::vector views = {view_of_centre(100)};
   const auto whole = frame.draw(views).pairs;
   const auto holed = frame.draw(views, with({}, {{.hole_begin = {32, 32}, .hole_end = {176, 128}}})).pairs;
   const double left = static_cast<double>(holed) / static_cast<double>(whole);
@@ -218,7 +218,7 @@ TEST(Parts, AHoleThatMovesIsACut) {
   const FrameSettings last{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.3f};
   const FrameSettings before = with(last, {{.hole_begin = {32, 32}, .hole_end = {96, 96}}});
   const FrameSettings now = with(last, {{.hole_begin = {64, 32}, .hole_end = {128, 96}}});
-  const std::vector views = {view_of(100)};
+  const std::vector views = {view_of_centre(100)};
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 3; ++n) frame.draw(views, before);
   EXPECT_TRUE(frame.draw(views, before).remembered);
@@ -231,7 +231,7 @@ TEST(Parts, AHoleThatMovesIsACut) {
 
 TEST(Parts, AViewGoesByItsShareOfTheTolerance) {
   const Model model = test::random_model(45, 4000, 1, 0.75);
-  const std::vector views = {view_of(100), view_of(100), view_of(100)};
+  const std::vector views = {view_of_centre(100), view_of_centre(100), view_of_centre(100)};
   for (const int th : {TH_SQUARED, TH_PERIPHERAL}) {
     FrameSettings settings{.th = th, .tolerance = 0.1f};
     const auto drawn = draw(
@@ -312,7 +312,7 @@ TEST(Parts, OneDepthOrderServesFourViews) {
 
 TEST(Parts, AQualityIsThatOfWhatIsShown) {
   const Model model = test::random_model(97, 3000, 1);
-  const std::vector views = {view_of(100)};
+  const std::vector views = {view_of_centre(100)};
   const ViewPart part = ragged(16);
   const auto exact = draw(model, views[0], with({}, {part}));
   render::Frame frame(test::gl_context(), model);
@@ -327,11 +327,11 @@ TEST(Parts, AQualityIsThatOfWhatIsShown) {
 TEST(Parts, WrongOnesAreNamed) {
   const Model model = test::random_model(47, 10, 0);
   const auto said = [&](const ViewPart& part, const FrameSettings& settings = {}) {
-    return [=, &model] { draw(model, view_of(100), with(settings, {part})); };
+    return [=, &model] { draw(model, view_of_centre(100), with(settings, {part})); };
   };
   EXPECT_TRUE(test::fails_saying(
       [&] {
-        draw(model, view_of(100), with({}, {{}, {}}));
+        draw(model, view_of_centre(100), with({}, {{}, {}}));
       },
       {"2 parts of 1 views"}));
   EXPECT_TRUE(test::fails_saying(said({.corner = {16, 0}}), {"from (16, 0)", "multiples of 32"}));
@@ -348,7 +348,8 @@ TEST(Parts, WrongOnesAreNamed) {
                                  {"a quality is found for whole pictures"}));
   EXPECT_TRUE(test::fails_saying(
       [&] {
-        draw(model, view_of(100), with({}, {{.corner = {32, 0}}}), test::given(render::Stage::project));
+        draw(model, view_of_centre(100), with({}, {{.corner = {32, 0}}}),
+             test::given(render::Stage::project));
       },
       {"reference-until", "all of every view"}));
 }

@@ -63,7 +63,7 @@ Camera wide_camera() {
   return camera;
 }
 
-std::string name_of(const Perspective& p) {
+std::string name_of_perspective(const Perspective& p) {
   return std::string(order_choices[p.order].name) + "_" + projection_choices[p.projection].name;
 }
 
@@ -80,9 +80,10 @@ TEST_P(InPerspective, EqualsTheReference) {
     EXPECT_GE(psnr(draw(model, view, {.precision = PRECISION_HALF}), expected), 60.0) << model.name;
     for (const Perspective& other : perspectives) {
       if (other == GetParam()) continue;
-      EXPECT_LT(psnr(drawn, reference::render(model, view, {.perspective = other})), 50.0) << name_of(other);
+      EXPECT_LT(psnr(drawn, reference::render(model, view, {.perspective = other})), 50.0)
+          << name_of_perspective(other);
       const Picture by_settings = draw(model, view, {.order = other.order, .projection = other.projection});
-      EXPECT_TRUE(same_bits(by_settings, draw(in(other, plain), view))) << name_of(other);
+      EXPECT_TRUE(same_bits(by_settings, draw(in(other, plain), view))) << name_of_perspective(other);
     }
   }
 }
@@ -273,7 +274,7 @@ TEST(Turn, PixelsByThemselvesAreThoseOfThePicture) {
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       const auto at = static_cast<std::size_t>(pixels[k].y * camera.width + pixels[k].x);
       EXPECT_LE(glm::length(glm::vec3(whole.colour[at]) - colours[k]), 1e-4)
-          << name_of(perspective) << " " << k;
+          << name_of_perspective(perspective) << " " << k;
     }
   }
 }
@@ -303,7 +304,7 @@ TEST(Perspectives, FaultsAreNoticed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, InPerspective, testing::ValuesIn(perspectives),
-                         [](const auto& one) { return name_of(one.param); });
+                         [](const auto& one) { return name_of_perspective(one.param); });
 
 }  // namespace
 }  // namespace binosplat

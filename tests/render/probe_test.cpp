@@ -36,11 +36,11 @@ struct ProbeRun {
 };
 
 // As the screen shows a picture.
-Image shown(const Picture& picture) { return quantised(composite(picture, background)); }
+Image shown_image(const Picture& picture) { return quantised(composite(picture, background)); }
 
 // The mean squared error over a probe's tiles of `side` px: what it should tell.
 double error_in(const Probe& probe, const Picture& drawn, const Picture& exact, int side) {
-  const Image a = shown(drawn), b = shown(exact);
+  const Image a = shown_image(drawn), b = shown_image(exact);
   double sum = 0;
   std::size_t count = 0;
   for (int y = 0; y < a.height; ++y) {
@@ -70,7 +70,7 @@ std::uint32_t tiles_along(int pixels, int side) {
   return static_cast<std::uint32_t>((pixels + side - 1) / side);
 }
 
-std::vector<shared::View> eyes(int width, int height, double cant = 0.0) {
+std::vector<shared::View> eyes_for_probe(int width, int height, double cant = 0.0) {
   const auto rig = stereo::make_rig(test::front_camera(width, height, width),
                                     {.ipd = 0.1, .units_per_metre = 1.0, .cant_degrees = cant});
   return {rig.views.begin(), rig.views.end()};
@@ -79,7 +79,7 @@ std::vector<shared::View> eyes(int width, int height, double cant = 0.0) {
 // Settings without tolerance, in which a probe must find no error.
 void expect_no_error(const Model& model, const FrameSettings& settings, int supertile_side, double cant) {
   constexpr int width = 100, height = 83;  // the last tiles of a row and a column are cut by the edge
-  const auto views = eyes(width, height, cant);
+  const auto views = eyes_for_probe(width, height, cant);
   const int side = settings.tile_size;
   for (const Probe& probe : probes({1, 3}, tiles_along(width, side), tiles_along(height, side))) {
     EXPECT_EQ(ProbeRun(model, views, settings, supertile_side, probe).error, 0.0)
@@ -115,7 +115,7 @@ TEST(Probe, TellsTheErrorOfItsTilesAsTheScreenShowsThem) {
   constexpr int width = 100, height = 83;
   for (const int side : {8, 16, 32}) {
     for (const double cant : {0.0, 4.0}) {
-      const auto views = eyes(width, height, cant);
+      const auto views = eyes_for_probe(width, height, cant);
       const FrameSettings settings = {
           .th = TH_SQUARED, .tolerance = 0.3f, .tile_size = side, .background = background};
       const auto exact = test::draw(model, views, {.tile_size = side, .background = background});
@@ -147,7 +147,7 @@ TEST(Probe, TellsOfLongListsToo) {
     test::add(model, glm::vec3(uniform(-0.05, 0.05), uniform(-0.05, 0.05), uniform(1.0, 2.0)),
               glm::vec3(uniform(0.01, 0.1)), 0.02f, glm::vec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)));
   }
-  const auto views = eyes(64, 48);
+  const auto views = eyes_for_probe(64, 48);
   const auto exact = test::draw(model, views, {.background = background});
   for (const float tolerance : {0.0f, 0.02f}) {
     const FrameSettings settings = {.th = TH_SQUARED, .tolerance = tolerance, .background = background};
@@ -165,7 +165,7 @@ TEST(Probe, TellsOfLongListsToo) {
 
 TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
   const Model model = test::random_model(105, 2000, 1);
-  const auto views = eyes(96, 80);
+  const auto views = eyes_for_probe(96, 80);
   for (const FrameSettings& settings :
        {FrameSettings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST},
         FrameSettings{.th = TH_PERIPHERAL, .transmittance = TRANSMITTANCE_LAST}}) {
@@ -184,7 +184,7 @@ TEST(Probe, IsNoPictureAndChangesNoneNorWhatIsMeasured) {
 
 TEST(Quality, TheFrameIsThatOfTheToleranceItTells) {
   const Model model = test::random_model(99, 3000, 1);
-  const auto views = eyes(96, 80);
+  const auto views = eyes_for_probe(96, 80);
   FrameSettings settings = {.th = TH_SQUARED, .quality = 38, .probe_tiles = 4, .probe_every = 1};
   render::Frame steered(test::gl_context(), model), given(test::gl_context(), model);
   for (int n = 0; n < 6; ++n) {
@@ -209,7 +209,7 @@ TEST(Quality, IsToldFromTheFirstFrameOn) {
   render::Frame frame(test::gl_context(), model);
   for (int n = 0; n < 8; ++n) {
     const render::FrameReport report = frame.draw(views, settings);
-    const double db = measure::psnr(shown(frame.read_pictures().front()), shown(exact.front()));
+    const double db = measure::psnr(shown_image(frame.read_pictures().front()), shown_image(exact.front()));
     EXPECT_NEAR(report.quality, db, n == 0 ? 0.01 : 0.3) << n;  // all tiles are probed
     EXPECT_GE(db, 33.9) << n;
     EXPECT_LE(db, 35.5) << n;

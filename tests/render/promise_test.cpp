@@ -19,7 +19,7 @@ namespace {
 using render::FrameSettings;
 using Views = std::vector<shared::View>;
 
-constexpr int width = 96, height = 168, tile = 8;  // px
+constexpr int walk_width = 96, walk_height = 168, tile = 8;  // px
 constexpr double asked = 40.0;
 constexpr double equal_pictures = 100.0;  // dB, as study has it
 
@@ -29,7 +29,7 @@ struct Walk {
   std::vector<std::vector<Image>> exact;  // as a screen shows them
 };
 
-std::vector<Image> shown(render::Frame& frame) {
+std::vector<Image> shown_images(render::Frame& frame) {
   std::vector<Image> images;
   for (const Picture& picture : frame.read_pictures())
     images.push_back(quantised(composite(picture, glm::vec3(0.0f))));
@@ -38,7 +38,7 @@ std::vector<Image> shown(render::Frame& frame) {
 
 Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion& motion, std::size_t count) {
   const double units = metre_of(cameras);
-  for (Camera& camera : cameras) camera = resized(camera, width, height);
+  for (Camera& camera : cameras) camera = resized(camera, walk_width, walk_height);
   const auto heads = tour(cameras, {.motion = motion, .units_per_metre = units});
   Walk walk;
   render::Frame frame(test::gl_context(), model);
@@ -46,7 +46,7 @@ Walk walk_through(const Model& model, std::vector<Camera> cameras, const Motion&
     const auto rig = stereo::make_rig(heads.at(n), {.units_per_metre = units});
     walk.frames.emplace_back(rig.views.begin(), rig.views.end());
     frame.draw(rig.views);
-    walk.exact.push_back(shown(frame));
+    walk.exact.push_back(shown_images(frame));
   }
   return walk;
 }
@@ -72,7 +72,7 @@ Kept keep(const Model& model, const Walk& walk, const Draw& draw) {
   const auto count = static_cast<double>(walk.frames.size());
   for (std::size_t n = 0; n < walk.frames.size(); ++n) {
     const Told told = draw(frame, n);
-    const auto images = shown(frame);
+    const auto images = shown_images(frame);
     double db = equal_pictures;  // of the worse eye
     for (std::size_t eye = 0; eye < images.size(); ++eye)
       db = std::min(db, measure::psnr(images[eye], walk.exact[n][eye]));
@@ -123,7 +123,7 @@ class FormerControl {
         .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = static_cast<float>(tolerance_)};
     frame.draw(walk_.frames[n], settings);
     const std::size_t eyes = walk_.frames[n].size(), eye = n % eyes, strip = n / eyes * 9 % strips;
-    const double error = strip_error(shown(frame)[eye], walk_.exact[n][eye], strip);
+    const double error = strip_error(shown_images(frame)[eye], walk_.exact[n][eye], strip);
     for (Sample& sample : samples_) sample.weight *= 0.95;
     samples_.front().weight *= 0.5 / 0.95;
     samples_.at(1 + eye * strips + strip) = {error / std::pow(tolerance_, power), 1.0};
@@ -201,14 +201,14 @@ Walk look_at(const Model& model, bool cuts, std::size_t count) {
   Walk walk;
   render::Frame frame(test::gl_context(), model);
   for (std::size_t n = 0; n < count; ++n) {
-    Camera head = test::front_camera(width, height, 150.0);
+    Camera head = test::front_camera(walk_width, walk_height, 150.0);
     const double turn = cuts && n % 2 == 1 ? glm::radians(20.0) : 0.0;
     head.rotation =
         glm::dmat3(std::cos(turn), 0, -std::sin(turn), 0, 1, 0, std::sin(turn), 0, std::cos(turn));
     const auto rig = stereo::make_rig(head, {});
     walk.frames.emplace_back(rig.views.begin(), rig.views.end());
     frame.draw(rig.views);
-    walk.exact.push_back(shown(frame));
+    walk.exact.push_back(shown_images(frame));
   }
   return walk;
 }
@@ -239,7 +239,7 @@ TEST(Promise, HoldsFromTheFirstFrameOnOfAWalkThroughFox) {
   EXPECT_GE(kept.sampled, 3);
   EXPECT_LE(kept.drawn, 1.5);
   // Planted fault: the control that there was.
-  const Camera small = resized(cameras.front(), width, height);
+  const Camera small = resized(cameras.front(), walk_width, walk_height);
   EXPECT_FALSE(promise_holds(keep(model, walk, FormerControl(walk, small.fy))));
 }
 

@@ -17,7 +17,7 @@ using test::same_bits;
 
 // A wall of opaque splats at depth 2, and as many behind it that nobody sees; `seen_behind` stand free beside
 // it.
-Model wall() {
+Model wall_of_layers() {
   Model model;
   for (const float z : {2.0f, 4.0f, 5.0f, 6.0f}) {
     for (int y = -12; y <= 12; ++y) {
@@ -31,7 +31,7 @@ Model wall() {
   return model;
 }
 
-shared::View front() { return make_view(test::front_camera(96, 80, 90)); }
+shared::View wall_view() { return make_view(test::front_camera(96, 80, 90)); }
 
 TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
   const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
@@ -39,16 +39,16 @@ TEST(Remember, AModelThatIsReloadedIsDrawnAsANewOne) {
   for (const std::size_t at_first : {std::size_t{400}, std::size_t{5000}}) {
     Model model = test::random_model(82, static_cast<int>(at_first), 1);
     render::Frame frame(test::gl_context(), model);
-    for (int n = 0; n < 3; ++n) frame.draw(std::vector{front()}, settings);
+    for (int n = 0; n < 3; ++n) frame.draw(std::vector{wall_view()}, settings);
     model = other;
     frame.model()->reload();
-    EXPECT_FALSE(frame.draw(std::vector{front()}, settings).remembered);
-    EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, front(), settings)));
-    EXPECT_TRUE(frame.draw(std::vector{front()}, settings).remembered);
+    EXPECT_FALSE(frame.draw(std::vector{wall_view()}, settings).remembered);
+    EXPECT_TRUE(same_bits(frame.read_pictures().front(), test::draw(other, wall_view(), settings)));
+    EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).remembered);
     // Planted: changed, and not uploaded.
     model.position[700] += 0.5f;
-    frame.draw(std::vector{front()}, settings);
-    EXPECT_FALSE(same_bits(frame.read_pictures().front(), test::draw(model, front(), settings)));
+    frame.draw(std::vector{wall_view()}, settings);
+    EXPECT_FALSE(same_bits(frame.read_pictures().front(), test::draw(model, wall_view(), settings)));
   }
 }
 
@@ -62,20 +62,20 @@ TEST(Remember, MeasuringDoesNotChangeThePicture) {
 }
 
 TEST(Remember, MeasuresWhatTheReferenceMeasures) {
-  for (const Model& model : {test::random_model(86, 4000, 0), wall()}) {
-    const std::vector<float> measured = test::measured_on_gpu(model, front());
+  for (const Model& model : {test::random_model(86, 4000, 0), wall_of_layers()}) {
+    const std::vector<float> measured = test::measured_on_gpu(model, wall_view());
     // A few may lie where fp32 blends a pixel more or less.
     const std::size_t few = model.count() / 500;
-    EXPECT_LE(test::differing(measured, model, front()), few);
+    EXPECT_LE(test::differing(measured, model, wall_view()), few);
     EXPECT_GT(std::count_if(measured.begin(), measured.end(), [](float m) { return m < 0.5f; }), 100);
     Model fainter = model;  // a transmittance that is a little off is told apart
     for (float& opacity : fainter.opacity) opacity *= 0.98f;
-    EXPECT_GT(test::differing(measured, fainter, front()), 10 * few);
+    EXPECT_GT(test::differing(measured, fainter, wall_view()), 10 * few);
   }
 }
 
 TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
-  const Model model = wall();
+  const Model model = wall_of_layers();
   const FrameSettings settings = {
       .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 4, .tolerance = 0.05f};
   FrameSettings every = settings;
@@ -83,19 +83,19 @@ TEST(Remember, MeasuresSomeFramesOfAStillCameraForAll) {
   render::Frame frame(test::gl_context(), model), measured(test::gl_context(), model);
   std::string recorded;
   for (int n = 0; n < 16; ++n) {
-    recorded += frame.draw(std::vector{front()}, settings).recorded ? 'r' : '-';
+    recorded += frame.draw(std::vector{wall_view()}, settings).recorded ? 'r' : '-';
     // The frames between show what the next one that measures shows.
-    if (n < 4 || n % 4 == 0) measured.draw(std::vector{front()}, every);
+    if (n < 4 || n % 4 == 0) measured.draw(std::vector{wall_view()}, every);
     EXPECT_TRUE(same_bits(frame.read_pictures().front(), measured.read_pictures().front())) << n;
   }
   EXPECT_EQ(recorded, "rrrr---r---r---r");
   frame.forget();
-  EXPECT_TRUE(frame.draw(std::vector{front()}, settings).recorded);
-  EXPECT_THROW(frame.draw(std::vector{front()}, {.record_every = 0}), Error);
+  EXPECT_TRUE(frame.draw(std::vector{wall_view()}, settings).recorded);
+  EXPECT_THROW(frame.draw(std::vector{wall_view()}, {.record_every = 0}), Error);
 }
 
 TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
-  const Model model = wall();
+  const Model model = wall_of_layers();
   const FrameSettings settings = {
       .th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .record_every = 6, .tolerance = 0.05f};
   render::Frame frame(test::gl_context(), model);
@@ -111,14 +111,14 @@ TEST(Remember, MeasuresAnewOnceTheEyesHaveGoneAThirdOfTheWayToACut) {
 }
 
 TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
-  const Model model = wall();
+  const Model model = wall_of_layers();
   const FrameSettings one = {.th = TH_SQUARED, .tolerance = 0.05f};
   const FrameSettings last = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.05f};
-  const Picture expected = test::draw(model, front(), one);
+  const Picture expected = test::draw(model, wall_view(), one);
   render::Frame frame(test::gl_context(), model);
-  frame.draw(std::vector{front()}, last);
+  frame.draw(std::vector{wall_view()}, last);
   EXPECT_TRUE(same_bits(frame.read_pictures().front(), expected));
-  frame.draw(std::vector{front()}, last);
+  frame.draw(std::vector{wall_view()}, last);
   EXPECT_FALSE(same_bits(frame.read_pictures().front(), expected));  // the second one knows what is hidden
   Camera elsewhere = test::front_camera(96, 80, 90);
   elsewhere.position = {1.5, 0, 0};
@@ -127,15 +127,15 @@ TEST(Remember, TheFirstFrameAndACutEqualAllLight) {
 }
 
 TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
-  const Model model = wall();
-  const Picture exact = test::draw(model, front());
+  const Model model = wall_of_layers();
+  const Picture exact = test::draw(model, wall_view());
   for (const int th : {TH_PERIPHERAL, TH_SQUARED}) {
     const FrameSettings settings = {
         .th = th, .transmittance = TRANSMITTANCE_LAST, .tolerance = th == TH_SQUARED ? 1e-3f : 0.3f};
     render::Frame frame(test::gl_context(), model);
-    const auto first = frame.draw(std::vector{front()}, settings);
+    const auto first = frame.draw(std::vector{wall_view()}, settings);
     auto report = first;
-    for (int n = 0; n < 10; ++n) report = frame.draw(std::vector{front()}, settings);
+    for (int n = 0; n < 10; ++n) report = frame.draw(std::vector{wall_view()}, settings);
     EXPECT_LT(static_cast<double>(report.pairs), 0.8 * static_cast<double>(first.pairs))
         << th_choices[th].name;
     EXPECT_GT(test::psnr(frame.read_pictures().front(), exact), 45.0) << th_choices[th].name;
@@ -145,10 +145,10 @@ TEST(Remember, WhatIsHiddenMakesFewerPairsAtNoCost) {
 TEST(Remember, WhatComesOutFromBehindIsSeenAgain) {
   // The wall before the others is gone in the next frame: so are the measurements of what it hid, within a
   // few frames.
-  const Model model = wall();
+  const Model model = wall_of_layers();
   const FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.01f};
   render::Frame frame(test::gl_context(), model);
-  for (int n = 0; n < 5; ++n) frame.draw(std::vector{front()}, settings);
+  for (int n = 0; n < 5; ++n) frame.draw(std::vector{wall_view()}, settings);
   // Through the near plane instead of another model: what is nearer than 3 is not drawn.
   const shared::View opened = make_view(test::front_camera(96, 80, 90), 3.0);
   const Picture exact = test::draw(model, opened);
@@ -189,7 +189,7 @@ TEST(Remember, AFrameThatIsDrawnAgainMeasuresTheSame) {
 
 TEST(Remember, WhatMakesNoSenseIsNamed) {
   const Model model = test::random_model(84, 10, 0);
-  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, front(), {.th = TH_SQUARED, .tolerance = -1}); },
+  EXPECT_TRUE(test::fails_saying([&] { test::draw(model, wall_view(), {.th = TH_SQUARED, .tolerance = -1}); },
                                  {"tolerance -1"}));
 }
 

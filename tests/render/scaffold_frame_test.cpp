@@ -26,7 +26,7 @@ using test::same_bits;
 
 const test::ScaffoldKind four_hundred{.anchors = 400};
 
-std::vector<shared::View> eyes(const stereo::RigSettings& settings = {.ipd = 0.2}) {
+std::vector<shared::View> eyes_at_scaffold(const stereo::RigSettings& settings = {.ipd = 0.2}) {
   const auto rig = stereo::make_rig(test::front_camera(150, 110, 140), settings);
   return {rig.views.begin(), rig.views.end()};
 }
@@ -40,7 +40,7 @@ reference::Settings shared_by(const std::vector<shared::View>& views) {
 TEST(ScaffoldFrame, EqualsTheReference) {
   const Model model = test::scaffold_model(21, four_hundred);
   for (const double cant : {0.0, 5.0}) {
-    const std::vector<shared::View> views = eyes({.ipd = 0.2, .cant_degrees = cant});
+    const std::vector<shared::View> views = eyes_at_scaffold({.ipd = 0.2, .cant_degrees = cant});
     const std::vector<Picture> own = draw(model, views);
     const std::vector<Picture> shared = draw(model, views, {.decode = DECODE_CYCLOPEAN});
     for (std::size_t v = 0; v < 2; ++v) {
@@ -57,9 +57,9 @@ TEST(ScaffoldFrame, EqualsTheReference) {
 
 TEST(ScaffoldFrame, IsDecodedIntoHalfPrecision) {
   const Model model = test::scaffold_model(21, four_hundred);
-  const std::vector<Picture> half = draw(model, eyes(), {.precision = PRECISION_HALF});
+  const std::vector<Picture> half = draw(model, eyes_at_scaffold(), {.precision = PRECISION_HALF});
   for (std::size_t v = 0; v < 2; ++v) {
-    const double db = test::psnr(half[v], reference::render(model, eyes()[v]));
+    const double db = test::psnr(half[v], reference::render(model, eyes_at_scaffold()[v]));
     EXPECT_GE(db, 60.0) << v;
     EXPECT_LT(db, 100.0) << v;
   }
@@ -69,15 +69,15 @@ TEST(ScaffoldFrame, APrecisionThatChangesForgetsWhatWasKept) {
   const Model model = test::scaffold_model(21, four_hundred);
   FrameSettings settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.5f};
   render::Frame frame(test::gl_context(), model);
-  for (int n = 0; n < 2; ++n) frame.draw(eyes(), settings);
+  for (int n = 0; n < 2; ++n) frame.draw(eyes_at_scaffold(), settings);
   settings.precision = PRECISION_HALF;
-  EXPECT_FALSE(frame.draw(eyes(), settings).remembered);
-  EXPECT_TRUE(frame.draw(eyes(), settings).remembered);
+  EXPECT_FALSE(frame.draw(eyes_at_scaffold(), settings).remembered);
+  EXPECT_TRUE(frame.draw(eyes_at_scaffold(), settings).remembered);
 }
 
 TEST(ScaffoldFrame, TileTestsAgreeBitForBit) {
   const Model model = test::scaffold_model(22, four_hundred);
-  const std::vector<shared::View> views = eyes();
+  const std::vector<shared::View> views = eyes_at_scaffold();
   const std::vector<Picture> brute = draw(model, views, {.tiles = TILES_ALL});
   for (const int tiles : {TILES_SNUG, TILES_ELLIPSE}) {
     const std::vector<Picture> drawn = draw(model, views, {.tiles = tiles, .tile_size = 8});
@@ -90,7 +90,7 @@ TEST(ScaffoldFrame, TileTestsAgreeBitForBit) {
 TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
   const Model model = test::scaffold_model(23, four_hundred);
   for (const double cant : {0.0, 5.0}) {
-    const std::vector<shared::View> views = eyes({.ipd = 0.2, .cant_degrees = cant});
+    const std::vector<shared::View> views = eyes_at_scaffold({.ipd = 0.2, .cant_degrees = cant});
     for (const FrameSettings& way : {FrameSettings{}, FrameSettings{.th = TH_SQUARED, .tolerance = 0.05f}}) {
       const std::vector<Picture> both = draw(model, views, way);
       for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(both[v], draw(model, views[v], way))) << v;
@@ -105,7 +105,7 @@ TEST(ScaffoldFrame, EachEyeEqualsItsMonoPictureBitForBit) {
 
 TEST(ScaffoldFrame, PagesMakeNoDifference) {
   const Model model = test::scaffold_model(24, four_hundred);
-  const std::vector<shared::View> views = eyes();
+  const std::vector<shared::View> views = eyes_at_scaffold();
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
     render::Frame frame(std::make_shared<render::GpuModel>(test::gl_context(), model, PRECISION_FULL, 70));
     frame.draw(views, {.decode = decode});
@@ -116,7 +116,7 @@ TEST(ScaffoldFrame, PagesMakeNoDifference) {
 
 TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
   const Model model = test::scaffold_model(25, {.anchors = 200});
-  const std::vector<shared::View> views = eyes();
+  const std::vector<shared::View> views = eyes_at_scaffold();
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
     const Picture expected =
         reference::render(model, views[1], shared_by(decode == DECODE_EYES ? std::vector{views[1]} : views));
@@ -133,7 +133,7 @@ TEST(ScaffoldFrame, ReferenceUntilAnyStageGivesTheSamePicture) {
 
 TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
   const Model model = test::scaffold_model(26, four_hundred);
-  const std::vector<shared::View> views = eyes();
+  const std::vector<shared::View> views = eyes_at_scaffold();
   render::Frame frame(test::gl_context(), model);
   frame.draw(std::vector{views[1]});
   frame.draw(views, {.decode = DECODE_CYCLOPEAN});
@@ -144,7 +144,7 @@ TEST(ScaffoldFrame, FramesAfterOneAnotherAreDecodedAnew) {
 
 TEST(ScaffoldFrame, WhatIsMeasuredIsKeptById) {
   const Model model = test::scaffold_model(27, four_hundred);
-  const shared::View view = eyes()[0];
+  const shared::View view = eyes_at_scaffold()[0];
   const std::size_t few = model.count() / 500;
   const std::vector<float> measured = test::measured_on_gpu(model, view);
   EXPECT_LE(test::differing(measured, model, view), few);
@@ -155,7 +155,7 @@ TEST(ScaffoldFrame, WhatIsMeasuredIsKeptById) {
 
 TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
   const Model model = test::scaffold_model(28, {.anchors = 1500});
-  std::vector<shared::View> views = eyes();
+  std::vector<shared::View> views = eyes_at_scaffold();
   const std::vector<Picture> exact = draw(model, views);
   const FrameSettings settings{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST, .tolerance = 0.01f};
   render::Frame frame(test::gl_context(), model);
@@ -168,7 +168,7 @@ TEST(ScaffoldFrame, WhatIsHiddenMakesFewerPairs) {
 
 TEST(ScaffoldFrame, AThresholdTakesEachEyesOwn) {
   const Model model = test::scaffold_model(29, four_hundred);
-  const std::vector<shared::View> views = eyes();
+  const std::vector<shared::View> views = eyes_at_scaffold();
   const std::vector<Picture> exact = draw(model, views);
   const std::vector<Picture> drawn = draw(model, views, {.th = TH_SQUARED});
   for (std::size_t v = 0; v < 2; ++v) EXPECT_TRUE(same_bits(drawn[v], exact[v])) << v;
@@ -179,7 +179,7 @@ TEST(ScaffoldFrame, AProbeSharesTheGaussiansOfItsView) {
   // Without tolerance a strip beside the picture differs from it by nothing, though the strip alone would see
   // other anchors.
   const Model model = test::scaffold_model(30, four_hundred);
-  const std::vector<shared::View> views = eyes();
+  const std::vector<shared::View> views = eyes_at_scaffold();
   for (const int decode : {DECODE_EYES, DECODE_CYCLOPEAN}) {
     render::Frame frame(test::gl_context(), model);
     const FrameSettings settings{.th = TH_SQUARED, .quality = 200.0f, .decode = decode};

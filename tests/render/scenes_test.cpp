@@ -34,14 +34,14 @@ struct Case {
   std::size_t aabb = 0, ellipse = 0, obb = 0, snug = 0;  // pairs (docs/method.md 8); 0: no figure there
 };
 
-std::string name_of(const Case& c) {
+std::string name_of_case(const Case& c) {
   const std::string ply = c.trained.ply;
   return ply.substr(0, ply.size() - 4) + "_" + c.view;
 }
 
 // The name that GoogleTest asks for.
 void PrintTo(const Case& c, std::ostream* out) {  // NOLINT(readability-identifier-naming)
-  *out << name_of(c);
+  *out << name_of_case(c);
 }
 
 constexpr Trained fox = {"fox", "fox.ply", "inria", "psnr.json"};
@@ -72,8 +72,8 @@ const Case cases[] = {
 };
 
 // One view of a real model, drawn.
-struct Drawn {
-  Drawn(const fs::path& folder, const Case& c) : model(load_model(folder / c.trained.ply)) {
+struct DrawnScene {
+  DrawnScene(const fs::path& folder, const Case& c) : model(load_model(folder / c.trained.ply)) {
     for (const Camera& camera : load_cameras(folder / "cameras.json")) {
       if (camera.name == c.view) view = make_view(camera);
     }
@@ -108,7 +108,7 @@ TEST_P(Scenes, ObbAndSnugMakeTheirPairs) {
   const Case& c = GetParam();
   if (c.obb == 0) return;  // docs/method.md has no figures of this view
   REQUIRE_SCENE(c.trained.scene, folder);
-  Drawn drawn(folder, c);
+  DrawnScene drawn(folder, c);
   const auto within = [&](int tiles, std::size_t expected, double share) {
     const auto pairs = static_cast<double>(drawn.draw(tiles).pairs);
     EXPECT_NEAR(pairs, static_cast<double>(expected), share * static_cast<double>(expected));
@@ -123,7 +123,7 @@ TEST_P(Scenes, ObbAndSnugMakeTheirPairs) {
 TEST_P(Scenes, AabbIsInriasPictureAndPsnr) {
   const Case& c = GetParam();
   REQUIRE_SCENE(c.trained.scene, folder);
-  Drawn drawn(folder, c);
+  DrawnScene drawn(folder, c);
   const auto report = drawn.draw(TILES_AABB);
   const Image image = quantised(over_black(drawn.picture));
   if (c.aabb != 0) {
@@ -148,7 +148,7 @@ TEST_P(Scenes, AabbIsInriasPictureAndPsnr) {
 TEST_P(Scenes, ExactEqualsTheReference) {
   const Case& c = GetParam();
   REQUIRE_SCENE(c.trained.scene, folder);
-  Drawn drawn(folder, c);
+  DrawnScene drawn(folder, c);
   const auto report = drawn.draw(TILES_ELLIPSE);
   if (c.ellipse != 0) {
     EXPECT_NEAR(static_cast<double>(report.pairs), static_cast<double>(c.ellipse),
@@ -184,7 +184,7 @@ TEST_P(Scenes, ExactEqualsTheReference) {
 TEST(SceneSeen, OtherwiseEqualsTheReference) {
   for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
     REQUIRE_SCENE(c.trained.scene, folder);
-    Drawn drawn(folder, c);
+    DrawnScene drawn(folder, c);
     if (test::gl_context().software()) {
       const std::string name = c.view;
       for (const Camera& camera : load_cameras(folder / "cameras.json")) {
@@ -199,7 +199,7 @@ TEST(SceneSeen, OtherwiseEqualsTheReference) {
       const Image expected = over_black(reference::render(drawn.model, drawn.view, {.perspective = seen}));
       drawn.draw({.order = seen.order, .projection = seen.projection});
       const double db = measure::psnr(over_black(drawn.picture), expected);
-      fmt::print("{} {}: {:.2f} dB\n", name_of(c), seen.order * 2 + seen.projection, db);
+      fmt::print("{} {}: {:.2f} dB\n", name_of_case(c), seen.order * 2 + seen.projection, db);
       EXPECT_GE(db, 68.0);
       EXPECT_LT(measure::psnr(trained, expected), 50.0);
       drawn.draw({.order = seen.order, .projection = seen.projection, .precision = PRECISION_HALF});
@@ -209,7 +209,7 @@ TEST(SceneSeen, OtherwiseEqualsTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(cases),
-                         [](const auto& one) { return name_of(one.param); });
+                         [](const auto& one) { return name_of_case(one.param); });
 
 // Each eye has the same bits drawn with the other and alone, for parallel and for canted eyes; without a
 // distance between them both are equal.
@@ -256,7 +256,7 @@ TEST(SceneBruteForce, EllipseEqualsItBitForBit) {
   if (test::gl_context().software()) GTEST_SKIP() << "needs a GPU: brute force over a whole scene";
   for (const Case& c : {Case{fox, "0001"}, Case{fox_pruned, "0042"}, Case{garden, "DSC07956"}}) {
     REQUIRE_SCENE(c.trained.scene, folder);
-    Drawn drawn(folder, c);
+    DrawnScene drawn(folder, c);
     drawn.draw(TILES_ALL);
     const Picture brute = drawn.picture;
     drawn.draw(TILES_ELLIPSE);

@@ -7,10 +7,10 @@
 namespace binosplat {
 namespace {
 
-constexpr int width = 96, height = 80;
+constexpr int show_width = 96, show_height = 80;
 
 /// Layers dense enough that some pixels end early.
-Model layers() {
+Model layers_to_show() {
   Model model = test::random_model(61, 1500, 0);
   for (int i = 0; i < 40; ++i)
     test::add(model, {0, 0.2, 0.8 + 0.001 * i}, glm::vec3(0.08f), 0.6f, glm::vec3(0.5f));
@@ -18,8 +18,8 @@ Model layers() {
 }
 
 struct ShowTest : testing::Test {
-  const Model model = layers();
-  shared::View view = make_view(test::front_camera(width, height, 60));
+  const Model model = layers_to_show();
+  shared::View view = make_view(test::front_camera(show_width, show_height, 60));
   std::vector<reference::Splat> splats;
   reference::TileLists lists;
   std::vector<double> light;
@@ -60,11 +60,11 @@ struct ShowTest : testing::Test {
   /// The share of pixels that are told something else than the reference has for `what`.
   double differing(const Image& told, int what) const {
     int count = 0;
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x)
+    for (int y = 0; y < show_height; ++y) {
+      for (int x = 0; x < show_width; ++x)
         count += std::abs(told.at(x, y, 0) - expected(what, x, y)) > 1e-3 ? 1 : 0;
     }
-    return count / double{width * height};
+    return count / double{show_width * show_height};
   }
 };
 

@@ -54,10 +54,10 @@ Indices dealt(std::size_t count, std::size_t parts) {
   return indices;
 }
 
-shared::View front() { return make_view(test::front_camera(side, side, focal)); }
+shared::View sight_view() { return make_view(test::front_camera(side, side, focal)); }
 
 /// A wall 2 units ahead, balls in front of it and behind it, and one behind the eye.
-Model wall() {
+Model wall_with_balls() {
   Model model;
   test::add(model, {0, 0, 3}, glm::vec3(0.1f), 0.9f);
   test::add(model, {0, 0, 2}, glm::vec3(3000.0f, 3000.0f, 0.01f), 0.75f);
@@ -71,7 +71,7 @@ double of_ball(double opacity, double deviation_px) {
 }
 
 TEST(Sight, IsLessOfWhatIsBehindOthers) {
-  const auto parts = Parted(wall(), {{0}, {1}, {2}, {3}, {}}).look({front()}).at(0);
+  const auto parts = Parted(wall_with_balls(), {{0}, {1}, {2}, {3}, {}}).look({sight_view()}).at(0);
   ASSERT_EQ(parts.size(), 5u);
   const double ball = of_ball(0.5, 0.05 * focal), behind = of_ball(0.9, 0.1 * focal / 3.0) / 16.0;
   EXPECT_NEAR(parts[2].area, ball, 0.05 * ball);
@@ -91,22 +91,22 @@ TEST(Sight, TellsWhatIsHiddenFromWhatIsBeside) {
   for (const float z : {1.9f, 2.0f, 2.1f}) test::add(model, {0, 0, z}, glm::vec3(3.0f, 3.0f, 0.01f), 1.0f);
   test::add(model, {9, 0, 3}, glm::vec3(0.1f), 0.9f);
   const Parted parted(model, each(model.count()));
-  const auto parts = parted.look({front()}).at(0);
+  const auto parts = parted.look({sight_view()}).at(0);
   EXPECT_GT(parts[0].area, 0.0);
   EXPECT_LT(parts[0].area, 1e-3);
   EXPECT_NEAR(parts[0].distance, 3.0, 0.2);
   EXPECT_EQ(parts[4].area, 0.0);
   const test::FaultyShaders faulty("parts_seen.comp", "max(area.x, hidden)", "area.x");
-  EXPECT_EQ(parted.look({front()}).at(0)[0].area, 0.0);
+  EXPECT_EQ(parted.look({sight_view()}).at(0)[0].area, 0.0);
 }
 
 TEST(Sight, IsSumsAndMeans) {
-  const auto alone = Parted(wall(), each(4)).look({front()}).at(0);
-  const auto both = Parted(wall(), {{0}, {2, 3}, {1}}).look({front()}).at(0);
+  const auto alone = Parted(wall_with_balls(), each(4)).look({sight_view()}).at(0);
+  const auto both = Parted(wall_with_balls(), {{0}, {2, 3}, {1}}).look({sight_view()}).at(0);
   EXPECT_EQ(both[0].area, alone[0].area);
   EXPECT_EQ(both[1].area, alone[2].area + alone[3].area);
   EXPECT_EQ(both[2].area, alone[1].area) << "in whatever order they lie";
-  const auto all = Parted(wall(), {{0, 1, 2, 3}}).look({front()}).at(0);
+  const auto all = Parted(wall_with_balls(), {{0, 1, 2, 3}}).look({sight_view()}).at(0);
   double area = 0.0, logarithm = 0.0;
   for (const SeenPart& part : alone) {
     area += part.area;
@@ -119,7 +119,7 @@ TEST(Sight, IsSumsAndMeans) {
 // Each Gaussian as a part of its own, against the reference.
 TEST(Sight, IsWhatTheReferenceSees) {
   const Model model = test::random_model(95, 1000, 0);
-  const shared::View view = front();
+  const shared::View view = sight_view();
   const auto splats = reference::project_all(model, view);
   const auto lists = reference::make_lists(splats, reference::depth_order(splats), view, TILES_ELLIPSE);
   const std::vector<double> expected = reference::measure_seen(splats, lists, view);
@@ -267,7 +267,7 @@ TEST(Sight, ForgetsWhatItSaw) {
   const Parted parted(model, indices);
   Camera beside = test::front_camera(side, side, focal);
   beside.position.x += 0.2;
-  const std::vector<shared::View> one = {front()}, two = {make_view(beside), front()};
+  const std::vector<shared::View> one = {sight_view()}, two = {make_view(beside), sight_view()};
   const auto same = [&] {
     Sight sight(parted.gpu_model);
     bool all_same = true;
@@ -289,9 +289,9 @@ TEST(Sight, ForgetsWhatItSaw) {
 TEST(Sight, InHalfPrecision) {
   const Model model = test::random_model(97, 2000, 1);
   const Indices indices = dealt(model.count(), 3);
-  const auto full = Parted(model, indices).look({front()}).at(0);
+  const auto full = Parted(model, indices).look({sight_view()}).at(0);
   const auto half =
-      Parted(model, indices, 0, PRECISION_HALF).look({front()}, {.precision = PRECISION_HALF}).at(0);
+      Parted(model, indices, 0, PRECISION_HALF).look({sight_view()}, {.precision = PRECISION_HALF}).at(0);
   for (std::size_t p = 0; p < 3; ++p) {
     EXPECT_NEAR(half[p].area, full[p].area, 0.02 * full[p].area);
     EXPECT_NEAR(half[p].distance, full[p].distance, 0.02 * full[p].distance);
@@ -302,7 +302,7 @@ TEST(Sight, InHalfPrecision) {
 // What a pixel tells of it in the place of its depth is the same.
 TEST(Sight, IsInPixelsToo) {
   const Model model = test::random_model(95, 4000, 0);
-  const shared::View view = front();
+  const shared::View view = sight_view();
   const auto all = Parted(model, {[&] {
                             std::vector<std::uint32_t> indices(model.count());
                             std::iota(indices.begin(), indices.end(), 0u);
@@ -337,13 +337,13 @@ TEST(Sight, TriesPartsOut) {
   const PartsTrial trial = sight.trial({});
   const auto picture = [&] {
     render::Frame frame(test::gl_context(), parted.model);
-    const shared::View view = front();
+    const shared::View view = sight_view();
     frame.draw({&view, 1}, {});
     return frame.read_pictures();
   };
   const auto before = picture();
-  trial.keep(front());
-  EXPECT_EQ(trial.differs(front()), 0.0);
+  trial.keep(sight_view());
+  EXPECT_EQ(trial.differs(sight_view()), 0.0);
   parted.parts.replace(parted.model, 1, other);
   const auto after = picture();
   double sum = 0.0;
@@ -352,11 +352,11 @@ TEST(Sight, TriesPartsOut) {
     const glm::dvec3 apart = shown(before[0]) - shown(after[0]);
     sum += glm::dot(apart, apart) / 3.0;
   }
-  EXPECT_EQ(trial.differs(front()), 0.0) << "planted: not uploaded";
+  EXPECT_EQ(trial.differs(sight_view()), 0.0) << "planted: not uploaded";
   trial.upload(parted.parts.take_changes());
   const double expected = sum / static_cast<double>(after[0].colour.size());
   EXPECT_GT(expected, 1e-4);
-  EXPECT_NEAR(trial.differs(front()), expected, 1e-3 * expected);
+  EXPECT_NEAR(trial.differs(sight_view()), expected, 1e-3 * expected);
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ struct Compared {
   int wrong = 0;
   int all = 0;
 };
-Compared compare(const test::StageRun& run, std::uint32_t view, const Model& model,
-                 const std::vector<double>& expected) {
+Compared compare_rho(const test::StageRun& run, std::uint32_t view, const Model& model,
+                     const std::vector<double>& expected) {
   const auto [splats, tiles] = run.projected(view);
   Compared result;
   for (std::size_t i = 0; i < model.count(); ++i) {
@@ -55,11 +55,11 @@ TEST(ThEyes, EachEyeGoesByItsOwn) {
     test::StageRun run(model, {eyes[0], eyes[1]}, {.th = th, .tolerance = static_cast<float>(tolerance)});
     run.run_until(render::Stage::project);
     for (std::uint32_t eye = 0; eye < 2; ++eye) {
-      const Compared c = compare(run, eye, model, expected[eye]);
+      const Compared c = compare_rho(run, eye, model, expected[eye]);
       EXPECT_EQ(c.wrong, 0) << "of " << c.all;
       EXPECT_GT(c.all, 300);
       // The other eye's would be told apart.
-      EXPECT_GT(compare(run, eye, model, expected[1 - eye]).wrong, c.all / 20);
+      EXPECT_GT(compare_rho(run, eye, model, expected[1 - eye]).wrong, c.all / 20);
     }
   }
 }
@@ -71,7 +71,7 @@ TEST(ThEyes, CantedEyesGoByTheirOwn) {
                      {.th = TH_SQUARED, .tolerance = static_cast<float>(tolerance)});
   run.run_until(render::Stage::project);
   // The stage runs once an order group, and the last one's splats are in the order of its own indices.
-  const Compared c = compare(run, 1, model, thresholds(model, eyes[1], TH_SQUARED));
+  const Compared c = compare_rho(run, 1, model, thresholds(model, eyes[1], TH_SQUARED));
   EXPECT_EQ(c.wrong, 0);
   EXPECT_GT(c.all, 300);
 }
@@ -105,10 +105,10 @@ TEST(DepthTable, EachDepthHasItsTransmittance) {
                                   .tolerance = static_cast<float>(tolerance)};
   test::StageRun run(model, {view}, settings);
   run.run_until(render::Stage::project);
-  const Compared c = compare(run, 0, model, thresholds(model, view, TH_PERIPHERAL, bounds));
+  const Compared c = compare_rho(run, 0, model, thresholds(model, view, TH_PERIPHERAL, bounds));
   EXPECT_EQ(c.wrong, 0) << "of " << c.all;
   EXPECT_GT(c.all, 300);
-  EXPECT_GT(compare(run, 0, model, thresholds(model, view, TH_PERIPHERAL, shifted)).wrong, c.all / 5);
+  EXPECT_GT(compare_rho(run, 0, model, thresholds(model, view, TH_PERIPHERAL, shifted)).wrong, c.all / 5);
 
   reference::Settings judged = {.th = TH_PERIPHERAL, .tolerance = tolerance, .bounds = bounds};
   EXPECT_GT(test::psnr(test::draw(model, view, settings), reference::render(model, view, judged)), 60.0);

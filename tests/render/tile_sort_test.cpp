@@ -12,19 +12,19 @@ namespace binosplat {
 namespace {
 
 using render::Stage;
-using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // supertile, splat
+using SortedPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // supertile, splat
 
-Pairs read_pairs(test::StageRun& run) {
+SortedPairs read_pairs(test::StageRun& run) {
   const std::uint32_t count = run.frame.counters.read<shared::Counters>(1).front().pairs;
   const auto lists = run.frame.pairs.keys().read<std::uint32_t>(count);
   const auto splats = run.frame.pairs.values().read<std::uint32_t>(count);
-  Pairs pairs(count);
+  SortedPairs pairs(count);
   std::transform(lists.begin(), lists.end(), splats.begin(), pairs.begin(),
                  [](std::uint32_t list, std::uint32_t splat) { return std::pair(list, splat); });
   return pairs;
 }
 
-Pairs sorted(Pairs pairs) {
+SortedPairs sorted(SortedPairs pairs) {
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   return pairs;
@@ -43,7 +43,7 @@ struct TileSort
   const Model model = test::random_model(91, 3000, 0);
   const stereo::EyePair rig;
   test::StageRun run;
-  Pairs before;
+  SortedPairs before;
 };
 
 TEST_P(TileSort, IsAStableSortByList) {

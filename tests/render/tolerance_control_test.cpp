@@ -15,8 +15,9 @@ namespace {
 using render::FrameSettings;
 using render::ToleranceControl;
 
-const FrameSettings squared = {.th = TH_SQUARED, .quality = 40, .probe_tiles = 64};
-constexpr int width = 640, height = 480, across = width / 16, down = height / 16;
+const FrameSettings squared_40 = {.th = TH_SQUARED, .quality = 40, .probe_tiles = 64};
+constexpr int control_width = 640, control_height = 480, across = control_width / 16,
+              down = control_height / 16;
 constexpr int attempts_most = 8;
 
 double db(double squared_error) { return -10 * std::log10(squared_error); }
@@ -26,7 +27,7 @@ double db(double squared_error) { return -10 * std::log10(squared_error); }
 class SimulatedScene {
  public:
   SimulatedScene(double power, std::vector<double> at_one, double uneven = 0.0)
-      : views(at_one.size(), make_view(test::front_camera(width, height, 700))),
+      : views(at_one.size(), make_view(test::front_camera(control_width, control_height, 700))),
         at_one_(std::move(at_one)),
         power_(power) {
     test::Uniform uniform(7);
@@ -76,7 +77,7 @@ class SimulatedScene {
   std::vector<std::vector<double>> by_tile_;  // of 1 in the mean
 };
 
-struct Drawn {
+struct DrawnAttempts {
   double true_db = 0.0, told_db = 0.0;
   float tolerance = 0.0f;
   int attempts = 0;
@@ -84,9 +85,9 @@ struct Drawn {
 };
 
 // As Frame::draw does. A control that never redraws is the planted fault.
-Drawn draw_frame(ToleranceControl& control, const SimulatedScene& scene, bool redraws = true,
-                 const FrameSettings& settings = squared) {
-  Drawn drawn;
+DrawnAttempts draw_frame(ToleranceControl& control, const SimulatedScene& scene, bool redraws = true,
+                         const FrameSettings& settings = squared_40) {
+  DrawnAttempts drawn;
   do {
     drawn.probe = control.next_probe(scene.views, settings);
     drawn.tolerance = control.next_tolerance();
@@ -99,7 +100,7 @@ Drawn draw_frame(ToleranceControl& control, const SimulatedScene& scene, bool re
 }
 
 // What a frame may be at, and what it may say of it.
-testing::AssertionResult keeps(const Drawn& drawn, double least, double most, double told_off) {
+testing::AssertionResult keeps(const DrawnAttempts& drawn, double least, double most, double told_off) {
   const bool good = drawn.true_db >= least && drawn.true_db <= most &&
                     std::abs(drawn.told_db - drawn.true_db) <= told_off && drawn.attempts <= attempts_most;
   return (good ? testing::AssertionSuccess() : testing::AssertionFailure())
@@ -112,7 +113,7 @@ struct Course {
   int frames = 0, attempts = 0;
 };
 
-void add(const Drawn& drawn, Course& course) {
+void add(const DrawnAttempts& drawn, Course& course) {
   course.least = std::min(course.least, drawn.true_db);
   course.most = std::max(course.most, drawn.true_db);
   course.mean = (course.mean * course.frames + drawn.true_db) / (course.frames + 1);
@@ -182,7 +183,7 @@ TEST(ToleranceControl, AJumpIsDrawnAgain) {
       ToleranceControl control;
       follow(control, scene, 30);
       scene.scale(10);
-      const Drawn after = draw_frame(control, scene, redraws);
+      const DrawnAttempts after = draw_frame(control, scene, redraws);
       scene.scale(0.1);
       if (redraws) {
         EXPECT_TRUE(keeps(after, 39.9, 41.4, 0.1)) << power;
@@ -235,17 +236,17 @@ TEST(ToleranceControl, ACutSearchesAnewFromTheLastTolerance) {
   EXPECT_GT(first.attempts, 1);
   const float before = draw_frame(control, scene).tolerance;
   control.forget();
-  const Drawn same = draw_frame(control, scene);
+  const DrawnAttempts same = draw_frame(control, scene);
   EXPECT_FLOAT_EQ(same.tolerance, before);
   EXPECT_EQ(same.attempts, 1);
   EXPECT_EQ(same.probe.step, 1u);
   SimulatedScene other = scene_for(2, 0.02);
   control.forget();
-  const Drawn found = draw_frame(control, other);
+  const DrawnAttempts found = draw_frame(control, other);
   EXPECT_TRUE(keeps(found, 39.99, 41.31, 0.01));
   EXPECT_GT(found.attempts, 1);
   // Another quality is a search, too, and begins with another tolerance.
-  FrameSettings better = squared;
+  FrameSettings better = squared_40;
   better.quality = 50;
   EXPECT_TRUE(keeps(draw_frame(control, other, true, better), 49.99, 51.31, 0.01));
 }
@@ -255,11 +256,11 @@ TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
   for (const double power : {1.3, 2.0, 6.0}) {
     const SimulatedScene scene = scene_for(power, 0.05, {1.0, 0.9});
     ToleranceControl control;
-    FrameSettings settings = squared;
+    FrameSettings settings = squared_40;
     Course course;  // dB above what is asked for
     float first = 0.0f;
     const auto draw = [&] {
-      Drawn drawn = draw_frame(control, scene, true, settings);
+      DrawnAttempts drawn = draw_frame(control, scene, true, settings);
       if (first == 0.0f) first = drawn.tolerance;
       drawn.true_db -= settings.quality;
       drawn.told_db -= settings.quality;
@@ -288,7 +289,7 @@ TEST(ToleranceControl, AQualityThatChangesALittleIsFollowed) {
 
 TEST(ToleranceControl, ProbesEveryTileOfEveryViewInTurn) {
   for (const int probe_tiles : {10, 64, 300}) {
-    FrameSettings settings = squared;
+    FrameSettings settings = squared_40;
     settings.probe_tiles = probe_tiles;
     const SimulatedScene scene(1.5, {1.0, 1.0});
     ToleranceControl control;
@@ -313,7 +314,7 @@ TEST(ToleranceControl, ASmallPictureIsProbedAsAWhole) {
   const std::vector views = {make_view(test::front_camera(100, 83, 100))};  // 7 x 6 tiles
   ToleranceControl control;
   for (int n = 0; n < 10; ++n) {
-    const render::Probe probe = control.next_probe(views, squared);
+    const render::Probe probe = control.next_probe(views, squared_40);
     EXPECT_EQ(probe.step, 1u);
     EXPECT_EQ(probe.column + probe.row, 0u);
     control.next_tolerance();
@@ -325,7 +326,7 @@ TEST(ToleranceControl, UnevenScenesGetLargerProbes) {
   const auto step_after = [](double uneven) {
     const SimulatedScene scene(1.5, {1e-2}, uneven);
     ToleranceControl control;
-    Drawn last;
+    DrawnAttempts last;
     for (int n = 0; n < 40; ++n) last = draw_frame(control, scene);
     EXPECT_TRUE(keeps(last, 39.5, 41.5, 0.8)) << uneven;
     return last.probe.step;
@@ -338,9 +339,9 @@ TEST(ToleranceControl, ASampleThatShowsNothingIsNotTheView) {
   // An empty sky above all that errs.
   const SimulatedScene scene(1.5, {1e-2});
   ToleranceControl control;
-  const Drawn first = draw_frame(control, scene);
+  const DrawnAttempts first = draw_frame(control, scene);
   EXPECT_EQ(first.probe.step, 1u);
-  control.next_probe(scene.views, squared);
+  control.next_probe(scene.views, squared_40);
   control.next_tolerance();
   control.measured({}, true);
   EXPECT_TRUE(control.holds());
@@ -348,7 +349,7 @@ TEST(ToleranceControl, ASampleThatShowsNothingIsNotTheView) {
   EXPECT_LT(draw_frame(control, scene).probe.step, 4u);  // a larger one
   // Planted fault: of the whole view it is the truth.
   control.forget();
-  control.next_probe(scene.views, squared);
+  control.next_probe(scene.views, squared_40);
   control.next_tolerance();
   control.measured({}, true);
   EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
@@ -359,7 +360,7 @@ int attempts_at(ToleranceControl& control, const std::vector<shared::View>& view
                 bool settled = true) {
   int attempts = 0;
   do {
-    control.next_probe(views, squared);
+    control.next_probe(views, squared_40);
     const float tolerance = control.next_tolerance();
     control.measured({tolerance > 0.0f ? error : 0.0}, settled);
   } while (++attempts < 100 && !control.holds());
@@ -373,7 +374,7 @@ TEST(ToleranceControl, WhereNothingHoldsTheFrameIsExactAndTheNextRecovers) {
     EXPECT_EQ(attempts_at(control, scene.views, settled ? 1.0 : 1e-4, settled), attempts_most);
     EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
     if (!settled) continue;
-    Drawn drawn;
+    DrawnAttempts drawn;
     for (int n = 0; n < 60; ++n) {
       drawn = draw_frame(control, scene);
       EXPECT_GT(drawn.true_db, 39.2) << n;
@@ -387,7 +388,7 @@ TEST(ToleranceControl, WhereNoToleranceErrsItRisesAndEnds) {
   EXPECT_LE(attempts_at(control, scene.views, 0.0), attempts_most);
   for (int n = 0; n < 1000; ++n) EXPECT_EQ(attempts_at(control, scene.views, 0.0), 1);
   EXPECT_EQ(control.quality(), std::numeric_limits<double>::infinity());
-  control.next_probe(scene.views, squared);
+  control.next_probe(scene.views, squared_40);
   EXPECT_LE(control.next_tolerance(), 1e9f);
 }
 

@@ -59,7 +59,7 @@ TEST(Axes, FramesAreFoundInTheWorld) {
 }
 
 /// R S S R^T.
-glm::dmat3 covariance(const Model& model, std::size_t i) {
+glm::dmat3 covariance_of(const Model& model, std::size_t i) {
   const glm::vec4& q = model.rotation[i];
   const glm::dmat3 r = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
   const glm::dvec3 s(model.scale[i]);
@@ -80,10 +80,10 @@ TEST(Axes, ModelsLookTheSameInEveryFrame) {
   int frames = 0;
   const auto same = [&](const Model& turned, std::size_t i) {
     const glm::dmat3 world = world_from_axes(turned.axes);
-    const glm::dmat3 there = world * covariance(turned, i) * glm::transpose(world);
+    const glm::dmat3 there = world * covariance_of(turned, i) * glm::transpose(world);
     double apart = glm::length(world * glm::dvec3(turned.position[i]) - glm::dvec3(model.position[i])) +
                    std::abs(red(turned, i, glm::transpose(world) * direction) - red(model, i, direction));
-    for (int c = 0; c < 3; ++c) apart += glm::length(there[c] - covariance(model, i)[c]);
+    for (int c = 0; c < 3; ++c) apart += glm::length(there[c] - covariance_of(model, i)[c]);
     return apart < 1e-6;
   };
   for (const char x : std::string("RLUDFB")) {

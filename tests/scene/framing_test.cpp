@@ -10,7 +10,7 @@
 namespace binosplat {
 namespace {
 
-void add(Model& model, const glm::vec3& position, float size, float opacity = 0.9f) {
+void add_ball(Model& model, const glm::vec3& position, float size, float opacity = 0.9f) {
   model.position.push_back(position);
   model.scale.emplace_back(size);
   model.rotation.emplace_back(1, 0, 0, 0);
@@ -19,12 +19,13 @@ void add(Model& model, const glm::vec3& position, float size, float opacity = 0.
 }
 
 /// A ball of Gaussians, evenly spread (a Fibonacci spiral) so that their median is its centre.
-Model ball(const glm::vec3& centre, float radius, int count = 5000) {
+Model ball_around(const glm::vec3& centre, float radius, int count = 5000) {
   Model model;
   for (int i = 0; i < count; ++i) {
     const double y = 1.0 - 2.0 * (i + 0.5) / count, ring = std::sqrt(1.0 - y * y), angle = 2.399963 * i;
-    add(model, centre + radius * glm::vec3(glm::dvec3(ring * std::cos(angle), y, ring * std::sin(angle))),
-        0.02f * radius);
+    add_ball(model,
+             centre + radius * glm::vec3(glm::dvec3(ring * std::cos(angle), y, ring * std::sin(angle))),
+             0.02f * radius);
   }
   return model;
 }
@@ -44,7 +45,7 @@ double reach(const Model& model, const Camera& camera, double near_plane) {
 TEST(Framing, ABallFillsThePicture) {
   for (const float radius : {0.01f, 1.0f, 500.0f}) {
     for (const glm::dvec2 size : {glm::dvec2(640, 360), glm::dvec2(360, 640)}) {
-      const Model model = ball(radius * glm::vec3(3, -2, 7), radius);
+      const Model model = ball_around(radius * glm::vec3(3, -2, 7), radius);
       const Camera camera = frame_model(model, static_cast<int>(size.x), static_cast<int>(size.y));
       const double filled = reach(model, camera, near_for(model));
       const double fits = std::min(1.0, size.x / size.y);
@@ -55,9 +56,9 @@ TEST(Framing, ABallFillsThePicture) {
 }
 
 TEST(Framing, OutliersChangeNothing) {
-  const Model clean = ball({0, 0, 0}, 1.0f);
+  const Model clean = ball_around({0, 0, 0}, 1.0f);
   Model dirty = clean;
-  for (int i = 0; i < 100; ++i) add(dirty, glm::vec3(1e4f * static_cast<float>(i), -3e5f, 1e6f), 10.0f);
+  for (int i = 0; i < 100; ++i) add_ball(dirty, glm::vec3(1e4f * static_cast<float>(i), -3e5f, 1e6f), 10.0f);
   const Camera a = frame_model(clean, 640, 360), b = frame_model(dirty, 640, 360);
   EXPECT_LT(glm::length(a.position - b.position), 0.15);
   Model moved = clean;  // the comparison would notice
@@ -66,14 +67,14 @@ TEST(Framing, OutliersChangeNothing) {
 }
 
 TEST(Framing, LooksFromAboveAndPastWhatIsInTheWay) {
-  Model model = ball({0, 0, 0}, 1.0f);
+  Model model = ball_around({0, 0, 0}, 1.0f);
   const Camera open = frame_model(model, 640, 360);
   EXPECT_LT(open.position.y, -0.2) << "up is negative y";
   EXPECT_NEAR(open.rotation[0].y, 0.0, 1e-9) << "upright";
   const auto blocked_by = [&](const glm::dvec3& at) {
     Model copy = model;
     for (int i = 0; i < 50; ++i)
-      add(copy, glm::vec3(at) + 0.01f * static_cast<float>(i) * glm::vec3(1, 0, 0), 0.3f);
+      add_ball(copy, glm::vec3(at) + 0.01f * static_cast<float>(i) * glm::vec3(1, 0, 0), 0.3f);
     return frame_model(copy, 640, 360);
   };
   const glm::dvec3 wall = 0.75 * open.position;
@@ -84,13 +85,13 @@ TEST(Framing, LooksFromAboveAndPastWhatIsInTheWay) {
 
 TEST(Framing, HonoursUp) {
   const glm::dvec3 up(0, 0, 1);
-  const Camera camera = frame_model(ball({0, 0, 0}, 1.0f), 640, 360, 60.0, up);
+  const Camera camera = frame_model(ball_around({0, 0, 0}, 1.0f), 640, 360, 60.0, up);
   EXPECT_GT(camera.position.z, 0.2);
   EXPECT_LT(glm::dot(camera.rotation[1], up), -0.9) << "the camera's y axis points down";
 }
 
 TEST(Framing, OrbitGoesAround) {
-  const Model model = ball({1, 2, 3}, 1.0f);
+  const Model model = ball_around({1, 2, 3}, 1.0f);
   const std::vector<Camera> cameras = orbit(model, 12, 640, 360);
   ASSERT_EQ(cameras.size(), 12u);
   EXPECT_EQ(cameras[0].name, "orbit_000");
@@ -106,14 +107,14 @@ TEST(Framing, OrbitGoesAround) {
 }
 
 TEST(Framing, NearSuitsSmallModels) {
-  EXPECT_EQ(near_for(ball({0, 0, 0}, 5.0f)), near_default);
-  EXPECT_NEAR(near_for(ball({0, 0, 0}, 0.05f)), 0.005, 1e-4);
+  EXPECT_EQ(near_for(ball_around({0, 0, 0}, 5.0f)), near_default);
+  EXPECT_NEAR(near_for(ball_around({0, 0, 0}, 0.05f)), 0.005, 1e-4);
 }
 
 TEST(Framing, FarFromTheOriginThereIsRoomForACamera) {
   for (const float far : {1e3f, 1e10f, 1e20f, 1e30f}) {
     Model model;
-    add(model, {0.0f, far, -far}, 0.1f);
+    add_ball(model, {0.0f, far, -far}, 0.1f);
     const Camera camera = frame_model(model, 160, 120, 50.0, {0, -1, 0});
     EXPECT_GT(glm::length(camera.position - glm::dvec3(0.0, far, -far)), 1e-8 * static_cast<double>(far))
         << far;
@@ -125,11 +126,11 @@ TEST(Framing, FarFromTheOriginThereIsRoomForACamera) {
 TEST(Framing, OddModels) {
   EXPECT_THROW(frame_model(Model{}, 640, 360), Error);
   Model one;
-  add(one, {1, 2, 3}, 0.5f);
+  add_ball(one, {1, 2, 3}, 0.5f);
   const Camera camera = frame_model(one, 640, 360);
   EXPECT_NEAR(glm::length(camera.position - glm::dvec3(1, 2, 3)), 1.0, 1e-6);
   Model two;
-  for (const float x : {0.0f, 10.0f}) add(two, {x, 0, 0}, 0.2f);
+  for (const float x : {0.0f, 10.0f}) add_ball(two, {x, 0, 0}, 0.2f);
   const Camera of_both = frame_model(two, 640, 360);
   EXPECT_LT(reach(two, of_both, near_for(two)), 640.0 / 360.0) << "one is beside the picture";
   EXPECT_THROW(frame_model(one, 640, 360, 0.0), Error);
@@ -137,8 +138,8 @@ TEST(Framing, OddModels) {
 }
 
 // Cameras on a circle that leans, 20 degrees above its plane, which look at its middle.
-std::vector<Camera> ring(const glm::dvec3& middle, const glm::dvec3& up, double distance,
-                         double outwards = 1.0) {
+std::vector<Camera> ring_around(const glm::dvec3& middle, const glm::dvec3& up, double distance,
+                                double outwards = 1.0) {
   const glm::dvec3 x = glm::normalize(glm::cross(up, glm::dvec3(0.3, 0.5, -0.8))), y = glm::cross(up, x);
   std::vector<Camera> cameras;
   for (int k = 0; k < 7; ++k) {
@@ -152,14 +153,14 @@ std::vector<Camera> ring(const glm::dvec3& middle, const glm::dvec3& up, double 
 
 TEST(Capture, IsWhatTheCamerasStandAround) {
   const glm::dvec3 up = glm::normalize(glm::dvec3(0.3, -0.8, 0.4)), middle(3, -2, 7);
-  const auto capture = capture_of(ring(middle, up, 5.0));
+  const auto capture = capture_of(ring_around(middle, up, 5.0));
   ASSERT_TRUE(capture && capture->around);
   EXPECT_LT(glm::distance(capture->up, up), 1e-6);
   EXPECT_LT(glm::distance(capture->around->middle, middle), 1e-6);
   EXPECT_NEAR(capture->around->distance, 5.0, 1e-6);
   EXPECT_NEAR(glm::degrees(capture->around->elevation), 20.0, 1e-6);
   // An orbit stands where they stood.
-  const Model model = ball(glm::vec3(40, 0, 0), 1.0f);
+  const Model model = ball_around(glm::vec3(40, 0, 0), 1.0f);
   const Camera first = orbit(model, 5, 64, 48, 50, capture->up, capture->around)[0];
   EXPECT_LT(glm::distance(first.position, middle + capture->around->first), 1e-6);
   for (const Camera& camera : orbit(model, 5, 64, 48, 50, capture->up, capture->around)) {
@@ -171,7 +172,7 @@ TEST(Capture, IsWhatTheCamerasStandAround) {
 TEST(Capture, OfOneSideIsLevelAcrossItsCameras) {
   // Three of the seven, which all look down: their mean leans back by most of that.
   const glm::dvec3 up(0, -1, 0);
-  std::vector<Camera> cameras = ring({0, 0, 0}, up, 5.0);
+  std::vector<Camera> cameras = ring_around({0, 0, 0}, up, 5.0);
   cameras.resize(3);
   const auto capture = capture_of(cameras);
   ASSERT_TRUE(capture);
@@ -182,7 +183,7 @@ TEST(Capture, OfOneSideIsLevelAcrossItsCameras) {
 }
 
 TEST(Capture, HasNoMiddleWhereAxesDoNotMeetBeforeThem) {
-  const auto outwards = capture_of(ring({0, 0, 0}, {0, -1, 0}, 5.0, -1.0));
+  const auto outwards = capture_of(ring_around({0, 0, 0}, {0, -1, 0}, 5.0, -1.0));
   ASSERT_TRUE(outwards);
   EXPECT_FALSE(outwards->around);
   std::vector<Camera> parallel(5, look_at({0, 0, 0}, {0, 0, 1}, {0, -1, 0}, 50, 64, 48));

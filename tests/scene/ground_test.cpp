@@ -51,7 +51,7 @@ Model garden(float thick = 0.1f) {
 }
 
 /// A room of 6 x 5 x 2.6 in a flat of many: four walls, floor, ceiling, a cupboard.
-Model room(const glm::dvec3& at = {}) {
+Model furnished_room(const glm::dvec3& at = {}) {
   Surfaces out;
   const glm::dvec3 x(6, 0, 0), y(0, 5, 0), z(0, 0, 2.6);
   for (const glm::dvec3& corner : {glm::dvec3(0), z}) out.add(at + corner, x, y, 3000);
@@ -73,7 +73,7 @@ Model box(double height) {
 }
 
 /// Evenly spread, a Fibonacci spiral.
-Model ball() {
+Model ball_of_surfaces() {
   Surfaces out;
   constexpr int count = 8000;
   for (int i = 0; i < count; ++i) {
@@ -123,7 +123,7 @@ TEST(Ground, IsTheWorldsWhateverTheModelsAxes) {
 }
 
 TEST(Ground, OfARoomIsTheFloor) {
-  const auto found = find_ground(room({5, 5, 5}));
+  const auto found = find_ground(furnished_room({5, 5, 5}));
   ASSERT_TRUE(found);
   EXPECT_LT(degrees_between(found->up, z_up), 1.0);
   ASSERT_TRUE(found->level);
@@ -149,7 +149,7 @@ TEST(Ground, WhereNothingTellsThereIsNone) {
 }
 
 TEST(Ground, WhereDirectionsTieThereIsNone) {
-  EXPECT_FALSE(find_ground(ball())) << "faces everywhere";
+  EXPECT_FALSE(find_ground(ball_of_surfaces())) << "faces everywhere";
   EXPECT_FALSE(find_ground(box(4.0))) << "as much wall as floor, three times";
   const auto low = find_ground(box(3.0));
   ASSERT_TRUE(low) << "more floor than wall";
@@ -184,9 +184,9 @@ TEST(Standing, IsOnTheFloorAndLooksAtTheMiddle) {
 
 TEST(Standing, IsInARoomAndNotInItsWalls) {
   // Three rooms in a row, with the middle of all of them in a wall.
-  Model model = room();
+  Model model = furnished_room();
   for (const double x : {6.0, 12.0, 18.0}) {
-    const Model other = room({x, 0, 0});
+    const Model other = furnished_room({x, 0, 0});
     model.position.insert(model.position.end(), other.position.begin(), other.position.end());
     model.scale.insert(model.scale.end(), other.scale.begin(), other.scale.end());
     model.rotation.insert(model.rotation.end(), other.rotation.begin(), other.rotation.end());

@@ -30,7 +30,7 @@ Cameras keys() {
           key({1, 0.5, 4}, 30, 50, 6), key({-3, 0, 2}, 20, 80, 9), key({-3, 1, 1}, 20, 90, 9.5)};
 }
 
-glm::dvec3 turn(const Camera& a, const Camera& b) {
+glm::dvec3 turn_between(const Camera& a, const Camera& b) {
   glm::dquat q = glm::quat_cast(glm::transpose(a.rotation) * b.rotation);
   if (q.w < 0.0) q = -q;
   return 2.0 * glm::dvec3(q.x, q.y, q.z);  // small
@@ -43,7 +43,7 @@ double jump(const Way& way, double seconds) {
   for (double t = 0.01; t < seconds - 0.01; t += 0.005) {
     const Camera a = way(t - step), b = way(t), c = way(t + step);
     out = std::max({out, glm::distance(b.position - a.position, c.position - b.position) / step,
-                    glm::distance(turn(a, b), turn(b, c)) / step,
+                    glm::distance(turn_between(a, b), turn_between(b, c)) / step,
                     std::abs((c.fx - b.fx) - (b.fx - a.fx)) / 50.0 / step});
   }
   return out;
@@ -56,12 +56,12 @@ TEST(KeyPath, GoesThroughItsKeysAtTheirTimes) {
   for (const Camera& wanted : set) {
     const Camera found = path.at(*wanted.time - 2.0);
     EXPECT_LT(glm::distance(found.position, wanted.position), 1e-9);
-    EXPECT_LT(glm::length(turn(found, wanted)), 1e-7);
+    EXPECT_LT(glm::length(turn_between(found, wanted)), 1e-7);
     EXPECT_NEAR(found.fx, wanted.fx, 1e-9);
     EXPECT_NEAR(found.cy, wanted.cy, 1e-9);
     // Half a second away it is elsewhere: the comparison would notice.
     EXPECT_GT(glm::distance(path.at(*wanted.time - 1.6).position, wanted.position) +
-                  glm::length(turn(path.at(*wanted.time - 1.6), wanted)),
+                  glm::length(turn_between(path.at(*wanted.time - 1.6), wanted)),
               *wanted.time < 9.5 ? 0.05 : -1.0);
   }
 }

@@ -38,7 +38,7 @@ Model reduced(const Model& model, std::size_t target, double pixel = 0.0) {
   return merger.result(pixel);
 }
 
-glm::dmat3 covariance(const Model& model, std::size_t i, double added = 0.0) {
+glm::dmat3 covariance_with(const Model& model, std::size_t i, double added = 0.0) {
   const glm::vec4& q = model.rotation[i];
   const glm::dmat3 turn = glm::mat3_cast(glm::dquat(q.x, q.y, q.z, q.w));
   glm::dmat3 sum(added);
@@ -77,7 +77,7 @@ Expected expected(const Model& model, double added = 0.0, bool weighted = true) 
   double total = 0.0, depth = 0.0;
   std::vector<double> weights;
   for (std::size_t i = 0; i < model.count(); ++i) {
-    const double area = shadow(covariance(model, i, added));
+    const double area = shadow(covariance_with(model, i, added));
     weights.push_back(weighted ? model.opacity[i] * area : 1.0);
     total += weights[i];
     depth -= std::log(1.0 - model.opacity[i]) * area;
@@ -88,7 +88,7 @@ Expected expected(const Model& model, double added = 0.0, bool weighted = true) 
   for (double& value : e.sh) value /= total;
   for (std::size_t i = 0; i < model.count(); ++i) {
     const glm::dvec3 apart = glm::dvec3(model.position[i]) - e.mean;
-    e.covariance += weights[i] / total * (covariance(model, i) + glm::outerProduct(apart, apart));
+    e.covariance += weights[i] / total * (covariance_with(model, i) + glm::outerProduct(apart, apart));
   }
   const double area = shadow(e.covariance + glm::dmat3(added)), square = 6.0 / pi * area;
   e.covered = std::min(total, square * (1.0 - std::exp(-depth / square))) / area;
@@ -98,7 +98,7 @@ Expected expected(const Model& model, double added = 0.0, bool weighted = true) 
 /// The largest relative difference of what a Gaussian is and has to be.
 double difference(const Model& one, const Expected& e) {
   const double grown = std::max(1.0, e.covered / 0.999);
-  const glm::dmat3 c = covariance(one, 0);
+  const glm::dmat3 c = covariance_with(one, 0);
   double size = 0.0, most = 0.0;
   for (int k = 0; k < 3; ++k) size += e.covariance[k][k];
   for (int k = 0; k < 3; ++k) {

@@ -11,7 +11,7 @@
 namespace binosplat {
 namespace {
 
-void add(Model& model, const glm::vec3& place, const glm::vec3& scale) {
+void add_flat(Model& model, const glm::vec3& place, const glm::vec3& scale) {
   model.position.push_back(place);
   model.scale.push_back(scale);
   model.rotation.emplace_back(1, 0, 0, 0);
@@ -25,24 +25,24 @@ Model cloud(const glm::vec3& middle) {
   test::Uniform uniform(4);
   const auto number = [&] { return static_cast<float>(uniform(-1, 1)); };
   for (int i = 0; i < 3000; ++i)
-    add(model, middle + glm::vec3(number(), number(), number()), glm::vec3(0.05f));
+    add_flat(model, middle + glm::vec3(number(), number(), number()), glm::vec3(0.05f));
   return model;
 }
 
 /// A floor of the world around its origin, and a wall on a side of it.
-Model room() {
+Model bare_room() {
   Model model;
   for (int i = 0; i < 40; ++i) {
     for (int j = 0; j < 40; ++j) {
       const float x = 0.05f * static_cast<float>(i) - 1.0f, z = 0.05f * static_cast<float>(j) - 1.0f;
-      add(model, {x, 0, z}, {0.025f, 0.0025f, 0.025f});
-      if (j < 10) add(model, {x, -0.05f * static_cast<float>(j), 1.0f}, {0.025f, 0.025f, 0.0025f});
+      add_flat(model, {x, 0, z}, {0.025f, 0.0025f, 0.025f});
+      if (j < 10) add_flat(model, {x, -0.05f * static_cast<float>(j), 1.0f}, {0.025f, 0.025f, 0.0025f});
     }
   }
   return model;
 }
 
-std::vector<Camera> ring(const glm::dvec3& middle) {
+std::vector<Camera> ring_of_100(const glm::dvec3& middle) {
   std::vector<Camera> cameras;
   for (int k = 0; k < 100; ++k) {
     const double turn = glm::two_pi<double>() * k / 100;
@@ -63,7 +63,7 @@ TEST(ToldAxes, ByWhatCamerasHaveInView) {
   const glm::dvec3 middle(1, 2, 7);
   for (const std::string axes : {"RUB", "RDF"}) {
     for (const std::size_t count : {1u, 3u, 100u}) {
-      const std::vector<Camera> all = ring(middle);
+      const std::vector<Camera> all = ring_of_100(middle);
       const auto told = tell_axes(stored(cloud(middle), axes), "RDF", std::span(all).first(count));
       ASSERT_TRUE(told) << axes;
       EXPECT_EQ(told->axes, axes);
@@ -77,26 +77,27 @@ TEST(ToldAxes, ByWhatCamerasHaveInView) {
 // Around the world's origin cameras see the model in both.
 TEST(ToldAxes, ByTheGroundWhereBothAreSeen) {
   for (const std::string axes : {"RUB", "RDF"}) {
-    const auto told = tell_axes(stored(room(), axes), "RDF", ring(glm::dvec3(0)));
+    const auto told = tell_axes(stored(bare_room(), axes), "RDF", ring_of_100(glm::dvec3(0)));
     ASSERT_TRUE(told) << axes;
     EXPECT_EQ(told->axes, axes);
     EXPECT_TRUE(told->by_ground);
     // Planted fault: cameras that stand on their heads.
-    std::vector<Camera> turned = ring(glm::dvec3(0));
+    std::vector<Camera> turned = ring_of_100(glm::dvec3(0));
     for (Camera& camera : turned) {
       camera.rotation[0] = -camera.rotation[0];
       camera.rotation[1] = -camera.rotation[1];
     }
-    EXPECT_NE(tell_axes(stored(room(), axes), "RDF", turned)->axes, axes);
+    EXPECT_NE(tell_axes(stored(bare_room(), axes), "RDF", turned)->axes, axes);
   }
 }
 
 TEST(ToldAxes, NotWhereNothingTells) {
   const glm::dvec3 origin(0);
-  EXPECT_FALSE(tell_axes(stored(cloud(origin), "RDF"), "RDF", ring(origin)))
+  EXPECT_FALSE(tell_axes(stored(cloud(origin), "RDF"), "RDF", ring_of_100(origin)))
       << "round Gaussians have no ground";
   EXPECT_FALSE(tell_axes(stored(cloud({1, 2, 7}), "RDF"), "RDF", {}));
-  EXPECT_FALSE(tell_axes(stored(cloud({1, 2, 7}), "RDF"), "RDF", ring({500, 0, 0}))) << "nobody looks at it";
+  EXPECT_FALSE(tell_axes(stored(cloud({1, 2, 7}), "RDF"), "RDF", ring_of_100({500, 0, 0})))
+      << "nobody looks at it";
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ Camera camera_at(const glm::dvec3& place, double degrees = 0.0) {
 }
 
 /// Cameras on a circle that look inwards.
-Cameras ring(int count, double radius, double height = 0.0) {
+Cameras ring_of(int count, double radius, double height = 0.0) {
   Cameras out;
   for (int k = 0; k < count; ++k) {
     const double turn = glm::two_pi<double>() * k / count;
@@ -138,7 +138,7 @@ Cameras scaled(Cameras cameras, double factor) {
 TEST(Tour, GoesAsFastAsAllowedAndNoFaster) {
   for (const char* name : {"calm", "walk", "fast"}) {
     for (const double units : {1.0, 0.02, 30.0}) {
-      for (const Cameras& cameras : {ring(12, 2.0), ring(40, 30.0), scattered()}) {
+      for (const Cameras& cameras : {ring_of(12, 2.0), ring_of(40, 30.0), scattered()}) {
         const TourSettings settings = settings_for(name, units);
         const Cameras frames = tour(scaled(cameras, units), settings);
         EXPECT_LT(fastest(frames, settings), 1.0 + 1e-6) << name;
@@ -157,7 +157,7 @@ TEST(Tour, GoesAsFastAsAllowedAndNoFaster) {
 }
 
 TEST(Tour, TheSlowerLimitBinds) {
-  const Cameras inwards = ring(24, 4.0);  // turns 14.3 degrees a metre
+  const Cameras inwards = ring_of(24, 4.0);  // turns 14.3 degrees a metre
   TourSettings settings{{"", 1.0, 90.0}, 90.0, 1.0};
   const double by_way = tour(inwards, settings).back().time.value();
   EXPECT_NEAR(by_way, 8.0 * glm::pi<double>() * 23 / 24, 0.3);
@@ -167,7 +167,7 @@ TEST(Tour, TheSlowerLimitBinds) {
 }
 
 TEST(Tour, FramesAreNamedAndTimed) {
-  Cameras cameras = ring(12, 2.0);
+  Cameras cameras = ring_of(12, 2.0);
   cameras[0].name = "first";
   cameras[0].fx = 77.0;
   TourSettings settings = settings_for("walk");
@@ -198,7 +198,7 @@ TEST(Tour, FewerSecondsAreTheFirstOnes) {
 
 TEST(Tour, PassesThroughEveryCamera) {
   for (const char* name : {"calm", "walk", "fast"}) {
-    for (const Cameras& cameras : {ring(12, 2.0), scattered()}) {
+    for (const Cameras& cameras : {ring_of(12, 2.0), scattered()}) {
       const TourSettings settings = settings_for(name);
       const Cameras frames = tour(cameras, settings);
       // The last frame may be almost one before the end.
@@ -218,7 +218,7 @@ constexpr double smooth = 2.0 / (0.25 * 90.0);
 
 TEST(Tour, IsSmooth) {
   for (const char* name : {"calm", "walk", "fast"}) {
-    for (const Cameras& cameras : {ring(12, 2.0), ring(5, 0.3), scattered()}) {
+    for (const Cameras& cameras : {ring_of(12, 2.0), ring_of(5, 0.3), scattered()}) {
       const TourSettings settings = settings_for(name);
       EXPECT_LT(roughest(tour(cameras, settings), settings), smooth) << name;
     }
@@ -227,7 +227,7 @@ TEST(Tour, IsSmooth) {
 
 TEST(Tour, WhatIsNotSmoothIsNoticed) {
   const TourSettings settings = settings_for("walk");
-  const Cameras good = tour(ring(12, 2.0), settings);
+  const Cameras good = tour(ring_of(12, 2.0), settings);
   const double was = roughest(good, settings);
   Cameras jump = good;  // 5 mm to the side from one frame on
   for (std::size_t k = good.size() / 2; k < good.size(); ++k) jump[k].position.y += 0.005;
@@ -237,7 +237,7 @@ TEST(Tour, WhatIsNotSmoothIsNoticed) {
   EXPECT_GT(roughest(twitch, settings), std::max(smooth, 2.0 * was));
   // Straight ways from camera to camera: each bend is 30 degrees.
   Cameras polygon;
-  const Cameras stops = ring(12, 2.0);
+  const Cameras stops = ring_of(12, 2.0);
   for (std::size_t k = 1; k < stops.size(); ++k)
     for (int n = 0; n < 62; ++n) {
       polygon.push_back(stops[k]);
@@ -292,7 +292,7 @@ std::vector<std::size_t> order(const Cameras& places, const Cameras& frames) {
 }
 
 TEST(Tour, TheListsOrderDoesNotCount) {
-  const Cameras cameras = ring(15, 3.0);
+  const Cameras cameras = ring_of(15, 3.0);
   const TourSettings settings = settings_for("walk");
   const Cameras frames = tour(cameras, settings);
   Cameras shuffled = cameras;
@@ -353,11 +353,12 @@ TEST(Tour, NeverTurnsTheLongWayRound) {
 }
 
 TEST(Tour, DuplicatesAreOneStop) {
-  Cameras twice = ring(12, 2.0);
-  for (const Camera& camera : ring(12, 2.0)) twice.push_back(camera);
+  Cameras twice = ring_of(12, 2.0);
+  for (const Camera& camera : ring_of(12, 2.0)) twice.push_back(camera);
   for (Camera& camera : twice) camera.position += 1e-4 * glm::dvec3(camera.position.z, 0, 0);
   const TourSettings settings = settings_for("walk");
-  EXPECT_NEAR(length(tour(twice, settings), settings), length(tour(ring(12, 2.0), settings), settings), 0.01);
+  EXPECT_NEAR(length(tour(twice, settings), settings), length(tour(ring_of(12, 2.0), settings), settings),
+              0.01);
 }
 
 /// Each camera as the eyes of a head, 0.063 apart.
@@ -376,7 +377,7 @@ Cameras as_pairs(const Cameras& cameras) {
 
 TEST(Tour, TheEyesOfAPairAreOneHead) {
   const TourSettings settings = settings_for("walk");
-  const Cameras heads = ring(12, 2.0);
+  const Cameras heads = ring_of(12, 2.0);
   const Cameras of_heads = tour(heads, settings);
   Cameras pairs = as_pairs(heads);
   for (int turn = 0; turn < 2; ++turn) {  // the right eye may come first
@@ -398,7 +399,7 @@ TEST(Tour, TheEyesOfAPairAreOneHead) {
 }
 
 TEST(Tour, MetreIsTheUsualWayToTheNextCamera) {
-  Cameras cameras = ring(6, 3.0);  // 3 apart
+  Cameras cameras = ring_of(6, 3.0);  // 3 apart
   EXPECT_NEAR(metre_of(cameras), 3.0, 1e-9);
   cameras.push_back(camera_at({500, 0, 0}));                                            // one outlier
   for (int k = 0; k < 6; ++k) cameras.push_back(cameras[static_cast<std::size_t>(k)]);  // and duplicates
@@ -415,7 +416,7 @@ TEST(Tour, ErrorsSayWhatIsMissing) {
                           std::initializer_list<std::string> parts) {
     return test::fails_saying([&] { tour(cameras, settings); }, parts);
   };
-  const Cameras cameras = ring(3, 1.0);
+  const Cameras cameras = ring_of(3, 1.0);
   EXPECT_TRUE(refused({}, walk, {"two cameras or more, and there is 0", "--cameras", "--orbit"}));
   EXPECT_TRUE(refused({cameras[0]}, walk, {"two cameras or more, and there is 1"}));
   EXPECT_TRUE(refused(as_pairs({cameras[0]}), walk, {"two cameras or more, and there is 1"}));

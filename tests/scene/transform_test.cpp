@@ -13,7 +13,7 @@ namespace {
 using test::apart;
 using test::follows;
 
-glm::dmat3 turn(double angle, const glm::dvec3& axis) {
+glm::dmat3 turn_by(double angle, const glm::dvec3& axis) {
   return glm::dmat3(glm::rotate(glm::dmat4(1.0), angle, axis));
 }
 
@@ -25,7 +25,7 @@ glm::dmat4 with(const glm::dmat3& linear, const glm::dvec3& translation) {
   return map;
 }
 
-const glm::dmat3 q = turn(0.7, {1, 2, -0.5}), axes = turn(1.9, {0.3, -1, 0.8});
+const glm::dmat3 q = turn_by(0.7, {1, 2, -0.5}), axes = turn_by(1.9, {0.3, -1, 0.8});
 const glm::dmat3 mirror = diagonal({1, -1, 1});
 
 struct Case {

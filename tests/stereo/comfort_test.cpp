@@ -10,12 +10,12 @@
 namespace binosplat::stereo {
 namespace {
 
-constexpr int width = 100, height = 60;
-constexpr double focal = 120.0, ipd = 0.063;
+constexpr int comfort_width = 100, comfort_height = 60;
+constexpr double comfort_focal = 120.0, comfort_ipd = 0.063;
 
 /// The left eye's picture of a wall at 2 m before one at 8 m, and one floater that is very near.
 Picture walls() {
-  Picture picture(width, height);
+  Picture picture(comfort_width, comfort_height);
   for (std::size_t k = 0; k < picture.colour.size(); ++k) {
     picture.colour[k] = glm::vec4(0.5f, 0.5f, 0.5f, 0.0f);
     picture.z_sum[k] = k < picture.colour.size() / 2 ? 2.0f : 8.0f;
@@ -25,26 +25,26 @@ Picture walls() {
   return picture;
 }
 
-EyePair rig(std::optional<double> convergence, double cant = 0.0) {
-  return make_rig(test::front_camera(width, height, focal),
+EyePair rig_for_comfort(std::optional<double> convergence, double cant = 0.0) {
+  return make_rig(test::front_camera(comfort_width, comfort_height, comfort_focal),
                   {.convergence = convergence, .cant_degrees = cant});
 }
 
 TEST(Comfort, DisparityIsTheMethods) {
   for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(3.0)}) {
-    const auto range = disparity_range(rig(convergence).cameras, walls(), convergence);
+    const auto range = disparity_range(rig_for_comfort(convergence).cameras, walls(), convergence);
     ASSERT_TRUE(range);
     const double inverse = convergence ? 1.0 / *convergence : 0.0;
-    EXPECT_NEAR(range->near_px, focal * ipd * (1.0 / 2.0 - inverse), 1e-5);
-    EXPECT_NEAR(range->far_px, focal * ipd * (1.0 / 8.0 - inverse), 1e-5);
+    EXPECT_NEAR(range->near_px, comfort_focal * comfort_ipd * (1.0 / 2.0 - inverse), 1e-5);
+    EXPECT_NEAR(range->far_px, comfort_focal * comfort_ipd * (1.0 / 8.0 - inverse), 1e-5);
     EXPECT_LT(range->vertical_px, 1e-9);
     // Straight ahead the angles are ipd (1/z - 1/D); to the sides the eyes turn a little less.
-    EXPECT_NEAR(range->near_degrees, glm::degrees(ipd * (1.0 / 2.0 - inverse)), 0.02);
-    EXPECT_NEAR(range->far_degrees, glm::degrees(ipd * (1.0 / 8.0 - inverse)), 0.1);
+    EXPECT_NEAR(range->near_degrees, glm::degrees(comfort_ipd * (1.0 / 2.0 - inverse)), 0.02);
+    EXPECT_NEAR(range->far_degrees, glm::degrees(comfort_ipd * (1.0 / 8.0 - inverse)), 0.1);
     EXPECT_GT(range->near_degrees, range->far_degrees);
   }
   // Swapped eyes turn the sign.
-  EyePair pair = rig({});
+  EyePair pair = rig_for_comfort({});
   std::swap(pair.cameras[0], pair.cameras[1]);
   EXPECT_LT(disparity_range(pair.cameras, walls(), {})->near_px, 0.0);
 }
@@ -53,9 +53,9 @@ TEST(Comfort, PixelsAndDegreesAgreeWhateverIsFocusedOn) {
   for (const double focus : {1.0, 2.5, 4.0, 9.0}) {
     // A headset's optics focus somewhere, whatever the eyes' convergence.
     for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(3.0)}) {
-      const auto range = disparity_range(rig(convergence).cameras, walls(), focus);
+      const auto range = disparity_range(rig_for_comfort(convergence).cameras, walls(), focus);
       ASSERT_TRUE(range);
-      EXPECT_NEAR(range->near_px, focal * ipd * (1.0 / 2.0 - 1.0 / focus), 1e-5);
+      EXPECT_NEAR(range->near_px, comfort_focal * comfort_ipd * (1.0 / 2.0 - 1.0 / focus), 1e-5);
       EXPECT_EQ(range->near_px > 0.0, range->near_degrees > 0.0) << focus;
       EXPECT_EQ(range->far_px > 0.0, range->far_degrees > 0.0) << focus;
     }
@@ -63,7 +63,7 @@ TEST(Comfort, PixelsAndDegreesAgreeWhateverIsFocusedOn) {
 }
 
 TEST(Comfort, CantedEyesHaveVerticalDisparity) {
-  const auto range = disparity_range(rig({}, 10.0).cameras, walls(), 2.0);
+  const auto range = disparity_range(rig_for_comfort({}, 10.0).cameras, walls(), 2.0);
   ASSERT_TRUE(range);
   EXPECT_GT(range->vertical_px, 1.0);
   // The focus is at the near wall; the hundredth left out is what lies within some degrees of straight ahead.
@@ -73,65 +73,68 @@ TEST(Comfort, CantedEyesHaveVerticalDisparity) {
 TEST(Comfort, WhatLiesInTheScreenHasNoAngleAnywhere) {
   Picture picture = walls();
   for (float& z : picture.z_sum) z = 3.0f;
-  const auto range = disparity_range(rig(3.0).cameras, picture, 3.0);
+  const auto range = disparity_range(rig_for_comfort(3.0).cameras, picture, 3.0);
   EXPECT_NEAR(range->near_degrees, 0.0, 1e-6);
   EXPECT_NEAR(range->far_degrees, 0.0, 1e-6);
-  EXPECT_GT(disparity_range(rig(3.0).cameras, picture, 3.5)->far_degrees, 0.01)
+  EXPECT_GT(disparity_range(rig_for_comfort(3.0).cameras, picture, 3.5)->far_degrees, 0.01)
       << "the focus is not looked at";
 }
 
 TEST(Comfort, TheScreenStandsWhereDisparityIsZero) {
-  EXPECT_FALSE(screen_distance(rig({}).cameras));
-  EXPECT_NEAR(*screen_distance(rig(3.0).cameras), 3.0, 1e-9);
-  EXPECT_GT(std::abs(*screen_distance(rig(2.0).cameras) - 3.0), 0.5) << "any rig is at 3 m";
+  EXPECT_FALSE(screen_distance(rig_for_comfort({}).cameras));
+  EXPECT_NEAR(*screen_distance(rig_for_comfort(3.0).cameras), 3.0, 1e-9);
+  EXPECT_GT(std::abs(*screen_distance(rig_for_comfort(2.0).cameras) - 3.0), 0.5) << "any rig is at 3 m";
 }
 
 TEST(Comfort, NothingHasNoRange) {
-  EXPECT_FALSE(disparity_range(rig({}).cameras, Picture(width, height), {}));
+  EXPECT_FALSE(disparity_range(rig_for_comfort({}).cameras, Picture(comfort_width, comfort_height), {}));
 }
 
 TEST(Comfort, WhatIsProposedIsComfortable) {
-  const EyePair eyes = rig({});
+  const EyePair eyes = rig_for_comfort({});
   const auto range = disparity_range(eyes.cameras, walls(), {});
   EXPECT_FALSE(comfortable(*range)) << "2 m before eyes that look infinitely far is 1.8 degrees";
   const ComfortableRig better = comfortable_rig(*range, eyes.cameras);
   EXPECT_FALSE(better.ipd);
   EXPECT_NEAR(better.convergence, 3.2, 0.01) << "midway in 1/z between 2 and 8 m";
-  EXPECT_TRUE(comfortable(*disparity_range(rig(better.convergence).cameras, walls(), better.convergence)));
+  EXPECT_TRUE(comfortable(
+      *disparity_range(rig_for_comfort(better.convergence).cameras, walls(), better.convergence)));
 
   // A deep scene needs eyes nearer to each other.
   Picture deep = walls();
   for (std::size_t k = 0; k < deep.z_sum.size() / 2; ++k) deep.z_sum[k] = 0.5f;
-  const EyePair other = rig(3.0);
+  const EyePair other = rig_for_comfort(3.0);
   const ComfortableRig narrow = comfortable_rig(*disparity_range(other.cameras, deep, 3.0), other.cameras);
   ASSERT_TRUE(narrow.ipd);
   const auto at = [&](double distance_between) {
-    const EyePair pair = make_rig(test::front_camera(width, height, focal),
+    const EyePair pair = make_rig(test::front_camera(comfort_width, comfort_height, comfort_focal),
                                   {.ipd = distance_between, .convergence = narrow.convergence});
     return *disparity_range(pair.cameras, deep, narrow.convergence);
   };
   EXPECT_TRUE(comfortable(at(*narrow.ipd)));
-  EXPECT_FALSE(comfortable(at(ipd))) << "any eyes would do";
+  EXPECT_FALSE(comfortable(at(comfort_ipd))) << "any eyes would do";
 }
 
 TEST(Comfort, TheScreenSuitsWhatIsSeen) {
   // Half of it at 2 m and half at 8 m fit into a degree either way, though not about either wall.
   for (const std::optional<double> convergence : {std::optional<double>(), std::optional<double>(1.5)}) {
-    const auto metres = suitable_convergence(rig(convergence).cameras, walls(), 1.0);
+    const auto metres = suitable_convergence(rig_for_comfort(convergence).cameras, walls(), 1.0);
     ASSERT_TRUE(metres);
-    EXPECT_TRUE(comfortable(*disparity_range(rig(metres).cameras, walls(), metres))) << *metres;
+    EXPECT_TRUE(comfortable(*disparity_range(rig_for_comfort(metres).cameras, walls(), metres))) << *metres;
   }
-  EXPECT_FALSE(comfortable(*disparity_range(rig(2.0).cameras, walls(), 2.0)));
-  EXPECT_FALSE(comfortable(*disparity_range(rig(8.0).cameras, walls(), 8.0)));
+  EXPECT_FALSE(comfortable(*disparity_range(rig_for_comfort(2.0).cameras, walls(), 2.0)));
+  EXPECT_FALSE(comfortable(*disparity_range(rig_for_comfort(8.0).cameras, walls(), 8.0)));
 
   // In a scene that is too deep for any, it stands where most is, to three digits.
   Picture deep = walls();
   for (std::size_t k = 0; k < deep.z_sum.size(); ++k)
     deep.z_sum[k] = k % 10 == 0 ? 0.4f : k % 10 == 1 ? 500.0f : 2.71828f;
-  EXPECT_NEAR(*suitable_convergence(rig({}).cameras, deep, 1.0), 2.72, 1e-9);
-  EXPECT_NEAR(*suitable_convergence(rig({}).cameras, deep, 100.0), 0.0272, 1e-9) << "units are not metres";
+  EXPECT_NEAR(*suitable_convergence(rig_for_comfort({}).cameras, deep, 1.0), 2.72, 1e-9);
+  EXPECT_NEAR(*suitable_convergence(rig_for_comfort({}).cameras, deep, 100.0), 0.0272, 1e-9)
+      << "units are not metres";
 
-  EXPECT_FALSE(suitable_convergence(rig({}).cameras, Picture(width, height), 1.0)) << "nothing is seen";
+  EXPECT_FALSE(suitable_convergence(rig_for_comfort({}).cameras, Picture(comfort_width, comfort_height), 1.0))
+      << "nothing is seen";
 }
 
 }  // namespace

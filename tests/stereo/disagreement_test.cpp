@@ -13,14 +13,16 @@
 namespace binosplat::stereo {
 namespace {
 
-constexpr int width = 64, height = 48;
-constexpr double focal = 60, ipd = 0.06, depth = 1.2;  // a disparity of 3 px
+constexpr int wall_width = 64, wall_height = 48;
+constexpr double wall_focal = 60, wall_ipd = 0.06, depth = 1.2;  // a disparity of 3 px
 
-EyePair rig() { return make_rig(test::front_camera(width, height, focal), {.ipd = ipd}); }
+EyePair rig_at_wall() {
+  return make_rig(test::front_camera(wall_width, wall_height, wall_focal), {.ipd = wall_ipd});
+}
 
 // A grey wall at one depth, as both eyes see it.
 std::array<Picture, 2> wall(double z = depth) {
-  std::array<Picture, 2> eyes = {Picture(width, height), Picture(width, height)};
+  std::array<Picture, 2> eyes = {Picture(wall_width, wall_height), Picture(wall_width, wall_height)};
   for (Picture& eye : eyes) {
     eye.colour.assign(eye.colour.size(), glm::vec4(0.5f, 0.5f, 0.5f, 0.0f));
     eye.z_sum.assign(eye.z_sum.size(), static_cast<float>(z));
@@ -29,7 +31,7 @@ std::array<Picture, 2> wall(double z = depth) {
 }
 
 void stain(Picture& eye, int x, int y, float by) {
-  eye.colour[static_cast<std::size_t>(y) * width + x] += glm::vec4(by, by, by, 0.0f);
+  eye.colour[static_cast<std::size_t>(y) * wall_width + x] += glm::vec4(by, by, by, 0.0f);
 }
 
 TEST(Disagreement, NoneWhereTheErrorIsShared) {
@@ -37,16 +39,17 @@ TEST(Disagreement, NoneWhereTheErrorIsShared) {
   auto approximate = exact;
   stain(approximate[0], 30, 20, 0.2f);
   stain(approximate[1], 27, 20, 0.2f);  // the same spot of the wall: 3 px further left
-  const Disagreement same = disagreement(rig().views, exact, approximate);
-  EXPECT_GT(same.db, 120.0);                               // rounding of the wall's depth to float
-  EXPECT_NEAR(same.counted, (width - 3.0) / width, 1e-9);  // three columns lie outside the right picture
+  const Disagreement same = disagreement(rig_at_wall().views, exact, approximate);
+  EXPECT_GT(same.db, 120.0);  // rounding of the wall's depth to float
+  EXPECT_NEAR(same.counted, (wall_width - 3.0) / wall_width,
+              1e-9);  // three columns lie outside the right picture
 
   // Two pixels, in the left eye and in the right, of an error each: known by hand.
   auto apart = exact;
   stain(apart[0], 30, 20, 0.2f);
   stain(apart[1], 33, 20, 0.2f);  // as if the eyes had changed places
-  const Disagreement rivalry = disagreement(rig().views, exact, apart);
-  const double counted = (width - 3.0) * height;
+  const Disagreement rivalry = disagreement(rig_at_wall().views, exact, apart);
+  const double counted = (wall_width - 3.0) * wall_height;
   EXPECT_NEAR(rivalry.db, -10 * std::log10(2 * 0.04 / counted), 0.01);
   EXPECT_NEAR(rivalry.picture.at(30, 20, 1), 0.2f, 1e-5f);
   EXPECT_NEAR(rivalry.picture.at(36, 20, 1), 0.2f, 1e-3f);
@@ -54,7 +57,7 @@ TEST(Disagreement, NoneWhereTheErrorIsShared) {
 
 TEST(Disagreement, InfiniteForTheExactPictures) {
   const auto exact = wall();
-  EXPECT_TRUE(std::isinf(disagreement(rig().views, exact, exact).db));
+  EXPECT_TRUE(std::isinf(disagreement(rig_at_wall().views, exact, exact).db));
 }
 
 TEST(Disagreement, IsBetweenPixelsWhereTheDisparityIs) {
@@ -63,7 +66,7 @@ TEST(Disagreement, IsBetweenPixelsWhereTheDisparityIs) {
   stain(approximate[0], 30, 20, 0.2f);
   stain(approximate[1], 27, 20, 0.2f);
   stain(approximate[1], 28, 20, 0.2f);
-  const Disagreement d = disagreement(rig().views, exact, approximate);
+  const Disagreement d = disagreement(rig_at_wall().views, exact, approximate);
   EXPECT_NEAR(d.picture.at(30, 20, 0), 0.0f, 1e-4f);
   EXPECT_NEAR(d.picture.at(29, 20, 0), 0.1f, 1e-3f);  // half way to a stained pixel
 }
@@ -72,16 +75,17 @@ TEST(Disagreement, CountsOnlyWhatBothEyesSee) {
   auto exact = wall();
   auto approximate = exact;
   stain(approximate[0], 30, 20, 0.2f);
-  exact[1].z_sum[20 * width + 27] = static_cast<float>(1.02 * depth);  // the right eye sees past it
-  EXPECT_TRUE(std::isinf(disagreement(rig().views, exact, approximate).db));
-  exact[1].z_sum[20 * width + 27] = static_cast<float>(1.005 * depth);
-  EXPECT_FALSE(std::isinf(disagreement(rig().views, exact, approximate).db));
-  exact[0].colour[20 * width + 30].a = 0.6f;  // too little of it is covered to have a depth
-  EXPECT_TRUE(std::isinf(disagreement(rig().views, exact, approximate).db));
+  exact[1].z_sum[20 * wall_width + 27] = static_cast<float>(1.02 * depth);  // the right eye sees past it
+  EXPECT_TRUE(std::isinf(disagreement(rig_at_wall().views, exact, approximate).db));
+  exact[1].z_sum[20 * wall_width + 27] = static_cast<float>(1.005 * depth);
+  EXPECT_FALSE(std::isinf(disagreement(rig_at_wall().views, exact, approximate).db));
+  exact[0].colour[20 * wall_width + 30].a = 0.6f;  // too little of it is covered to have a depth
+  EXPECT_TRUE(std::isinf(disagreement(rig_at_wall().views, exact, approximate).db));
 }
 
 TEST(Disagreement, FollowsCantedEyes) {
-  const EyePair canted = make_rig(test::front_camera(width, height, focal), {.ipd = ipd, .cant_degrees = 10});
+  const EyePair canted = make_rig(test::front_camera(wall_width, wall_height, wall_focal),
+                                  {.ipd = wall_ipd, .cant_degrees = 10});
   // One point of the world, in each eye where that eye sees it.
   const glm::dvec3 p(0.05, -0.02, 1.5);
   auto exact = wall();
@@ -109,7 +113,8 @@ TEST(Disagreement, FollowsCantedEyes) {
 TEST(Disagreement, PicturesThatAreNotTheViewsAreRefused) {
   const auto exact = wall();
   const std::array<Picture, 2> small = {Picture(4, 4), Picture(4, 4)};
-  EXPECT_TRUE(test::fails_saying([&] { disagreement(rig().views, exact, small); }, {"4 x 4", "64 x 48"}));
+  EXPECT_TRUE(
+      test::fails_saying([&] { disagreement(rig_at_wall().views, exact, small); }, {"4 x 4", "64 x 48"}));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ Model ball(const glm::dvec3& at, double units = 1.0) {
 }
 
 /// Centre of what is bright in pixels from OpenGL's lower left.
-glm::dvec2 centre(const std::vector<float>& pixels) {
+glm::dvec2 centre_of_pixels(const std::vector<float>& pixels) {
   glm::dvec2 sum(0.0);
   double weight = 0.0;
   for (int k = 0; k < size.x * size.y; ++k) {
@@ -40,7 +40,7 @@ glm::dvec2 centre(const std::vector<float>& pixels) {
 }
 
 /// Where the angles put a direction (right, up, forward) of an eye, in the same pixels.
-glm::dvec2 expected(const Fov& fov, const glm::dvec3& v) {
+glm::dvec2 expected_centre(const Fov& fov, const glm::dvec3& v) {
   const auto along = [](double low, double high, double tangent, int pixels) {
     return (tangent - std::tan(low)) / (std::tan(high) - std::tan(low)) * pixels - 0.5;
   };
@@ -65,10 +65,13 @@ TEST_F(Embed, AnglesAndPosesAreOpenXrs) {
         const glm::dvec3 v(at.x - side * 0.0315, at.y, at.z);
         const glm::dvec3 turned(std::cos(turn) * v.x - std::sin(turn) * v.z, v.y,
                                 std::sin(turn) * v.x + std::cos(turn) * v.z);
-        EXPECT_LT(glm::length(centre(read(k)) - expected(eyes[k].fov, turned)), 0.1) << cant << " " << k;
-        EXPECT_GT(glm::length(centre(read(k)) - expected(eyes[1 - k].fov, turned)), 1.0)
+        EXPECT_LT(glm::length(centre_of_pixels(read(k)) - expected_centre(eyes[k].fov, turned)), 0.1)
+            << cant << " " << k;
+        EXPECT_GT(glm::length(centre_of_pixels(read(k)) - expected_centre(eyes[1 - k].fov, turned)), 1.0)
             << "the other eye's angles go unnoticed";
-        EXPECT_GT(glm::length(centre(read(k)) - expected(eyes[k].fov, turned * glm::dvec3(1, -1, 1))), 1.0)
+        EXPECT_GT(glm::length(centre_of_pixels(read(k)) -
+                              expected_centre(eyes[k].fov, turned * glm::dvec3(1, -1, 1))),
+                  1.0)
             << "a picture on its head goes unnoticed";
       }
     }
@@ -103,7 +106,7 @@ TEST_F(Embed, ModelsKnowWhichWayIsUp) {
                   LAYOUT_SEPARATE, glm::vec3(0.0f));
     seen.push_back(read(0));
   }
-  EXPECT_LT(glm::length(centre(seen[0]) - centre(seen[1])), 1e-3);
+  EXPECT_LT(glm::length(centre_of_pixels(seen[0]) - centre_of_pixels(seen[1])), 1e-3);
   EmbeddedRenderer renderer(caller.get_proc_address(), up);
   renderer.draw(eyes_from_xr(quest_eyes(), stage, sizes).views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
   EXPECT_NE(read(0), seen[0]) << "the model's axes go unnoticed";

@@ -23,7 +23,7 @@ using stereo::Foveation;
 
 constexpr glm::ivec2 size{220, 156};
 
-std::array<shared::View, 2> eyes(const stereo::RigSettings& rig) {
+std::array<shared::View, 2> eyes_of_rig(const stereo::RigSettings& rig) {
   return stereo::make_rig(test::front_camera(size.x, size.y, 150), rig).views;
 }
 
@@ -73,7 +73,7 @@ TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
   const std::vector<std::vector<glm::dvec2>> gazes = {
       {}, {{12, -7}}, {{-20, 11}, {-17, 11}}, {{34, 25}}};  // the last at the picture's corner
   for (const stereo::RigSettings& rig : rigs) {
-    const auto views = eyes(rig);
+    const auto views = eyes_of_rig(rig);
     const auto exact = test::draw(model, std::vector(views.begin(), views.end()));
     for (std::size_t n = 0; n < gazes.size(); ++n) {
       const Foveation foveation{
@@ -96,7 +96,7 @@ TEST(Foveate, TheInsetIsTheExactPictureBitForBit) {
 
 TEST(Foveate, TheInsetIsExactWhateverTheContextMayCost) {
   const Model model = test::random_model(72, 3000, 1, 0.75);
-  const auto views = eyes(rigs[0]);
+  const auto views = eyes_of_rig(rigs[0]);
   const render::FrameSettings perspective{.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT};
   const auto exact = test::draw(model, std::vector(views.begin(), views.end()), perspective);
   render::FrameSettings lossy = perspective;
@@ -114,7 +114,7 @@ TEST(Foveate, TheInsetIsExactWhateverTheContextMayCost) {
 
 TEST(Foveate, CantedEyesShareOneOrderByDistance) {
   const Model model = test::random_model(73, 1000, 0, 0.75);
-  const auto drawn = draw(model, eyes(rigs[2]), {}, {.order = ORDER_DISTANCE});
+  const auto drawn = draw(model, eyes_of_rig(rigs[2]), {}, {.order = ORDER_DISTANCE});
   EXPECT_EQ(drawn.report.order_groups, 1u);
   EXPECT_EQ(drawn.report.stages.back().name, "compose");
 }
@@ -173,7 +173,7 @@ double around_error(const Drawn& drawn, const Model& model) {
 
 TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
   const Model model = test::random_model(74, 3000, 1, 0.75);
-  const auto views = eyes(rigs[1]);
+  const auto views = eyes_of_rig(rigs[1]);
   for (const Foveation& foveation :
        {Foveation{.inset_degrees = 40, .context_scale = 0.55, .seam = 0}, Foveation{.gaze = {{30, 20}}},
         Foveation{.inset_degrees = 30, .context_scale = 0.95, .gaze = {{3, 2}}, .seam = 0.02}}) {
@@ -193,7 +193,7 @@ TEST(Foveate, AroundTheInsetLiesTheContextAndNoHole) {
 
 TEST(Foveate, AWindowOffByAPixelAndASeamThatEatsTheInsetAreCaught) {
   const Model model = test::random_model(75, 3000, 1, 0.75);
-  const auto views = eyes(rigs[0]);
+  const auto views = eyes_of_rig(rigs[0]);
   const auto exact = test::draw(model, views[0]);
   const Foveation foveation{.inset_degrees = 18};
   const std::pair<const char*, const char*> faults[] = {
@@ -234,7 +234,7 @@ double farthest_from_seam(const Drawn& drawn, const Picture& exact, double seam)
 
 TEST(Foveate, TheSeamIsSmooth) {
   const Model model = test::random_model(76, 3000, 0, 0.75);
-  const auto views = eyes(rigs[0]);
+  const auto views = eyes_of_rig(rigs[0]);
   const auto exact = test::draw(model, views[0]);
   render::FrameSettings nothing;
   nothing.th = TH_SQUARED;
@@ -262,25 +262,25 @@ TEST(Foveate, ComposesOntoCanvases) {
   const auto written = [&](std::size_t eye) {
     return caller.read<unsigned char>(targets[eye].texture, size.x, size.y);
   };
-  frame.draw(eyes(rigs[0]), {.gaze = {{5, 5}}}, settings);
+  frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings);
   for (std::size_t eye = 0; eye < 2; ++eye)
     presenter.draw(frame.colours(), frame.views(), eye, LAYOUT_SEPARATE, targets[eye], background);
   const std::array presented = {written(0), written(1)};
   for (stereo::Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const stereo::Canvases canvases = presenter.canvases(targets, background);
-  EXPECT_TRUE(frame.draw(eyes(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, canvases.list).on_canvases);
+  EXPECT_TRUE(frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, canvases.list).on_canvases);
   EXPECT_EQ(written(0), presented[0]);
   EXPECT_EQ(written(1), presented[1]);
   EXPECT_NE(presented[0], presented[1]) << "one eye twice goes unnoticed";
   EXPECT_THROW(frame.read_pictures(), Error);
-  EXPECT_THROW(frame.draw(eyes(rigs[0]), {}, settings, {}, std::span(canvases.list).first(1)), Error);
+  EXPECT_THROW(frame.draw(eyes_of_rig(rigs[0]), {}, settings, {}, std::span(canvases.list).first(1)), Error);
 }
 
 TEST(Foveate, ComposedPicturesGoIntoEveryLayout) {
   test::Caller caller;
   const Model model = test::random_model(77, 500, 0, 0.75);
   FoveatedFrame frame(std::make_shared<render::GpuModel>(*caller.context, model, PRECISION_FULL));
-  frame.draw(eyes(rigs[0]), {.gaze = {{5, 5}}});
+  frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}});
   const auto pictures = frame.read_pictures();
   stereo::Presenter presenter(*caller.context);
   const glm::vec3 blue(0.1f, 0.2f, 0.6f);
@@ -305,7 +305,7 @@ TEST(Foveate, ComposedPicturesGoIntoEveryLayout) {
 }
 
 TEST(Foveate, WrongWordsAreNamed) {
-  const auto view = eyes(rigs[0])[0];
+  const auto view = eyes_of_rig(rigs[0])[0];
   const auto said = [&](const Foveation& foveation) { return [=] { stereo::foveate(view, foveation, 2); }; };
   const double nan = std::nan("");
   EXPECT_TRUE(test::fails_saying(said({.inset_degrees = 0}), {"inset 0", "1 to 120"}));

@@ -31,7 +31,7 @@ Picture over_black(int layout, const Picture& left, const Picture& right) {
 struct Part {
   int x = 0, y = 0, width = 0, height = 0, step_x = 1, step_y = 1, channel = 0;
 };
-double centre(const Picture& picture, const Part& part) {
+double centre_of_part(const Picture& picture, const Part& part) {
   double sum = 0, weight = 0;
   for (int y = part.y; y < part.y + part.height; y += part.step_y) {
     for (int x = part.x; x < part.x + part.width; x += part.step_x) {
@@ -51,25 +51,27 @@ struct Seen {
 Seen seen(int layout, const Picture& picture, int w, int h) {
   switch (layout) {
     case LAYOUT_PARALLEL:
-      return {centre(picture, {0, 0, w, h}), centre(picture, {w, 0, w, h})};
+      return {centre_of_part(picture, {0, 0, w, h}), centre_of_part(picture, {w, 0, w, h})};
     case LAYOUT_CROSS_EYED:  // the right eye looks at the left half
-      return {centre(picture, {w, 0, w, h}), centre(picture, {0, 0, w, h})};
+      return {centre_of_part(picture, {w, 0, w, h}), centre_of_part(picture, {0, 0, w, h})};
     case LAYOUT_HALF_WIDTH:
-      return {2 * centre(picture, {0, 0, w / 2, h}) + 0.5, 2 * centre(picture, {w / 2, 0, w / 2, h}) + 0.5};
+      return {2 * centre_of_part(picture, {0, 0, w / 2, h}) + 0.5,
+              2 * centre_of_part(picture, {w / 2, 0, w / 2, h}) + 0.5};
     case LAYOUT_HALF_HEIGHT:
-      return {centre(picture, {0, 0, w, h / 2}), centre(picture, {0, h / 2, w, h / 2})};
+      return {centre_of_part(picture, {0, 0, w, h / 2}), centre_of_part(picture, {0, h / 2, w, h / 2})};
     case LAYOUT_OVER_UNDER:
-      return {centre(picture, {0, 0, w, h}), centre(picture, {0, h, w, h})};
+      return {centre_of_part(picture, {0, 0, w, h}), centre_of_part(picture, {0, h, w, h})};
     case LAYOUT_ROWS:
-      return {centre(picture, {0, 0, w, h, 1, 2}), centre(picture, {0, 1, w, h - 1, 1, 2})};
+      return {centre_of_part(picture, {0, 0, w, h, 1, 2}), centre_of_part(picture, {0, 1, w, h - 1, 1, 2})};
     case LAYOUT_COLUMNS:
-      return {centre(picture, {0, 0, w, h, 2, 1}), centre(picture, {1, 0, w - 1, h, 2, 1}) + 1};
+      return {centre_of_part(picture, {0, 0, w, h, 2, 1}),
+              centre_of_part(picture, {1, 0, w - 1, h, 2, 1}) + 1};
     default:  // glasses: red before the left eye, cyan before the right
-      return {centre(picture, {0, 0, w, h, 1, 1, 0}), centre(picture, {0, 0, w, h, 1, 1, 1})};
+      return {centre_of_part(picture, {0, 0, w, h, 1, 1, 0}), centre_of_part(picture, {0, 0, w, h, 1, 1, 1})};
   }
 }
 
-constexpr int width = 96, height = 64;
+constexpr int layout_width = 96, layout_height = 64;
 
 /// A white ball 1 m away before a black world, both eyes 63 mm apart: docs/method.md 6 puts it 6.3 px further
 /// right in the left eye, at 100 px of focal length. It is small: Dubois takes from each channel what the
@@ -79,7 +81,7 @@ std::vector<Picture> near_object(std::optional<double> convergence) {
   test::add(model, {0, 0, 1}, glm::vec3(0.01f), 0.99f);
   RigSettings settings;
   settings.convergence = convergence;
-  const EyePair pair = make_rig(test::front_camera(width, height, 100.0), settings);
+  const EyePair pair = make_rig(test::front_camera(layout_width, layout_height, 100.0), settings);
   std::vector<Picture> eyes;
   for (const shared::View& view : pair.views) eyes.push_back(reference::render(model, view));
   return eyes;
@@ -88,7 +90,7 @@ std::vector<Picture> near_object(std::optional<double> convergence) {
 /// Whether a layout shows the object as near as the eyes saw it, to half a pixel.
 testing::AssertionResult shows_depth(const LayOut& lay_out_with, int layout, const std::vector<Picture>& eyes,
                                      double disparity) {
-  const Seen at = seen(layout, lay_out_with(layout, eyes[0], eyes[1]), width, height);
+  const Seen at = seen(layout, lay_out_with(layout, eyes[0], eyes[1]), layout_width, layout_height);
   const auto text = testing::AssertionResult(std::abs(at.left - at.right - disparity) < 0.5);
   return testing::AssertionResult(text) << layout_choices[layout].name << ": left " << at.left << ", right "
                                         << at.right << ", expected " << disparity << " apart";

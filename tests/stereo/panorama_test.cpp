@@ -37,7 +37,7 @@ Model around(std::uint32_t seed, int count) {
   return model;
 }
 
-std::array<Camera, 2> eyes() {
+std::array<Camera, 2> eyes_of_head() {
   Camera head = test::front_camera(side, side, 20);
   head.position = {0.1, -0.2, 0.05};
   head.rotation = measure::turned(head, glm::normalize(glm::dvec3(1, 2, 3)), 0.4).rotation;
@@ -51,7 +51,7 @@ std::vector<Picture> drawn(const Model& model, const std::vector<Camera>& of_eye
 }
 
 // Of an eye by itself: each ray in one of four cameras that look around it, none of which a face is.
-Picture expected(const Model& model, const Camera& eye) {
+Picture expected_panorama(const Model& model, const Camera& eye) {
   render::Frame frame(test::gl_context(), model);
   Picture picture(side, side);
   std::vector<bool> is_seen(picture.colour.size());
@@ -84,18 +84,18 @@ double psnr(const Picture& a, const Picture& b) { return measure::psnr(on_black(
 
 TEST(Panoramas, ShowAlongEachRayWhatAnyCameraShowsThere) {
   const Model model = around(7, 1500);
-  const Picture wanted = expected(model, eyes()[1]);
-  EXPECT_GE(psnr(drawn(model, {eyes()[1]})[0], wanted), 100.0);
-  EXPECT_LE(psnr(drawn(model, {eyes()[0]})[0], wanted), 40.0) << "the other eye's place";
+  const Picture wanted = expected_panorama(model, eyes_of_head()[1]);
+  EXPECT_GE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 100.0);
+  EXPECT_LE(psnr(drawn(model, {eyes_of_head()[0]})[0], wanted), 40.0) << "the other eye's place";
   {
     const test::FaultyShaders faulty("tiles/tiles.glsl", "#define REACH 0.5", "#define REACH 0.0");
-    EXPECT_LE(psnr(drawn(model, {eyes()[1]})[0], wanted), 80.0)
+    EXPECT_LE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 80.0)
         << "what lies between pixels' centres is lost";
   }
   {
     const test::FaultyShaders faulty("blend_rays.comp", "nearness = 1.0 / (1.0 + dot(slope, slope))",
                                      "nearness = 1.0");
-    EXPECT_LE(psnr(drawn(model, {eyes()[1]})[0], wanted), 40.0) << "projected otherwise";
+    EXPECT_LE(psnr(drawn(model, {eyes_of_head()[1]})[0], wanted), 40.0) << "projected otherwise";
   }
 }
 
@@ -113,19 +113,19 @@ TEST(Panoramas, HaveAWholeSphereOfRaysAhead) {
 
 TEST(Panoramas, ShowBothEyesAtOnce) {
   const Model model = around(8, 800);
-  const auto [left, right] = eyes();
+  const auto [left, right] = eyes_of_head();
   const std::vector<Picture> both = drawn(model, {left, right});
   ASSERT_EQ(both.size(), 2U);
   // Sorted from the point between them, each is nearly what it is by itself.
-  EXPECT_GE(psnr(both[0], expected(model, left)), 50.0);
-  EXPECT_GE(psnr(both[1], expected(model, right)), 50.0);
-  EXPECT_LE(psnr(both[0], expected(model, right)), 28.0);
+  EXPECT_GE(psnr(both[0], expected_panorama(model, left)), 50.0);
+  EXPECT_GE(psnr(both[1], expected_panorama(model, right)), 50.0);
+  EXPECT_LE(psnr(both[0], expected_panorama(model, right)), 28.0);
 }
 
 TEST(Panoramas, TellTheTimeOfAllTheirStages) {
   const Model few = around(9, 200);
   Panorama panorama(std::make_shared<render::GpuModel>(test::gl_context(), few), side);
-  const std::vector<Camera> eye = {eyes()[0]};
+  const std::vector<Camera> eye = {eyes_of_head()[0]};
   const render::FrameReport report = panorama.draw(eye, near_plane);
   double sum = 0.0;
   for (const gl::StageTime& stage : report.stages) sum += stage.ms;

@@ -15,7 +15,7 @@
 namespace binosplat::stereo {
 namespace {
 
-constexpr int width = 60, height = 34;
+constexpr int present_width = 60, present_height = 34;
 const glm::vec3 blue(0.1f, 0.2f, 0.6f);
 
 struct Present : testing::Test {
@@ -26,7 +26,8 @@ struct Present : testing::Test {
   std::vector<Picture> eyes;
 
   Present() {
-    const EyePair pair = make_rig(test::front_camera(width, height, 55.0), {.ipd = 0.2, .convergence = 2.0});
+    const EyePair pair =
+        make_rig(test::front_camera(present_width, present_height, 55.0), {.ipd = 0.2, .convergence = 2.0});
     frame.draw(pair.views);
     eyes = frame.read_pictures();
   }
@@ -48,7 +49,7 @@ struct Present : testing::Test {
   }
 
   std::vector<float> shown(std::size_t first, int layout, const Background& background) {
-    const glm::ivec2 size = layout_size(layout, {width, height});
+    const glm::ivec2 size = layout_size(layout, {present_width, present_height});
     const std::uint32_t texture = caller.texture(GL_RGBA32F, size.x, size.y);
     presenter.draw(frame, first, layout, {.texture = texture}, background);
     auto pixels = caller.read<float>(texture, size.x, size.y);
@@ -78,7 +79,7 @@ TEST_F(Present, AnEyeByItself) {
   }
   // Without a background: colour that is multiplied by alpha, and alpha.
   const auto pixels = shown(1, LAYOUT_SEPARATE, std::nullopt);
-  Image associated(width, height, 4);
+  Image associated(present_width, present_height, 4);
   for (std::size_t k = 0; k < eyes[1].colour.size(); ++k) {
     for (std::size_t c = 0; c < 4; ++c)
       associated.data[4 * k + c] =
@@ -90,12 +91,14 @@ TEST_F(Present, AnEyeByItself) {
 
 TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
   // Written in place, through a view, and copied; each with rows above and columns left of the picture.
-  const auto immutable = [&](GLenum format) { return caller.texture(format, width + 3, height + 5); };
+  const auto immutable = [&](GLenum format) {
+    return caller.texture(format, present_width + 3, present_height + 5);
+  };
   std::uint32_t mutable_one = 0;
   caller.gl.CreateTextures(GL_TEXTURE_2D, 1, &mutable_one);
   caller.BindTexture(GL_TEXTURE_2D, mutable_one);
-  caller.TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width + 3, height + 5, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                    nullptr);
+  caller.TexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, present_width + 3, present_height + 5, 0, GL_RGBA,
+                    GL_UNSIGNED_BYTE, nullptr);
   caller.gl.Enable(GL_FRAMEBUFFER_SRGB);
   const Image image = composite(eyes[0], blue);
   struct Kind {
@@ -112,12 +115,12 @@ TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
                                              {"SRGB8_ALPHA8, mutable", mutable_one, byte},
                                              {"RGB8", immutable(GL_RGB8), byte}}) {
     presenter.draw(frame, 0, LAYOUT_SEPARATE, {.texture = texture, .x = 3}, blue);
-    const auto pixels = caller.read<float>(texture, width + 3, height + 5);
+    const auto pixels = caller.read<float>(texture, present_width + 3, present_height + 5);
     int off = 0, encoded_twice = 0, upside_down = 0;
-    for (int k = 0; k < width * height; ++k) {
-      const int x = k % width, y = k / width;
-      const float v = std::min(1.0f, image.at(x, height - 1 - y, 1));
-      const float shown = pixels[4 * static_cast<std::size_t>(y * (width + 3) + x + 3) + 1];
+    for (int k = 0; k < present_width * present_height; ++k) {
+      const int x = k % present_width, y = k / present_width;
+      const float v = std::min(1.0f, image.at(x, present_height - 1 - y, 1));
+      const float shown = pixels[4 * static_cast<std::size_t>(y * (present_width + 3) + x + 3) + 1];
       if (std::abs(shown - v) > bound) ++off;
       if (std::abs(shown - std::pow(v, 1.0f / 2.2f)) > bound) ++encoded_twice;
       if (std::abs(shown - std::min(1.0f, image.at(x, y, 1))) > bound) ++upside_down;
@@ -130,44 +133,46 @@ TEST_F(Present, EveryKindOfTargetHoldsDisplayValues) {
 
 TEST_F(Present, WhatShadersMayNotWriteTakesACopy) {
   const std::array targets = {
-      Target{.texture = caller.texture(GL_SRGB8_ALPHA8, width, height)},
-      Target{.texture = caller.texture(GL_SRGB8_ALPHA8, width, height), .in_place = false}};
+      Target{.texture = caller.texture(GL_SRGB8_ALPHA8, present_width, present_height)},
+      Target{.texture = caller.texture(GL_SRGB8_ALPHA8, present_width, present_height), .in_place = false}};
   std::vector<std::vector<unsigned char>> shown;
   for (const Target& target : targets) {
     EXPECT_EQ(presenter.canvases(std::span(&target, 1), std::nullopt).list.empty(), !target.in_place);
     presenter.draw(frame, 0, LAYOUT_SEPARATE, target, glm::vec3(0.2f));
-    shown.push_back(caller.read<unsigned char>(target.texture, width, height));
+    shown.push_back(caller.read<unsigned char>(target.texture, present_width, present_height));
   }
   EXPECT_EQ(shown[0], shown[1]);
 }
 
 TEST_F(Present, ArraysAndRectanglesOfFramebuffers) {
-  const std::uint32_t array = caller.texture(GL_RGBA32F, width, height, 2);
+  const std::uint32_t array = caller.texture(GL_RGBA32F, present_width, present_height, 2);
   for (int eye = 0; eye < 2; ++eye) {
     presenter.draw(frame, static_cast<std::size_t>(eye), LAYOUT_SEPARATE, {.texture = array, .layer = eye},
                    blue);
   }
   for (std::size_t eye = 0; eye < 2; ++eye) {
-    const auto pixels = caller.read<float>(array, width, height, static_cast<int>(eye));
+    const auto pixels = caller.read<float>(array, present_width, present_height, static_cast<int>(eye));
     EXPECT_LE(difference(pixels, composite(eyes[eye], blue)), 1e-6);
   }
 
   // Both into one framebuffer of the caller's, by hand: what parallel makes, and nothing beside it; written
   // in place, and copied.
   for (const auto& [format, bound] : {std::pair{GL_RGBA32F, 1e-6}, {GL_RGB8, 0.51 / 255}}) {
-    const std::uint32_t texture = caller.texture(static_cast<GLenum>(format), 2 * width + 3, height + 5);
+    const std::uint32_t texture =
+        caller.texture(static_cast<GLenum>(format), 2 * present_width + 3, present_height + 5);
     std::uint32_t framebuffer = 0;
     caller.gl.CreateFramebuffers(1, &framebuffer);
     caller.gl.NamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, texture, 0);
     presenter.draw(frame, 0, LAYOUT_PARALLEL, {.framebuffer = framebuffer, .x = 2, .y = 4}, blue);
-    const auto pixels = caller.read<float>(texture, 2 * width + 3, height + 5);
+    const auto pixels = caller.read<float>(texture, 2 * present_width + 3, present_height + 5);
     const Image expected = composite(lay_out(LAYOUT_PARALLEL, eyes[0], eyes[1], blue), blue);
-    for (int y = 0; y < height + 5; ++y) {
-      for (int x = 0; x < 2 * width + 3; ++x) {
-        const bool inside = x >= 2 && x < 2 * width + 2 && y >= 4 && y < height + 4;
+    for (int y = 0; y < present_height + 5; ++y) {
+      for (int x = 0; x < 2 * present_width + 3; ++x) {
+        const bool inside = x >= 2 && x < 2 * present_width + 2 && y >= 4 && y < present_height + 4;
         const float value =
-            pixels[4 * (static_cast<std::size_t>(y) * (2 * width + 3) + static_cast<std::size_t>(x)) + 2];
-        ASSERT_NEAR(value, inside ? expected.at(x - 2, height - 1 - (y - 4), 2) : 0.0f, bound)
+            pixels[4 * (static_cast<std::size_t>(y) * (2 * present_width + 3) + static_cast<std::size_t>(x)) +
+                   2];
+        ASSERT_NEAR(value, inside ? expected.at(x - 2, present_height - 1 - (y - 4), 2) : 0.0f, bound)
             << x << " " << y;
       }
     }
@@ -179,8 +184,8 @@ TEST_F(Present, WhatCannotBeIsRefused) {
                          const std::string& said) {
     return test::fails_saying([&] { presenter.draw(frame, first, layout, target, background); }, {said});
   };
-  const std::uint32_t depth = caller.texture(GL_DEPTH_COMPONENT32F, width, height);
-  const std::uint32_t plain = caller.texture(GL_RGBA8, width, height);
+  const std::uint32_t depth = caller.texture(GL_DEPTH_COMPONENT32F, present_width, present_height);
+  const std::uint32_t plain = caller.texture(GL_RGBA8, present_width, present_height);
   EXPECT_TRUE(fails(1, LAYOUT_ROWS, {.texture = plain}, blue, "view 2 of a frame of 2 views"));
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = depth}, blue, "cannot be drawn into"));
   EXPECT_TRUE(fails(0, LAYOUT_SEPARATE, {.texture = 4711}, blue, "texture 4711"));

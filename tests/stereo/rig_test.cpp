@@ -18,7 +18,7 @@ namespace binosplat::stereo {
 namespace {
 
 template <typename T>
-bool same_bits(const T& a, const T& b) {
+bool same_words(const T& a, const T& b) {
   using Words = std::array<std::uint32_t, sizeof(T) / 4>;
   return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
@@ -172,12 +172,12 @@ TEST(Rig, ParallelEyesShareTheirThirdRowToTheBit) {
     settings.convergence = 2.0;
     const EyePair pair = make_rig(head, settings);
     ASSERT_TRUE(pair.parallel);
-    ASSERT_TRUE(same_bits(pair.views[0].row_z, pair.views[1].row_z));
-    ASSERT_TRUE(same_bits(pair.views[0].row_y, pair.views[1].row_y));
-    ASSERT_TRUE(same_bits(pair.views[0].anchor, pair.views[1].anchor));
+    ASSERT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z));
+    ASSERT_TRUE(same_words(pair.views[0].row_y, pair.views[1].row_y));
+    ASSERT_TRUE(same_words(pair.views[0].anchor, pair.views[1].anchor));
     // What the sharing is for: from each eye's own position, z comes out different now and then.
     const glm::vec3 anchor(head.position);
-    differ_when_not_shared += !same_bits(make_view(pair.cameras[0], anchor, near_default).row_z,
+    differ_when_not_shared += !same_words(make_view(pair.cameras[0], anchor, near_default).row_z,
                                          make_view(pair.cameras[1], anchor, near_default).row_z);
   }
   EXPECT_GT(differ_when_not_shared, 0) << "this test would not notice rows computed eye by eye";
@@ -192,11 +192,11 @@ TEST(Rig, NoDistanceBetweenTheEyesMakesEqualViews) {
       Camera{.name = "origin", .width = 64, .height = 48, .fx = 50, .fy = 50, .cx = 32, .cy = 24});
   for (const Camera& head : heads) {
     const EyePair pair = make_rig(head, settings);
-    ASSERT_TRUE(same_bits(pair.views[0], pair.views[1]));
+    ASSERT_TRUE(same_words(pair.views[0], pair.views[1]));
   }
   settings.ipd = 1e-6;
   const EyePair apart = make_rig(head_camera(), settings);
-  EXPECT_FALSE(same_bits(apart.views[0], apart.views[1]));
+  EXPECT_FALSE(same_words(apart.views[0], apart.views[1]));
 }
 
 /// The largest error of fp32 positions in the eye, relative to the distance from it, of points around a head.
@@ -230,8 +230,8 @@ TEST(Rig, CantedEyesTurnOutwards) {
   settings.cant_degrees = 5.0;
   const EyePair pair = make_rig(head, settings);
   EXPECT_FALSE(pair.parallel);
-  EXPECT_FALSE(same_bits(pair.views[0].row_z, pair.views[1].row_z));
-  EXPECT_TRUE(same_bits(pair.views[0].anchor, pair.views[1].anchor));
+  EXPECT_FALSE(same_words(pair.views[0].row_z, pair.views[1].row_z));
+  EXPECT_TRUE(same_words(pair.views[0].anchor, pair.views[1].anchor));
   const double s = std::sin(glm::radians(5.0));
   EXPECT_NEAR(glm::dot(pair.cameras[0].rotation[2], head.rotation[0]), -s, 1e-12)
       << "the left eye looks left";
@@ -259,7 +259,7 @@ TEST(RigFromEyes, ParallelCamerasGetOneThirdRow) {
     for (int i = 0; i < 3; ++i) right.rotation[i][(i + 1) % 3] += 4e-10;  // as text with ten digits leaves it
     const EyePair pair = rig_from_eyes(left, right);
     ASSERT_TRUE(pair.parallel);
-    ASSERT_TRUE(same_bits(pair.views[0].row_z, pair.views[1].row_z));
+    ASSERT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z));
     for (std::size_t k = 0; k < 2; ++k) {
       for (const glm::dvec3& v : {glm::dvec3(0, 0, 1), glm::dvec3(-2, 1, 5)}) {
         const glm::vec3 p = seen_at(head, v);
@@ -303,7 +303,7 @@ TEST(RigFromEyes, BenchmarkPairsAreParallel) {
       ASSERT_TRUE(eyes) << camera.name;
       const EyePair pair = rig_from_eyes((*eyes)[0], (*eyes)[1]);
       EXPECT_TRUE(pair.parallel) << entry.path() << " " << camera.name;
-      EXPECT_TRUE(same_bits(pair.views[0].row_z, pair.views[1].row_z)) << camera.name;
+      EXPECT_TRUE(same_words(pair.views[0].row_z, pair.views[1].row_z)) << camera.name;
       // The right eye is on the right, at the distance that the scenes' page states.
       const double apart = glm::dot((*eyes)[1].position - (*eyes)[0].position, (*eyes)[0].rotation[0]);
       EXPECT_NEAR(apart, entry.path().filename().string().starts_with("fox") ? 0.11 : 0.064, 1e-6)

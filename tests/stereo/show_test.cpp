@@ -15,11 +15,12 @@
 namespace binosplat::stereo {
 namespace {
 
-constexpr int width = 64, height = 40;
+constexpr int shown_width = 64, shown_height = 40;
 
 struct ShowTest : testing::Test {
   const Model model = test::random_model(9, 400, 0, 0.6);
-  const EyePair pair = make_rig(test::front_camera(width, height, 55.0), {.ipd = 0.2, .convergence = 2.0});
+  const EyePair pair =
+      make_rig(test::front_camera(shown_width, shown_height, 55.0), {.ipd = 0.2, .convergence = 2.0});
   const render::FrameSettings coarse = {.th = TH_SQUARED, .tolerance = 3.0f};
   render::Frame frame{test::gl_context(), model};
   Show show{frame.model()};
@@ -65,9 +66,9 @@ TEST_F(ShowTest, ASplitIsAsDrawnOnTheLeftAndExactOnTheRight) {
   EXPECT_FALSE(same_bits(pictures, exact)) << "this tolerance changes nothing";
   const std::vector<Picture> middle = made(SHOW_SPLIT, 0.25).pictures;
   for (std::size_t v = 0; v < 2; ++v) {
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const auto k = static_cast<std::size_t>(y) * width + x;
+    for (int y = 0; y < shown_height; ++y) {
+      for (int x = 0; x < shown_width; ++x) {
+        const auto k = static_cast<std::size_t>(y) * shown_width + x;
         ASSERT_EQ(middle[v].colour[k], (x < 16 ? pictures : exact)[v].colour[k]) << x << " " << y;
       }
     }
@@ -92,7 +93,7 @@ TEST_F(ShowTest, MapsAreTheColoursOfTheirNumbers) {
   for (std::size_t v = 0; v < 2; ++v) {
     depth.push_back(depth_map(pictures[v]));
     for (float& z : depth[v].data) z = std::isfinite(z) ? z : -1.0f;
-    Image& error = difference.emplace_back(width, height, 1);
+    Image& error = difference.emplace_back(shown_width, shown_height, 1);
     for (std::size_t k = 0; k < error.data.size(); ++k) {
       for (int c = 0; c < 3; ++c) {
         error.data[k] =
@@ -116,12 +117,12 @@ TEST_F(ShowTest, DisagreementIsOfEachEye) {
   };
   for (std::size_t v = 0; v < 2; ++v) {
     int off = 0, other = 0;
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
+    for (int y = 0; y < shown_height; ++y) {
+      for (int x = 0; x < shown_width; ++x) {
         const auto worst = [&](const Image& e) {
           return 255.0 * std::max({e.at(x, y, 0), e.at(x, y, 1), e.at(x, y, 2)});
         };
-        const glm::vec3 seen(shown.pictures[v].colour[static_cast<std::size_t>(y) * width + x]);
+        const glm::vec3 seen(shown.pictures[v].colour[static_cast<std::size_t>(y) * shown_width + x]);
         off += glm::length(seen - colour(worst(expected(v)), *shown.most)) > 1e-3f ? 1 : 0;
         other += glm::length(seen - colour(worst(expected(1 - v)), *shown.most)) > 1e-3f ? 1 : 0;
       }

@@ -207,7 +207,7 @@ TEST_F(Spots, ModelsOfOtherAxesAreSeenFromTheSameSide) {
 }
 
 /// Results of a run as analyse() leaves them, small.
-Analysis sample() {
+Analysis sample_analysis() {
   const auto system = [](const std::string& name, const render::FrameSettings& settings, double db,
                          double removed) {
     return AnalysedSystem{
@@ -243,7 +243,7 @@ Analysis sample() {
 }
 
 TEST(AnalysisPage, JsonHasWhatIsKnown) {
-  const auto json = nlohmann::ordered_json::parse(to_json(sample()).dump());
+  const auto json = nlohmann::ordered_json::parse(to_json(sample_analysis()).dump());
   EXPECT_EQ(json["views"], nlohmann::ordered_json({{"calibration", {"a"}}, {"test", {"b", "c"}}}));
   EXPECT_EQ(json["photo_db"]["test"], 30.25);
   EXPECT_TRUE(json["contributions"]["by_depth"][0]["light"]["p90"].is_null());
@@ -255,7 +255,7 @@ TEST(AnalysisPage, JsonHasWhatIsKnown) {
 }
 
 TEST(AnalysisPage, SaysWhatItShows) {
-  const Page page = analysis_page(sample());
+  const Page page = analysis_page(sample_analysis());
   std::vector<std::string> ids;
   for (const Section& section : page.sections) ids.push_back(section.id);
   EXPECT_EQ(ids, (std::vector<std::string>{"scene", "systems", "skipping", "contributions", "light",
@@ -273,13 +273,13 @@ TEST(AnalysisPage, SaysWhatItShows) {
             row("squared, last", 0.2, 0.2, 0.23125, 1.25 * 0.23125, "b", 0.5));
   // The paper's own figures are told beside, for a drop alone.
   EXPECT_EQ(page.sections[6].plot->series.back().points.size(), 5u);
-  Analysis quality = sample();
+  Analysis quality = sample_analysis();
   quality.kind = CalibrationTarget::Kind::quality;
   EXPECT_EQ(analysis_page(quality).sections[6].plot->series.size(), 1u);
 }
 
 TEST(AnalysisPage, EmptyResultsAreShownAsSuch) {
-  Analysis empty = sample();
+  Analysis empty = sample_analysis();
   empty.contributions.by_depth.clear();
   const Page page = analysis_page(empty);
   EXPECT_EQ(page.sections[3].problem, "No pixel blends anything.");
@@ -291,7 +291,7 @@ TEST(AnalysisPage, InChromiumHasTheJsonsNumbers) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
   ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
   const test::TempFolder folder;
-  save_page(folder / "report.html", analysis_page(sample()), {});
+  save_page(folder / "report.html", analysis_page(sample_analysis()), {});
   const test::Chromium chromium;
   for (const int width : {400, 1280}) {
     EXPECT_EQ(chromium.ask(folder / "report.html", width, width == 400,

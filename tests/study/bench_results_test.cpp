@@ -38,7 +38,7 @@ BenchPoint point(const std::string& name, double ms, double db, int eyes = 1) {
 
 /// Equal and slow; quicker and worse; both slower and worse than that; with another number of eyes; failed;
 /// and not measured yet.
-BenchResults results() {
+BenchResults bench_results() {
   BenchResults made{"quick", "0", {}};
   made.points = {point("ellipse", 8.0, NAN),
                  point("squared, 0.1", 4.0, 45.5),
@@ -54,7 +54,7 @@ BenchResults results() {
 }
 
 TEST(BenchResults, FilesKeepEveryNumber) {
-  nlohmann::ordered_json json = results().points;
+  nlohmann::ordered_json json = bench_results().points;
   EXPECT_EQ(json[5].size(), 8u) << "names, device and problem: " << json[5];
   EXPECT_EQ(json[6].size(), 6u) << json[6];
   json = nlohmann::ordered_json::parse(json.dump());
@@ -62,7 +62,7 @@ TEST(BenchResults, FilesKeepEveryNumber) {
   EXPECT_FALSE(json[0].contains("profile"));
   json[0]["exact"]["gone"] = 1;  // keys that nobody knows are no fault
   const auto read = json.get<std::vector<BenchPoint>>();
-  EXPECT_EQ(csv(read), csv(results().points));
+  EXPECT_EQ(csv(read), csv(bench_results().points));
   json[0]["exact"].erase("gone");
   EXPECT_EQ(nlohmann::ordered_json(read).dump(), json.dump());
   json[1]["frame_ms"] = "four";
@@ -70,7 +70,7 @@ TEST(BenchResults, FilesKeepEveryNumber) {
 }
 
 TEST(BenchResults, FrontHoldsWhatNothingBeats) {
-  const std::vector<BenchPoint> points = results().points;
+  const std::vector<BenchPoint> points = bench_results().points;
   EXPECT_EQ(pareto_front(points), (std::vector<bool>{true, true, true, false, true, false, false}));
   std::vector<BenchPoint> other = points;
   other[3].frame_ms = 3.5;  // quicker than what is nearer to exact, nearer than what is quicker
@@ -81,7 +81,7 @@ TEST(BenchResults, FrontHoldsWhatNothingBeats) {
 }
 
 TEST(BenchResults, CsvHasALineAPoint) {
-  const std::string text = csv(results().points);
+  const std::string text = csv(bench_results().points);
   std::istringstream lines(text);
   std::string line;
   std::vector<std::string> all;
@@ -107,7 +107,7 @@ TEST(BenchResults, CsvHasALineAPoint) {
 }
 
 TEST(BenchResults, ComparisonsGoByNoise) {
-  const std::vector<BenchPoint> before = results().points;
+  const std::vector<BenchPoint> before = bench_results().points;
   std::vector<BenchPoint> now = before;
   EXPECT_EQ(
       compare_results(before, now),
@@ -128,7 +128,7 @@ TEST(BenchResults, ComparisonsGoByNoise) {
 }
 
 TEST(BenchResults, PageSaysWhatIsSeen) {
-  BenchResults made = results();
+  BenchResults made = bench_results();
   EXPECT_EQ(bench_page(made).sections[1].title.find("what is seen"), std::string::npos);
   made.points[0].seen = {0.0, {{0, 5, 0.25, INFINITY, 0.0}, {5, 10, 0.75, INFINITY, 0.0}}};
   made.points[1].seen = {0.009, {{0, 5, 0.25, 50.0, 0.0}, {5, 10, 0.75, 40.0, 0.012}}};
@@ -147,7 +147,7 @@ TEST(BenchResults, PageSaysWhatIsSeen) {
 }
 
 TEST(BenchResults, PageSaysWhatItShows) {
-  const Page page = bench_page(results());
+  const Page page = bench_page(bench_results());
   EXPECT_NE(page.sentence.find(
                 "Of 4 settings, “squared, 0.1” is the quickest with 40 dB or more against exact: 4 ms a "
                 "frame, 2.00 times as fast as the exact picture (8 ms)"),
@@ -171,7 +171,7 @@ TEST(BenchResults, PageSaysWhatItShows) {
 }
 
 TEST(BenchResults, PageSetsStagesBesideTheirFloors) {
-  BenchResults made = results();
+  BenchResults made = bench_results();
   made.points[0].profile = {
       {"project", 2.0, 3e6, NAN, 0.5, 0.25}, {"blend", 6.0, 4e6, 5e6, 1.5, 0.25}, {"probe", 9.0}};
   const Page page = bench_page(made);
@@ -188,7 +188,7 @@ TEST(BenchResults, PageInChromiumHasTheJsonsNumbers) {
   if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
   ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
   const test::TempFolder folder;
-  save_page(folder / "report.html", bench_page(results()), {});
+  save_page(folder / "report.html", bench_page(bench_results()), {});
   const test::Chromium chromium;
   const std::string cells =
       chromium.ask(folder / "report.html", 400, false,
@@ -204,7 +204,7 @@ TEST(BenchResults, PageInChromiumHasTheJsonsNumbers) {
 
 // Of the exact picture and the front; two lie on each other, and tables are whole at 1,300 px.
 TEST(BenchPage, PicturesAreCompared) {
-  BenchResults measured = results();
+  BenchResults measured = bench_results();
   for (const Section& section : bench_page(measured).sections) EXPECT_FALSE(section.compared);
   for (BenchPoint& point : measured.points) {
     point.photos.emplace();

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-Calibration sample() {
+Calibration sample_calibration() {
   Calibration c;
   c.model_name = "fox.ply";
   c.gaussians = 109832;
@@ -36,14 +36,14 @@ Calibration sample() {
 }
 
 TEST(Calibration, ComesBackAsItWas) {
-  const std::string text = to_json(sample()).dump();
+  const std::string text = to_json(sample_calibration()).dump();
   const Calibration read = parse_calibration("c.json", text);
   EXPECT_EQ(to_json(read).dump(), text);
-  EXPECT_EQ(read.hash, sample().hash);
+  EXPECT_EQ(read.hash, sample_calibration().hash);
   EXPECT_EQ(read.target.kind, CalibrationTarget::Kind::drop);
   EXPECT_EQ(read.entries[1].transmittance, TRANSMITTANCE_LAST);
-  EXPECT_EQ(read.depth_table.bounds, sample().depth_table.bounds);
-  Calibration other = sample();
+  EXPECT_EQ(read.depth_table.bounds, sample_calibration().depth_table.bounds);
+  Calibration other = sample_calibration();
   other.target.kind = CalibrationTarget::Kind::quality;
   EXPECT_EQ(parse_calibration("c", to_json(other).dump()).target.kind, CalibrationTarget::Kind::quality);
 }
@@ -72,7 +72,7 @@ TEST(Calibration, ErrorsNameTheKey) {
       {"/entries", "many", "'entries': expected a list"},
   };
   for (const auto& c : cases) {
-    ordered_json json = to_json(sample());
+    ordered_json json = to_json(sample_calibration());
     json[ordered_json::json_pointer(c.path)] = c.value;
     try {
       parse_calibration("c.json", json.dump());
@@ -87,7 +87,7 @@ TEST(Calibration, ErrorsNameTheKey) {
   // So deep that writing it into the error would leave the stack.
   const std::string deep = std::string(300000, '[') + std::string(300000, ']');
   EXPECT_THROW(parse_calibration("c", "{\"format\": " + deep + "}"), Error);
-  ordered_json json = to_json(sample());
+  ordered_json json = to_json(sample_calibration());
   json["entries"][0].erase("worst_view");
   EXPECT_THROW(parse_calibration("c", json.dump()), Error);
 }
@@ -95,33 +95,33 @@ TEST(Calibration, ErrorsNameTheKey) {
 TEST(Calibration, GivesTheToleranceOfItsEntry) {
   render::FrameSettings settings;
   settings.th = TH_PERIPHERAL;
-  auto found = calibrated(sample(), settings, 100.0);
+  auto found = calibrated(sample_calibration(), settings, 100.0);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->tolerance, 2.0f);
-  EXPECT_EQ(found->depth_table.bounds, sample().depth_table.bounds);
-  EXPECT_FLOAT_EQ(calibrated(sample(), settings, 200.0)->tolerance, 2.0f * std::pow(2.0f, 1.25f));
+  EXPECT_EQ(found->depth_table.bounds, sample_calibration().depth_table.bounds);
+  EXPECT_FLOAT_EQ(calibrated(sample_calibration(), settings, 200.0)->tolerance, 2.0f * std::pow(2.0f, 1.25f));
   settings.transmittance = TRANSMITTANCE_DEPTH;
-  EXPECT_FALSE(calibrated(sample(), settings, 100.0)) << "no entry of this source";
+  EXPECT_FALSE(calibrated(sample_calibration(), settings, 100.0)) << "no entry of this source";
   settings = {.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  found = calibrated(sample(), settings, 100.0);
+  found = calibrated(sample_calibration(), settings, 100.0);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->tolerance, 0.01f);
   EXPECT_EQ(found->transmittance, TRANSMITTANCE_LAST);
 }
 
 TEST(Calibration, OfAnEarlierVersionIsReadWhereItsRulesAreStillThere) {
-  ordered_json json = to_json(sample());
+  ordered_json json = to_json(sample_calibration());
   for (ordered_json& entry : json["entries"]) {
     entry["contrast"] = "off";
     entry["loss"] = entry["tolerance"];
     entry.erase("tolerance");
   }
-  EXPECT_EQ(to_json(parse_calibration("c", json.dump())), to_json(sample()));
+  EXPECT_EQ(to_json(parse_calibration("c", json.dump())), to_json(sample_calibration()));
 }
 
 TEST(Calibration, KnowsItsModelAndItsViews) {
   const Model model = test::random_model(3, 100, 1);
-  Calibration c = sample();
+  Calibration c = sample_calibration();
   c.gaussians = model.count();
   c.hash = model_hash(model);
   EXPECT_TRUE(is_of(c, model));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int width = 64, height = 48;
 
-std::vector<shared::View> views() { return {make_view(test::front_camera(width, height, 60))}; }
+std::vector<shared::View> judged_views() { return {make_view(test::front_camera(width, height, 60))}; }
 
 Picture grey() {
   Picture picture(width, height);
@@ -29,7 +29,7 @@ void stain(Picture& picture, int x, int y, float by) {
 }
 
 FrameErrors judged(const Picture& approximate) {
-  return judge(views(), std::vector{grey()}, std::vector{approximate}, 16);
+  return judge(judged_views(), std::vector{grey()}, std::vector{approximate}, 16);
 }
 
 TEST(Judge, EqualFramesHaveNoError) {
@@ -70,7 +70,7 @@ TEST(Judge, WhatIsBrighterThanWhiteIsWhite) {
   Picture bright = grey(), brighter = grey();
   stain(bright, 3, 3, 0.6f);
   stain(brighter, 3, 3, 0.9f);
-  EXPECT_TRUE(std::isinf(judge(views(), std::vector{bright}, std::vector{brighter}, 16).psnr));
+  EXPECT_TRUE(std::isinf(judge(judged_views(), std::vector{bright}, std::vector{brighter}, 16).psnr));
 }
 
 TEST(Judge, TwoEyesHaveADisagreement) {
@@ -84,9 +84,9 @@ TEST(Judge, TwoEyesHaveADisagreement) {
 }
 
 TEST(Judge, PicturesThatDoNotFitAreRefused) {
-  EXPECT_TRUE(test::fails_saying([] { judge(views(), std::vector{grey()}, {}, 16); }, {"1 exact"}));
+  EXPECT_TRUE(test::fails_saying([] { judge(judged_views(), std::vector{grey()}, {}, 16); }, {"1 exact"}));
   const std::vector<Picture> small = {Picture(4, 4)};
-  EXPECT_TRUE(test::fails_saying([&] { judge(views(), std::vector{grey()}, small, 16); }, {"4 x 4"}));
+  EXPECT_TRUE(test::fails_saying([&] { judge(judged_views(), std::vector{grey()}, small, 16); }, {"4 x 4"}));
 }
 
 }  // namespace

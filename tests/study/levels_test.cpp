@@ -16,7 +16,7 @@ namespace {
 constexpr double none = INFINITY;  // of an error
 
 /// A wall before both eyes, brighter by `by` than the finest one.
-Model wall(float by) {
+Model wall_by(float by) {
   Model model;
   for (int x = -8; x <= 8; ++x) {
     for (int y = -5; y <= 5; ++y)
@@ -45,7 +45,7 @@ struct LevelsStudyTest : testing::Test {
 
   /// Details of 30 and 40 dB that bring walls as bright as these.
   void measure(float at_30, float at_40, const std::function<Model()>& finest) {
-    const Model models[] = {wall(at_30), wall(at_40)};
+    const Model models[] = {wall_by(at_30), wall_by(at_40)};
     std::vector<FollowingModel> following;
     for (std::size_t k = 0; k < 2; ++k) {
       following.push_back({30.0 + 10.0 * static_cast<double>(k),
@@ -65,7 +65,7 @@ struct LevelsStudyTest : testing::Test {
 };
 
 TEST_F(LevelsStudyTest, TellsWhatEachDetailLoses) {
-  measure(0.05f, 0.0f, [] { return wall(0.0f); });
+  measure(0.05f, 0.0f, [] { return wall_by(0.0f); });
   EXPECT_EQ(steps, 2u);
   EXPECT_EQ(loaded, 1u);
   EXPECT_EQ(scene.shots, (std::vector<std::string>{"near", "far"}));
@@ -96,7 +96,7 @@ TEST_F(LevelsStudyTest, TellsWhatEachDetailLoses) {
 
 TEST_F(LevelsStudyTest, OfOneEyeHasNoDisagreement) {
   for (LevelsShot& shot : shots) shot.views.resize(1);
-  measure(0.05f, 0.0f, [] { return wall(0.0f); });
+  measure(0.05f, 0.0f, [] { return wall_by(0.0f); });
   EXPECT_FALSE(scene.rows[0].shots[0].disagreement_db);
   EXPECT_TRUE(scene.rows[0].shots[0].psnr_db);
   EXPECT_EQ(scene.eyes, 1u);

@@ -34,12 +34,12 @@ MovedPass pass(float request, double db, double pairs, double ms, bool stops = t
   return made;
 }
 
-MotionPath path(const std::string& name) {
+MotionPath path_named(const std::string& name) {
   const MotionSegment segment{std::vector<std::vector<shared::View>>(4), 1, 1};
   return {name, "1.5 m/s", {segment, segment}};
 }
 
-MotionStudy results(bool compared = true) {
+MotionStudy motion_results(bool compared = true) {
   MotionStudy study{.device = "llvmpipe",
                     .scene = "fox",
                     .gaussians = 1000,
@@ -51,7 +51,7 @@ MotionStudy results(bool compared = true) {
                     .metre_source = "--units-per-metre"};
   for (const char* name : {"calm", "walk"}) {
     const bool walk = std::string(name) == "walk";
-    MotionResult result{path(name), pass(0.0f, 100.0, 4e6, 4.0), {}};
+    MotionResult result{path_named(name), pass(0.0f, 100.0, 4e6, 4.0), {}};
     result.rules.push_back({Variant{}, pass(40.0f, 39.5, 2e6, 2.0)});
     result.rules.push_back(
         {Variant{.transmittance = TRANSMITTANCE_LAST}, pass(40.0f, walk ? 36.0 : 38.0, 1e6, 1.0)});
@@ -65,7 +65,7 @@ MotionStudy results(bool compared = true) {
 }
 
 TEST(MotionPage, SaysWhoKeepsTheirWordAndWhatThatTakes) {
-  const MotionStudy study = results();
+  const MotionStudy study = motion_results();
   const Page page = motion_page(study);
   ASSERT_EQ(page.sections.size(), 2u + 2 * 3);
   // 39.5 and 40.5 dB in the two stretches: just what was asked for, and 2 or 4 dB less.
@@ -88,7 +88,7 @@ TEST(MotionPage, SaysWhoKeepsTheirWordAndWhatThatTakes) {
 }
 
 TEST(MotionPage, DrawsEveryFrame) {
-  const Page page = motion_page(results());
+  const Page page = motion_page(motion_results());
   EXPECT_EQ(page.sections[5].id, "asked-walk");
   EXPECT_NE(page.sections[5].sentence.find(
                 "2 stretches of 2 frames, after 1 to find a tolerance, then a stop of 1"),
@@ -114,7 +114,7 @@ TEST(MotionPage, DrawsEveryFrame) {
 }
 
 TEST(MotionPage, TablesNameWhatWasMeasured) {
-  const MotionStudy study = results();
+  const MotionStudy study = motion_results();
   const Table asked = asked_table(study.paths[0]);
   ASSERT_EQ(asked.rows.size(), 3u);
   EXPECT_EQ(asked.rows[0][0], "exact");
@@ -125,7 +125,7 @@ TEST(MotionPage, TablesNameWhatWasMeasured) {
 }
 
 TEST(MotionPage, WhatDoesNotComeToTheTargetIsNotPraised) {
-  MotionStudy study = results();
+  MotionStudy study = motion_results();
   for (MotionResult& path : study.paths) path.rules[1].problem = "not within 0.1 dB of 40 dB";
   study.paths[1].rules[0].equal->moving.ms = 0.8 * study.paths[1].exact.moving.ms;
   const Page page = motion_page(study);
@@ -137,7 +137,7 @@ TEST(MotionPage, WhatDoesNotComeToTheTargetIsNotPraised) {
 }
 
 TEST(MotionPage, WithoutAComparisonSaysSo) {
-  const MotionStudy study = results(false);
+  const MotionStudy study = motion_results(false);
   EXPECT_TRUE(target_table(study.paths[0]).rows.empty());
   const Page page = motion_page(study);
   EXPECT_NE(page.sections[1].problem.find("--no-equal"), std::string::npos);

@@ -24,7 +24,7 @@ namespace {
 
 using Views = std::vector<shared::View>;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double infinite_psnr = std::numeric_limits<double>::infinity();
 
 /// A pair at x, or one eye.
 Views head_at(double x, bool pair = true) {
@@ -154,7 +154,7 @@ TEST_F(Motions, WhatHasNoRoomIsDrawnAgain) {
   some.draw(frame, other);
   EXPECT_EQ(some.left_out(), 0u);
   frame.draw(other.segments[0].frames[2]);
-  EXPECT_EQ(some.psnr(frame, 0, 2), (std::vector<double>{infinity, infinity}));
+  EXPECT_EQ(some.psnr(frame, 0, 2), (std::vector<double>{infinite_psnr, infinite_psnr}));
 }
 
 TEST_F(Motions, RulesComeToOneTrueQuality) {

@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 using test::TempFolder;
 
 /// A page with everything that pages have, right and wrong.
-Page sample() {
+Page sample_page() {
   Page page;
   page.title = "Speed against accuracy: fox </script> & <b>";
   page.sentence = "The quickest of 12 settings above 40 dB takes 1.25 ms.";
@@ -66,10 +66,10 @@ ordered_json embedded(const std::string& text) {
 }
 
 TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
-  const std::string text = html(sample(), data);
+  const std::string text = html(sample_page(), data);
   const ordered_json json = embedded(text);
   EXPECT_EQ(json["data"], data);
-  EXPECT_EQ(json["title"], sample().title) << "what looks like a tag must come through";
+  EXPECT_EQ(json["title"], sample_page().title) << "what looks like a tag must come through";
   const ordered_json& points = json["sections"][0]["plot"]["series"][0]["points"];
   EXPECT_EQ(points[1]["y"].get<double>(), 35.123456789);
   EXPECT_TRUE(points[6]["y"].is_null()) << "infinite";
@@ -82,24 +82,24 @@ TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
 }
 
 TEST(Page, RefusesTablesThatDoNotFit) {
-  Page page = sample();
+  Page page = sample_page();
   page.sections[2].table->rows.push_back({"0100", 5});
   EXPECT_THROW(html(page, data), std::logic_error);
 }
 
 TEST(Page, IsWrittenWholeOrNotAtAll) {
   const TempFolder folder;
-  save_page(folder / "a" / "page.html", sample(), data);
+  save_page(folder / "a" / "page.html", sample_page(), data);
   EXPECT_EQ(folder.files(), (std::set<std::string>{"a/page.html"}));
-  EXPECT_EQ(test::read_text(folder / "a" / "page.html"), html(sample(), data));
+  EXPECT_EQ(test::read_text(folder / "a" / "page.html"), html(sample_page(), data));
 }
 
 /// The page as Chromium shows it; long.
-struct Shown : testing::Test {
+struct ShownPage : testing::Test {
   TempFolder folder;
   test::Chromium chromium;
   std::filesystem::path file = folder / "page.html";
-  const Page page = sample();
+  const Page page = sample_page();
 
   void SetUp() override {
     if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
@@ -111,7 +111,7 @@ struct Shown : testing::Test {
   }
 };
 
-TEST_F(Shown, EveryNumberIsTheJsons) {
+TEST_F(ShownPage, EveryNumberIsTheJsons) {
   // Every cell of every table, in order: exact in data-value, to five digits as text.
   const std::string cells =
       ask("return JSON.stringify([...document.querySelectorAll('#views tbody tr')].map((row) =>"
@@ -149,7 +149,7 @@ double largest_bend(const std::vector<double>& x, const std::vector<double>& y) 
   return bend;
 }
 
-TEST_F(Shown, PointsStandWhereTheirNumbersSay) {
+TEST_F(ShownPage, PointsStandWhereTheirNumbersSay) {
   const std::string places = ask(
       "return JSON.stringify([...document.querySelectorAll('#speed figure svg g[aria-label=dot]')].map((g) =>"
       "[...g.children].map((mark) => { const at = mark.getBoundingClientRect();"
@@ -173,7 +173,7 @@ TEST_F(Shown, PointsStandWhereTheirNumbersSay) {
   EXPECT_GT(largest_bend(y, at_y), 0.6) << "a point in the wrong place goes unnoticed";
 }
 
-TEST_F(Shown, BarsAreAsLongAsTheirNumbers) {
+TEST_F(ShownPage, BarsAreAsLongAsTheirNumbers) {
   const std::string widths =
       ask("return JSON.stringify([...document.querySelectorAll('#stages figure svg g[aria-label=bar] rect')]"
           ".map((bar) => Number(bar.getAttribute('width'))));");
@@ -187,7 +187,7 @@ TEST_F(Shown, BarsAreAsLongAsTheirNumbers) {
   for (std::size_t i = 0; i < 18; ++i) EXPECT_NEAR(found[i].get<double>() + 1, px * values[i], 0.6) << i;
 }
 
-TEST_F(Shown, WhatIsEmptyOrBrokenSaysSo) {
+TEST_F(ShownPage, WhatIsEmptyOrBrokenSaysSo) {
   const std::string problems =
       ask("return [...document.querySelectorAll('.problem')].map((p) => p.parentElement.id + ': ' +"
           " p.textContent).join('|');");
@@ -208,7 +208,7 @@ TEST_F(Shown, WhatIsEmptyOrBrokenSaysSo) {
   EXPECT_EQ(ask("return document.querySelector('.problem').textContent;"), "There are no results.");
 }
 
-TEST_F(Shown, LegendSwitchesSeriesAndCopiesStandAlone) {
+TEST_F(ShownPage, LegendSwitchesSeriesAndCopiesStandAlone) {
   EXPECT_EQ(ask("const button = document.querySelectorAll('#speed .legend button')[2]; button.click();"
                 "return button.getAttribute('aria-pressed') + ' ' +"
                 "document.querySelectorAll('#speed figure svg g[aria-label=dot]').length;"),
@@ -224,7 +224,7 @@ TEST_F(Shown, LegendSwitchesSeriesAndCopiesStandAlone) {
   EXPECT_EQ(saved, "svg,0,true,true");
 }
 
-TEST_F(Shown, FitsPhonesAndFollowsLightAndDark) {
+TEST_F(ShownPage, FitsPhonesAndFollowsLightAndDark) {
   const std::string fits =
       "return [document.documentElement.scrollWidth, window.getComputedStyle(document.body).backgroundColor,"
       "Math.min(...[...document.querySelectorAll('figure svg')].map((s) => s.getBoundingClientRect().width)),"
@@ -235,7 +235,7 @@ TEST_F(Shown, FitsPhonesAndFollowsLightAndDark) {
 }
 
 // For eyes: BINOSPLAT_PAGES=FOLDER keeps the pictures.
-TEST_F(Shown, ScreenshotsAreMade) {
+TEST_F(ShownPage, ScreenshotsAreMade) {
   const char* kept = std::getenv("BINOSPLAT_PAGES");
   const std::filesystem::path to = kept != nullptr ? std::filesystem::path(kept) : folder.path();
   for (const bool dark : {false, true}) {

@@ -12,7 +12,7 @@ namespace binosplat::study {
 namespace {
 
 // A wall of Gaussians side by side, which no order changes, with some before it.
-Model wall(bool with_more) {
+Model wall_of_squares(bool with_more) {
   test::Uniform uniform(6);
   Model model;
   for (int y = 0; y < 30; ++y) {
@@ -28,7 +28,7 @@ Model wall(bool with_more) {
   return model;
 }
 
-PerspectiveViews views() {
+PerspectiveViews perspective_views() {
   PerspectiveViews views;
   Camera camera = test::front_camera(96, 64, 60);
   const stereo::EyePair rig = stereo::make_rig(camera, {.ipd = 0.2});
@@ -41,9 +41,9 @@ PerspectiveViews views() {
 }
 
 TEST(Perspectives, AreMeasuredAgainstPhotosForTwoEyesAndInMotion) {
-  const Model model = wall(true);
+  const Model model = wall_of_squares(true);
   render::Frame frame(test::gl_context(), model);
-  PerspectiveViews of = views();
+  PerspectiveViews of = perspective_views();
   Image photo(96, 64, 3);
   frame.draw(std::span(&of.path[0], 1), {.order = ORDER_DISTANCE, .projection = PROJECTION_TANGENT});
   photo = composite(frame.read_pictures().front(), glm::vec3(0.0f));
@@ -76,11 +76,11 @@ TEST(Perspectives, AreMeasuredAgainstPhotosForTwoEyesAndInMotion) {
 TEST(Perspectives, PoppingIsOfTheOrder) {
   const auto popping = [](const Model& model) {
     render::Frame frame(test::gl_context(), model);
-    PerspectiveViews of = views();
+    PerspectiveViews of = perspective_views();
     of.eyes.clear();
     return measure_perspectives(frame, of, [] {}).back().popping[0].mse;
   };
-  EXPECT_LT(2.0 * popping(wall(false)), popping(wall(true)));
+  EXPECT_LT(2.0 * popping(wall_of_squares(false)), popping(wall_of_squares(true)));
 }
 
 }  // namespace

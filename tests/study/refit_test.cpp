@@ -13,7 +13,7 @@
 namespace binosplat::study {
 namespace {
 
-std::vector<Camera> cameras() {
+std::vector<Camera> cameras_to_fit() {
   std::vector<Camera> all(5, test::front_camera(64, 48, 60));
   for (std::size_t k = 0; k < all.size(); ++k)
     all[k].position = {0.4 * static_cast<double>(k) - 0.8, 0.1 * static_cast<double>(k % 2), -0.5};
@@ -42,7 +42,7 @@ Image drawn(const Model& model, const Camera& camera) {
 
 /// Of the model of which `judged` is as many dB below 0, in a view that is not fitted.
 RefitJudge judge_of(const Model& right) {
-  Camera between = cameras()[2];
+  Camera between = cameras_to_fit()[2];
   between.position.x = 0.2;
   return [between, wanted = drawn(right, between)](const Model& model) {
     return -measure::psnr(drawn(model, between), wanted);
@@ -50,7 +50,7 @@ RefitJudge judge_of(const Model& right) {
 }
 
 Refitted fitted(const Model& start, const Model& right, RefitSettings settings) {
-  const RefitTargets targets{right, cameras(), {}, near_default};
+  const RefitTargets targets{right, cameras_to_fit(), {}, near_default};
   return refit(test::gl_context(), start, targets, settings, judge_of(right));
 }
 
@@ -123,9 +123,9 @@ TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
     for (float& opacity : none.opacity) opacity = 0.0f;
     return none;
   }();
-  const RefitTargets targets{black, cameras(), photo, near_default};
+  const RefitTargets targets{black, cameras_to_fit(), photo, near_default};
   const Refitted found = refit(test::gl_context(), start, targets, {.rounds = 7, .keep_zeros = true}, {});
-  EXPECT_EQ(asked, 2 * cameras().size()) << "linearised twice";
+  EXPECT_EQ(asked, 2 * cameras_to_fit().size()) << "linearised twice";
   EXPECT_EQ(found.best_round, 7);
   EXPECT_TRUE(found.judged.empty());
   Model after = start;
@@ -140,7 +140,7 @@ TEST(Refit, PhotosArePreferredAndWhatNothingShowsStays) {
 
 TEST(Refit, TheBestRoundIsKeptAndThreeWithoutABetterEndIt) {
   const Model right = truth(), start = changed(right);
-  const RefitTargets targets{right, cameras(), {}, near_default};
+  const RefitTargets targets{right, cameras_to_fit(), {}, near_default};
   const auto best_of = [&](std::vector<double> told) {
     std::size_t asked = 0;
     return refit(test::gl_context(), start, targets, {.rounds = 9},

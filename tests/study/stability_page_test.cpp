@@ -20,7 +20,7 @@ StabilityResult result(const std::string& verdict, double worst) {
           .verdict = verdict};
 }
 
-StabilityStudy results() {
+StabilityStudy stability_results() {
   return {
       .scene = "fox",
       .device = "llvmpipe",
@@ -33,7 +33,7 @@ StabilityStudy results() {
 }
 
 TEST(StabilityPage, SaysWhichRulesHold) {
-  const Page page = stability_page(results());
+  const Page page = stability_page(stability_results());
   ASSERT_EQ(page.sections.size(), 4u);
   EXPECT_NE(page.sentence.find("“squared, last” holds in 2 of them"), std::string::npos) << page.sentence;
   const Table& verdicts = *page.sections[0].table;
@@ -44,12 +44,12 @@ TEST(StabilityPage, SaysWhichRulesHold) {
   EXPECT_EQ(page.sections[3].id, "case-mist");
   EXPECT_EQ(page.sections[3].table->rows[2],
             row("squared, last", 37.0, 3, 41.5, 2, 0.25, -0.001, INFINITY, 50.0, "holds"));
-  const nlohmann::ordered_json json = nlohmann::ordered_json::parse(to_json(results()).dump());
+  const nlohmann::ordered_json json = nlohmann::ordered_json::parse(to_json(stability_results()).dump());
   EXPECT_EQ(json["bounds"]["dips: a frame below dB"], 34.0);
   EXPECT_EQ(json["tolerances"]["squared, last"], 0.5);
   EXPECT_TRUE(json["cases"]["mist"]["rules"]["squared, last"]["disagreement_db"].is_null());
   // Broken everywhere: nothing is praised.
-  StabilityStudy bad = results();
+  StabilityStudy bad = stability_results();
   for (StabilityStudy::Case& one : bad.cases) one.results[1].verdict = one.results[2].verdict = "dips";
   EXPECT_EQ(stability_page(bad).sentence.find("“"), std::string::npos) << stability_page(bad).sentence;
 }

@@ -27,7 +27,7 @@ StabilityCase small_case(std::size_t frames) {
 }
 
 // The first pair of a case.
-FixedCamera fixed_camera(const StabilityCase& one) {
+FixedCamera camera_of_case(const StabilityCase& one) {
   return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
@@ -114,16 +114,16 @@ TEST(Stability, TheCasesShowSomething) {
 TEST(Stability, TheToleranceComesToItsTarget) {
   const StabilityCase one = small_case(3);
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.tolerance = fixed_camera(one).tolerance_at(variant, 38.0);
-  FixedCamera camera = fixed_camera(one);
+  variant.tolerance = camera_of_case(one).tolerance_at(variant, 38.0);
+  FixedCamera camera = camera_of_case(one);
   camera.settle(variant);
   const double db = judge(camera.views(), camera.exact(), camera.pictures(), TILE_SIZE_DEFAULT).psnr;
   EXPECT_GE(db, 38.0);
   EXPECT_LT(db, 38.5);
-  EXPECT_EQ(fixed_camera(one).tolerance_at({.th = TH_TAU}, 38.0), 0.0f);
+  EXPECT_EQ(camera_of_case(one).tolerance_at({.th = TH_TAU}, 38.0), 0.0f);
 }
 
-std::vector<std::vector<shared::View>> path() {
+std::vector<std::vector<shared::View>> path_with_jump() {
   std::vector<std::vector<shared::View>> frames;
   Camera head = test::front_camera(64, 48, 60);
   for (int n = 0; n < 8; ++n) {
@@ -135,7 +135,7 @@ std::vector<std::vector<shared::View>> path() {
 
 TEST(Carried, FallsBackToOneAndMakesAsManyPairs) {
   const Model model = test::random_model(72, 2500, 0);
-  const auto frames = path();
+  const auto frames = path_with_jump();
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
   variant.tolerance = tolerance_along_path(test::gl_context(), model, frames, variant, 38.0);
   const auto results = draw_along_path(test::gl_context(), model, frames, variant, 0.0f, [] {});
@@ -150,7 +150,8 @@ TEST(Carried, FallsBackToOneAndMakesAsManyPairs) {
 
 TEST(Carried, AQualityIsKept) {
   const Model model = test::random_model(73, 2500, 0);
-  std::vector<std::vector<shared::View>> frames(90, path()[0]);  // the tolerance starts far too small
+  std::vector<std::vector<shared::View>> frames(90,
+                                                path_with_jump()[0]);  // the tolerance starts far too small
   const Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
   const auto results = draw_along_path(test::gl_context(), model, frames, variant, 38.0f, [] {});
   EXPECT_NEAR(results.back().db, 38.0, 1.0);

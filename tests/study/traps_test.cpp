@@ -22,19 +22,19 @@ StabilityCase case_named(const std::string& name) {
 }
 
 // The first pair of a case.
-FixedCamera fixed_camera(const StabilityCase& one) {
+FixedCamera camera_of_trap(const StabilityCase& one) {
   return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
-struct Shown {
+struct ShownTrap {
   double db, pairs;
 };
 
 // So many frames of a case (its last one again and again after its path), each against the exact one.
-std::vector<Shown> frames_of(const StabilityCase& one, const render::FrameSettings& settings,
-                             std::size_t count) {
+std::vector<ShownTrap> frames_of(const StabilityCase& one, const render::FrameSettings& settings,
+                                 std::size_t count) {
   render::Frame frame(test::gl_context(), *one.model), exact(test::gl_context(), *one.model);
-  std::vector<Shown> shown;
+  std::vector<ShownTrap> shown;
   for (std::size_t n = 0; n < count; ++n) {
     const auto& views = one.frames[std::min(n, one.frames.size() - 1)].views;
     exact.draw(views);
@@ -44,7 +44,8 @@ std::vector<Shown> frames_of(const StabilityCase& one, const render::FrameSettin
   return shown;
 }
 
-double median(const std::vector<Shown>& shown, double Shown::*what, std::size_t begin, std::size_t end) {
+double median(const std::vector<ShownTrap>& shown, double ShownTrap::*what, std::size_t begin,
+              std::size_t end) {
   std::vector<double> values;
   for (std::size_t n = begin; n < end; ++n) values.push_back(shown[n].*what);
   return quantile(std::move(values), 0.5);
@@ -54,28 +55,28 @@ TEST(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
   // Trap 1. A tolerance that is chosen on something else takes the wall away by and by; --quality sees it.
   const StabilityCase wall = case_named("far-wall"), clutter = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.tolerance = fixed_camera(clutter).tolerance_at(variant, 34.0);
+  variant.tolerance = camera_of_trap(clutter).tolerance_at(variant, 34.0);
   const auto open = frames_of(wall, variant.settings(), 8);
-  EXPECT_LT(median(open, &Shown::db, 4, 8), 30.0);
+  EXPECT_LT(median(open, &ShownTrap::db, 4, 8), 30.0);
   render::FrameSettings steered = variant.settings();
   steered.tolerance = 0;
   steered.quality = 40;
-  for (const Shown& frame : frames_of(wall, steered, 60)) EXPECT_GT(frame.db, 37.0);
+  for (const ShownTrap& frame : frames_of(wall, steered, 60)) EXPECT_GT(frame.db, 37.0);
 }
 
 TEST(Traps, AStillCameraSettlesAndDoesNotDrift) {
   // Trap 3: what pruned frames measure of themselves, round and round.
   const StabilityCase still = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.tolerance = fixed_camera(still).tolerance_at(variant, 40.0);
+  variant.tolerance = camera_of_trap(still).tolerance_at(variant, 40.0);
   render::FrameSettings settings = variant.settings();
   settings.record_every = 1;  // frames that do not measure show what the next one shows
   const auto shown = frames_of(still, settings, 90);
-  const double early = median(shown, &Shown::db, 5, 30), late = median(shown, &Shown::db, 60, 90);
+  const double early = median(shown, &ShownTrap::db, 5, 30), late = median(shown, &ShownTrap::db, 60, 90);
   EXPECT_NEAR(late, early, 0.5);
   // Single frames swing by some percent, as what was left out comes back to be measured.
-  const double early_pairs = median(shown, &Shown::pairs, 5, 30);
-  EXPECT_NEAR(median(shown, &Shown::pairs, 60, 90), early_pairs, 0.03 * early_pairs);
+  const double early_pairs = median(shown, &ShownTrap::pairs, 5, 30);
+  EXPECT_NEAR(median(shown, &ShownTrap::pairs, 60, 90), early_pairs, 0.03 * early_pairs);
   for (std::size_t n = 3; n < shown.size(); ++n) EXPECT_GT(shown[n].db, 37.0) << n;
 }
 

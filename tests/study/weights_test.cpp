@@ -11,7 +11,7 @@
 namespace binosplat::study {
 namespace {
 
-std::vector<Camera> cameras() {
+std::vector<Camera> cameras_to_weigh() {
   std::vector<Camera> all(2, test::front_camera(64, 48, 60));
   all[1].position = {0.3, 0.0, -1.0};
   return all;
@@ -19,12 +19,12 @@ std::vector<Camera> cameras() {
 
 TEST(StudyWeights, AddUpOverViewsWhateverTheAxes) {
   const Model model = test::random_model(61, 500, 2);
-  const Weights both = weigh(test::gl_context(), model, cameras(), near_default);
-  const Weights one = weigh(test::gl_context(), model, {cameras()[0]}, near_default);
-  const Weights other = weigh(test::gl_context(), model, {cameras()[1]}, near_default);
+  const Weights both = weigh(test::gl_context(), model, cameras_to_weigh(), near_default);
+  const Weights one = weigh(test::gl_context(), model, {cameras_to_weigh()[0]}, near_default);
+  const Weights other = weigh(test::gl_context(), model, {cameras_to_weigh()[1]}, near_default);
   Model turned = model;
   bring_into_axes(turned, "RUB");
-  const Weights there = weigh(test::gl_context(), turned, cameras(), near_default);
+  const Weights there = weigh(test::gl_context(), turned, cameras_to_weigh(), near_default);
   EXPECT_EQ(both.views, 2u);
   EXPECT_GT(both.unseen(), 0u);
   EXPECT_LT(both.unseen(), one.unseen());
@@ -48,7 +48,7 @@ TEST(StudyWeights, ColoursAreFittedByLowerDegrees) {
   ColourFit::Coefficients now{};
   now[2].r = 0.4;
   now[6] = glm::dvec3(0.2);
-  std::vector<Camera> around(2, cameras()[0]);
+  std::vector<Camera> around(2, cameras_to_weigh()[0]);
   const Weights one = weigh(test::gl_context(), model, {around[0]}, near_default, true);
   const double w = one.weight[0], red = 0.4 * 0.4886025119, grey = 0.2 * 2 * 0.31539156525;
   EXPECT_GT(w, 1.0);
@@ -127,7 +127,7 @@ TEST(Calibrator, SeesModelsOfAllAxes) {
   const Model model = test::random_model(62, 500, 0);
   Model turned = model;
   bring_into_axes(turned, "RUB");
-  const std::vector<CalibrationView> views = {{cameras()[1], {}}};
+  const std::vector<CalibrationView> views = {{cameras_to_weigh()[1], {}}};
   const auto pairs = [&](const Model& of) {
     Calibrator calibrator(test::gl_context(), of, views, near_default, CalibrationTarget::Kind::quality);
     EXPECT_EQ(calibrator.cost(of).mean_db, equal_db);

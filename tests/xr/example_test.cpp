@@ -13,7 +13,7 @@ namespace binosplat::test {
 namespace {
 
 using Strings = std::vector<std::string>;
-constexpr int width = 96, height = 80;
+constexpr int example_width = 96, example_height = 80;
 
 /// Gaussians around the head, small enough for llvmpipe.
 void write_model(const std::filesystem::path& path) {
@@ -30,9 +30,9 @@ void write_model(const std::filesystem::path& path) {
 
 /// A head that moves, between eyes that are canted and whose angles differ.
 Json moving_script() {
-  const Json left = xr_view(width, height, {-0.855, 0.646, 0.7, -0.75},
+  const Json left = xr_view(example_width, example_height, {-0.855, 0.646, 0.7, -0.75},
                             xr_pose({-0.0315, 0, 0}, {0, 0.04361939, 0, 0.99904822}));
-  const Json right = xr_view(width, height, {-0.646, 0.8, 0.7, -0.7},
+  const Json right = xr_view(example_width, example_height, {-0.646, 0.8, 0.7, -0.7},
                              xr_pose({0.0315, 0, 0}, {0, -0.04361939, 0, 0.99904822}));
   return {{"frames", 3},
           {"views", {{"stereo", {left, right}}}},
@@ -65,18 +65,18 @@ struct Expected : Caller {
       eyes[k].orientation = four(view["pose"]["orientation"]);
       eyes[k].fov = {fov[0], fov[1], fov[2], fov[3]};
     }
-    const glm::ivec2 size(width, height);
+    const glm::ivec2 size(example_width, example_height);
     const auto pair = stereo::eyes_from_xr(eyes, stereo::stage_of(model), {size, size});
     const std::array<stereo::Target, 2> targets = {
-        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, width, height)},
-        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, width, height)}};
+        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, example_width, example_height)},
+        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, example_width, example_height)}};
     renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
     std::array<std::string, 2> out;
     for (std::size_t k = 0; k < 2; ++k) {
-      const auto pixels = read<unsigned char>(targets[k].texture, width, height);
-      for (int row = height - 1; row >= 0; --row) {
-        const auto begin = pixels.begin() + 4 * row * width;
-        out[k].append(begin, begin + 4 * width);
+      const auto pixels = read<unsigned char>(targets[k].texture, example_width, example_height);
+      for (int row = example_height - 1; row >= 0; --row) {
+        const auto begin = pixels.begin() + 4 * row * example_width;
+        out[k].append(begin, begin + 4 * example_width);
       }
     }
     return out;

@@ -9,7 +9,7 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-std::string run_client(XrStage& stage, const Strings& words) {
+std::string run_pressing(XrStage& stage, const Strings& words) {
   const Outcome outcome =
       run_program(words, {.variables = stage.variables(), .program = BINOSPLAT_XR_CLIENT});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -25,7 +25,7 @@ TEST(XrInput, HandsHaveWhatTheScriptSays) {
                     {{"/user/hand/left/input/select/click", true},
                      {"/user/hand/left/input/aim/pose", xr_pose({-0.25, 1.6, -0.5})}}}});
   stage.add_event({{"frame", 3}, {"hands", {"right"}}});
-  EXPECT_EQ(run_client(stage, {"actions"}),
+  EXPECT_EQ(run_pressing(stage, {"actions"}),
             "0 left: select 0 nowhere\n"
             "0 right: select 0 nowhere\n"
             "profile /interaction_profiles/khr/simple_controller\n"
@@ -50,7 +50,7 @@ TEST(XrInput, OtherControllersHaveOtherInputs) {
                      {"/user/hand/right/input/thumbstick", {0.5, -1.0}},
                      {"/user/hand/right/input/thumbstick/click", true},
                      {"/user/hand/right/input/select/click", true}}}});
-  EXPECT_EQ(run_client(stage, {"actions"}),
+  EXPECT_EQ(run_pressing(stage, {"actions"}),
             "0 left: select 0 trigger 0.75 stick 0,0 nowhere\n"
             "0 right: select 1! trigger 0 stick 0.5,-1 nowhere\n"
             "profile /interaction_profiles/oculus/touch_controller\n");
@@ -61,7 +61,7 @@ TEST(XrInput, OnlyTheFocusedHaveInput) {
   stage.script = {{"frames", 3}};
   stage.add_event({{"frame", 1}, {"state", "visible"}});
   stage.add_event({{"frame", 2}, {"state", "focused"}});
-  const std::string said = run_client(stage, {"actions"});
+  const std::string said = run_pressing(stage, {"actions"});
   EXPECT_NE(said.find("xrSyncActions: XR_SESSION_NOT_FOCUSED\n2 left"), std::string::npos) << said;
   EXPECT_EQ(stage.log().faults(), Strings());
 }
@@ -71,7 +71,7 @@ TEST(XrInput, EyesLookWhereTheScriptSays) {
   stage.script = {{"frames", 3}, {"heads", {xr_pose({0, 1.6, 0}), xr_pose({0.5, 1.6, 0})}}};
   stage.script["gaze"] = xr_pose({0, 0, -1});
   stage.add_event({{"frame", 2}, {"gaze", nullptr}});
-  const std::string said = run_client(stage, {"actions", "gaze"});
+  const std::string said = run_pressing(stage, {"actions", "gaze"});
   EXPECT_NE(said.find("0 gaze: at 0,0,-1\n"), std::string::npos) << said;
   EXPECT_NE(said.find("1 gaze: at 0.5,0,-1\n"), std::string::npos) << said;
   EXPECT_NE(said.find("2 gaze: nowhere\n"), std::string::npos) << said;
@@ -84,7 +84,7 @@ TEST(XrInput, LensesHideWhatTheScriptSays) {
   XrStage stage;
   stage.script = {{"frames", 2}, {"masks", {{"stereo", {corner}}}}};
   stage.add_event({{"frame", 1}, {"view", {{"index", 1}, {"mask", corner}}}});
-  EXPECT_EQ(run_client(stage, {"mask"}),
+  EXPECT_EQ(run_pressing(stage, {"mask"}),
             "0 mask 0: 1 triangles -1,-1 -0.5,-1 -1,-0.5\n"
             "1 mask 1: 1 triangles -1,-1 -0.5,-1 -1,-0.5\n");
   EXPECT_EQ(stage.log().faults(), Strings());
@@ -110,7 +110,7 @@ TEST(XrInput, FaultsAreSeen) {
       {"vibrating_button", "xrApplyHapticFeedback", "XR_ERROR_ACTION_TYPE_MISMATCH"}};
   for (const auto& fault : faults) {
     XrStage stage;
-    run_client(stage, {"actions", fault[0]});
+    run_pressing(stage, {"actions", fault[0]});
     const auto lines = stage.log().all("fault");
     const bool seen = std::any_of(lines.begin(), lines.end(), [&](const Json& line) {
       return line["function"] == fault[1] && line["result"] == fault[2];
@@ -120,7 +120,7 @@ TEST(XrInput, FaultsAreSeen) {
   XrStage stage;
   stage.script["masks"]["stereo"] = {
       {{"hidden", {{"vertices", {{0, 0}, {1, 0}, {0, 1}}}, {"indices", {0, 1, 2}}}}}};
-  run_client(stage, {"mask", "small_mask"});
+  run_pressing(stage, {"mask", "small_mask"});
   EXPECT_EQ(stage.log().faults().size(), 1u) << stage.log().text();
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-constexpr int width = 96, height = 80;  // of a view, as the runtime has it by itself
+constexpr int view_width = 96, view_height = 80;  // of a view, as the runtime has it by itself
 constexpr std::array<double, 4> left_fov = {-0.855, 0.646, 0.7, -0.7}, right_fov = {-0.646, 0.855, 0.7, -0.7};
 
 glm::dvec4 turned(double degrees) {  // to the left
@@ -106,7 +106,7 @@ std::string bytes_of(const Picture& picture) {
 }
 
 Image image_of(const std::string& bytes) {
-  Image image(width, height, 3);
+  Image image(view_width, view_height, 3);
   for (std::size_t p = 0; p < image.data.size(); ++p)
     image.data[p] = static_cast<unsigned char>(bytes[p / 3 * 4 + p % 3]) / 255.0f;
   return image;
@@ -121,8 +121,8 @@ TEST_F(XrView, ShowsWhatAFrameDrawsToTheBit) {
       {"still", {}, {head({0, 1.6, 0})}},
       {"moving", {}, {head({0, 1.6, 0}), head({0.1, 1.5, -0.2}, 20)}},
       {"canted",
-       {xr_view(width, height, left_fov, head({-0.03, 0, 0}, 8)),
-        xr_view(width, height, right_fov, head({0.03, 0, 0}, -8))},
+       {xr_view(view_width, view_height, left_fov, head({-0.03, 0, 0}, 8)),
+        xr_view(view_width, view_height, right_fov, head({0.03, 0, 0}, -8))},
        {head({0, 1.6, 0}), head({0, 1.6, 0.1}, 5)}},
       {"of two sizes, asymmetric",
        {xr_view(64, 72, up_fov, head({-0.03, 0.01, 0})), xr_view(88, 56, right_fov, head({0.03, 0.01, 0}))},
@@ -163,11 +163,11 @@ TEST_F(XrView, DepthIsTheMedian) {
     EXPECT_EQ(near, static_cast<double>(static_cast<float>(near_default)));
     const std::vector<float> depths = log.depths(frame, k);
     // An eighth of the sides, of the pixel in the middle of each 8 x 8.
-    ASSERT_EQ(depths.size(), (width / 4u) * (height / 4u));
+    ASSERT_EQ(depths.size(), (view_width / 4u) * (view_height / 4u));
     const auto differing = [&](const Picture& picture, int x = 4) {
       int count = 0;
       for (std::size_t p = 0; p < depths.size(); ++p) {
-        const std::size_t from = (p / 24 * 8 + 4) * 2 * width + p % 24 * 8 + static_cast<std::size_t>(x);
+        const std::size_t from = (p / 24 * 8 + 4) * 2 * view_width + p % 24 * 8 + static_cast<std::size_t>(x);
         const double cover = 1.0 - picture.colour[from].a;
         const double z = cover > 0.5 ? picture.z_sum[from] / cover : far;
         const double expected = std::clamp(far / (far - near) * (1.0 - near / z), 0.0, 1.0);
@@ -429,17 +429,17 @@ TEST_F(XrView, LeavesOutWhatNoLensShows) {
   const std::string shown = log.colours(frame, 0), whole = bytes_of(pictures[0]);
   EXPECT_TRUE(log.colours(frame, 1) == bytes_of(pictures[1]));
   const auto equal = [&](int x, int y) {
-    const std::size_t at = 4 * static_cast<std::size_t>(y * width + x);
+    const std::size_t at = 4 * static_cast<std::size_t>(y * view_width + x);
     return std::memcmp(&shown[at], &whole[at], 4) == 0;
   };
   int seen_differ = 0, hidden_black = 0, hidden = 0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const double u = std::tan(-0.855) + (x + 0.5) / width * (std::tan(0.646) - std::tan(-0.855));
-      const double v = std::tan(0.7) - (y + 0.5) / height * 2.0 * std::tan(0.7);
+  for (int y = 0; y < view_height; ++y) {
+    for (int x = 0; x < view_width; ++x) {
+      const double u = std::tan(-0.855) + (x + 0.5) / view_width * (std::tan(0.646) - std::tan(-0.855));
+      const double v = std::tan(0.7) - (y + 0.5) / view_height * 2.0 * std::tan(0.7);
       const double edge = -2.0 + 4.0 * (1.6 - u) / 3.6;  // of the triangle, at this x
       if (v < edge) seen_differ += equal(x, y) ? 0 : 1;
-      const std::size_t at = 4 * static_cast<std::size_t>(y * width + x);
+      const std::size_t at = 4 * static_cast<std::size_t>(y * view_width + x);
       if (x >= 80 && y < 16) {
         ++hidden;
         hidden_black += shown[at] == 0 && shown[at + 1] == 0 && shown[at + 2] == 0 ? 1 : 0;
@@ -457,8 +457,8 @@ TEST_F(XrView, SizesAndBudget) {
   ASSERT_EQ(view({"--scale", "0.5", "--frame-budget", "0.001"}).code, 0);
   const XrLog log = stage.log();
   EXPECT_EQ(log.faults(), Strings()) << log.text();
-  EXPECT_EQ(log.all("swapchain").at(0)["width"], width / 2);
-  EXPECT_EQ(XrLog::view(log.frames()[0], 0)["rect"], Json({0, 0, width / 2, height / 2}));
+  EXPECT_EQ(log.all("swapchain").at(0)["width"], view_width / 2);
+  EXPECT_EQ(XrLog::view(log.frames()[0], 0)["rect"], Json({0, 0, view_width / 2, view_height / 2}));
 }
 
 TEST_F(XrView, TakesNewSizesAndMasks) {
@@ -469,7 +469,7 @@ TEST_F(XrView, TakesNewSizesAndMasks) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const XrLog log = stage.log();
   EXPECT_EQ(log.faults(), Strings()) << log.text();
-  EXPECT_EQ(XrLog::view(log.frames()[1], 0)["rect"], Json({0, 0, width, height}));
+  EXPECT_EQ(XrLog::view(log.frames()[1], 0)["rect"], Json({0, 0, view_width, view_height}));
   EXPECT_EQ(XrLog::view(log.frames()[2], 0)["rect"], Json({0, 0, 64, 48}));
   EXPECT_TRUE(log.colours(log.frames()[2], 0) == bytes_of(expected(log.frames()[2], start())[0]));
 }

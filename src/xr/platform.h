@@ -1,0 +1,21 @@
+#pragma once
+// What OpenXR says of OpenGL, with EGL and with Xlib: its header for them wants the platforms' own before it,
+// and all who include it must want the same.
+
+#define XR_USE_GRAPHICS_API_OPENGL
+#define XR_USE_PLATFORM_EGL
+#define XR_USE_PLATFORM_XLIB
+
+#include "gl/functions.h"
+
+#include <EGL/egl.h>
+#include <GL/glx.h>
+#include <X11/Xlib.h>
+
+#include <openxr/openxr_platform.h>
+
+// Xlib's macros that are words of ours.
+#undef None
+#undef Status
+#undef Success
+#undef Bool
