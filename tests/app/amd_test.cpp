@@ -1,0 +1,269 @@
+// Mesa's driver for AMD without a GPU of AMD's: its drm-shim has it compile for a GPU that a variable names
+// and execute nothing. So pictures are black, all numbers read back are 0, and what counts is that every
+// program compiles and that OpenGL has nothing to say.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/scene.h"
+#include "support/scaffold_files.h"
+#include "support/scenes.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::read_text;
+using test::write_text;
+
+/// One line of each generation whose compiler differs, as Mesa's shim calls them.
+constexpr const char* amd_names[] = {"navi31", "navi21", "navi10", "vega10", "polaris10", "gfx1150"};
+
+/// Where Debian has the shim; empty where it is not installed.
+fs::path amd_shim() {
+  const char* const name = "libamdgpu_noop_drm_shim.so";
+  for (const fs::path libraries : {"/usr/lib", "/usr/lib64", "/usr/local/lib"}) {
+    std::error_code none;
+    if (fs::exists(libraries / name, none)) return libraries / name;
+    for (const auto& entry : fs::directory_iterator(libraries, none))
+      if (fs::exists(entry.path() / name, none)) return entry.path() / name;
+  }
+  return {};
+}
+
+/// Mesa's EGL alone, before which another driver's may stand, as Debian installs it.
+constexpr const char* amd_egl = "/usr/share/glvnd/egl_vendor.d/50_mesa.json";
+
+/// A line of a shell's words, and how it ends where nothing is drawn: 1 where black falls short.
+struct AmdRun {
+  const char* line;
+  int code = 0;
+};
+
+// What `render` can be asked for; the models and cameras are those of AmdTest.
+constexpr const char* amd_drawings[] = {
+    "",
+    "--mono --antialias",
+    "--tiles aabb",
+    "--tiles all",
+    "--tiles obb",
+    "--tiles snug",
+    "--order distance",
+    "--projection tangent --order distance",
+    "--projection tangent --tiles aabb",
+    "--projection tangent --tiles all",
+    "--projection tangent --tiles obb",
+    "--projection tangent --tiles snug",
+    "--tile 8",
+    "--tile 32",
+    "--precision half",
+    "--precision half --projection tangent",
+    "--precision half --tiles snug --tile 32",
+    "--frames 3 --tolerance 0.1 --th peripheral",
+    "--frames 3 --tolerance 0.1 --th peripheral --transmittance depth",
+    "--frames 3 --tolerance 0.1 --th peripheral --transmittance last",
+    "--frames 3 --tolerance 0.1 --th squared",
+    "--frames 3 --tolerance 0.1 --th squared --transmittance depth",
+    "--frames 3 --tolerance 0.1 --th squared --transmittance last",
+    "--frames 3 --tolerance 0.1 --tiles aabb",
+    "--frames 3 --tolerance 0.1 --tiles all",
+    "--frames 3 --tolerance 0.1 --tiles obb",
+    "--frames 3 --tolerance 0.1 --tiles snug",
+    "--frames 3 --tolerance 0.1 --transmittance last --projection tangent --precision half",
+    "--frames 5 --quality 40",
+    "--frames 5 --quality 40 --th peripheral --transmittance depth",
+    "--frames 5 --quality 40 --transmittance last --tile 32",
+    "--frames 5 --quality 40 --projection tangent --precision half",
+    "--foveate inset=20deg,context=0.4",
+    "--foveate inset=20deg,context=0.4 --tolerance 0.1",
+    "--foveate inset=20deg,context=0.4 --tolerance 0.1 --transmittance last --precision half",
+    "--foveate inset=20deg,context=0.4 --projection tangent --order distance",
+    "--show split --tolerance 0.1",
+    "--show difference --tolerance 0.1",
+    "--show disagreement --tolerance 0.1",
+    "--show depth",
+    "--show alphas",
+    "--show visible",
+    "--show pairs",
+    "--show light",
+    "--show median-depth",
+    "--show alphas --projection tangent --tolerance 0.1",
+    "--exr float --exr-depth mean --background none",
+    "--exr half --exr-depth median",
+    "--exr half --exr-depth median --projection tangent",
+    "--vr180 --size 64x64",
+    "--reference-until order",
+};
+
+constexpr AmdRun amd_runs[] = {
+    {"render trained -o out.png"},
+    {"render trained -o out.png --decode cyclopean --appearance 2"},
+    {"render trained -o out.png --precision half --projection tangent --mono"},
+    {"render trained -o out.png --frames 3 --tolerance 0.1 --transmittance last"},
+    {"levels model.ply -o levels --leaf 64 --levels 3"},
+    {"render levels -o out.png --detail 2"},
+    {"render levels -o out.png --detail 40dB --detail-report"},
+    {"render levels -o out.png --gpu-memory 30 --precision half"},
+    {"calibrate model.ply --quality 40 --views 2 -o calibration.json"},
+    {"render model.ply --calibration calibration.json -o out.png"},
+    {"trim model.ply --quality 40 --views 1 -o trimmed.ply"},
+    {"refit model.ply --against exact --projection tangent --views 1 --rounds 1 -o fitted.ply", 1},
+    {"convert model.ply -o model.spz --report 1"},
+    {"study model.ply --turn --rays 4x3 -o turn"},
+    {"study model.ply --motion --motions still --segments 1 --frames 2 --rounds 1 --no-equal -o motion"},
+    {"bench model.ply --axes axes.json -o bench", 1},
+    {"bench model.ply --axes one.json --profile -o profile", 1},
+};
+
+// Programs that this driver is never given: those for subgroups of 32 invocations, which AMD's are not as
+// OpenGL has them, and what llvmpipe blends by.
+constexpr const char* amd_never[] = {"blend_blocks.comp", "blend_subgroups.comp",
+                                     "primitives/sort_digits.comp", "primitives/sort_scatter_subgroups.comp"};
+
+struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
+  void SetUp() override {
+    if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "some minutes: set BINOSPLAT_LONG=1";
+#if defined(__SANITIZE_ADDRESS__)
+    GTEST_SKIP() << "the shim stands before system calls, as AddressSanitizer does";
+#endif
+    if (amd_shim().empty())
+      GTEST_SKIP() << "no libamdgpu_noop_drm_shim.so: on Debian 13, apt install mesa-drm-shim";
+    add_cameras();
+    fs::create_directories(folder / "trained");
+    test::write_scaffold(folder / "trained", test::random_scaffold(1, {.anchors = 100, .appearances = 3}));
+    fs::copy(folder / "cameras.json", folder / "trained/cameras.json");
+    write_text(folder / "axes.json",
+               R"({"views": 1, "frames": 1, "repeats": 1, "eyes": [2], "sizes": ["36x24"], "settings": [
+        {"tiles": ["aabb", "obb", "snug", "ellipse"], "precision": ["full", "half"], "tile": [8, 32]},
+        {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "precision": ["full", "half"],
+         "tile": [8, 32], "tolerance": 0.1}]})");
+    write_text(folder / "one.json",
+               R"({"views": 1, "frames": 1, "repeats": 1, "eyes": [2], "settings": [{}]})");
+  }
+
+  /// A run on this GPU of AMD's. What it compiles is kept below `cache`, which is new: each program is
+  /// compiled once, by Mesa and by its compiler for the GPU.
+  Outcome run(const std::vector<std::string>& arguments, const fs::path& program = BINOSPLAT_PROGRAM) const {
+    return test::run_program(arguments, {.folder = folder.path(),
+                                         .variables = {{"LD_PRELOAD", amd_shim().string()},
+                                                       {"AMDGPU_GPU_ID", GetParam()},
+                                                       {"__EGL_VENDOR_LIBRARY_FILENAMES", amd_egl},
+                                                       {"MESA_SHADER_CACHE_DISABLE", "false"},
+                                                       {"MESA_SHADER_CACHE_DIR", folder / "cache"},
+                                                       {"XDG_CACHE_HOME", folder / "cache"}},
+                                         .program = program});
+  }
+
+  Outcome run(const std::string& line) const {
+    std::istringstream in(line);
+    std::vector<std::string> words;
+    for (std::string word; in >> word;) words.push_back(word);
+    return run(words);
+  }
+
+  /// What is wrong with a run; empty where it ended as it should. The driver's compiler complains on standard
+  /// error, where the program's own lines begin with its name, and the shim's with the ioctl it lacks.
+  static std::string trouble(const Outcome& outcome, int code) {
+    const std::string said = outcome.out + outcome.err;
+    std::string wrong;
+    if (outcome.code != code)
+      wrong += fmt::format("exit code {}, expected {}: {}", outcome.code, code, outcome.err);
+    if (said.find(fmt::format("(radeonsi, {},", GetParam())) == std::string::npos)
+      wrong += fmt::format("not drawn by the driver for {}\n", GetParam());
+    std::string lines = outcome.err;
+    std::replace(lines.begin(), lines.end(), '\r', '\n');  // progress
+    std::istringstream in(lines);
+    for (std::string line; std::getline(in, line);) {
+      const bool own = line.starts_with("binosplat: ") && line.find("OpenGL:") == std::string::npos;
+      if (!own && !line.empty() && !line.starts_with("DRM_IOCTL_")) wrong += line + "\n";
+    }
+    return wrong;
+  }
+
+  void expect_devices_name_it() const {
+    EXPECT_EQ(trouble(run("devices --json devices.json"), 0), "");
+    const auto list = nlohmann::json::parse(read_text(folder / "devices.json"));
+    const auto& device = list.at(0);
+    EXPECT_EQ(device.at("options"), "--backend device --device 0");
+    EXPECT_NE(device.at("renderer").get<std::string>().find("AMD"), std::string::npos) << device;
+    EXPECT_FALSE(device.at("software").get<bool>());
+    EXPECT_GT(device.at("limits").at("program_binaries").get<int>(), 0);
+    // Its subgroups have 64 invocations, and nothing is drawn by those. What `devices` says of that: here.
+    EXPECT_FALSE(device.at("limits").at("subgroups").get<bool>());
+  }
+
+  /// Of a shader's lines the most that no #include parts: as they are, they stand in a program's source.
+  static std::string longest_part(const std::string& shader) {
+    std::istringstream in(shader);
+    std::string longest, part;
+    for (std::string line; std::getline(in, line);) {
+      part = line.starts_with("#include") ? "" : part + line + "\n";
+      if (part.size() > longest.size()) longest = part;
+    }
+    return longest;
+  }
+
+  /// The programs of shaders/ that no run has compiled: a kept one stands behind its whole source.
+  std::vector<std::string> never_compiled() const {
+    std::vector<std::string> kept, missing;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "cache/binosplat"))
+      if (entry.is_regular_file()) kept.push_back(read_text(entry.path()));
+    const fs::path shaders = fs::path(BINOSPLAT_SOURCE_DIR) / "shaders";
+    for (const auto& entry : fs::recursive_directory_iterator(shaders)) {
+      if (entry.path().extension() != ".comp" && entry.path().extension() != ".frag") continue;
+      const std::string part = longest_part(read_text(entry.path()));
+      const bool found = std::any_of(kept.begin(), kept.end(), [&](const std::string& binary) {
+        return binary.find(part) != std::string::npos;
+      });
+      if (!found) missing.push_back(entry.path().lexically_relative(shaders).generic_string());
+    }
+    std::sort(missing.begin(), missing.end());
+    return missing;
+  }
+};
+
+TEST_P(AmdTest, EveryModeCompiles) {
+  expect_devices_name_it();
+  for (const std::string more : amd_drawings) {
+    const std::string size = more.find("--size") == std::string::npos ? " --size 48x32 " : " ";
+    EXPECT_EQ(trouble(run("render model.ply --backend device -o out.png" + size + more), 0), "") << more;
+  }
+  for (const AmdRun& one : amd_runs) EXPECT_EQ(trouble(run(one.line), one.code), "") << one.line;
+#if defined(BINOSPLAT_PRESENT_BENCH)
+  // What the window and headsets draw with.
+  EXPECT_EQ(trouble(run({"--frames", "1", "--shrink", "64"}, BINOSPLAT_PRESENT_BENCH), 0), "");
+  EXPECT_EQ(never_compiled(), std::vector<std::string>(std::begin(amd_never), std::end(amd_never)));
+#endif
+}
+
+INSTANTIATE_TEST_SUITE_P(Names, AmdTest, testing::ValuesIn(amd_names),
+                         [](const auto& one) { return std::string(one.param); });
+
+struct AmdFault : AmdTest {};
+
+TEST_P(AmdFault, IsFound) {
+  const std::string good = fmt::format("binosplat: drawing with AMD (radeonsi, {}, LLVM)\n", GetParam());
+  EXPECT_EQ(trouble({.err = good}, 0), "");
+  EXPECT_NE(trouble({.code = 3, .err = good}, 0), "");
+  EXPECT_NE(trouble({.err = "binosplat: drawing with llvmpipe\n"}, 0), "");
+  EXPECT_NE(trouble({.err = good + "binosplat: warning: OpenGL: GL_INVALID_VALUE\n"}, 0), "");
+  EXPECT_NE(trouble({.err = good + "radeonsi: can't compile a main shader part\n"}, 0), "");
+
+  fs::copy(fs::path(BINOSPLAT_SOURCE_DIR) / "shaders", folder / "shaders", fs::copy_options::recursive);
+  const char* const line = "render model.ply --backend device -o out.png --shader-dir shaders";
+  ASSERT_EQ(trouble(run(line), 0), "");
+  // What is compiled only where there are no subgroups of 32.
+  const char* const name = "primitives/sort_scatter.comp";
+  write_text(folder / "shaders" / name, read_text(folder / "shaders" / name) + "float planted = missing;\n");
+  const std::string found = trouble(run(line), 0);
+  EXPECT_NE(found.find(std::string("shader ") + name + " does not compile"), std::string::npos) << found;
+  fs::remove_all(folder / "cache");
+  EXPECT_FALSE(run(line).code == 0 || never_compiled().size() < 20) << "programs never compiled go unnoticed";
+}
+
+INSTANTIATE_TEST_SUITE_P(Names, AmdFault, testing::Values("navi31"));
+
+}  // namespace
+}  // namespace binosplat
