@@ -120,7 +120,8 @@ constexpr AmdRun amd_runs[] = {
 // Programs that this driver is never given: those for subgroups of 32 invocations, which AMD's are not as
 // OpenGL has them, and what llvmpipe blends by.
 constexpr const char* amd_never[] = {"blend_blocks.comp", "blend_subgroups.comp",
-                                     "primitives/sort_digits.comp", "primitives/sort_scatter_subgroups.comp"};
+                                     "primitives/sort_digits.comp", "primitives/sort_scatter_subgroups.comp",
+                                     "subgroups_check.comp"};
 
 struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
   void SetUp() override {
@@ -190,8 +191,10 @@ struct AmdTest : test::SceneTest, testing::WithParamInterface<const char*> {
     EXPECT_NE(device.at("renderer").get<std::string>().find("AMD"), std::string::npos) << device;
     EXPECT_FALSE(device.at("software").get<bool>());
     EXPECT_GT(device.at("limits").at("program_binaries").get<int>(), 0);
-    // Its subgroups have 64 invocations, and nothing is drawn by those. What `devices` says of that: here.
+    // By which nothing is drawn.
     EXPECT_FALSE(device.at("limits").at("subgroups").get<bool>());
+    EXPECT_EQ(device.at("limits").at("why_no_subgroups"), "its subgroups have 64 invocations");
+    EXPECT_NE(device.at("lacks").dump().find("64 invocations"), std::string::npos) << device;
   }
 
   /// Of a shader's lines the most that no #include parts: as they are, they stand in a program's source.
