@@ -106,7 +106,7 @@ struct LevelsTruth : test::SceneTest {
 TEST_F(LevelsTruth, HoldsWhateverTheScales) {
   const bool all = test::switched_on("BINOSPLAT_LONG");
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
-    if (!all && seed != 1 && seed != 3) continue;
+    if (!all && seed != 1) continue;
     SCOPED_TRACE(seed);
     test::save_ply(model, wild_model(seed));
     std::filesystem::remove_all(out);

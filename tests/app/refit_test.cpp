@@ -113,6 +113,7 @@ TEST_F(RefitTest, WhatMakesNoSenseIsNamed) {
 
 // A trained model, in small pictures: a few rounds over a few views.
 TEST(RefitScenes, FoxByDistanceGetsNearItsPictures) {
+  if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "half a minute: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", scene);
   test::TempFolder folder;
   json some;

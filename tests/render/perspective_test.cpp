@@ -222,12 +222,13 @@ double consistency(render::Frame& frame, const Camera& camera, const glm::dvec3&
 }
 
 void expect_nothing_changes_by_turning(const Model& plain, const Camera& camera, int rays) {
+  const bool is_long = test::switched_on("BINOSPLAT_LONG");
   const Model model = in(steady, plain);
   render::Frame frame(test::gl_context(), model);
   const Model trained = in({}, plain);
   render::Frame other(test::gl_context(), trained);
   for (const glm::dvec3& axis : {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1)}) {
-    for (const double degrees : {0.25, 1.0, 5.0, 15.0, 45.0})
+    for (const double degrees : is_long ? std::vector{0.25, 1.0, 5.0, 15.0, 45.0} : std::vector{1.0, 45.0})
       EXPECT_GE(consistency(frame, camera, axis, degrees, rays), 100.0) << plain.name << " " << degrees;
     // About the view's own axis depths stay what they are.
     if (axis.z == 0.0) {
@@ -248,6 +249,8 @@ TEST(Turn, ChangesNothingInTheBuiltInScenes) {
 }
 
 TEST(Turn, ChangesNothingInScenes) {
+  if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
+    GTEST_SKIP() << "two minutes on llvmpipe: set BINOSPLAT_LONG=1";
   for (const auto& [scene, view] : {std::pair("fox", "0042"), std::pair("garden", "DSC08116")}) {
     REQUIRE_SCENE(std::string(scene), folder);
     const auto cameras = load_cameras(folder / "cameras.json");

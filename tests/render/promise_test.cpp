@@ -230,6 +230,8 @@ TEST(Promise, HoldsInMistBehindFrontsAndUnderCuts) {
 }
 
 TEST(Promise, HoldsFromTheFirstFrameOnOfAWalkThroughFox) {
+  if (!test::switched_on("BINOSPLAT_LONG") && test::gl_context().software())
+    GTEST_SKIP() << "more than a minute on llvmpipe: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE("fox", folder);
   const Model model = load_model(folder / "fox.ply");
   const auto cameras = load_cameras(folder / "cameras.json");

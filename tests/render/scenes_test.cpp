@@ -182,10 +182,13 @@ TEST_P(Scenes, ExactEqualsTheReference) {
 
 // Other orders and projections than 3D-GS's; smaller where the CPU draws.
 TEST(SceneSeen, OtherwiseEqualsTheReference) {
+  const bool software = test::gl_context().software();
   for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
+    if (std::string(c.trained.scene) == "garden" && software && !test::switched_on("BINOSPLAT_LONG"))
+      continue;  // 20 s
     REQUIRE_SCENE(c.trained.scene, folder);
     DrawnScene drawn(folder, c);
-    if (test::gl_context().software()) {
+    if (software) {
       const std::string name = c.view;
       for (const Camera& camera : load_cameras(folder / "cameras.json")) {
         if (camera.name == name) drawn.view = make_view(resized(camera, camera.width / 3, camera.height / 3));
