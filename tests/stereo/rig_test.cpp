@@ -178,7 +178,7 @@ TEST(Rig, ParallelEyesShareTheirThirdRowToTheBit) {
     // What the sharing is for: from each eye's own position, z comes out different now and then.
     const glm::vec3 anchor(head.position);
     differ_when_not_shared += !same_words(make_view(pair.cameras[0], anchor, near_default).row_z,
-                                         make_view(pair.cameras[1], anchor, near_default).row_z);
+                                          make_view(pair.cameras[1], anchor, near_default).row_z);
   }
   EXPECT_GT(differ_when_not_shared, 0) << "this test would not notice rows computed eye by eye";
 }
