@@ -76,6 +76,7 @@ class Context {
   void set_shader_folder(const std::filesystem::path& folder);
   /// Where compiled programs are kept from now on; empty: nowhere. At first ProgramCache::default_folder().
   void set_program_cache(const std::filesystem::path& folder);
+  const ProgramCache& program_cache() const { return *program_cache_; }
 
   /// Bytes in buffers now and at most; buffers report here.
   std::int64_t allocated_bytes() const { return allocated_; }

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <utility>
-#include <vector>
 
 #include "base/error.h"
 #include "base/output_file.h"
@@ -40,30 +40,51 @@ std::filesystem::path ProgramCache::default_folder() {
 }
 
 std::string ProgramCache::key(const std::string& source) const {
-  return fmt::format("binosplat program 2\n{}\n{}\n", driver_, source);
+  return fmt::format("binosplat program 3\n{}\n{}\n", driver_, source);
 }
 
 std::filesystem::path ProgramCache::file(const std::string& key) const {
   return folder_ / fmt::format("{:016x}.bin", hash(key));
 }
 
-bool ProgramCache::load(const Functions& gl, std::uint32_t program, const std::string& source) const {
-  if (folder_.empty()) return false;
-  const std::string wanted = key(source);
+// The key, the sum of what follows, and that.
+std::optional<std::string> ProgramCache::read(const std::string& wanted) const {
+  if (folder_.empty()) return std::nullopt;
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file(wanted), ignored)) return false;
+  if (!std::filesystem::is_regular_file(file(wanted), ignored)) return std::nullopt;
   std::ifstream in(file(wanted), std::ios::binary);
   const std::string content((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  GLenum format = 0;
   std::uint64_t sum = 0;
-  const std::size_t head = wanted.size() + sizeof(sum) + sizeof(format);
-  if (content.size() <= head || content.compare(0, wanted.size(), wanted) != 0) return false;
+  const std::size_t head = wanted.size() + sizeof(sum);
+  if (content.size() < head || content.compare(0, wanted.size(), wanted) != 0) return std::nullopt;
   std::memcpy(&sum, content.data() + wanted.size(), sizeof(sum));
-  std::memcpy(&format, content.data() + wanted.size() + sizeof(sum), sizeof(format));
-  const std::size_t start = head;
+  std::string kept = content.substr(head);
+  if (sum != hash(kept)) return std::nullopt;
+  return kept;
+}
+
+void ProgramCache::write(const std::string& wanted, const std::string& kept) const {
+  if (folder_.empty()) return;
+  const std::uint64_t sum = hash(kept);
+  try {
+    OutputFile out(file(wanted));
+    out.write(wanted);
+    out.write(std::as_bytes(std::span(&sum, 1)));
+    out.write(kept);
+    out.commit();
+  } catch (const Error&) {
+    // A cache that cannot be written only costs time.
+  }
+}
+
+bool ProgramCache::load(const Functions& gl, std::uint32_t program, const std::string& source) const {
   // NVIDIA's driver crashes on a damaged binary: it must never see one.
-  if (sum != hash(content.substr(start))) return false;
-  gl.ProgramBinary(program, format, content.data() + start, static_cast<GLsizei>(content.size() - start));
+  const std::optional<std::string> kept = read(key(source));
+  GLenum format = 0;
+  if (!kept || kept->size() <= sizeof(format)) return false;
+  std::memcpy(&format, kept->data(), sizeof(format));
+  gl.ProgramBinary(program, format, kept->data() + sizeof(format),
+                   static_cast<GLsizei>(kept->size() - sizeof(format)));
   gl.GetError();  // a format that the driver no longer knows is recorded as an error
   GLint good = 0;
   gl.GetProgramiv(program, GL_LINK_STATUS, &good);
@@ -74,22 +95,20 @@ void ProgramCache::store(const Functions& gl, std::uint32_t program, const std::
   GLint bytes = 0;
   gl.GetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &bytes);
   if (folder_.empty() || bytes <= 0) return;
-  std::vector<char> binary(static_cast<std::size_t>(bytes));
   GLenum format = 0;
-  gl.GetProgramBinary(program, bytes, nullptr, &format, binary.data());
+  std::string kept(sizeof(format) + static_cast<std::size_t>(bytes), '\0');
+  gl.GetProgramBinary(program, bytes, nullptr, &format, kept.data() + sizeof(format));
   if (gl.GetError() != GL_NO_ERROR) return;
-  const std::string wanted = key(source);
-  try {
-    OutputFile out(file(wanted));
-    out.write(wanted);
-    const std::uint64_t sum = hash(std::string(binary.begin(), binary.end()));
-    out.write(std::as_bytes(std::span(&sum, 1)));
-    out.write(std::as_bytes(std::span(&format, 1)));
-    out.write(std::as_bytes(std::span(binary)));
-    out.commit();
-  } catch (const Error&) {
-    // A cache that cannot be written only costs time.
-  }
+  std::memcpy(kept.data(), &format, sizeof(format));
+  write(key(source), kept);
+}
+
+std::optional<std::string> ProgramCache::recall(const std::string& asked) const {
+  return read(key("found by\n" + asked));
+}
+
+void ProgramCache::remember(const std::string& asked, const std::string& found) const {
+  write(key("found by\n" + asked), found);
 }
 
 }  // namespace binosplat::gl

@@ -1,9 +1,10 @@
 #pragma once
 // Compiled programs kept on disk: NVIDIA compiles a shader in a third of a second and loads its binary in a
-// few milliseconds.
+// few milliseconds. And what was found out about a driver by running some.
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "gl/functions.h"
@@ -28,9 +29,16 @@ class ProgramCache {
   /// Keeps a linked program. Drivers without program binaries keep none.
   void store(const Functions& gl, std::uint32_t program, const std::string& source) const;
 
+  /// What remember() was told of this driver; nothing: find it out. `asked` is what finds it, such as the
+  /// sources of shaders.
+  std::optional<std::string> recall(const std::string& asked) const;
+  void remember(const std::string& asked, const std::string& found) const;
+
  private:
   std::string key(const std::string& source) const;
   std::filesystem::path file(const std::string& key) const;
+  std::optional<std::string> read(const std::string& wanted) const;
+  void write(const std::string& wanted, const std::string& kept) const;
 
   std::filesystem::path folder_;
   std::string driver_;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 #include "base/error.h"
@@ -13,6 +14,8 @@
 namespace binosplat::gl {
 
 namespace {
+
+constexpr const char* check_shader = "subgroups_check.comp";
 
 /// A work group of a shader that knows subgroups.
 struct GroupShape {
@@ -46,6 +49,13 @@ bool has_extension(const Functions& gl, std::string_view wanted) {
   return false;
 }
 
+Defines defines_of(const GroupShape& shape) {
+  Defines defines = {{"COLUMNS", std::to_string(shape.columns)}, {"ROWS", std::to_string(shape.rows)}};
+  for (std::size_t k = 0; k < subgroup_faults.size(); ++k)
+    defines.emplace_back(subgroup_faults[k].define, fmt::format("{}u", 1u << k));
+  return defines;
+}
+
 }  // namespace
 
 std::string found_in_subgroups(Context& context) {
@@ -53,13 +63,9 @@ std::string found_in_subgroups(Context& context) {
   Dispatcher dispatcher(context);
   Buffer wrong(context, "faults of subgroups");
   wrong.upload(std::vector<std::uint32_t>{0});
-  for (const GroupShape& shape : group_shapes) {
-    Defines defines = {{"COLUMNS", std::to_string(shape.columns)}, {"ROWS", std::to_string(shape.rows)}};
-    for (std::size_t k = 0; k < subgroup_faults.size(); ++k)
-      defines.emplace_back(subgroup_faults[k].define, fmt::format("{}u", 1u << k));
-    dispatcher.start(context.program("subgroups_check.comp", defines), Work::of_groups(1),
+  for (const GroupShape& shape : group_shapes)
+    dispatcher.start(context.program(check_shader, defines_of(shape)), Work::of_groups(1),
                      {{"Wrong", wrong}});
-  }
   dispatcher.wait_for_writes();
   const std::uint32_t found = wrong.read<std::uint32_t>(1).front();
   for (std::size_t k = 0; k < subgroup_faults.size(); ++k) {
@@ -84,8 +90,14 @@ std::string why_no_subgroups(Context& context) {
     return "its compute shaders have no subgroups";
   if ((integer(GL_SUBGROUP_SUPPORTED_FEATURES_KHR) & needed) != needed)
     return "its subgroups lack votes, sums, ballots or shuffles";
+  std::string asked;
+  for (const GroupShape& shape : group_shapes)
+    asked += ShaderSource(check_shader, defines_of(shape), {}).text();
+  if (const std::optional<std::string> known = context.program_cache().recall(asked)) return *known;
   try {
-    return found_in_subgroups(context);
+    const std::string found = found_in_subgroups(context);
+    context.program_cache().remember(asked, found);
+    return found;
   } catch (const Error& error) {  // a compiler that does not take what its driver says that it has
     if (error.code() != ExitCode::no_gl) throw;
     return fmt::format("its shaders with subgroups do not compile: {}", error.what());

@@ -64,6 +64,26 @@ TEST(ProgramCache, CompilesAgainWhatIsDamaged) {
   }
 }
 
+TEST(ProgramCache, KeepsWhatWasFoundOfOneDriver) {
+  const test::TempFolder folder;
+  const ProgramCache cache(folder.path(), "driver 1");
+  EXPECT_EQ(cache.recall("shader"), std::nullopt);
+  cache.remember("shader", "");
+  cache.remember("other", "its subgroups vote");
+  EXPECT_EQ(cache.recall("shader"), "");
+  EXPECT_EQ(cache.recall("other"), "its subgroups vote");
+  EXPECT_EQ(cache.recall("another"), std::nullopt);
+  EXPECT_EQ(ProgramCache(folder.path(), "driver 2").recall("other"), std::nullopt);
+  for (const std::string& file : folder.names()) {
+    const std::string kept = test::read_text(folder / file);
+    test::write_text(folder / file, kept.substr(0, kept.size() - 1));
+  }
+  EXPECT_EQ(cache.recall("shader"), std::nullopt) << "damaged";
+  EXPECT_EQ(cache.recall("other"), std::nullopt) << "damaged";
+  ProgramCache({}, "driver 1").remember("shader", "");
+  EXPECT_EQ(ProgramCache({}, "driver 1").recall("shader"), std::nullopt) << "no folder";
+}
+
 TEST(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
   const test::TempFolder folder;
   test::write_text(folder / "file", "");
