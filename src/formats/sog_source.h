@@ -19,7 +19,8 @@ namespace binosplat {
 
 class SogSource {
  public:
-  /// The bytes of a file by the name that meta.json gives it; throws Error naming it.
+  /// The bytes of a file by the name that meta.json gives it; throws Error naming it. Several threads call
+  /// it.
   using ReadFile = std::function<std::vector<std::byte>(const std::string& name)>;
 
   /// Gaussians `first` to `first + count` - 1, which go to a model's slots from `slot` on.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "base/mapped_file.h"
@@ -15,8 +16,12 @@ TEST(SogCache, KeepsWhatWasUsedLast) {
   REQUIRE_FIXTURES(folder);
   const std::filesystem::path sog = folder / "sog/st-lod/0_0";
   std::map<std::string, int> reads;
+  std::mutex counting;  // pictures are read by several threads
   const auto read = [&](const std::string& name) {
-    ++reads[name];
+    {
+      const std::lock_guard lock(counting);
+      ++reads[name];
+    }
     const MappedFile file(sog / name);
     return std::vector(file.bytes().begin(), file.bytes().end());
   };
