@@ -1,12 +1,11 @@
 #include "formats/codebook.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <queue>
+
+#include "base/parallel.h"
 
 namespace binosplat {
 
@@ -92,16 +91,18 @@ class PaletteMaker {
   /// Adds up add(row, sums) over rows, in an order that is always the same.
   template <typename Add>
   Sums sum(std::size_t begin, std::size_t end, const Add& add) const {
-    return tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::size_t>(begin, end, 4096), Sums(size_, 0.0),
-        [&](const auto& range, Sums sums) {
-          for (std::size_t k = range.begin(); k != range.end(); ++k) add(row_(order_[k]), sums);
-          return sums;
-        },
-        [](Sums a, const Sums& b) {
-          std::transform(a.begin(), a.end(), b.begin(), a.begin(), std::plus<>());
-          return a;
-        });
+    constexpr std::size_t worth_a_thread = 4096;
+    if (end - begin <= worth_a_thread) {
+      Sums sums(size_, 0.0);
+      for (std::size_t k = begin; k != end; ++k) add(row_(order_[k]), sums);
+      return sums;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::array<Sums, 2> halves;
+    parallel_for(
+        2, [&](int half) { halves[half] = half == 0 ? sum(begin, middle, add) : sum(middle, end, add); });
+    std::ranges::transform(halves[0], halves[1], halves[0].begin(), std::plus<>());
+    return std::move(halves[0]);
   }
 
   Sums mean(std::size_t begin, std::size_t end) const {
@@ -142,7 +143,7 @@ class PaletteMaker {
 }  // namespace
 
 Codebook::Codebook(std::vector<float> values) {
-  tbb::parallel_sort(values.begin(), values.end());
+  parallel_sort(values.begin(), values.end());
   std::vector<float> different;
   std::unique_copy(values.begin(), values.end(), std::back_inserter(different));
   if (different.size() <= entries_.size()) {

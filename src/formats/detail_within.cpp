@@ -1,7 +1,5 @@
 // Levels of detail by what views lose.
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -126,7 +124,7 @@ class ErrorChooser {
       all.insert(all.end(), steps.begin(), steps.end());
     };
     parallel_chunks(parts_.size(), chunk_of_parts, add);
-    tbb::parallel_sort(all.begin(), all.end(), std::greater<>());
+    parallel_sort(all.begin(), all.end(), std::greater<>());
     return all;
   }
 

@@ -1,8 +1,6 @@
 #include "formats/morton.h"
 #include "base/parallel.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -40,7 +38,7 @@ std::vector<std::uint32_t> morton_order(std::span<const glm::vec3> positions) {
     }
     keys[i] = {key, static_cast<std::uint32_t>(i)};
   });
-  tbb::parallel_sort(keys.begin(), keys.end());
+  parallel_sort(keys.begin(), keys.end());
   std::vector<std::uint32_t> order(keys.size());
   std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
   return order;

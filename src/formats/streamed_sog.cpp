@@ -1,7 +1,5 @@
 #include "formats/streamed_sog.h"
 
-#include <tbb/parallel_pipeline.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -155,29 +153,18 @@ void StreamedSog::read(const Take& take, const std::function<bool()>& goes_on) {
 void StreamedSog::read_files(std::span<const std::size_t> files,
                              std::span<const SogLevels::TakenOfFile> taken, const Take& take,
                              const std::function<bool()>& goes_on) {
-  auto next = files.begin();
-  const auto begin = [&](tbb::flow_control& control) -> std::size_t {
-    const bool ends = next != files.begin() && goes_on && !goes_on();
-    if (next == files.end() || ends) {
-      control.stop();
-      return 0;
-    }
-    return *next++;
-  };
-  const auto decode = [&](std::size_t file) { return read_file(file, taken[file]); };
-  const auto hand_over = [&](std::vector<Piece> of_file) {
-    for (Piece& piece : of_file) {
+  std::vector<std::vector<Piece>> of_files(files.size());
+  const auto begins = [&](std::size_t k) { return k < files.size() && (k == 0 || !goes_on || goes_on()); };
+  const auto decode = [&](std::size_t k) { of_files[k] = read_file(files[k], taken[files[k]]); };
+  const auto hand_over = [&](std::size_t k) {
+    for (Piece& piece : std::exchange(of_files[k], {})) {
       if (piece.level) read_[piece.part] = piece.level;
       environment_read_ = environment_read_ || !piece.level;
       take(std::move(piece));
     }
   };
-  const auto mode = goes_on ? tbb::filter_mode::serial_out_of_order : tbb::filter_mode::serial_in_order;
-  tbb::parallel_pipeline(
-      files_at_a_time,
-      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, begin) &
-          tbb::make_filter<std::size_t, std::vector<Piece>>(tbb::filter_mode::parallel, decode) &
-          tbb::make_filter<std::vector<Piece>, void>(mode, hand_over));
+  parallel_stages(files_at_a_time, begins, decode, hand_over,
+                  goes_on ? HandOver::as_done : HandOver::in_order);
 }
 
 std::vector<SogLevels::TakenOfFile> StreamedSog::to_read(bool shrinks) const {

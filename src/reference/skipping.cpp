@@ -1,10 +1,9 @@
 #include "reference/skipping.h"
 
-#include <tbb/combinable.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 
 #include "base/parallel.h"
 #include "reference/blend_pixel.h"
@@ -29,11 +28,11 @@ struct Fragment {
   int bin;
 };
 
-/// Calls visit(pixel, its fragments front to back) for every pixel, tiles in parallel.
+/// Calls visit(pixel, its fragments front to back) for every pixel of tiles [begin, end).
 template <typename Visit>
 void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
-                    std::span<const double> bounds, const Visit& visit) {
-  parallel_for(lists.begin.size() - 1, [&](std::size_t t) {
+                    std::span<const double> bounds, std::size_t begin, std::size_t end, const Visit& visit) {
+  for (std::size_t t = begin; t < end; ++t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
     const auto list = lists.tile(tx, ty);
@@ -52,7 +51,7 @@ void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, co
         visit(std::size_t{y} * view.width + x, fragments);
       }
     }
-  });
+  }
 }
 
 }  // namespace
@@ -60,13 +59,16 @@ void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, co
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view, std::span<const double> bounds,
                                  std::span<const double> shares) {
-  tbb::combinable<Histogram> of_threads([] { return Histogram{}; });
-  for_each_pixel(splats, lists, view, bounds, [&](std::size_t, const std::vector<Fragment>& fragments) {
-    Histogram& counts = of_threads.local();
-    for (const Fragment& fragment : fragments) ++counts[static_cast<std::size_t>(fragment.bin)];
-  });
+  const std::size_t tiles = lists.begin.size() - 1;
   std::array<std::uint64_t, bins + 1> below{};  // fragments in the bins below
-  of_threads.combine_each([&](const Histogram& counts) {
+  std::mutex adding;
+  parallel_chunks(tiles, 1, [&](std::size_t begin, std::size_t end) {
+    Histogram counts{};
+    const auto count = [&](std::size_t, const std::vector<Fragment>& fragments) {
+      for (const Fragment& fragment : fragments) ++counts[static_cast<std::size_t>(fragment.bin)];
+    };
+    for_each_pixel(splats, lists, view, bounds, begin, end, count);
+    const std::lock_guard lock(adding);
     for (std::size_t b = 0; b < bins; ++b) below[b + 1] += counts[b];
   });
   for (std::size_t b = 0; b < bins; ++b) below[b + 1] += below[b];
@@ -81,7 +83,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
     results.push_back({static_cast<double>(below[static_cast<std::size_t>(kept_from.back())]) / all,
                        Picture(static_cast<int>(view.width), static_cast<int>(view.height))});
   }
-  for_each_pixel(splats, lists, view, bounds, [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
+  const auto blend = [&](std::size_t pixel, const std::vector<Fragment>& fragments) {
     const auto x = static_cast<int>(pixel % view.width), y = static_cast<int>(pixel / view.width);
     for (std::size_t k = 0; k < results.size(); ++k) {
       PixelSum sum;
@@ -93,6 +95,9 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
       results[k].picture.colour[pixel] = glm::vec4(glm::dvec4(sum.colour, sum.transmittance));
       results[k].picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
     }
+  };
+  parallel_chunks(tiles, 1, [&](std::size_t begin, std::size_t end) {
+    for_each_pixel(splats, lists, view, bounds, begin, end, blend);
   });
   return results;
 }

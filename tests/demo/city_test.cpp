@@ -1,12 +1,12 @@
 #include "demo/city.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "support/errors.h"
 
 namespace binosplat {
@@ -40,7 +40,7 @@ TEST(DemoCity, IsTheSameEveryTimeOnAnyNumberOfThreads) {
   Model again = demo_city({.count = small}).model;
   EXPECT_EQ(hash_of(again), hash_of(city().model));
   {
-    const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+    const auto alone = without_helpers();
     EXPECT_EQ(hash_of(demo_city({.count = small}).model), hash_of(city().model));
   }
   again.sh.back() = std::nextafter(again.sh.back(), 2.0f);

@@ -1,7 +1,6 @@
 #include "formats/streamed_sog_writer.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/parallel.h"
 #include "formats/content.h"
 #include "formats/streamed_sog.h"
 #include "scene/reduce.h"
@@ -367,7 +367,7 @@ TEST_F(StreamedSogWriter, WritesTheSameByOneThread) {
   settings.file = 1000;
   WrittenFiles many, one;
   write(many);
-  const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+  const auto alone = without_helpers();
   write(one);
   EXPECT_EQ(one, many);
 }

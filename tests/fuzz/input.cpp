@@ -1,7 +1,6 @@
 #include "fuzz/input.h"
 
 #include <sys/mman.h>
-#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -11,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/mapped_file.h"
+#include "base/parallel.h"
 
 namespace binosplat {
 
@@ -32,7 +32,7 @@ namespace {
 void feed_as(const std::filesystem::path& path, std::span<const std::byte> bytes,
              const std::function<void(const std::filesystem::path&)>& read) {
   // One thread: the same input takes the same way again.
-  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  static const auto one_thread = without_helpers();
   current = bytes;
   try {
     read(path);

@@ -103,6 +103,13 @@ void check_includes(const Files& files, const std::string& path, const std::stri
   }
 }
 
+// The thread sanitizer's build has loops of its own in place of TBB's, which must be all that there are.
+void check_loops(const std::string& path, const std::string& text, Texts& found) {
+  static const std::regex of_tbb("#\\s*include\\s*<(oneapi/)?tbb");
+  if (path != "src/base/parallel.cpp" && std::regex_search(text, of_tbb))
+    found.push_back(path + ": TBB's loops are in base/parallel.h");
+}
+
 void check_size_and_end(const std::string& path, const std::string& text, Texts& found) {
   if (text.empty() || text.back() != '\n') found.push_back(path + ": does not end with a newline");
   if (starts_with(path, "tests/") || starts_with(path, "cmake/")) return;
@@ -119,6 +126,7 @@ Texts breaches(const Files& files) {
     const std::string room = room_of(path);
     if (starts_with(path, "src/") && !may_see.count(room)) found.push_back(path + ": a room without a floor");
     if (!starts_with(path, "cmake/")) check_includes(files, path, text, found);
+    check_loops(path, text, found);
     check_size_and_end(path, text, found);
   }
   return found;
@@ -194,6 +202,7 @@ TEST(Floors, PlantedBreachesAreCaught) {
     EXPECT_FALSE(planted(path, "  #  include \"" + name + "\"\n").empty()) << path << " may include " << name;
   }
   EXPECT_FALSE(planted("src/base/a.cpp", "int a;").empty()) << "no newline at the end";
+  EXPECT_FALSE(planted("src/base/a.cpp", "#include <tbb/tbb.h>\n").empty()) << "loops that are not seen";
   EXPECT_FALSE(planted("shaders/a.comp", std::string(lines_max + 1, '\n')).empty()) << "too long";
 }
 
