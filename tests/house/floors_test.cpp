@@ -202,7 +202,9 @@ TEST(Floors, PlantedBreachesAreCaught) {
     EXPECT_FALSE(planted(path, "  #  include \"" + name + "\"\n").empty()) << path << " may include " << name;
   }
   EXPECT_FALSE(planted("src/base/a.cpp", "int a;").empty()) << "no newline at the end";
-  EXPECT_FALSE(planted("src/base/a.cpp", "#include <tbb/tbb.h>\n").empty()) << "loops that are not seen";
+  const std::string of_tbb =
+      std::string("#include <") + "tbb/tbb.h>\n";  // not at once: this file is read, too
+  EXPECT_FALSE(planted("src/base/a.cpp", of_tbb).empty()) << "loops that are not seen";
   EXPECT_FALSE(planted("shaders/a.comp", std::string(lines_max + 1, '\n')).empty()) << "too long";
 }
 
