@@ -1,12 +1,9 @@
 #pragma once
 // Loops on all cores.
 
-#include <algorithm>
-#include <array>
 #include <concepts>
 #include <cstddef>
 #include <functional>
-#include <iterator>
 #include <memory>
 
 namespace binosplat {
@@ -22,26 +19,6 @@ template <std::integral Count, typename Body>
 void parallel_for(Count count, const Body& body, std::size_t chunk = 1) {
   parallel_chunks(static_cast<std::size_t>(count), chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(static_cast<Count>(i));
-  });
-}
-
-/// Sorts [begin, end), what lies on both sides of a middle value at once. Equal ones are in any order.
-template <std::random_access_iterator Iterator, typename Less = std::less<>>
-void parallel_sort(Iterator begin, Iterator end, const Less& less = {}) {
-  constexpr std::ptrdiff_t worth_a_thread = 1 << 13;
-  const std::ptrdiff_t count = end - begin;
-  if (count <= worth_a_thread) return std::sort(begin, end, less);
-  std::array<std::iter_value_t<Iterator>, 9> some;
-  for (std::ptrdiff_t k = 0; k < 9; ++k) some[static_cast<std::size_t>(k)] = begin[(2 * k + 1) * count / 18];
-  std::nth_element(some.begin(), some.begin() + 4, some.end(), less);
-  const auto& middle = some[4];
-  const Iterator left = std::partition(begin, end, [&](const auto& value) { return less(value, middle); });
-  const Iterator right = std::partition(left, end, [&](const auto& value) { return !less(middle, value); });
-  // Where the middle was badly chosen, no square of the time comes of it.
-  if (std::max(left - begin, end - right) > count - count / 16) return std::sort(begin, end, less);
-  parallel_for(2, [&](int side) {
-    if (side == 0) return parallel_sort(begin, left, less);
-    parallel_sort(right, end, less);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <queue>
 
 #include "base/parallel.h"
+#include "base/parallel_sort.h"
 
 namespace binosplat {
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/parallel_sort.h"
 #include "formats/detail_parts.h"
 #include "formats/detail_sights.h"
 

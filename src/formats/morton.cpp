@@ -1,8 +1,10 @@
 #include "formats/morton.h"
-#include "base/parallel.h"
 
 #include <algorithm>
 #include <utility>
+
+#include "base/parallel.h"
+#include "base/parallel_sort.h"
 
 namespace binosplat {
 
