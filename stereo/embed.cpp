@@ -68,8 +68,6 @@ EyePair eyes_from_xr(const std::array<XrEye, 2>& eyes, const Stage& stage,
 
 EmbeddedRenderer::EmbeddedRenderer(gl::GetProcAddress get_proc_address, const Model& model)
     : context_(gl::Context::adopt(get_proc_address)) {
-  for (const GLenum error : context_->take_errors())
-    log_warning("OpenGL error 0x{:04x} was recorded before binosplat was called: it is the caller's", error);
   const gl::KeptState kept(*context_);
   frame_ = std::make_unique<render::Frame>(*context_, model);
   presenter_ = std::make_unique<Presenter>(*context_);

@@ -101,6 +101,8 @@ void Context::initialise(GetProcAddress get_proc_address, std::string backend, b
                             renderer_, limits_.storage_blocks, bindings, storage_blocks_needed,
                             storage_bindings_needed));
   }
+  for (const GLenum error : own ? std::vector<GLenum>() : take_errors())
+    log_warning("OpenGL error 0x{:04x} was recorded before binosplat was called: it is the caller's", error);
   limits_.why_no_subgroups = gl::why_no_subgroups(*this);
   use_subgroups(true);
 }

@@ -50,8 +50,8 @@ class Context {
   static int device_count();
 
   /// Wraps a context of the caller's that is current, 4.5 core or later; it stays the caller's, its state is
-  /// left as it is, and it must be current whenever what is made with the result is used or destroyed. Throws
-  /// Error(no_gl) that says what it lacks.
+  /// left as it is, and it must be current whenever what is made with the result is used or destroyed. Errors
+  /// that it has recorded are told as warnings, and taken. Throws Error(no_gl) that says what it lacks.
   static std::unique_ptr<Context> adopt(GetProcAddress get_proc_address);
 
   virtual ~Context() = default;
