@@ -102,6 +102,13 @@ fs::path photo(const fs::path& folder, const std::string& view) {
   return {};
 }
 
+// Scenes on llvmpipe take long: in the short run a view whose figures docs/method.md has stands for the
+// others.
+bool is_for_the_long_run(const Case& c) {
+  return test::gl_context().software() && !test::switched_on("BINOSPLAT_LONG") && c.aabb == 0 &&
+         c.ellipse == 0;
+}
+
 class Scenes : public testing::TestWithParam<Case> {};
 
 TEST_P(Scenes, ObbAndSnugMakeTheirPairs) {
@@ -122,6 +129,7 @@ TEST_P(Scenes, ObbAndSnugMakeTheirPairs) {
 
 TEST_P(Scenes, AabbIsInriasPictureAndPsnr) {
   const Case& c = GetParam();
+  if (is_for_the_long_run(c)) GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE(c.trained.scene, folder);
   DrawnScene drawn(folder, c);
   const auto report = drawn.draw(TILES_AABB);
@@ -147,6 +155,7 @@ TEST_P(Scenes, AabbIsInriasPictureAndPsnr) {
 
 TEST_P(Scenes, ExactEqualsTheReference) {
   const Case& c = GetParam();
+  if (is_for_the_long_run(c)) GTEST_SKIP() << "one of many views: set BINOSPLAT_LONG=1";
   REQUIRE_SCENE(c.trained.scene, folder);
   DrawnScene drawn(folder, c);
   const auto report = drawn.draw(TILES_ELLIPSE);
@@ -239,7 +248,9 @@ void expect_eyes_equal_themselves_alone(const Model& model, const Camera& head, 
 }
 
 TEST(SceneEyes, EachEqualsItselfAloneBitForBit) {
+  const bool is_short = test::gl_context().software() && !test::switched_on("BINOSPLAT_LONG");
   for (const Case& c : {Case{fox, "0042"}, Case{garden, "DSC07956"}}) {
+    if (is_short && std::string(c.trained.scene) == "garden") continue;
     REQUIRE_SCENE(c.trained.scene, folder);
     const auto cameras = load_cameras(folder / "cameras.json");
     const auto head =
