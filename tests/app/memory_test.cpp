@@ -16,6 +16,12 @@ using test::run_program;
 struct Memory : test::SceneTest {
   Memory() { test::save_ply(model, test::random_model(1, 600, 1)); }
 
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer needs more addresses than any limit leaves";
+#endif
+  }
+
   /// With no more than so many MB of addresses.
   static Outcome with_memory(const std::vector<std::string>& line, rlim_t megabytes) {
     test::Surroundings surroundings;
