@@ -95,7 +95,7 @@ std::string why_no_subgroups(Context& context) {
     asked += ShaderSource(check_shader, defines_of(shape), {}).text();
   if (const std::optional<std::string> known = context.program_cache().recall(asked)) return *known;
   try {
-    const std::string found = found_in_subgroups(context);
+    std::string found = found_in_subgroups(context);
     context.program_cache().remember(asked, found);
     return found;
   } catch (const Error& error) {  // a compiler that does not take what its driver says that it has
