@@ -13,9 +13,3 @@
 #include <X11/Xlib.h>
 
 #include <openxr/openxr_platform.h>
-
-// Xlib's macros that are words of ours.
-#undef None
-#undef Status
-#undef Success
-#undef Bool

@@ -50,8 +50,9 @@ TEST_F(Memory, LevelsSayWhatTheyLeaveOut) {
     fs::remove_all(out);
     const Outcome outcome = with_memory(line, megabytes);
     EXPECT_TRUE(ends_well(outcome)) << megabytes;
-    if (outcome.code == 0 && read_text(out + "/lod-meta.json") != whole)
+    if (outcome.code == 0 && read_text(out + "/lod-meta.json") != whole) {
       EXPECT_NE(outcome.err.find("there was no memory for"), std::string::npos) << megabytes << outcome.err;
+    }
     short_of_memory += outcome.code == 0 ? 0 : 1;
     // What is there counts as far as it is whole.
     EXPECT_TRUE(good(run_program(line))) << megabytes;

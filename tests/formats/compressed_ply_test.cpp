@@ -11,14 +11,9 @@ namespace {
 
 using test::replaced;
 
-/// Loading `bytes` ends in an error that names the file and says `parts`.
 testing::AssertionResult refuses_compressed(const std::string& bytes,
                                             std::initializer_list<std::string> parts) {
-  const test::TempFolder folder;
-  test::write_text(folder / "bad.ply", bytes);
-  const auto load = [&] { load_model(folder / "bad.ply"); };
-  if (auto named = test::fails_saying(load, {"bad.ply"}); !named) return named;
-  return test::fails_saying(load, parts);
+  return test::refuses_file(bytes, "bad.ply", parts, [](const auto& path) { load_model(path); });
 }
 
 TEST(CompressedPlyErrors, CountsAndProperties) {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "formats/detail.h"
+#include "support/details.h"
 
 namespace binosplat {
 namespace {
@@ -55,14 +56,6 @@ DetailView along_x(double x, double forward = 1.0) {
   return {.eye = {x, 0.5, 0.5}, .inward = inward_of({forward, 0, 0}, 1.0), .focal = 100.0, .pixels = 1e4};
 }
 
-std::size_t total_with_errors(const std::vector<DetailPart>& parts, const Levels& chosen) {
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!parts[i].levels.empty()) sum += parts[i].levels[chosen[i]].count;
-  }
-  return sum;
-}
-
 /// What an eye would see of a part that nothing hides.
 SeenPart open_sight(const DetailPart& part, const DetailView& view) {
   const double distance = std::max(glm::distance(view.eye, glm::clamp(view.eye, part.low, part.high)),
@@ -88,8 +81,8 @@ std::size_t fewest(const std::vector<DetailPart>& parts, const DetailView& view,
   Levels chosen(parts.size(), 0);
   for (std::size_t n = 0; n < std::size_t{1} << (2 * parts.size()); ++n) {
     for (std::size_t p = 0; p < parts.size(); ++p) chosen[p] = n >> (2 * p) & 3;
-    if (total_with_errors(parts, chosen) < best && loss(parts, chosen, view) <= error)
-      best = total_with_errors(parts, chosen);
+    if (test::gaussians_of(parts, chosen) < best && loss(parts, chosen, view) <= error)
+      best = test::gaussians_of(parts, chosen);
   }
   return best;
 }
@@ -137,7 +130,7 @@ TEST(DetailErrors, KeepTheBoundWithHardlyMoreThanTheFewestGaussians) {
       EXPECT_NEAR(choice.error(), loss(parts, choice.levels, near), 1e-12);
       const Levels others(parts.size(), 2);
       EXPECT_NEAR(choice.error_of(others), loss(parts, others, near), 1e-9 * choice.error_of(others));
-      worst = std::max(worst, static_cast<double>(total_with_errors(parts, choice.levels)) /
+      worst = std::max(worst, static_cast<double>(test::gaussians_of(parts, choice.levels)) /
                                   static_cast<double>(fewest(parts, near, error)));
       // Planted faults: levels for another place, and for a bound that is ignored.
       planted += loss(parts, choose_levels_within(parts, {far}, error, any).levels, near) > error;
@@ -154,8 +147,8 @@ TEST(DetailErrors, MoreDecibelsAreMoreGaussians) {
   std::size_t last = 0;
   for (double db = 20.0; db <= 80.0; db += 1.0) {
     const DetailChoice choice = choose_levels_within(parts, {along_x(-1.0)}, std::pow(10, -0.1 * db), any);
-    EXPECT_GE(total_with_errors(parts, choice.levels), last) << db;
-    last = total_with_errors(parts, choice.levels);
+    EXPECT_GE(test::gaussians_of(parts, choice.levels), last) << db;
+    last = test::gaussians_of(parts, choice.levels);
   }
   EXPECT_EQ(last, 20u * 400);
 }
@@ -183,8 +176,8 @@ TEST(DetailErrors, WhatIsOutOfSightIsThereForHeadsThatTurn) {
   const DetailChoice nothing = choose_levels_within(parts, {beside}, 1e-4, any);
   EXPECT_EQ(nothing.error(), 0.0);
   EXPECT_LT(nothing.levels.front(), 3u);
-  EXPECT_LT(total_with_errors(parts, nothing.levels),
-            total_with_errors(parts, choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any).levels));
+  EXPECT_LT(test::gaussians_of(parts, nothing.levels),
+            test::gaussians_of(parts, choose_levels_within(parts, {along_x(-1.0)}, 1e-4, any).levels));
   // A single picture needs none of it, and has the same of what it sees.
   const DetailChoice still = choose_levels_within(parts, {ahead}, 1e-4, any, {}, {}, false);
   EXPECT_EQ(still.levels[2], 3u);
@@ -354,11 +347,11 @@ TEST(DetailErrors, FewGaussiansMayBeAllowedAndPartsUnknown) {
   std::vector<DetailPart> parts = row_with_errors(6);
   for (std::size_t most = 300; most < 2500; most += 50) {
     Levels chosen = choose_levels_within(parts, {along_x(-1.0)}, 1e-9, most).levels;
-    EXPECT_LE(total_with_errors(parts, chosen), most);
+    EXPECT_LE(test::gaussians_of(parts, chosen), most);
     for (std::size_t& level : chosen) {
       if (level == 0) continue;
       --level;
-      EXPECT_GT(total_with_errors(parts, chosen), most) << "room for a step is left";
+      EXPECT_GT(test::gaussians_of(parts, chosen), most) << "room for a step is left";
       ++level;
     }
   }

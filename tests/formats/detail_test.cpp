@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/details.h"
+
 namespace binosplat {
 namespace {
 
@@ -14,14 +16,6 @@ std::vector<DetailPart> row_of_parts(int count) {
   for (int i = 0; i < count; ++i)
     parts.push_back({{2.0 * i, 0, 0}, {2.0 * i + 1, 1, 1}, {{0, 400}, {1, 100}, {2, 25}}});
   return parts;
-}
-
-std::size_t total_of_parts(const std::vector<DetailPart>& parts, const std::vector<std::size_t>& chosen) {
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!parts[i].levels.empty()) sum += parts[i].levels[chosen[i]].count;
-  }
-  return sum;
 }
 
 TEST(Detail, WhatIsNearComesFirst) {
@@ -37,7 +31,7 @@ TEST(Detail, WhatIsNearComesFirst) {
 TEST(Detail, KeepsToTheBudget) {
   const std::vector<DetailPart> parts = row_of_parts(6);
   for (std::size_t most = 150; most < 2500; most += 25) {
-    const std::size_t used = total_of_parts(parts, choose_levels(parts, {}, most));
+    const std::size_t used = test::gaussians_of(parts, choose_levels(parts, {}, most));
     EXPECT_LE(used, most);
     EXPECT_GE(used + 300, std::min<std::size_t>(most, 2400)) << "room for one more step is left";
   }
@@ -66,8 +60,8 @@ TEST(Detail, FineEnoughIsEnough) {
   for (const double enough : {0.005, 0.02, 0.04, 0.08, 0.16, 1.0}) {
     const std::vector<std::size_t> chosen = choose_levels(parts, {eye}, 10000, enough);
     EXPECT_TRUE(as_needed(parts, chosen, eye, enough)) << enough;
-    EXPECT_LT(total_of_parts(parts, chosen), last) << enough;
-    last = total_of_parts(parts, chosen);
+    EXPECT_LT(test::gaussians_of(parts, chosen), last) << enough;
+    last = test::gaussians_of(parts, chosen);
   }
   // Planted faults: what is near as if it were far, and a part that is too fine.
   std::vector<std::size_t> wrong = choose_levels(parts, {eye}, 10000, 0.04);
@@ -100,7 +94,7 @@ TEST(Detail, PartsThatLackLevels) {
   parts[1].levels = {{1, 100}};
   const std::vector<std::size_t> chosen = choose_levels(parts, {{0.5, 0.5, 0.5}}, 10000);
   EXPECT_EQ(chosen[1], 0u);
-  EXPECT_EQ(total_of_parts(parts, chosen), 500u);
+  EXPECT_EQ(test::gaussians_of(parts, chosen), 500u);
   EXPECT_TRUE(choose_levels({}, {}, 10).empty());
 }
 

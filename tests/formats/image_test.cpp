@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/broken.h"
 #include "support/errors.h"
 #include "support/full_disk.h"
 #include "support/jpeg.h"
@@ -167,11 +168,7 @@ std::string png_bytes() {
 }
 
 testing::AssertionResult refuses_picture(const std::string& bytes, std::initializer_list<std::string> parts) {
-  const test::TempFolder folder;
-  test::write_text(folder / "picture", bytes);
-  const auto load = [&] { load_image(folder / "picture"); };
-  if (auto named = test::fails_saying(load, {"picture"}); !named) return named;
-  return test::fails_saying(load, parts);
+  return test::refuses_file(bytes, "picture", parts, [](const auto& path) { load_image(path); });
 }
 
 TEST(Png, BrokenFilesAreRefused) {

@@ -14,6 +14,7 @@
 #include "formats/model_file.h"
 #include "formats/streamed_sog_writer.h"
 #include "support/broken.h"
+#include "support/details.h"
 #include "support/fixtures.h"
 #include "support/level_errors.h"
 #include "support/models.h"
@@ -23,13 +24,10 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
-
-shared::View view_at(const glm::dvec3& eye) {
-  shared::View view{};
-  view.anchor = glm::vec4(eye, 0.2f);
-  view.lens = {100, 100, 0, 0};
-  return view;
-}
+using test::beside_first;
+using test::beside_last;
+using test::far_away;
+using test::view_at;
 
 DetailNeed coarse_to_30_px(const StreamedSog&, std::span<const shared::View>) { return {30.0}; }
 
@@ -85,20 +83,18 @@ bool frames_until(LevelStream& stream, Model& model, const shared::View& view, c
   return true;
 }
 
-const glm::dvec3 stream_first = {-14, -1, 0}, stream_last = {6, 0, 15}, stream_far = {0, 0, -400};
-
 TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
   REQUIRE_FIXTURES(folder);
   LevelStream stream(folder / "sog/st-lod", coarse_to_30_px);
   Model model = stream.coarsest();
   EXPECT_EQ(stream.gaussians(), 250u);
   EXPECT_TRUE(stream.settled());
-  EXPECT_TRUE(follow(stream, model, stream_far, 1).empty());
-  EXPECT_EQ(follow(stream, model, stream_last, 1), (std::vector<std::size_t>{120u + 65 + 248}));
-  EXPECT_EQ(follow(stream, model, stream_first, 1), (std::vector<std::size_t>{250, 505 + 65 + 65}))
+  EXPECT_TRUE(follow(stream, model, far_away, 1).empty());
+  EXPECT_EQ(follow(stream, model, beside_last, 1), (std::vector<std::size_t>{120u + 65 + 248}));
+  EXPECT_EQ(follow(stream, model, beside_first, 1), (std::vector<std::size_t>{250, 505 + 65 + 65}))
       << "what shrinks comes first";
-  EXPECT_TRUE(follow(stream, model, stream_first, 1).empty());
-  EXPECT_EQ(follow(stream, model, stream_last, 100'000).back(), 120u + 65 + 248);
+  EXPECT_TRUE(follow(stream, model, beside_first, 1).empty());
+  EXPECT_EQ(follow(stream, model, beside_last, 100'000).back(), 120u + 65 + 248);
   // Each part is what the file says.
   const Model fine = load_model(folder / "sog/st-lod", {.lod = 0});
   std::size_t same = 0;
@@ -116,7 +112,7 @@ TEST(LevelStream, BringsWhatViewsNeedAPartAtATime) {
 TEST(LevelStream, EndsWithWhatWasWantedLast) {
   REQUIRE_FIXTURES(folder);
   const fs::path path = folder / "sog/st-lod";
-  const std::vector<glm::dvec3> places = {stream_far, stream_first, stream_last, {-8, 0, 4}, {0, 0, 12}};
+  const std::vector<glm::dvec3> places = {far_away, beside_first, beside_last, {-8, 0, 4}, {0, 0, 12}};
   std::vector<std::vector<float>> alone;
   for (const glm::dvec3& place : places) {
     LevelStream stream(path, coarse_to_30_px);
@@ -152,8 +148,8 @@ TEST(LevelStream, ALevelWithoutGaussiansIsALevel) {
   LevelStream stream(copy.path(), coarse_to_30_px);
   Model model = stream.coarsest();
   EXPECT_EQ(stream.gaussians(), 120u + 65);
-  EXPECT_EQ(follow(stream, model, stream_last, 1).back(), 120u + 65 + 248);
-  EXPECT_EQ(follow(stream, model, stream_far, 1).back(), 120u + 65);
+  EXPECT_EQ(follow(stream, model, beside_last, 1).back(), 120u + 65 + 248);
+  EXPECT_EQ(follow(stream, model, far_away, 1).back(), 120u + 65);
 }
 
 // By dB it looks when the views change, and again once what they needed is there, but not for ever.
@@ -744,7 +740,7 @@ TEST(LevelStream, EndsInTheMidstOfIt) {
     LevelStream stream(folder / "sog/st-lod", coarse_to_30_px);
     Model model = stream.coarsest();
     for (int k = 0; k < n; ++k) {
-      stream.want(std::vector{view_at(k % 2 == 0 ? stream_first : stream_last)}, {});
+      stream.want(std::vector{view_at(k % 2 == 0 ? beside_first : beside_last)}, {});
       stream.take(model, 300);
     }
   }
@@ -758,7 +754,7 @@ TEST(LevelStream, TellsWhatIsWrong) {
   EXPECT_TRUE(test::fails_saying([&] { LevelStream(copy.path(), for_db(40.0)).coarsest(); },
                                  {"--detail 40dB", "has no errors of its levels to go by"}));
   std::filesystem::resize_file(copy.path() / "0_0/means_l.webp", 100);
-  EXPECT_TRUE(test::fails_saying([&] { follow(stream, model, stream_first, 1); }, {"0_0", "means_l.webp"}));
+  EXPECT_TRUE(test::fails_saying([&] { follow(stream, model, beside_first, 1); }, {"0_0", "means_l.webp"}));
   EXPECT_EQ(stream.gaussians(), 250u);
   EXPECT_TRUE(test::fails_saying([&] { stream.take(model, 1); }, {"0_0", "means_l.webp"})) << "still";
 }

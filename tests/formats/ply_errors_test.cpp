@@ -17,11 +17,7 @@ namespace {
 using test::PlyFile;
 
 testing::AssertionResult refuses_ply(const std::string& bytes, std::initializer_list<std::string> parts) {
-  const test::TempFolder folder;
-  test::write_text(folder / "bad.ply", bytes);
-  const auto load = [&] { load_model(folder / "bad.ply"); };
-  if (auto named = test::fails_saying(load, {"bad.ply"}); !named) return named;
-  return test::fails_saying(load, parts);
+  return test::refuses_file(bytes, "bad.ply", parts, [](const auto& path) { load_model(path); });
 }
 
 /// 100 Gaussians of degree 3: a header of a few lines, then rows of 248 bytes.

@@ -27,8 +27,7 @@ Model load_spz(const std::string& bytes) {
 }
 
 testing::AssertionResult refuses_spz(const std::string& bytes, std::initializer_list<std::string> parts) {
-  if (auto named = test::fails_saying([&] { load_spz(bytes); }, {"bad.spz"}); !named) return named;
-  return test::fails_saying([&] { load_spz(bytes); }, parts);
+  return test::refuses_file(bytes, "bad.spz", parts, [](const auto& path) { load_model(path); });
 }
 
 /// What is said on standard error while `bytes` are loaded.

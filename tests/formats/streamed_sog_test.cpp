@@ -14,6 +14,7 @@
 #include "scene/model_parts.h"
 #include "scene/reduce.h"
 #include "support/broken.h"
+#include "support/details.h"
 #include "support/fixtures.h"
 #include "support/ply_models.h"
 
@@ -21,17 +22,11 @@ namespace binosplat {
 namespace {
 
 namespace fs = std::filesystem;
+using test::beside_first;
+using test::beside_last;
 using test::Copy;
-
-/// A view at a place; where it looks does not matter.
-shared::View focused_at(const glm::dvec3& eye, float focal = 100.0f) {
-  shared::View view{};
-  view.anchor = glm::vec4(eye, 0.2f);
-  view.lens = {focal, focal, 0, 0};
-  return view;
-}
-
-const glm::dvec3 beside_first = {-14, -1, 0}, beside_last = {6, 0, 15}, far_away = {0, 0, -400};
+using test::far_away;
+using test::view_at;
 
 /// A streamed SOG, and the parts of it that were read, in their order.
 struct Followed {
@@ -60,7 +55,7 @@ struct Followed {
 
 /// The same without anything read before.
 Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailNeed& need) {
-  return Followed(path).read({focused_at(eye)}, need);
+  return Followed(path).read({view_at(eye)}, need);
 }
 
 TEST(StreamedSog, FineWhereItIsNearCoarseWhereItIsFar) {
@@ -71,18 +66,17 @@ TEST(StreamedSog, FineWhereItIsNearCoarseWhereItIsFar) {
   EXPECT_EQ(scene.scene.like().degree, 3);
   EXPECT_TRUE(scene.scene.choose({}, {}));
   EXPECT_TRUE(test::equal(scene.read(), coarse)) << "the coarsest, unless somebody looks";
-  EXPECT_FALSE(scene.scene.choose(std::vector{focused_at(far_away)}, {30.0}));
-  EXPECT_TRUE(test::equal(scene.read({focused_at(beside_last)}, {0.0}), fine))
-      << "0 px: nothing is fine enough";
-  EXPECT_TRUE(test::equal(scene.read({focused_at(far_away)}, {30.0}), coarse));
-  const Model last = scene.read({focused_at(beside_last)}, {30.0});
+  EXPECT_FALSE(scene.scene.choose(std::vector{view_at(far_away)}, {30.0}));
+  EXPECT_TRUE(test::equal(scene.read({view_at(beside_last)}, {0.0}), fine)) << "0 px: nothing is fine enough";
+  EXPECT_TRUE(test::equal(scene.read({view_at(far_away)}, {30.0}), coarse));
+  const Model last = scene.read({view_at(beside_last)}, {30.0});
   EXPECT_EQ(last.count(), 120u + 65 + 248);
-  const Model first = scene.read({focused_at(beside_first)}, {30.0});
+  const Model first = scene.read({view_at(beside_first)}, {30.0});
   EXPECT_EQ(first.count(), 505u + 65 + 65);
   EXPECT_EQ(first.position[0], fine.position[0]);
   EXPECT_EQ(first.position[505], coarse.position[120]);
   // A longer lens sees more of it.
-  EXPECT_TRUE(test::equal(scene.read({focused_at(far_away, 1e5f)}, {30.0}), fine));
+  EXPECT_TRUE(test::equal(scene.read({view_at(far_away, 1e5f)}, {30.0}), fine));
 }
 
 TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
@@ -91,7 +85,7 @@ TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
   copy.edit("lod-meta.json", [](nlohmann::json& meta) { meta["environment"] = "1_0/meta.json"; });
   Followed scene(copy.path());
   for (const glm::dvec3& eye : {far_away, beside_last, beside_first, far_away, beside_first}) {
-    const Model model = scene.read({focused_at(eye)}, {30.0});
+    const Model model = scene.read({view_at(eye)}, {30.0});
     const Model anew = read_anew(copy.path(), eye, {30.0});
     EXPECT_TRUE(test::equal(model, anew)) << eye.x;
     Model faulty = anew;  // planted: a Gaussian of another level
@@ -103,27 +97,27 @@ TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
 TEST(StreamedSog, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
   REQUIRE_FIXTURES(folder);
   Followed scene(folder / "sog/st-lod");
-  scene.read({focused_at(beside_last)}, {30.0});
+  scene.read({view_at(beside_last)}, {30.0});
   EXPECT_EQ(scene.read_at_last, 3u);
-  scene.read({focused_at(beside_last)}, {30.0});
+  scene.read({view_at(beside_last)}, {30.0});
   EXPECT_EQ(scene.read_at_last, 0u);
-  scene.scene.choose(std::vector{focused_at(beside_first)}, {30.0});
+  scene.scene.choose(std::vector{view_at(beside_first)}, {30.0});
   std::vector<std::size_t> counts;
   const auto take = [&](const StreamedSog::Piece& piece) { counts.push_back(piece.model.count()); };
   scene.scene.read(take, [] { return false; });
   EXPECT_EQ(counts, std::vector<std::size_t>{65}) << "a file, and then it was asked to end";
-  EXPECT_TRUE(scene.scene.choose(std::vector{focused_at(beside_first)}, {30.0}));
+  EXPECT_TRUE(scene.scene.choose(std::vector{view_at(beside_first)}, {30.0}));
   scene.scene.read(take);
   EXPECT_EQ(counts, (std::vector<std::size_t>{65, 505}));
   scene.scene.forget();
-  scene.read({focused_at(beside_first)}, {30.0});
+  scene.read({view_at(beside_first)}, {30.0});
   EXPECT_EQ(scene.read_at_last, 3u);
 }
 
 TEST(StreamedSog, OneChoiceForBothEyes) {
   REQUIRE_FIXTURES(folder);
   const fs::path lod = folder / "sog/st-lod";
-  const shared::View left = focused_at(beside_first), right = focused_at(beside_last);
+  const shared::View left = view_at(beside_first), right = view_at(beside_last);
   Followed scene(lod), swapped(lod);
   const Model both = scene.read({left, right}, {30.0});
   EXPECT_EQ(both.count(), 505u + 65 + 248) << "each part as the nearer eye sees it";
@@ -139,7 +133,7 @@ TEST(StreamedSog, AHeadThatTremblesSwitchesOnce) {
   int switches = 0;
   std::set<std::size_t> anew;
   for (int n = 0; n < 20; ++n) {
-    if (scene.choose(std::vector{focused_at(place(n))}, {5.4})) {
+    if (scene.choose(std::vector{view_at(place(n))}, {5.4})) {
       ++switches;
       scene.read([](const StreamedSog::Piece&) {});
     }
@@ -154,7 +148,7 @@ TEST(StreamedSog, KeepsToTheRoomThereIs) {
   Followed scene(folder / "sog/st-lod");
   for (const std::size_t most : {1000, 999, 700, 440, 250}) {
     for (const glm::dvec3& eye : {beside_first, far_away, beside_last})
-      EXPECT_LE(scene.read({focused_at(eye)}, {0.0, most}).count(), most);
+      EXPECT_LE(scene.read({view_at(eye)}, {0.0, most}).count(), most);
   }
 }
 
@@ -196,7 +190,7 @@ void teach(nlohmann::json& meta) {
 
 /// A picture of 100 x 100 px of all that is ahead.
 shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
-  shared::View view = focused_at(eye);
+  shared::View view = view_at(eye);
   view.row_x = {forward, 0, 0, 0};
   view.row_y = {0, 1, 0, 0};
   view.row_z = {0, 0, forward, 0};
@@ -377,7 +371,7 @@ TEST(StreamedSog, RoomIsMadeForWhatIsThere) {
     meta["tree"]["children"][1]["children"][1]["lods"]["0"]["count"] = 4'000'000'000u;
   });
   StreamedSog scene(copy.path());
-  scene.choose(std::vector{focused_at(beside_last)}, {0.0});
+  scene.choose(std::vector{view_at(beside_last)}, {0.0});
   EXPECT_TRUE(test::fails_saying([&] { scene.read([](const StreamedSog::Piece&) {}); },
                                  {"Gaussians 752 to 4000000751 of", "0_0/meta.json", "which has 1000"}));
 }

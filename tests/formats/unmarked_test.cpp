@@ -21,8 +21,7 @@ Model load_named(const std::string& bytes, const std::string& name) {
 
 testing::AssertionResult refuses_named(const std::string& bytes, const std::string& name,
                                        std::initializer_list<std::string> parts) {
-  if (auto named = test::fails_saying([&] { load_named(bytes, name); }, {name}); !named) return named;
-  return test::fails_saying([&] { load_named(bytes, name); }, parts);
+  return test::refuses_file(bytes, name, parts, [](const auto& path) { load_model(path); });
 }
 
 TEST(Splat, ContentDecides) {

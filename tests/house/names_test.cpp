@@ -1,4 +1,4 @@
-// Names in anonymous namespaces are one file's within its folder: a build that compiles a dozen sources as
+// Names in anonymous namespaces are one file's within its folder: a build that compiles many sources as
 // one stops where two files have the same, or takes the other file's function in silence.
 
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 namespace binosplat::study {
 namespace {
 
-constexpr double equal_psnr = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 MovedFrame frame(double left, double right, double told, double pairs = 50.0) {
   return {.view_db = {left, right},
@@ -32,7 +32,7 @@ TEST(MotionNumbers, SayWhatSeriesComeTo) {
   std::vector<MovedFrame> frames;
   for (int n = 0; n < 8; ++n) frames.push_back(frame(41.0 + n, 40.0 + n, 40.0 + n));
   frames.push_back(frame(36.0, 45.0, 39.0, 90.0));
-  frames.push_back(frame(equal_psnr, equal_psnr, equal_psnr, 10.0));
+  frames.push_back(frame(infinity, infinity, infinity, 10.0));
   frames.back().drawn = 2;
   frames.back().ms = 12.0;
   const MotionSummary s = summary_of(frames);

@@ -24,8 +24,6 @@ namespace {
 
 using Views = std::vector<shared::View>;
 
-constexpr double infinite_psnr = std::numeric_limits<double>::infinity();
-
 /// A pair at x, or one eye.
 Views head_at(double x, bool pair = true) {
   Camera camera = test::front_camera(50, 37, 48);
@@ -154,7 +152,7 @@ TEST_F(Motions, WhatHasNoRoomIsDrawnAgain) {
   some.draw(frame, other);
   EXPECT_EQ(some.left_out(), 0u);
   frame.draw(other.segments[0].frames[2]);
-  EXPECT_EQ(some.psnr(frame, 0, 2), (std::vector<double>{infinite_psnr, infinite_psnr}));
+  EXPECT_EQ(some.psnr(frame, 0, 2), (std::vector<double>{INFINITY, INFINITY}));
 }
 
 TEST_F(Motions, RulesComeToOneTrueQuality) {

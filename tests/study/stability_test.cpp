@@ -9,6 +9,7 @@
 
 #include "render/frame.h"
 #include "study/along_path.h"
+#include "study/first_pair.h"
 #include "study/fixed_camera.h"
 #include "support/gl.h"
 #include "support/models.h"
@@ -24,11 +25,6 @@ StabilityCase small_case(std::size_t frames) {
     head.position.x += 0.002;
   }
   return one;
-}
-
-// The first pair of a case.
-FixedCamera camera_of_case(const StabilityCase& one) {
-  return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
 StabilityResult run_one(const StabilityCase& one, const Variant& variant,
@@ -114,13 +110,13 @@ TEST(Stability, TheCasesShowSomething) {
 TEST(Stability, TheToleranceComesToItsTarget) {
   const StabilityCase one = small_case(3);
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.tolerance = camera_of_case(one).tolerance_at(variant, 38.0);
-  FixedCamera camera = camera_of_case(one);
+  variant.tolerance = first_pair_of(one).tolerance_at(variant, 38.0);
+  FixedCamera camera = first_pair_of(one);
   camera.settle(variant);
   const double db = judge(camera.views(), camera.exact(), camera.pictures(), TILE_SIZE_DEFAULT).psnr;
   EXPECT_GE(db, 38.0);
   EXPECT_LT(db, 38.5);
-  EXPECT_EQ(camera_of_case(one).tolerance_at({.th = TH_TAU}, 38.0), 0.0f);
+  EXPECT_EQ(first_pair_of(one).tolerance_at({.th = TH_TAU}, 38.0), 0.0f);
 }
 
 std::vector<std::vector<shared::View>> path_with_jump() {

@@ -8,6 +8,7 @@
 
 #include "base/statistics.h"
 #include "render/frame.h"
+#include "study/first_pair.h"
 #include "study/fixed_camera.h"
 #include "support/gl.h"
 #include "support/scenes.h"
@@ -20,11 +21,6 @@ StabilityCase case_named(const std::string& name) {
     if (one.name == name) return std::move(one);
   }
   throw std::runtime_error("no case " + name);
-}
-
-// The first pair of a case.
-FixedCamera camera_of_trap(const StabilityCase& one) {
-  return {test::gl_context(), *one.model, {one.frames[0].views.begin(), one.frames[0].views.end()}};
 }
 
 struct ShownTrap {
@@ -58,7 +54,7 @@ TEST(Traps, AFarWallOfTinyGaussiansGoesAtAToleranceThatIsFineElsewhere) {
   // Trap 1. A tolerance that is chosen on something else takes the wall away by and by; --quality sees it.
   const StabilityCase wall = case_named("far-wall"), clutter = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.tolerance = camera_of_trap(clutter).tolerance_at(variant, 34.0);
+  variant.tolerance = first_pair_of(clutter).tolerance_at(variant, 34.0);
   const auto open = frames_of(wall, variant.settings(), 8);
   EXPECT_LT(median(open, &ShownTrap::db, 4, 8), 30.0);
   render::FrameSettings steered = variant.settings();
@@ -71,7 +67,7 @@ TEST(Traps, AStillCameraSettlesAndDoesNotDrift) {
   // Trap 3: what pruned frames measure of themselves, round and round.
   const StabilityCase still = case_named("still");
   Variant variant{.th = TH_SQUARED, .transmittance = TRANSMITTANCE_LAST};
-  variant.tolerance = camera_of_trap(still).tolerance_at(variant, 40.0);
+  variant.tolerance = first_pair_of(still).tolerance_at(variant, 40.0);
   render::FrameSettings settings = variant.settings();
   settings.record_every = 1;  // frames that do not measure show what the next one shows
   const auto shown = frames_of(still, settings, 90);

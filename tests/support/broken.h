@@ -45,6 +45,18 @@ class Copy {
   std::string name_;
 };
 
+/// Whether load(path) of a file called `name` with these bytes ends in an error that names it and says
+/// `parts`.
+template <typename Load>
+testing::AssertionResult refuses_file(const std::string& bytes, const std::string& name,
+                                      std::initializer_list<std::string> parts, const Load& load) {
+  const TempFolder folder;
+  write_text(folder / name, bytes);
+  const auto read = [&] { load(folder / name); };
+  if (auto named = fails_saying(read, {name}); !named) return named;
+  return fails_saying(read, parts);
+}
+
 /// `text` with the first `from` replaced.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
