@@ -8,6 +8,7 @@
 #include "app/scene.h"
 #include "support/broken.h"
 #include "support/models.h"
+#include "support/scenes.h"
 
 namespace binosplat {
 namespace {
