@@ -1,4 +1,4 @@
-// What a GPU does at best (src/study/floors.h): FLOOR_BYTES copies, FLOOR_ALPHAS blends splats from shared memory into four
+// What a GPU does at best (src/lab/floors.h): FLOOR_BYTES copies, FLOOR_ALPHAS blends splats from shared memory into four
 // pixels an invocation, FLOOR_FMAS multiplies and adds. Nothing here is of use but the time it takes.
 #include "shared/axes.h"
 #include "shared/limits.h"

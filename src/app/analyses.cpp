@@ -9,7 +9,7 @@
 #include "app/photos.h"
 #include "app/report.h"
 #include "base/log.h"
-#include "study/analyses.h"
+#include "lab/analyses.h"
 
 namespace binosplat::app {
 
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t calibration_views = 16, test_views = 8;
 
-void print_page(const study::Page& page) {
-  for (const study::Section& section : page.sections)
+void print_page(const lab::Page& page) {
+  for (const lab::Section& section : page.sections)
     fmt::print("{}\n  {}\n", section.title, section.problem.empty() ? section.sentence : section.problem);
 }
 
@@ -38,10 +38,10 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
     return photographed_views(choice, options.photos, options.camera.lens, scene.list);
   };
   // No view serves both: those named for the one are left out of all for the other.
-  std::vector<study::CalibrationView> tested = views_of(to_test);
+  std::vector<lab::CalibrationView> tested = views_of(to_test);
   std::vector<std::string> names;
-  for (const study::CalibrationView& view : tested) names.push_back(view.camera.name);
-  std::vector<study::CalibrationView> calibrated =
+  for (const lab::CalibrationView& view : tested) names.push_back(view.camera.name);
+  std::vector<lab::CalibrationView> calibrated =
       views_of({named, calibration_views, named.empty() ? names : std::vector<std::string>()});
   const auto context = open_context_for_all("study", true, options.context);
   leave_out_blind("study", *context, scene.model, scene.near_plane, tested);
@@ -53,15 +53,15 @@ ExitCode analyse_scene(const MeasuredOptions& options, const std::vector<std::st
 
   Parts parts;
   const bool photos = !options.photos.empty();
-  const study::Analysis analysis = study::analyse(
+  const lab::Analysis analysis = lab::analyse(
       *context, scene.model, calibrated, tested,
       {.scene = scene.model.name,
        .near_plane = scene.near_plane,
-       .kind = photos ? study::CalibrationTarget::Kind::drop : study::CalibrationTarget::Kind::quality,
+       .kind = photos ? lab::CalibrationTarget::Kind::drop : lab::CalibrationTarget::Kind::quality,
        .targets = photos ? std::vector{0.1, 0.2, 0.3, 0.4, 0.5} : std::vector{50.0, 45.0, 40.0, 37.0, 34.0},
        .frames = frames},
       [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
-  const study::Page page = study::analysis_page(analysis);
+  const lab::Page page = lab::analysis_page(analysis);
   save_report(folder, "study.json", to_json(analysis), page);
   print_page(page);
   fmt::print("\n{}: report.html, study.json\n", folder.string());

@@ -16,7 +16,7 @@
 #include "app/photos.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "study/bench.h"
+#include "lab/bench.h"
 
 namespace binosplat::app {
 
@@ -34,13 +34,13 @@ std::vector<Shot> choose_shots(const BenchOptions& options, std::size_t wanted, 
   }
   if (!options.camera.views.empty()) return shots;
   std::vector<Shot> chosen;
-  for (const std::size_t i : study::spread_evenly(shots.size(), wanted)) chosen.push_back(shots[i]);
+  for (const std::size_t i : lab::spread_evenly(shots.size(), wanted)) chosen.push_back(shots[i]);
   return chosen;
 }
 
 /// The views of a case, and a small one to compare with the reference.
-study::Bench open_case(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
-                       const BenchCase& which, const Model& model, const std::optional<study::Peaks>& peaks) {
+lab::Bench open_case(gl::Context& context, const BenchOptions& options, const BenchPlan& plan,
+                     const BenchCase& which, const Model& model, const std::optional<lab::Peaks>& peaks) {
   const BenchScene& scene = plan.scenes[which.scene];
   const CameraList list = scene.list.listed
                               ? scene.list
@@ -51,16 +51,15 @@ study::Bench open_case(gl::Context& context, const BenchOptions& options, const 
                                          make_shots(views_or_all(options.camera.views), lens_of(which),
                                                     rig_of(which), list, near_plane, model.axes));
   leave_out_blind("bench", context, model, near_plane, shots);
-  std::vector<study::BenchView> views;
+  std::vector<lab::BenchView> views;
   for (const Shot& shot : shots) {
-    study::BenchView& view = views.emplace_back(study::BenchView{shot.name, views_of(shot), {}});
+    lab::BenchView& view = views.emplace_back(lab::BenchView{shot.name, views_of(shot), {}});
     if (photos)
       view.photo = load_view_photo(*find_view_photo(options.photos, shot.name), shot.eyes.front().camera);
   }
   const Camera& camera = shots.front().eyes.front().camera;
-  const bool foveated = std::ranges::any_of(plan.axes.settings, [](const study::BenchSettings& settings) {
-    return settings.foveation.has_value();
-  });
+  const bool foveated = std::ranges::any_of(
+      plan.axes.settings, [](const lab::BenchSettings& settings) { return settings.foveation.has_value(); });
   constexpr int small_width = 160;
   const int width = std::min(small_width, camera.width);
   const int height = std::max(1, static_cast<int>(std::int64_t{camera.height} * width / camera.width));
@@ -84,9 +83,9 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   if (missing.empty()) return;
   const auto context = open_context(options.context);
 
-  std::optional<study::Peaks> peaks;
+  std::optional<lab::Peaks> peaks;
   if (options.profile) {
-    peaks = study::measure_peaks(*context);
+    peaks = lab::measure_peaks(*context);
     log_info("at best {:.4g} TB/s, {:.4g} T alphas/s, {:.4g} T multiply-adds/s", 1e-12 * peaks->bytes,
              1e-12 * peaks->alphas, 1e-12 * peaks->fmas);
   }
@@ -96,7 +95,7 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   std::optional<std::size_t> loaded;
   std::size_t done = 0;
   for (const BenchCase& which : plan.cases) {
-    std::optional<study::Bench> bench;
+    std::optional<lab::Bench> bench;
     for (std::size_t s = 0; s < plan.axes.settings.size(); ++s) {
       if (done == missing.size() || missing[done] != which.first + s) continue;
       if (loaded != which.scene) {
@@ -112,8 +111,8 @@ void measure_all(const BenchOptions& options, const BenchPlan& plan, const Bench
   }
 }
 
-void print_profile(const std::vector<study::StageFloor>& stages) {
-  for (const study::StageFloor& stage : stages) {
+void print_profile(const std::vector<lab::StageFloor>& stages) {
+  for (const lab::StageFloor& stage : stages) {
     if (std::isnan(stage.share)) continue;
     fmt::print("      {:<30}{:>11.3f}  {:.1f} MB{}; floor {:.3f} ms, {:.0f} %\n", stage.stage, stage.ms,
                1e-6 * stage.bytes,
@@ -124,13 +123,13 @@ void print_profile(const std::vector<study::StageFloor>& stages) {
   }
 }
 
-void print_points(const std::vector<study::BenchPoint>& points) {
-  const std::vector<bool> front = study::pareto_front(points);
+void print_points(const std::vector<lab::BenchPoint>& points) {
+  const std::vector<bool> front = lab::pareto_front(points);
   const bool is_seen =
-      std::ranges::any_of(points, [](const study::BenchPoint& p) { return p.seen.has_value(); });
+      std::ranges::any_of(points, [](const lab::BenchPoint& p) { return p.seen.has_value(); });
   std::string chart;
   for (std::size_t i = 0; i < front.size(); ++i) {
-    const study::BenchPoint& p = points[i];
+    const lab::BenchPoint& p = points[i];
     if (p.chart() != chart)
       fmt::print("\n{}\n{:<36}{:>11}{:>9}{:>9}{:>9}{:>12}{}\n", p.chart(), "  (* on the Pareto front)",
                  "frame ms", "PSNR dB", "SSIM", "FLIP", "pairs", is_seen ? "   seen %" : "");
@@ -152,17 +151,17 @@ void print_points(const std::vector<study::BenchPoint>& points) {
 }
 
 ExitCode finish(const BenchOptions& options, const BenchFolder& folder) {
-  const study::BenchResults results = folder.results();
+  const lab::BenchResults results = folder.results();
   folder.save_results(results);
   print_points(results.points);
   fmt::print("\n{}: report.html, results.csv, results.json\n", folder.path().string());
   if (!options.compare.empty()) {
     fmt::print("\nSince {}:\n", options.compare);
-    for (const std::string& line : study::compare_results(load_points(options.compare), results.points))
+    for (const std::string& line : lab::compare_results(load_points(options.compare), results.points))
       fmt::print("{}\n", line);
   }
   const auto problems = std::count_if(results.points.begin(), results.points.end(),
-                                      [](const study::BenchPoint& p) { return !p.problem.empty(); });
+                                      [](const lab::BenchPoint& p) { return !p.problem.empty(); });
   if (problems > 0)
     throw Error(ExitCode::fell_short, fmt::format("{} of {} points failed verification and were not timed",
                                                   problems, results.points.size()));
@@ -223,12 +222,12 @@ void add_bench(CLI::App& program, Command& command) {
   CLI::App* sub = program.add_subcommand("bench", "Chart speed against accuracy on this GPU");
   const auto o = std::make_shared<BenchOptions>();
   std::string presets;
-  for (const std::string& name : study::axes_presets()) presets += (presets.empty() ? "" : ", ") + name;
+  for (const std::string& name : lab::axes_presets()) presets += (presets.empty() ? "" : ", ") + name;
   sub->add_option("SCENE", o->scenes, "Models (.ply), demo:room or demo:city");
   sub->add_option("-o,--output", o->output, "Folder for report.html, results.csv and .json (out/bench)")
       ->type_name("DIR");
   sub->add_option("--axes", o->axes,
-                  "What is measured: " + presets + ", or a file like those in\nsrc/study/presets (quick)")
+                  "What is measured: " + presets + ", or a file like those in\nsrc/lab/presets (quick)")
       ->type_name("NAME|FILE");
   sub->add_option("--calibration", o->calibration,
                   "Measure the settings of a file of binosplat calibrate, too")

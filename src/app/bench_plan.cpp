@@ -14,9 +14,9 @@
 #include "base/output_file.h"
 #include "formats/image_file.h"
 #include "formats/whole.h"
-#include "study/calibration.h"
-#include "study/fields.h"
-#include "study/settings.h"
+#include "lab/calibration.h"
+#include "lab/fields.h"
+#include "lab/settings.h"
 
 namespace binosplat::app {
 
@@ -55,30 +55,30 @@ void add_cases(BenchPlan& plan, std::size_t scene) {
   for (const int eyes : plan.axes.eyes) {
     for (const std::string& size : plan.axes.sizes) {
       plan.cases.push_back({scene, eyes, size, plan.points.size()});
-      for (const study::BenchSettings& settings : plan.axes.settings) {
-        study::BenchPoint& point = plan.points.emplace_back();
+      for (const lab::BenchSettings& settings : plan.axes.settings) {
+        lab::BenchPoint& point = plan.points.emplace_back();
         point.scene = plan.scenes[scene].name;
         point.eyes = eyes;
         point.size = size;
-        point.name = study::describe(settings);
-        point.family = study::describe_family(settings);
-        point.settings = study::named(settings);
+        point.name = lab::describe(settings);
+        point.family = lab::describe_family(settings);
+        point.settings = lab::named(settings);
       }
     }
   }
 }
 
 /// A calibration's ways to draw, with the tolerances as they are, after the axes' own.
-void add_calibrated(const std::string& file, study::Axes& axes) {
-  std::set<study::NamedSettings> known;
-  for (const study::BenchSettings& settings : axes.settings) known.insert(study::named(settings));
-  for (const study::CalibrationEntry& entry : study::load_calibration(file).entries) {
-    study::BenchSettings settings;
+void add_calibrated(const std::string& file, lab::Axes& axes) {
+  std::set<lab::NamedSettings> known;
+  for (const lab::BenchSettings& settings : axes.settings) known.insert(lab::named(settings));
+  for (const lab::CalibrationEntry& entry : lab::load_calibration(file).entries) {
+    lab::BenchSettings settings;
     settings.th = entry.th;
     settings.transmittance = entry.transmittance;
     settings.tolerance = static_cast<float>(entry.tolerance);
-    study::check(file, settings);
-    if (known.insert(study::named(settings)).second) axes.settings.push_back(settings);
+    lab::check(file, settings);
+    if (known.insert(lab::named(settings)).second) axes.settings.push_back(settings);
   }
 }
 
@@ -94,7 +94,7 @@ Lens lens_of(const BenchCase& which) {
 
 BenchPlan make_plan(const BenchOptions& options) {
   BenchPlan plan;
-  plan.axes = study::load_axes(options.axes);
+  plan.axes = lab::load_axes(options.axes);
   if (!options.calibration.empty()) add_calibrated(options.calibration, plan.axes);
   ordered_json scenes = ordered_json::array();
   std::set<std::string> names;
@@ -105,20 +105,20 @@ BenchPlan make_plan(const BenchOptions& options) {
     add_cases(plan, plan.scenes.size() - 1);
   }
   plan.json = std::make_shared<ordered_json>(
-      study::object("format", "binosplat bench plan", "version", 1, "program", BINOSPLAT_VERSION, "axes_name",
-                    plan.axes.name, "axes", study::to_json(plan.axes), "ppd", options.ppd, "profile",
-                    options.profile, "scenes", scenes, "points", plan.points));
+      lab::object("format", "binosplat bench plan", "version", 1, "program", BINOSPLAT_VERSION, "axes_name",
+                  plan.axes.name, "axes", lab::to_json(plan.axes), "ppd", options.ppd, "profile",
+                  options.profile, "scenes", scenes, "points", plan.points));
   return plan;
 }
 
-std::vector<study::BenchPoint> load_points(const fs::path& path) {
+std::vector<lab::BenchPoint> load_points(const fs::path& path) {
   try {
     const ordered_json points = load_json(path).at("points");
     for (const ordered_json& point : points) {
       point.at("scene");
       point.at("settings");
     }
-    return points.get<std::vector<study::BenchPoint>>();
+    return points.get<std::vector<lab::BenchPoint>>();
   } catch (const ordered_json::exception& error) {
     fail("--compare {}: not the results.json of a bench run: {}", path.string(), error.what());
   }
@@ -156,14 +156,14 @@ bool BenchFolder::has(std::size_t point) const {
   return is_whole(file(point)) && (!fs::exists(picture) || is_whole(picture));
 }
 
-study::BenchNumbers BenchFolder::load(std::size_t point) const {
+lab::BenchNumbers BenchFolder::load(std::size_t point) const {
   const ordered_json measured = load_json(file(point));
   const fs::path picture = fs::path(file(point)).replace_extension(".png");
   const bool good = measured.is_object() && (measured.contains("frame_ms") || measured.contains("problem"));
   constexpr auto wrong = "{}: not a point of bench: remove it, and it is measured again";
   if (!good) fail(wrong, file(point).string());
   try {
-    study::BenchNumbers numbers = measured;
+    lab::BenchNumbers numbers = measured;
     if (fs::exists(picture)) numbers.picture = load_image(picture);
     return numbers;
   } catch (const ordered_json::exception&) {
@@ -171,7 +171,7 @@ study::BenchNumbers BenchFolder::load(std::size_t point) const {
   }
 }
 
-void BenchFolder::save(std::size_t point, const study::BenchNumbers& measured) const {
+void BenchFolder::save(std::size_t point, const lab::BenchNumbers& measured) const {
   if (measured.picture) {
     const Uninterrupted hold;
     save_png(fs::path(file(point)).replace_extension(".png"), *measured.picture);
@@ -179,23 +179,23 @@ void BenchFolder::save(std::size_t point, const study::BenchNumbers& measured) c
   save_json(file(point), measured);
 }
 
-study::BenchResults BenchFolder::results() const {
-  study::BenchResults results{plan_->value("axes_name", ""), plan_->value("program", ""),
-                              plan_->at("points").get<std::vector<study::BenchPoint>>()};
+lab::BenchResults BenchFolder::results() const {
+  lab::BenchResults results{plan_->value("axes_name", ""), plan_->value("program", ""),
+                            plan_->at("points").get<std::vector<lab::BenchPoint>>()};
   for (std::size_t i = 0; i < results.points.size(); ++i) {
-    if (has(i)) static_cast<study::BenchNumbers&>(results.points[i]) = load(i);
+    if (has(i)) static_cast<lab::BenchNumbers&>(results.points[i]) = load(i);
   }
   return results;
 }
 
-void BenchFolder::save_results(const study::BenchResults& results) const {
+void BenchFolder::save_results(const lab::BenchResults& results) const {
   ordered_json json = {{"format", "binosplat bench"}, {"version", 1}, {"plan", *plan_}};
   json["plan"].erase("points");
   json["points"] = results.points;
-  save_report(folder_, "results.json", json, study::bench_page(results));
+  save_report(folder_, "results.json", json, lab::bench_page(results));
   const Uninterrupted hold;
   OutputFile csv(folder_ / "results.csv");
-  csv.write(study::csv(results.points));
+  csv.write(lab::csv(results.points));
   csv.commit();
 }
 

@@ -12,8 +12,8 @@
 #include "app/rig_options.h"
 #include "app/shard.h"
 #include "app/shots.h"
-#include "study/axes.h"
-#include "study/bench_results.h"
+#include "lab/axes.h"
+#include "lab/bench_results.h"
 
 namespace binosplat::app {
 
@@ -46,10 +46,10 @@ struct BenchCase {
 };
 
 struct BenchPlan {
-  study::Axes axes;
+  lab::Axes axes;
   std::vector<BenchScene> scenes;
   std::vector<BenchCase> cases;
-  std::vector<study::BenchPoint> points;
+  std::vector<lab::BenchPoint> points;
   std::shared_ptr<const nlohmann::ordered_json> json;  // what two runs must have in common to be one
 };
 
@@ -72,12 +72,12 @@ class BenchFolder {
   bool same_plan(const BenchFolder& other) const;
   std::size_t size() const;           // points of the plan
   bool has(std::size_t point) const;  // whole
-  study::BenchNumbers load(std::size_t point) const;
-  void save(std::size_t point, const study::BenchNumbers& measured) const;
+  lab::BenchNumbers load(std::size_t point) const;
+  void save(std::size_t point, const lab::BenchNumbers& measured) const;
   /// All points, measured or not.
-  study::BenchResults results() const;
+  lab::BenchResults results() const;
   /// Writes report.html, results.json and results.csv.
-  void save_results(const study::BenchResults& results) const;
+  void save_results(const lab::BenchResults& results) const;
   const std::filesystem::path& path() const { return folder_; }
 
  private:
@@ -88,6 +88,6 @@ class BenchFolder {
 };
 
 /// The points of the results.json that --compare names. Throws Error if it is none.
-std::vector<study::BenchPoint> load_points(const std::filesystem::path& path);
+std::vector<lab::BenchPoint> load_points(const std::filesystem::path& path);
 
 }  // namespace binosplat::app

@@ -8,8 +8,8 @@
 #include "app/empty_view.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "study/bench.h"
-#include "study/blind.h"
+#include "lab/bench.h"
+#include "lab/blind.h"
 
 namespace binosplat::app {
 
@@ -65,7 +65,7 @@ void keep_those(const std::vector<bool>& sees, std::size_t first, std::vector<Vi
 /// Which cameras see something. Warns of those that do not; throws Error where none does, but one is needed.
 std::vector<bool> seeing_views(const std::string& command, gl::Context& context, const Model& model,
                                const std::vector<Camera>& cameras, double near_plane, bool needs_one = true) {
-  std::vector<bool> sees = study::seeing(context, model, cameras, near_plane);
+  std::vector<bool> sees = lab::seeing(context, model, cameras, near_plane);
   const Blind blind = blind_of(model, cameras, sees, near_plane);
   if (needs_one && blind.names.size() == cameras.size() && !cameras.empty()) fail_blind(command, blind);
   if (!blind.names.empty()) warn(blind, cameras.size());
@@ -78,9 +78,9 @@ void refuse_blind(const std::string& command, gl::Context& context, const Model&
                   const std::vector<Shot>& shots, double near_plane) {
   constexpr std::size_t most = 16;
   std::vector<Camera> cameras;
-  for (const std::size_t k : study::spread_evenly(shots.size(), most))
+  for (const std::size_t k : lab::spread_evenly(shots.size(), most))
     cameras.push_back(shots[k].eyes.front().camera);
-  const std::vector<bool> sees = study::seeing(context, model, cameras, near_plane);
+  const std::vector<bool> sees = lab::seeing(context, model, cameras, near_plane);
   if (std::find(sees.begin(), sees.end(), true) == sees.end())
     fail_blind(command, blind_of(model, cameras, sees, near_plane));
 }
@@ -93,9 +93,9 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
 }
 
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model, double near_plane,
-                     std::vector<study::CalibrationView>& views) {
+                     std::vector<lab::CalibrationView>& views) {
   std::vector<Camera> cameras;
-  for (const study::CalibrationView& view : views) cameras.push_back(view.camera);
+  for (const lab::CalibrationView& view : views) cameras.push_back(view.camera);
   keep_those(seeing_views(command, context, model, cameras, near_plane), 0, views);
 }
 
@@ -105,10 +105,10 @@ void leave_out_blind(const std::string& command, gl::Context& context, const Mod
 }
 
 void leave_out_blind(const std::string& command, gl::Context& context, const Model& model,
-                     study::ViewSplit& views) {
+                     lab::ViewSplit& views) {
   std::vector<Camera> cameras = views.training;
   for (const auto* task : {&views.held_back, &views.test}) {
-    for (const study::CalibrationView& view : *task) cameras.push_back(view.camera);
+    for (const lab::CalibrationView& view : *task) cameras.push_back(view.camera);
   }
   const std::vector<bool> sees = seeing_views(command, context, model, cameras, views.near_plane);
   const std::size_t held_back = views.training.size(), test = held_back + views.held_back.size();

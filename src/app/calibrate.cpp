@@ -14,7 +14,7 @@
 #include "app/shots.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "study/calibrate.h"
+#include "lab/calibrate.h"
 
 namespace binosplat::app {
 
@@ -27,8 +27,8 @@ struct CalibrateOptions : MeasuredOptions {
   std::string output;
 };
 
-void print_calibration(const study::Calibration& c, const CalibrateOptions& o) {
-  const bool drop = c.target.kind == study::CalibrationTarget::Kind::drop;
+void print_calibration(const lab::Calibration& c, const CalibrateOptions& o) {
+  const bool drop = c.target.kind == lab::CalibrationTarget::Kind::drop;
   fmt::print("{} views of {} x {} px; {}\n", c.views.size(), c.width, c.height,
              drop ? fmt::format("target: at most {} dB lost against the photos", c.target.db)
                   : fmt::format("target: {} dB against the exact pictures", c.target.db));
@@ -36,7 +36,7 @@ void print_calibration(const study::Calibration& c, const CalibrateOptions& o) {
              c.depth_table.far, c.depth_table_seconds);
   fmt::print("{:<12}{:<8}{:>12}{:>10}{:>10}  {:<14}{:>8}{:>8}\n", "th", "source", "tolerance",
              drop ? "drop dB" : "PSNR dB", "worst dB", "in view", "pairs", "s");
-  for (const study::CalibrationEntry& e : c.entries) {
+  for (const lab::CalibrationEntry& e : c.entries) {
     fmt::print("{:<12}{:<8}{:>12.5g}{:>10.3f}{:>10.3f}  {:<14}{:>7.1f}%{:>8.2f}\n", th_choices[e.th].name,
                transmittance_choices[e.transmittance].name, e.tolerance, e.reached_db, e.worst_db,
                e.worst_view, -100 * e.pairs_removed, e.seconds);
@@ -51,14 +51,14 @@ ExitCode calibrate(const CalibrateOptions& o) {
   const OpenScene scene = open_scene(o.scene, o.camera, no_rig, [&](const CameraList& list) {
     check_photos(o.photos, photographed_cameras(choice, o.photos, o.camera.lens, list));
   });
-  std::vector<study::CalibrationView> views = photographed_views(choice, o.photos, o.camera.lens, scene.list);
+  std::vector<lab::CalibrationView> views = photographed_views(choice, o.photos, o.camera.lens, scene.list);
   const auto context = open_context_for_all("calibrate", false, o.context);
   leave_out_blind("calibrate", *context, scene.model, scene.near_plane, views);
-  Progress progress("calibrating", study::calibrated_settings().size());
-  const study::Calibration found =
-      study::calibrate(*context, scene.model, views, scene.near_plane, o.target.target(), o.table,
-                       [&](std::size_t entries, std::size_t) { progress.update(entries); });
-  save_json(o.output, study::to_json(found));
+  Progress progress("calibrating", lab::calibrated_settings().size());
+  const lab::Calibration found =
+      lab::calibrate(*context, scene.model, views, scene.near_plane, o.target.target(), o.table,
+                     [&](std::size_t entries, std::size_t) { progress.update(entries); });
+  save_json(o.output, lab::to_json(found));
   print_calibration(found, o);
   // A tolerance goes with the size of the pictures: render warns where it differs.
   if (o.camera.lens.size)

@@ -22,15 +22,15 @@ render::FrameSettings without_calibration(render::FrameSettings settings) {
 
 CalibratedSettings::CalibratedSettings(const DrawingOptions& options) : file_(options.calibration) {
   if (file_.empty()) return;
-  calibration_ = study::load_calibration(file_);
+  calibration_ = lab::load_calibration(file_);
   const render::FrameSettings asked = settings_of(options);
-  if (!study::calibrated(*calibration_, asked, calibration_->focal))
+  if (!lab::calibrated(*calibration_, asked, calibration_->focal))
     fail("--calibration {} has no entry for --th {} --transmittance {}", file_, th_choices[asked.th].name,
          transmittance_choices[asked.transmittance].name);
 }
 
 void CalibratedSettings::check_model(const Model& model) {
-  other_model_ = calibration_ && !study::is_of(*calibration_, model);
+  other_model_ = calibration_ && !lab::is_of(*calibration_, model);
   if (other_model_)
     log_warning("--calibration {} is of another model ({}, {} Gaussians): drawing exactly", file_,
                 calibration_->model_name, calibration_->gaussians);
@@ -40,7 +40,7 @@ render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSett
   if (!calibration_) return settings;
   if (other_model_) return without_calibration(settings);
   const Camera& camera = shot.eyes.front().camera;
-  if (!study::covers(*calibration_, camera.position)) {
+  if (!lab::covers(*calibration_, camera.position)) {
     log_warning("{} is far from the calibrated views: drawing it exactly", shot.name);
     return without_calibration(settings);
   }
@@ -50,7 +50,7 @@ render::FrameSettings CalibratedSettings::of(const Shot& shot, render::FrameSett
         "are "
         "rough",
         shot.name, camera.fx, calibration_->focal);
-  return *study::calibrated(*calibration_, settings, camera.fx);
+  return *lab::calibrated(*calibration_, settings, camera.fx);
 }
 
 }  // namespace binosplat::app

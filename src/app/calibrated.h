@@ -6,8 +6,8 @@
 
 #include "app/drawing_options.h"
 #include "app/shots.h"
+#include "lab/calibration.h"
 #include "render/settings.h"
-#include "study/calibration.h"
 
 namespace binosplat::app {
 
@@ -25,7 +25,7 @@ class CalibratedSettings {
 
  private:
   std::string file_;
-  std::optional<study::Calibration> calibration_;
+  std::optional<lab::Calibration> calibration_;
   bool other_model_ = false;
 };
 

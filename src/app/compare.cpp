@@ -12,9 +12,9 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "formats/image_file.h"
+#include "lab/fields.h"
 #include "measure/comparison.h"
 #include "measure/foveated.h"
-#include "study/fields.h"
 
 namespace binosplat::app {
 
@@ -103,12 +103,12 @@ void print_comparison(const measure::FoveatedComparison& found) {
 
 nlohmann::ordered_json comparison_json(const measure::FoveatedComparison& found, const measure::Gaze& gaze) {
   nlohmann::ordered_json json =
-      study::object("x", gaze.x, "y", gaze.y, "fov_degrees", gaze.fov_degrees, "visible", found.visible,
-                    "rings", nlohmann::ordered_json::array());
+      lab::object("x", gaze.x, "y", gaze.y, "fov_degrees", gaze.fov_degrees, "visible", found.visible,
+                  "rings", nlohmann::ordered_json::array());
   for (const measure::Ring& ring : found.rings) {
-    json["rings"].push_back(study::object("from_degrees", ring.from, "to_degrees", ring.to, "share",
-                                          ring.share, "psnr_db", ring.psnr, "visible", ring.visible,
-                                          "times_threshold_99", ring.most));
+    json["rings"].push_back(lab::object("from_degrees", ring.from, "to_degrees", ring.to, "share", ring.share,
+                                        "psnr_db", ring.psnr, "visible", ring.visible, "times_threshold_99",
+                                        ring.most));
   }
   return json;
 }
@@ -116,12 +116,12 @@ nlohmann::ordered_json comparison_json(const measure::FoveatedComparison& found,
 nlohmann::ordered_json comparison_json(const CompareOptions& options, const Comparison& found,
                                        const Image& image) {
   const auto& largest = found.largest;
-  return study::object(
+  return lab::object(
       "version", BINOSPLAT_VERSION, "a", options.a, "b", options.b, "width", image.width, "height",
       image.height, "equal", largest.max == 0.0, "psnr_db", found.psnr,  // null where equal: infinite
       "ssim", found.ssim, "flip", found.flip, "pixels_per_degree", options.pixels_per_degree, "largest_error",
-      study::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
-                    channel_name(image, largest.channel)),
+      lab::object("value", largest.max, "x", largest.x, "y", largest.y, "channel",
+                  channel_name(image, largest.channel)),
       "min_psnr_db", options.min_psnr);
 }
 

@@ -18,11 +18,11 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "formats/model_file.h"
+#include "lab/bench.h"
+#include "lab/fields.h"
 #include "measure/metrics.h"
 #include "render/frame.h"
 #include "scene/axes.h"
-#include "study/bench.h"
-#include "study/fields.h"
 
 namespace binosplat::app {
 
@@ -83,7 +83,7 @@ Views find_views(const ConvertOptions& o, CameraList list, const Model& model) {
   Views views{{}, near_plane_of(o.camera, list), nullptr};
   const std::vector<Camera> all = chosen_cameras(o.camera.views, o.camera.lens, list);
   const std::size_t wanted = o.camera.views.empty() ? static_cast<std::size_t>(*o.report) : all.size();
-  for (const std::size_t i : study::spread_evenly(all.size(), wanted)) views.cameras.push_back(all[i]);
+  for (const std::size_t i : lab::spread_evenly(all.size(), wanted)) views.cameras.push_back(all[i]);
   views.context = open_context(o.context);
   leave_out_blind("convert --report", *views.context, model, views.near_plane, views.cameras);
   return views;
@@ -143,13 +143,13 @@ void print_converted(const ConvertOptions& o, const Converted& c) {
 
 nlohmann::ordered_json converted_json(const ConvertOptions& o, const Converted& c) {
   nlohmann::ordered_json json =
-      study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
-                    written_format(c.format).name, "gaussians", c.count, "bytes", c.bytes,
-                    "bytes_per_gaussian", c.bytes_each(), "losses", c.losses, "model_bytes", c.bytes_before);
+      lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "format",
+                  written_format(c.format).name, "gaussians", c.count, "bytes", c.bytes, "bytes_per_gaussian",
+                  c.bytes_each(), "losses", c.losses, "model_bytes", c.bytes_before);
   if (c.views.empty()) return json;
   const auto psnr = [](const ViewCost& view) {
-    return study::object("name", view.name, "width", view.width, "height", view.height, "equal",
-                         std::isinf(view.psnr) && view.psnr > 0.0, "psnr_db", view.psnr);  // null where equal
+    return lab::object("name", view.name, "width", view.width, "height", view.height, "equal",
+                       std::isinf(view.psnr) && view.psnr > 0.0, "psnr_db", view.psnr);  // null where equal
   };
   for (const ViewCost& view : c.views) json["views"].push_back(psnr(view));
   json["worst"] = psnr(worst_of(c.views));

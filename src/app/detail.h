@@ -5,7 +5,7 @@
 
 #include "app/render_options.h"
 #include "app/shots.h"
-#include "formats/detail.h"
+#include "stream/load_within.h"
 
 namespace binosplat::app {
 

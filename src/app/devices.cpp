@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "app/command.h"
-#include "study/fields.h"
+#include "lab/fields.h"
 
 namespace binosplat::app {
 
@@ -32,15 +32,15 @@ void print_device(const gl::Device& device) {
 
 ordered_json device_json(const gl::Device& device) {
   if (!device.usable)
-    return study::object("options", device.options, "usable", false, "trouble", device.trouble);
+    return lab::object("options", device.options, "usable", false, "trouble", device.trouble);
   const gl::Limits& l = device.limits;
-  return study::object(
+  return lab::object(
       "options", device.options, "usable", true, "renderer", device.renderer, "version", device.version,
       "software", device.software, "limits",
-      study::object("storage_block_bytes", l.storage_block_bytes, "groups", l.groups, "invocations",
-                    l.invocations, "shared_bytes", l.shared_bytes, "storage_blocks", l.storage_blocks,
-                    "program_binaries", l.program_binaries, "timestamp_bits", l.timestamp_bits, "subgroups",
-                    l.subgroups_of_32, "why_no_subgroups", l.why_no_subgroups),
+      lab::object("storage_block_bytes", l.storage_block_bytes, "groups", l.groups, "invocations",
+                  l.invocations, "shared_bytes", l.shared_bytes, "storage_blocks", l.storage_blocks,
+                  "program_binaries", l.program_binaries, "timestamp_bits", l.timestamp_bits, "subgroups",
+                  l.subgroups_of_32, "why_no_subgroups", l.why_no_subgroups),
       "lacks", device.lacks);
 }
 

@@ -77,7 +77,7 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
     const std::size_t most = need(views).most;
     model.room = std::min(most, scene_.finest()) + scene_.spare();
   }
-  std::optional<render::Sight> sight;  // not longer than this: it takes the memory of a small frame
+  std::optional<Sight> sight;  // not longer than this: it takes the memory of a small frame
   if (goes_by_db()) sight.emplace(gpu_model);
   bool switched = false;
   const auto change = [&] {
@@ -121,7 +121,7 @@ bool FollowedLevels::settle(Model& model, const std::shared_ptr<render::GpuModel
 // shows more of it: it may hide others, or reach into the picture, at one of both levels only, and what is
 // lost there would be predicted to be nothing. Of fewer parts that would be told too often of those in the
 // sample.
-DetailSeen FollowedLevels::try_sample(Model& model, render::Sight& sight, std::span<const shared::View> views,
+DetailSeen FollowedLevels::try_sample(Model& model, Sight& sight, std::span<const shared::View> views,
                                       const render::FrameSettings& settings) {
   const std::vector<std::size_t> levels = scene_.chosen();
   const std::size_t most = (heads_turn_ ? sample_of_many : sample_of_one) * scene_.parts() / scene_.finest();
@@ -150,7 +150,7 @@ std::optional<double> FollowedLevels::told_psnr() const {
   return predicted && lost_ > 0.0 ? std::min(*predicted, psnr_of_error(lost_)) : predicted;
 }
 
-DetailSeen FollowedLevels::look_at(render::Sight& sight, std::span<const shared::View> views,
+DetailSeen FollowedLevels::look_at(Sight& sight, std::span<const shared::View> views,
                                    const render::FrameSettings& settings) const {
   return {sight.look(views, settings, parts_), scene_.chosen()};
 }

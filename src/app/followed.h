@@ -8,12 +8,12 @@
 
 #include "app/scene_options.h"
 #include "base/image.h"
-#include "formats/level_sample.h"
-#include "formats/streamed_sog.h"
 #include "render/frame.h"
-#include "render/sight.h"
 #include "scene/model_parts.h"
 #include "stereo/show.h"
+#include "stream/level_sample.h"
+#include "stream/sight.h"
+#include "stream/streamed_sog.h"
 
 namespace binosplat::app {
 
@@ -30,7 +30,7 @@ struct ShotLevels {
   double left = 0.0;                     // dB of settings.quality, for what the frame leaves out of them
 };
 
-/// What views of a run need (formats/streamed_sog.h): --detail, or the finest, or what --quality leaves to
+/// What views of a run need (stream/streamed_sog.h): --detail, or the finest, or what --quality leaves to
 /// levels, and --gpu-memory for the model and their frame.
 DetailNeed detail_need(const SceneOptions& options, const render::FrameSettings& settings,
                        const StreamedSog& scene, std::span<const shared::View> views);
@@ -95,12 +95,12 @@ class FollowedLevels {
   void read(Model& model);
   /// Finds what the levels chosen lose in the first view, by a picture with a sample of parts at their
   /// finest. What it returns is what both pictures show; of no parts where none was tried out.
-  DetailSeen try_sample(Model& model, render::Sight& sight, std::span<const shared::View> views,
+  DetailSeen try_sample(Model& model, Sight& sight, std::span<const shared::View> views,
                         const render::FrameSettings& settings);
   /// What the views are taken to have: never more than the last sample alone lost. None where no dB are gone
   /// by.
   std::optional<double> told_psnr() const;
-  DetailSeen look_at(render::Sight& sight, std::span<const shared::View> views,
+  DetailSeen look_at(Sight& sight, std::span<const shared::View> views,
                      const render::FrameSettings& settings) const;
   /// As if there were nothing yet.
   void forget(Model& model);

@@ -17,20 +17,20 @@
 #include "formats/cameras_file.h"
 #include "formats/model_file.h"
 #include "formats/model_output.h"
+#include "lab/fields.h"
+#include "lab/weights.h"
 #include "render/shape.h"
 #include "scene/axes.h"
 #include "scene/framing.h"
 #include "scene/summary.h"
 #include "stereo/rig.h"
-#include "study/fields.h"
-#include "study/weights.h"
 
 namespace binosplat::app {
 
 namespace {
 
+using lab::object;
 using nlohmann::ordered_json;
-using study::object;
 
 struct InfoOptions {
   SceneOptions scene;
@@ -53,7 +53,7 @@ std::optional<SeenOfViews> see(const InfoOptions& o, const Model& model) {
   const CameraList list = listed_cameras(o.scene, o.camera);
   const std::vector<Camera> cameras = chosen_cameras({}, {}, list);
   const auto context = open_context({});
-  study::Weights weights = study::weigh(*context, model, cameras, near_plane_of(o.camera, list));
+  lab::Weights weights = lab::weigh(*context, model, cameras, near_plane_of(o.camera, list));
   std::vector<double>& weight = weights.weight;
   SeenOfViews seen{cameras.size(), weights.unseen(), 0};
   std::sort(weight.begin(), weight.end(), std::greater<>());
@@ -185,11 +185,11 @@ ordered_json info_json(const Model& model, const ModelSummary& s, const render::
   for (std::size_t k = 0; k < std::size(written_formats); ++k)
     json["file_bytes"][written_formats[k].name] =
         bytes_in(static_cast<ModelFormat>(k), model.count(), model.degree);
-  study::FieldWriter{json}("opacity", object("median", s.opacity_median, "tenths", s.opacity),
-                           "largest_scale", object("median", s.scale_median, "decades", scale),
-                           "degrees_in_use", s.degree, "odd",
-                           object("invisible", s.invisible, "without_size", s.without_size, "flat", s.flat,
-                                  "needles", s.needles, "far", s.far, "huge", s.huge));
+  lab::FieldWriter{json}("opacity", object("median", s.opacity_median, "tenths", s.opacity), "largest_scale",
+                         object("median", s.scale_median, "decades", scale), "degrees_in_use", s.degree,
+                         "odd",
+                         object("invisible", s.invisible, "without_size", s.without_size, "flat", s.flat,
+                                "needles", s.needles, "far", s.far, "huge", s.huge));
   return json;
 }
 

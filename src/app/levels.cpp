@@ -23,14 +23,14 @@
 #include "base/output_file.h"
 #include "formats/cameras_file.h"
 #include "formats/content.h"
-#include "formats/leaf_errors.h"
 #include "formats/model_output.h"
-#include "formats/streamed_sog_writer.h"
 #include "formats/whole.h"
+#include "lab/fields.h"
+#include "lab/leaf_errors.h"
+#include "lab/level_errors.h"
+#include "lab/loss_together.h"
+#include "lab/streamed_sog_writer.h"
 #include "scene/axes.h"
-#include "study/fields.h"
-#include "study/level_errors.h"
-#include "study/loss_together.h"
 
 namespace binosplat::app {
 
@@ -92,8 +92,8 @@ class Folder {
 /// What tells a run from others.
 nlohmann::ordered_json identity_of(const LevelsOptions& o) {
   nlohmann::ordered_json run =
-      study::object("format", "binosplat levels", "version", 5, "program", BINOSPLAT_VERSION, "leaf",
-                    o.settings.leaf, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
+      lab::object("format", "binosplat levels", "version", 5, "program", BINOSPLAT_VERSION, "leaf",
+                  o.settings.leaf, "levels", o.settings.levels, "lod", o.scene.lod, "axes", o.scene.axes);
   if (o.scene.seed) run["seed"] = *o.scene.seed;
   if (o.scene.count) run["count"] = *o.scene.count;
   if (o.scene.repeat) run["repeat"] = {o.scene.repeat->x, o.scene.repeat->y};
@@ -155,9 +155,9 @@ ExitCode levels(const LevelsOptions& o) {
       {[&](const std::string& name) { return folder.has(name); },
        [&](const std::string& name) { return folder.read(name); },
        [&](const std::string& name, std::span<const std::byte> bytes) { folder.write(name, bytes); }},
-      {[&](std::span<const std::vector<Model>> leaves) { return study::level_errors(*context, leaves); },
+      {[&](std::span<const std::vector<Model>> leaves) { return lab::level_errors(*context, leaves); },
        [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int pictures) {
-         std::vector<LossTogether> losses = study::loss_together(*context, leaves, errors, pictures);
+         std::vector<LossTogether> losses = lab::loss_together(*context, leaves, errors, pictures);
          undrawn += std::ranges::count(losses, false, &LossTogether::drawn);
          return losses;
        }});

@@ -10,6 +10,7 @@
 #include "formats/spz.h"
 #include "scene/repeat.h"
 #include "scene/told_axes.h"
+#include "stream/load_within.h"
 
 namespace binosplat::app {
 
@@ -34,7 +35,7 @@ Model load_once(const SceneOptions& o, const std::optional<DetailBudget>& budget
   if (o.name == demo_city_name) return demo_city(city_settings(o)).model;
   if (o.name == demo_room_name) return demo_room().model;
   if (is_built_in(o.name)) fail_unknown(o.name);
-  Model model = load_model(o.name, {o.lod, o.appearance, budget});
+  Model model = budget ? load_within(o.name, *budget) : load_model(o.name, {o.lod, o.appearance});
   if (model.antialiased && !o.antialias)
     log_info("{} was trained with anti-aliasing and is drawn so (--no-antialias: as if not)", o.name);
   return model;

@@ -7,9 +7,9 @@
 
 #include "app/scene_options.h"
 #include "demo/city.h"
-#include "formats/detail.h"
 #include "scene/camera.h"
 #include "scene/model.h"
+#include "stream/load_within.h"
 
 namespace binosplat::app {
 

@@ -52,13 +52,13 @@ Model load_written(const fs::path& file, const Model& model) {
   return written;
 }
 
-study::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
+lab::TrialWriter trial_writer(const std::string& output, ModelFormat format) {
   return [output, format](const Model& model, int harmonic_bits) {
     OutputFile file(output);
     const Unfinished unfinished(file.path());
     write_model(file, model, format, harmonic_bits);
     file.flush();
-    return study::WrittenModel{load_written(file.path(), model), fs::file_size(file.path())};
+    return lab::WrittenModel{load_written(file.path(), model), fs::file_size(file.path())};
   };
 }
 

@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "formats/image_file.h"
+#include "lab/bench.h"
 #include "measure/comparison.h"
-#include "study/bench.h"
 
 namespace binosplat::app {
 
@@ -42,7 +42,7 @@ void check_photos(const std::string& photos, std::span<const Camera> cameras) {
   }
 }
 
-study::PhotoOf photo_finder(const std::string& photos) {
+lab::PhotoOf photo_finder(const std::string& photos) {
   if (photos.empty()) return {};
   return [photos](const Camera& camera) {
     const auto file = find_view_photo(photos, camera.name);
@@ -50,8 +50,8 @@ study::PhotoOf photo_finder(const std::string& photos) {
   };
 }
 
-study::CalibrationTarget TargetOptions::target() const {
-  using Kind = study::CalibrationTarget::Kind;
+lab::CalibrationTarget TargetOptions::target() const {
+  using Kind = lab::CalibrationTarget::Kind;
   return {max_drop ? Kind::drop : Kind::quality, max_drop ? *max_drop : *quality};
 }
 
@@ -66,8 +66,8 @@ void check_target(const std::string& command, const std::string& what, const Tar
     fail("--size with --photos: a drop is measured in the photos' own size");
 }
 
-study::CalibrationView with_photo(const std::string& photos, const Camera& camera) {
-  study::CalibrationView view{camera, {}};
+lab::CalibrationView with_photo(const std::string& photos, const Camera& camera) {
+  lab::CalibrationView view{camera, {}};
   if (photos.empty()) return view;
   const auto file = find_view_photo(photos, camera.name);
   if (!file) fail("--photos {}: there is no photo of view {}", photos, camera.name);
@@ -89,14 +89,13 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
     fail("--photos {}: there is no photo of any view", photos);
   if (named) return cameras;
   std::vector<Camera> spread;
-  for (const std::size_t i : study::spread_evenly(cameras.size(), choice.wanted))
-    spread.push_back(cameras[i]);
+  for (const std::size_t i : lab::spread_evenly(cameras.size(), choice.wanted)) spread.push_back(cameras[i]);
   return spread;
 }
 
-std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
-                                                       const Lens& lens, const CameraList& list) {
-  std::vector<study::CalibrationView> views;
+std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+                                                     const Lens& lens, const CameraList& list) {
+  std::vector<lab::CalibrationView> views;
   for (const Camera& camera : photographed_cameras(choice, photos, lens, list))
     views.push_back(with_photo(photos, camera));
   return views;

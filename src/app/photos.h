@@ -10,8 +10,8 @@
 #include "app/measured_options.h"
 #include "app/shots.h"
 #include "base/image.h"
-#include "study/calibrate.h"
-#include "study/refit.h"
+#include "lab/calibrate.h"
+#include "lab/refit.h"
 
 namespace binosplat::app {
 
@@ -26,13 +26,13 @@ Image load_view_photo(const std::filesystem::path& file, const Camera& camera,
 void check_photos(const std::string& photos, std::span<const Camera> cameras);
 
 /// The photos of a folder for a fit; none where `photos` is empty.
-study::PhotoOf photo_finder(const std::string& photos);
+lab::PhotoOf photo_finder(const std::string& photos);
 
 /// What pictures may lose: --max-drop against the photos, or --quality against the exact pictures.
 struct TargetOptions {
   std::optional<double> max_drop, quality;  // dB
 
-  study::CalibrationTarget target() const;
+  lab::CalibrationTarget target() const;
 };
 
 /// Throws Error unless there is one of the two, with what it needs; `command` needs `what`, as in "a bound".
@@ -40,7 +40,7 @@ void check_target(const std::string& command, const std::string& what, const Tar
                   const MeasuredOptions& options);
 
 /// A camera; with a folder of photos its photo, too. Throws Error where there is none.
-study::CalibrationView with_photo(const std::string& photos, const Camera& camera);
+lab::CalibrationView with_photo(const std::string& photos, const Camera& camera);
 
 /// Which views of a scene are taken.
 struct ViewChoice {
@@ -54,7 +54,7 @@ std::vector<Camera> photographed_cameras(const ViewChoice& choice, const std::st
                                          const Lens& lens, const CameraList& list);
 
 /// Each with its photo, where there is a folder of them.
-std::vector<study::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
-                                                       const Lens& lens, const CameraList& list);
+std::vector<lab::CalibrationView> photographed_views(const ViewChoice& choice, const std::string& photos,
+                                                     const Lens& lens, const CameraList& list);
 
 }  // namespace binosplat::app

@@ -14,23 +14,23 @@
 #include "app/photos.h"
 #include "app/split.h"
 #include "base/log.h"
+#include "lab/fields.h"
+#include "lab/perspectives.h"
+#include "lab/refit.h"
 #include "scene/axes.h"
-#include "study/fields.h"
-#include "study/perspectives.h"
-#include "study/refit.h"
 
 namespace binosplat::app {
 
 namespace {
 
+using lab::Calibrator;
 using nlohmann::ordered_json;
-using study::Calibrator;
-using TargetKind = study::CalibrationTarget::Kind;
+using TargetKind = lab::CalibrationTarget::Kind;
 
 struct RefitOptions : MeasuredOptions {
   bool against_exact = false;
   std::optional<int> order, projection;
-  int rounds = study::RefitSettings{}.rounds;
+  int rounds = lab::RefitSettings{}.rounds;
   std::optional<int> harmonic_bits;
   SplitOptions split{.held_back = 4};
   std::string output;
@@ -59,9 +59,9 @@ struct Step {
 /// A model's pictures against what they should be, in views that have no say.
 class Judge {
  public:
-  Judge(gl::Context& context, const Model& original, const study::ViewSplit& views, TargetKind kind)
+  Judge(gl::Context& context, const Model& original, const lab::ViewSplit& views, TargetKind kind)
       : kind_(kind), held_back_(context, original, views.held_back, views.near_plane, kind) {
-    const auto open = [&](const std::vector<study::CalibrationView>& of) {
+    const auto open = [&](const std::vector<lab::CalibrationView>& of) {
       return of.empty() ? nullptr
                         : std::make_unique<Calibrator>(context, original, of, views.near_plane, kind);
     };
@@ -91,7 +91,7 @@ class Judge {
   std::unique_ptr<Calibrator> test_, held_back_own_, test_own_;
 };
 
-void print_refit(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
+void print_refit(const std::vector<Step>& steps, const RefitOptions& o, const lab::ViewSplit& views,
                  std::size_t photos) {
   fmt::print("{} views fitted, {} of them to photos; {} held back, {} of test. PSNR in dB against {}\n\n",
              views.training.size(), photos, views.held_back.size(), views.test.size(),
@@ -108,15 +108,15 @@ void print_refit(const std::vector<Step>& steps, const RefitOptions& o, const st
   }
 }
 
-ordered_json refit_json(const std::vector<Step>& steps, const RefitOptions& o, const study::ViewSplit& views,
+ordered_json refit_json(const std::vector<Step>& steps, const RefitOptions& o, const lab::ViewSplit& views,
                         std::size_t photos, int best_round, bool written) {
   ordered_json json =
-      study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
-                    o.photos.empty() ? "exact" : "photos", "views_fitted", views.training.size(), "photos",
-                    photos, "best_round", best_round, "written", written);
-  for (const study::CalibrationView& view : views.held_back) json["held_back"].push_back(view.camera.name);
+      lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output, "against",
+                  o.photos.empty() ? "exact" : "photos", "views_fitted", views.training.size(), "photos",
+                  photos, "best_round", best_round, "written", written);
+  for (const lab::CalibrationView& view : views.held_back) json["held_back"].push_back(view.camera.name);
   for (const Step& s : steps) {
-    ordered_json step = study::object("step", s.name, "held_back_db", s.held_back);
+    ordered_json step = lab::object("step", s.name, "held_back_db", s.held_back);
     if (!views.test.empty()) step["test_db"] = s.test;
     if (!views.held_back_own.empty()) step["held_back_own_size_db"] = s.held_back_own;
     if (!views.test_own.empty()) step["test_own_size_db"] = s.test_own;
@@ -131,12 +131,12 @@ ExitCode refit(const RefitOptions& o) {
   Model model = load_scene(o.scene, {}, list.cameras);
   refuse_scaffold(model, o.scene.name);
   bring_into_axes(model, axes_of(format));
-  study::ViewSplit views = split_views("refit", o, o.split, list, near_plane_of(o.camera, list),
-                                       [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
+  lab::ViewSplit views = split_views("refit", o, o.split, list, near_plane_of(o.camera, list),
+                                     [](std::size_t can_judge, std::size_t) { return can_judge / 4; });
   const auto context = open_context(o.context);
   leave_out_blind("refit", *context, model, views);
   add_own_size(o, list, views);
-  const study::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
+  const lab::RefitTargets targets{model, views.training, photo_finder(o.photos), views.near_plane};
   const auto photos = static_cast<std::size_t>(std::count_if(
       views.training.begin(), views.training.end(),
       [&](const Camera& camera) { return !o.photos.empty() && find_view_photo(o.photos, camera.name); }));
@@ -150,15 +150,15 @@ ExitCode refit(const RefitOptions& o) {
   Judge judge(*context, model, views, o.photos.empty() ? TargetKind::quality : TargetKind::drop);
   std::vector<Step> steps;
   if (fitted.perspective != model.perspective)
-    steps.push_back(judge.step("as it was: " + study::name_of(model.perspective), model));
-  steps.push_back(judge.step("before: " + study::name_of(fitted.perspective), fitted));
+    steps.push_back(judge.step("as it was: " + lab::name_of(model.perspective), model));
+  steps.push_back(judge.step("before: " + lab::name_of(fitted.perspective), fitted));
   const double before = steps.back().held_back, before_own = steps.back().held_back_own;
 
-  study::Refitted found = study::refit(*context, fitted, targets, {.rounds = o.rounds},
-                                       [&](const Model& m) { return -judge.held_back(m); });
+  lab::Refitted found = lab::refit(*context, fitted, targets, {.rounds = o.rounds},
+                                   [&](const Model& m) { return -judge.held_back(m); });
   fitted.sh = std::move(found.sh);
   steps.push_back(judge.step(fmt::format("after {} rounds", found.best_round), fitted));
-  const study::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
+  const lab::WrittenModel written = trial_writer(o.output, format)(fitted, o.harmonic_bits.value_or(8));
   steps.push_back(
       judge.step(fmt::format("as {}, {} bytes", written_format(format).name, written.bytes), written.model));
   print_refit(steps, o, views, photos);

@@ -13,17 +13,17 @@
 #include "app/render_summary.h"
 #include "base/log.h"
 #include "base/statistics.h"
+#include "lab/fields.h"
 #include "scene/scaffold.h"
 #include "shared/axes.h"
-#include "study/fields.h"
 
 namespace binosplat::app {
 
 namespace {
 
+using lab::FieldWriter;
+using lab::object;
 using nlohmann::ordered_json;
-using study::FieldWriter;
-using study::object;
 
 /// What is left out of the JSON otherwise.
 template <typename T>

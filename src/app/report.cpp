@@ -34,12 +34,12 @@ std::string command_line() {
 }  // namespace
 
 void save_report(const std::filesystem::path& folder, const std::string& name,
-                 const nlohmann::ordered_json& results, study::Page page) {
+                 const nlohmann::ordered_json& results, lab::Page page) {
   save_json(folder / name, results);
   page.facts.emplace_back("command", command_line());
   page.facts.emplace_back("date", fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr))));
   const Uninterrupted hold;
-  study::save_page(folder / "report.html", page, results);
+  lab::save_page(folder / "report.html", page, results);
 }
 
 }  // namespace binosplat::app

@@ -5,13 +5,13 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "study/page.h"
+#include "lab/page.h"
 
 namespace binosplat::app {
 
 /// Writes the numbers, as `name`, and their page, report.html, with the command and the date; each whole or
 /// not at all.
 void save_report(const std::filesystem::path& folder, const std::string& name,
-                 const nlohmann::ordered_json& results, study::Page page);
+                 const nlohmann::ordered_json& results, lab::Page page);
 
 }  // namespace binosplat::app

@@ -11,7 +11,7 @@
 #include "app/run_file.h"
 #include "base/log.h"
 #include "formats/whole.h"
-#include "study/fields.h"
+#include "lab/fields.h"
 
 namespace binosplat::app {
 
@@ -62,9 +62,9 @@ std::vector<std::string> options_given(const CLI::App& sub) {
 ordered_json identity_of(const RenderOptions& o, const CameraList& list, double near_plane,
                          const std::vector<Shot>& shots) {
   // The list itself: of it --transmittance depth measures views that are not drawn.
-  ordered_json run = study::object("format", "binosplat render", "program", BINOSPLAT_VERSION, "options",
-                                   o.given, "cameras", content_key(list.cameras), "views", views_key(shots),
-                                   "near", near_plane, "units_per_metre", shots[0].units_per_metre);
+  ordered_json run = lab::object("format", "binosplat render", "program", BINOSPLAT_VERSION, "options",
+                                 o.given, "cameras", content_key(list.cameras), "views", views_key(shots),
+                                 "near", near_plane, "units_per_metre", shots[0].units_per_metre);
   if (!is_built_in(o.scene.name)) run["model"] = content_key(fs::path(o.scene.name));
   if (!o.drawing.calibration.empty()) run["calibration"] = file_key(o.drawing.calibration);
   // As save_json() leaves it: names may be in any encoding.

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/cli.h"
-#include "formats/detail.h"
+#include "stream/detail.h"
 
 namespace binosplat::app {
 

@@ -9,7 +9,7 @@
 #include "app/photos.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "study/bench.h"
+#include "lab/bench.h"
 
 namespace binosplat::app {
 
@@ -43,13 +43,13 @@ CameraList needed_cameras(const std::string& command, const MeasuredOptions& o) 
   return list;
 }
 
-study::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const SplitOptions& split,
-                             const CameraList& list, double near_plane, const MostHeldBack& most) {
-  study::ViewSplit views;
+lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& o, const SplitOptions& split,
+                           const CameraList& list, double near_plane, const MostHeldBack& most) {
+  lab::ViewSplit views;
   views.near_plane = near_plane;
   std::vector<Camera> cameras = chosen_cameras({}, o.camera.lens, list);
   const auto take = [&](const std::vector<std::string>& names, const char* option,
-                        std::vector<study::CalibrationView>& into) {
+                        std::vector<lab::CalibrationView>& into) {
     if (names.empty()) return;
     for (const Camera& camera : chosen_cameras(names, o.camera.lens, list, option)) {
       into.push_back(with_photo(o.photos, camera));
@@ -74,7 +74,7 @@ study::ViewSplit split_views(const std::string& command, const MeasuredOptions& 
   const std::size_t wanted = std::clamp<std::size_t>(most(judging.size(), cameras.size()), 1,
                                                      static_cast<std::size_t>(split.held_back));
   std::vector<bool> held_back(cameras.size(), false);
-  for (const std::size_t k : study::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
+  for (const std::size_t k : lab::spread_evenly(judging.size(), wanted)) held_back[judging[k]] = true;
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     if (held_back[i]) {
       views.held_back.push_back(with_photo(o.photos, cameras[i]));
@@ -85,20 +85,19 @@ study::ViewSplit split_views(const std::string& command, const MeasuredOptions& 
   return views;
 }
 
-void add_own_size(const MeasuredOptions& o, const CameraList& list, study::ViewSplit& views) {
+void add_own_size(const MeasuredOptions& o, const CameraList& list, lab::ViewSplit& views) {
   if (!o.camera.lens.size) return;
   bool larger = false;
-  const auto in_own_size = [&](const std::vector<study::CalibrationView>& of) {
-    std::vector<study::CalibrationView> own;
-    for (const study::CalibrationView& view : of) {
+  const auto in_own_size = [&](const std::vector<lab::CalibrationView>& of) {
+    std::vector<lab::CalibrationView> own;
+    for (const lab::CalibrationView& view : of) {
       own.push_back({chosen_cameras({view.camera.name}, {}, list)[0], {}});
       const Camera& camera = own.back().camera;
       larger = larger || camera.width > view.camera.width || camera.height > view.camera.height;
     }
     return own;
   };
-  std::vector<study::CalibrationView> held_back = in_own_size(views.held_back),
-                                      test = in_own_size(views.test);
+  std::vector<lab::CalibrationView> held_back = in_own_size(views.held_back), test = in_own_size(views.test);
   if (!larger) return;
   const Camera &small = views.held_back[0].camera, &own = held_back[0].camera;
   log_info("--size: judged at {} x {} px, and at the cameras' own {} x {}, which takes longer", small.width,

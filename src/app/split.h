@@ -7,7 +7,7 @@
 
 #include "app/measured_options.h"
 #include "app/shots.h"
-#include "study/calibrate.h"
+#include "lab/calibrate.h"
 
 namespace binosplat::app {
 
@@ -31,12 +31,12 @@ using MostHeldBack = std::function<std::size_t(std::size_t can_judge, std::size_
 /// Held back are those that are named, or as many as were asked for and `most` allows, one at least, evenly
 /// spread among those that have a photo where there are photos; the rest is for training. The test views are
 /// neither. Throws Error for views that are not there or have two tasks.
-study::ViewSplit split_views(const std::string& command, const MeasuredOptions& options,
-                             const SplitOptions& split, const CameraList& list, double near_plane,
-                             const MostHeldBack& most);
+lab::ViewSplit split_views(const std::string& command, const MeasuredOptions& options,
+                           const SplitOptions& split, const CameraList& list, double near_plane,
+                           const MostHeldBack& most);
 
 /// Where --size makes the views smaller than their cameras are: those held back and of test in the cameras'
 /// own size as well, and says so. A bound that holds in a small picture may not hold in the large one.
-void add_own_size(const MeasuredOptions& options, const CameraList& list, study::ViewSplit& views);
+void add_own_size(const MeasuredOptions& options, const CameraList& list, lab::ViewSplit& views);
 
 }  // namespace binosplat::app

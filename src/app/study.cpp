@@ -20,17 +20,17 @@
 #include "app/tour.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "lab/along_path.h"
+#include "lab/fields.h"
+#include "lab/rules.h"
 #include "render/stage.h"
-#include "study/along_path.h"
-#include "study/fields.h"
-#include "study/rules.h"
 
 namespace binosplat::app {
 
 namespace {
 
+using lab::Variant;
 using nlohmann::ordered_json;
-using study::Variant;
 
 Studied open_studied(const StudyOptions& options) {
   // A case takes a head along paths of its own, and makes the eyes itself; a head that turns has one.
@@ -58,11 +58,11 @@ ordered_json along_path(gl::Context& context, const StudyOptions& options, const
   asked.quality = quality;
   render::check_choice(asked, "--");
   if (quality == 0.0f && !options.tolerance)
-    variant.tolerance = study::tolerance_along_path(context, *studied.model, frames, variant, options.target);
+    variant.tolerance = lab::tolerance_along_path(context, *studied.model, frames, variant, options.target);
   Progress progress("frames", frames.size());
   std::size_t done = 0;
-  const auto results = study::draw_along_path(context, *studied.model, frames, variant, quality,
-                                              [&] { progress.update(++done); });
+  const auto results = lab::draw_along_path(context, *studied.model, frames, variant, quality,
+                                            [&] { progress.update(++done); });
   fmt::print("{} along {}, {}\n\n", variant.name(), options.camera.path,
              quality > 0 ? fmt::format("steered to {} dB", quality)
                          : fmt::format("tolerance {:.4g}", variant.tolerance));
@@ -70,7 +70,7 @@ ordered_json along_path(gl::Context& context, const StudyOptions& options, const
       "| frame | dB | removed | signed | `one` with as many pairs, dB | gain |\n|---|---|---|---|---|---|\n");
   ordered_json json = {{"variant", variant.name()}, {"tolerance", variant.tolerance}, {"quality", quality}};
   for (std::size_t n = 0; n < results.size(); ++n) {
-    const study::PathFrame& r = results[n];
+    const lab::PathFrame& r = results[n];
     const std::string note = !r.fell_back   ? ""
                              : quality > 0  ? " (fell back)"
                              : r.equals_one ? " (fell back: equals `one`)"
@@ -78,14 +78,14 @@ ordered_json along_path(gl::Context& context, const StudyOptions& options, const
     fmt::print("| {}{} | {:.2f} | {:.1f} % | {:+.4f} | {} | {} |\n", n, note, r.db, 100.0 * r.removed,
                r.signed_mean, quality > 0 ? "" : fmt::format("{:.2f}", r.one_db),
                quality > 0 ? "" : fmt::format("{:+.2f}", r.db - r.one_db));
-    json["frames"].push_back(study::object(
+    json["frames"].push_back(lab::object(
         "db", r.db, "pairs", r.pairs, "removed", r.removed, "mean_signed_error", r.signed_mean, "fell_back",
         r.fell_back, "equals_one", r.equals_one, "one_db", r.one_db, "one_pairs", r.one_pairs));
   }
   return json;
 }
 
-void print_rules(const std::vector<study::RuleResult>& results) {
+void print_rules(const std::vector<lab::RuleResult>& results) {
   const auto shown = std::span(render::stage_names).subspan(1, render::stages_with_twins - 1);  // no decode
   fmt::print(
       "| rule | tolerance | dB | disagreement dB | pairs, M | removed | frame ms | {} | rest | of exact | of "
@@ -95,7 +95,7 @@ void print_rules(const std::vector<study::RuleResult>& results) {
   fmt::print("|");
   for (std::size_t k = 0; k < shown.size() + 11; ++k) fmt::print("---|");
   fmt::print("\n");
-  for (const study::RuleResult& r : results) {
+  for (const lab::RuleResult& r : results) {
     // One eye disagrees with none.
     const std::string disagreement =
         std::isnan(r.disagreement_db) ? "-" : fmt::format("{:.2f}", r.disagreement_db);
@@ -116,26 +116,26 @@ void print_rules(const std::vector<study::RuleResult>& results) {
 ordered_json rules(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   const int frames = options.frames.value_or(96);
   const Shot& shot = studied.shots.front();
-  study::FixedCamera camera(context, *studied.model, views_of(shot));
-  std::vector<Variant> variants = study::all_variants();
+  lab::FixedCamera camera(context, *studied.model, views_of(shot));
+  std::vector<Variant> variants = lab::all_variants();
   std::size_t done = 0;
   {
     Progress progress("tolerances", variants.size());
-    study::find_tolerances(camera, variants, options.target, [&] { progress.update(++done); });
+    lab::find_tolerances(camera, variants, options.target, [&] { progress.update(++done); });
   }
-  Progress progress("timing", study::rule_rounds * variants.size());
+  Progress progress("timing", lab::rule_rounds * variants.size());
   done = 0;
   const auto results =
-      study::measure_rules(camera, variants, options.target, frames, [&] { progress.update(++done); });
+      lab::measure_rules(camera, variants, options.target, frames, [&] { progress.update(++done); });
   const shared::View& view = camera.views().front();
   fmt::print("{}: {}, {}, {} x {} x {} px, {} dB\n\n", context.renderer(), options.scene.name, shot.name,
              camera.views().size(), view.width, view.height, options.target);
   print_rules(results);
-  ordered_json json = study::object("renderer", context.renderer(), "scene", options.scene.name, "gaussians",
-                                    studied.model->count(), "view", shot.name, "eyes", camera.views().size(),
-                                    "width", view.width, "height", view.height, "target_db", options.target,
-                                    "frames", frames, "rounds", study::rule_rounds);
-  for (const study::RuleResult& result : results) json["rules"].push_back(to_json(result));
+  ordered_json json = lab::object("renderer", context.renderer(), "scene", options.scene.name, "gaussians",
+                                  studied.model->count(), "view", shot.name, "eyes", camera.views().size(),
+                                  "width", view.width, "height", view.height, "target_db", options.target,
+                                  "frames", frames, "rounds", lab::rule_rounds);
+  for (const lab::RuleResult& result : results) json["rules"].push_back(to_json(result));
   return json;
 }
 
@@ -238,11 +238,11 @@ void add_studied_options(CLI::App& sub, StudyOptions& o) {
 
 }  // namespace
 
-void print_table(const study::Table& table) {
+void print_table(const lab::Table& table) {
   fmt::print("| {} |\n|", fmt::join(table.columns, " | "));
   for (std::size_t k = 0; k < table.columns.size(); ++k) fmt::print("---|");
   fmt::print("\n");
-  for (const std::vector<study::Cell>& row : table.rows) {
+  for (const std::vector<lab::Cell>& row : table.rows) {
     for (std::size_t k = 0; k < row.size(); ++k) {
       const std::string& column = table.columns[k];
       const int digits = column.ends_with("dB") ? 2 : column.ends_with("%") ? 1 : 3;
@@ -257,7 +257,7 @@ void print_table(const study::Table& table) {
   }
 }
 
-void save(const StudyOptions& options, const ordered_json& numbers, const study::Page& page) {
+void save(const StudyOptions& options, const ordered_json& numbers, const lab::Page& page) {
   if (!options.json.empty()) save_json(options.json, numbers);
   if (!options.output.empty()) save_report(options.output, "study.json", numbers, page);
 }

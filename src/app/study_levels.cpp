@@ -17,10 +17,11 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/progress.h"
-#include "study/bench.h"  // spread_evenly
-#include "study/levels.h"
-#include "study/levels_page.h"
-#include "study/turns.h"
+#include "formats/streamed_sog.h"
+#include "lab/bench.h"  // spread_evenly
+#include "lab/levels.h"
+#include "lab/levels_page.h"
+#include "lab/turns.h"
 
 namespace binosplat::app {
 
@@ -87,66 +88,66 @@ struct Following {
   stereo::Show show;
 };
 
-study::FollowingModel following_model(Following& following) {
+lab::FollowingModel following_model(Following& following) {
   return {number_of_detail(following.detail), following.gpu_model,
           [&following](render::Frame& frame, std::span<const shared::View> views) {
             const ShotLevels levels =
                 following.levels.follow(following.model, frame, following.show, views, {});
-            return study::LevelsBrought{levels.gaussians, levels.predicted_psnr};
+            return lab::LevelsBrought{levels.gaussians, levels.predicted_psnr};
           }};
 }
 
 // `model` at some level, which shows as well as another which views see nothing.
-std::vector<study::LevelsShot> shots_of(gl::Context& context, const StudyOptions& options,
-                                        const Listed& listed, const Model& model) {
+std::vector<lab::LevelsShot> shots_of(gl::Context& context, const StudyOptions& options, const Listed& listed,
+                                      const Model& model) {
   const CameraOptions& camera = options.camera;
   const double near_plane = near_plane_of(camera, listed.list);
   const std::vector<Shot> all =
       make_shots(views_or_all(camera.views), camera.lens, options.rig, listed.list, near_plane, model.axes);
   const std::size_t wanted = camera.views.empty() ? shots_wanted : all.size();
   std::vector<Shot> chosen;
-  for (const std::size_t k : study::spread_evenly(all.size(), wanted)) chosen.push_back(all[k]);
+  for (const std::size_t k : lab::spread_evenly(all.size(), wanted)) chosen.push_back(all[k]);
   leave_out_blind("study --levels", context, model, near_plane, chosen);
-  std::vector<study::LevelsShot> shots;
+  std::vector<lab::LevelsShot> shots;
   for (const Shot& shot : chosen) shots.push_back({shot.name, views_of(shot)});
   return shots;
 }
 
-study::LevelsScene measured(gl::Context& context, const StudyOptions& options, const Listed& listed,
-                            int frames) {
+lab::LevelsScene measured(gl::Context& context, const StudyOptions& options, const Listed& listed,
+                          int frames) {
   std::list<Following> all;  // which stay where they are
-  std::vector<study::FollowingModel> models;
+  std::vector<lab::FollowingModel> models;
   for (const DetailNeed& detail : options.details) {
     SceneOptions scene = listed.scene;
     scene.detail = detail;
     models.push_back(following_model(all.emplace_back(context, scene)));
   }
-  const std::vector<study::LevelsShot> shots = shots_of(context, options, listed, all.front().model);
-  study::LevelsScene scene{.name = listed.scene.name, .finest = all.front().levels.finest()};
+  const std::vector<lab::LevelsShot> shots = shots_of(context, options, listed, all.front().model);
+  lab::LevelsScene scene{.name = listed.scene.name, .finest = all.front().levels.finest()};
   Progress progress("measuring " + scene.name, shots.size());
   std::size_t done = 0;
-  study::measure_levels(
+  lab::measure_levels(
       scene, context, shots, models, [&] { return load_scene(listed.scene); }, frames,
       [&] { progress.update(++done); });
   return scene;
 }
 
-void print_levels_study(const study::LevelsStudy& study) {
+void print_levels_study(const lab::LevelsStudy& study) {
   fmt::print("{}; times: the median of {} frame{} of a view, in the mean of {} rounds in turns\n",
-             study.device, study.frames, study.frames == 1 ? "" : "s", study::turn_rounds);
-  for (const study::LevelsScene& scene : study.scenes) {
+             study.device, study.frames, study.frames == 1 ? "" : "s", lab::turn_rounds);
+  for (const lab::LevelsScene& scene : study.scenes) {
     fmt::print("{}: {} Gaussians at the finest levels, {} view{} of {} x {} x {} px\n", scene.name,
                scene.finest, scene.shots.size(), scene.shots.size() == 1 ? "" : "s", scene.eyes, scene.width,
                scene.height);
   }
-  for (const std::string& problem : study::problems_of(study)) fmt::print("{}\n", problem);
+  for (const std::string& problem : lab::problems_of(study)) fmt::print("{}\n", problem);
   fmt::print("\n");
-  print_table(study::levels_table(study));
+  print_table(lab::levels_table(study));
   fmt::print(
       "\nMeans over the views, dB by the mean of squared errors. Predicted: of the eye that loses more. "
       "True: "
       "of both\neyes' pictures against those of the finest levels.\n");
-  const study::Table growth = study::growth_table(study);
+  const lab::Table growth = lab::growth_table(study);
   if (growth.rows.empty()) return;
   fmt::print("\nFrame times, and how they grow from the smallest scene:\n\n");
   print_table(growth);
@@ -174,12 +175,12 @@ void study_levels(const StudyOptions& options) {
   std::vector<Listed> scenes;
   for (const std::string& name : options.scenes) scenes.push_back(listed(options, name));
   const auto context = open_context_for_all("study", false, options.context);
-  study::LevelsStudy study{.device = study::device_text(*context),
-                           .in_db = options.details.front().db.has_value(),
-                           .frames = options.frames.value_or(frames_wanted)};
+  lab::LevelsStudy study{.device = lab::device_text(*context),
+                         .in_db = options.details.front().db.has_value(),
+                         .frames = options.frames.value_or(frames_wanted)};
   for (const Listed& scene : scenes) study.scenes.push_back(measured(*context, options, scene, study.frames));
   print_levels_study(study);
-  save(options, study::to_json(study), study::levels_page(study));
+  save(options, lab::to_json(study), lab::levels_page(study));
 }
 
 }  // namespace binosplat::app

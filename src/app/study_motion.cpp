@@ -16,15 +16,15 @@
 #include "app/tour.h"
 #include "base/choices.h"
 #include "base/error.h"
+#include "lab/motion.h"
+#include "lab/motion_page.h"
+#include "lab/rules.h"
+#include "lab/settings.h"
 #include "scene/tour.h"
-#include "study/motion.h"
-#include "study/motion_page.h"
-#include "study/rules.h"
-#include "study/settings.h"
 
 namespace binosplat::app {
 
-using study::Variant;
+using lab::Variant;
 
 namespace {
 
@@ -57,7 +57,7 @@ Variant rule_of(const std::string& text) {
 std::vector<Variant> rules_for(const StudyOptions& options) {
   std::vector<Variant> rules;
   for (const std::string& text : options.motion.rules) rules.push_back(rule_of(text));
-  if (rules.empty()) rules = study::all_variants();
+  if (rules.empty()) rules = lab::all_variants();
   return rules;
 }
 
@@ -118,19 +118,19 @@ std::size_t stretch_length(const std::vector<Camera>& tour, const MotionOptions&
 }
 
 std::vector<std::size_t> starts_of(const std::vector<Camera>& tour, const MotionOptions& options) {
-  return study::stretch_starts(tour.size(), stretch_length(tour, options),
-                               options.segments.value_or(segments_default));
+  return lab::stretch_starts(tour.size(), stretch_length(tour, options),
+                             options.segments.value_or(segments_default));
 }
 
-study::MotionPath along_tour(const Driven& driven, const Motion& motion, const MotionOptions& options) {
-  study::MotionPath path{
+lab::MotionPath along_tour(const Driven& driven, const Motion& motion, const MotionOptions& options) {
+  lab::MotionPath path{
       motion.name,
       fmt::format("{:g} m/s, {:g} degrees a second", motion.metres_per_second, motion.degrees_per_second),
       {}};
   const std::vector<Camera> cameras = toured(driven, motion);
   for (const std::size_t start : starts_of(cameras, options)) {
     const auto first = cameras.begin() + static_cast<std::ptrdiff_t>(start);
-    path.segments.push_back(study::segment_of(
+    path.segments.push_back(lab::segment_of(
         frames_of(driven, {first, first + static_cast<std::ptrdiff_t>(stretch_length(cameras, options))}),
         options.lengths));
   }
@@ -144,16 +144,15 @@ std::vector<std::string> all_motions() {
 }
 
 /// A head that stands where calm stretches begin.
-study::MotionPath standing(const Driven& driven, const MotionOptions& options) {
-  study::MotionPath path{still_name, "no motion", {}};
+lab::MotionPath standing(const Driven& driven, const MotionOptions& options) {
+  lab::MotionPath path{still_name, "no motion", {}};
   const std::vector<Camera> cameras = toured(driven, head_motions().front());
   for (const std::size_t start : starts_of(cameras, options))
-    path.segments.push_back(
-        study::still_segment(frames_of(driven, {cameras[start]}).front(), options.lengths));
+    path.segments.push_back(lab::still_segment(frames_of(driven, {cameras[start]}).front(), options.lengths));
   return path;
 }
 
-std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions& options) {
+std::vector<lab::MotionPath> paths_of(const Driven& driven, const StudyOptions& options) {
   if (!options.camera.path.empty()) {
     if (options.motion.segments || !options.motion.motions.empty() || options.frames)
       fail(
@@ -162,9 +161,9 @@ std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions
     auto frames = frames_of(driven, driven.list.cameras);
     if (frames.size() < 2) fail("--path {}: a path has two cameras or more", options.camera.path);
     const std::string name = std::filesystem::path(options.camera.path).stem().string();
-    return {{name, options.camera.path, {study::segment_of(std::move(frames), options.motion.lengths)}}};
+    return {{name, options.camera.path, {lab::segment_of(std::move(frames), options.motion.lengths)}}};
   }
-  std::vector<study::MotionPath> paths;
+  std::vector<lab::MotionPath> paths;
   for (const std::string& name : options.motion.motions.empty() ? all_motions() : options.motion.motions) {
     if (name == still_name) {
       paths.push_back(standing(driven, options.motion));
@@ -178,14 +177,14 @@ std::vector<study::MotionPath> paths_of(const Driven& driven, const StudyOptions
 }
 
 /// A table for a terminal and for documents: dB and % to what can be told apart, the rest to three digits.
-void print_motion_study(const study::MotionStudy& study, const study::Page& page) {
+void print_motion_study(const lab::MotionStudy& study, const lab::Page& page) {
   fmt::print("{}: {}, {} x {} x {} px; a metre is {:.4g} units ({})\n", study.device, study.scene, study.eyes,
              study.width, study.height, study.units_per_metre, study.metre_source);
-  for (const study::MotionResult& result : study.paths) {
+  for (const lab::MotionResult& result : study.paths) {
     fmt::print("\n## {}\n{}; {}. Asked for {:g} dB:\n\n", result.path.name, result.path.motion,
-               study::lengths_of(result.path), study.settings.quality);
-    print_table(study::asked_table(result));
-    const study::Table at_target = study::target_table(result);
+               lab::lengths_of(result.path), study.settings.quality);
+    print_table(lab::asked_table(result));
+    const lab::Table at_target = lab::target_table(result);
     if (at_target.rows.empty()) continue;
     fmt::print("\nAt {:g} dB of the moving frames' true mean:\n\n", study.settings.target);
     print_table(at_target);
@@ -194,7 +193,7 @@ void print_motion_study(const study::MotionStudy& study, const study::Page& page
       "\nTrue: the worse eye's PSNR, of 8-bit pictures against exact ones, {:g} dB for equal ones; its mean,"
       " tenth\npercentile and worst over moving frames. Pairs, with a probe's, times drawn, and ms of all of"
       " these:\nmeans over moving frames; a frame's ms is the median of {} rounds.\n",
-      study::equal_db, study.settings.rounds);
+      lab::equal_db, study.settings.rounds);
   for (std::size_t k = 0; k < 2; ++k)
     fmt::print("\n{}\n",
                page.sections[k].problem.empty() ? page.sections[k].sentence : page.sections[k].problem);
@@ -242,33 +241,33 @@ CLI::Option* add_motion_options(CLI::App& sub, MotionOptions& options) {
 
 void study_motion(const StudyOptions& options) {
   const Driven driven = open_driven(options);
-  const std::vector<study::MotionPath> paths = paths_of(driven, options);
+  const std::vector<lab::MotionPath> paths = paths_of(driven, options);
   const std::vector<shared::View>& views = paths.front().segments.front().frames.front();
   const std::vector<Variant> rules = rules_for(options);
   const auto context = open_context_for_all("study", true, options.context);
   refuse_blind("study --motion", *context, *driven.model,
                make_shots(all_views, driven.lens, no_rig, driven.list, driven.near_plane, driven.model->axes),
                driven.near_plane);
-  study::MotionStudy study{.device = study::device_text(*context),
-                           .scene = options.scene.name,
-                           .gaussians = driven.model->count(),
-                           .eyes = views.size(),
-                           .width = views.front().width,
-                           .height = views.front().height,
-                           .frames_per_second = headset_fps,
-                           .units_per_metre = driven.metre.units,
-                           .metre_source = driven.metre.source,
-                           .settings = {.quality = options.quality.value_or(40.0f),
-                                        .target = options.target,
-                                        .equal = !options.motion.no_equal,
-                                        .rounds = options.motion.rounds}};
+  lab::MotionStudy study{.device = lab::device_text(*context),
+                         .scene = options.scene.name,
+                         .gaussians = driven.model->count(),
+                         .eyes = views.size(),
+                         .width = views.front().width,
+                         .height = views.front().height,
+                         .frames_per_second = headset_fps,
+                         .units_per_metre = driven.metre.units,
+                         .metre_source = driven.metre.source,
+                         .settings = {.quality = options.quality.value_or(40.0f),
+                                      .target = options.target,
+                                      .equal = !options.motion.no_equal,
+                                      .rounds = options.motion.rounds}};
   {
     Parts parts;
-    study.paths = study::measure_motion(
+    study.paths = lab::measure_motion(
         *context, *driven.model, paths, rules, study.settings,
         [&](const std::string& what, std::size_t done, std::size_t of) { parts.update(what, done, of); });
   }
-  const study::Page page = study::motion_page(study);
+  const lab::Page page = lab::motion_page(study);
   print_motion_study(study, page);
   save(options, to_json(study), page);
 }

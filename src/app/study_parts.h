@@ -11,9 +11,9 @@
 #include "app/photos.h"
 #include "app/rig_options.h"
 #include "app/shots.h"
+#include "lab/motion_paths.h"
+#include "lab/page.h"
 #include "shared/axes.h"
-#include "study/motion_paths.h"
-#include "study/page.h"
 
 namespace binosplat::app {
 
@@ -26,7 +26,7 @@ struct MotionOptions {
   std::vector<std::string> motions;  // empty: all
   std::vector<std::string> rules;    // TH,SOURCE; empty: all
   std::optional<std::size_t> segments;
-  study::SegmentLengths lengths;
+  lab::SegmentLengths lengths;
   int rounds = 2;
   bool no_equal = false;
 };
@@ -63,10 +63,10 @@ struct Studied {
 };
 
 /// Prints a table of a page, as Markdown.
-void print_table(const study::Table& table);
+void print_table(const lab::Table& table);
 
 /// Writes what --json and -o ask for.
-void save(const StudyOptions& options, const nlohmann::ordered_json& numbers, const study::Page& page);
+void save(const StudyOptions& options, const nlohmann::ordered_json& numbers, const lab::Page& page);
 
 /// --stability: prints the tables, and saves.
 void study_stability(gl::Context& context, const StudyOptions& options, const Studied& studied);

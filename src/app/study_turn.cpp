@@ -9,16 +9,16 @@
 #include "app/photos.h"
 #include "app/study_parts.h"
 #include "base/progress.h"
+#include "lab/turning.h"
 #include "scene/axes.h"
-#include "study/turning.h"
 
 namespace binosplat::app {
 
 namespace {
 
 // Of a device that draws on the CPU fewer.
-study::TurningSettings settings_for(const gl::Context& context, const StudyOptions& options) {
-  study::TurningSettings settings;
+lab::TurningSettings settings_for(const gl::Context& context, const StudyOptions& options) {
+  lab::TurningSettings settings;
   const glm::ivec2 some =
       context.software() ? glm::ivec2(16, 12) : glm::ivec2(settings.columns, settings.rows);
   const glm::ivec2 rays = options.rays.value_or(some);
@@ -40,13 +40,13 @@ Lens lens_for_moving(const Camera& camera) {
   return lens;
 }
 
-study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions& options,
-                                  const Studied& studied) {
+lab::PerspectiveViews views_for(const gl::Context& context, const StudyOptions& options,
+                                const Studied& studied) {
   const std::string& axes = studied.model->axes;
   const Camera& camera = studied.shots.front().eyes.front().camera;
   const CameraList& list = studied.list;
   const stereo::RigSettings rig = rig_settings(options.rig, list.known, studied.near_plane);
-  study::PerspectiveViews views;
+  lab::PerspectiveViews views;
   Camera head = sized(lens_for_moving(camera), camera);
   for (int n = 0; n < (context.software() ? 9 : 16); ++n) {
     views.path.push_back(make_view(into_axes(head, axes), studied.near_plane));
@@ -57,7 +57,7 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
     views.eyes.assign(eyes.views.begin(), eyes.views.end());
   }
   if (options.photos.empty()) return views;
-  for (const study::CalibrationView& one : photographed_views(photos_of_a_turn, options.photos, {}, list))
+  for (const lab::CalibrationView& one : photographed_views(photos_of_a_turn, options.photos, {}, list))
     views.photos.emplace_back(make_view(into_axes(one.camera, axes), studied.near_plane), *one.photo);
   return views;
 }
@@ -66,27 +66,27 @@ study::PerspectiveViews views_for(const gl::Context& context, const StudyOptions
 
 void study_turn(gl::Context& context, const StudyOptions& options, const Studied& studied) {
   const Camera& camera = studied.shots.front().eyes.front().camera;
-  study::TurningStudy study{options.scene.name, study::device_text(context),    camera.name, camera.width,
-                            camera.height,      settings_for(context, options), {}};
+  lab::TurningStudy study{options.scene.name, lab::device_text(context),      camera.name, camera.width,
+                          camera.height,      settings_for(context, options), {}};
   render::Frame frame(context, *studied.model);
-  const study::PerspectiveViews views = views_for(context, options, studied);
-  Progress progress("turning", study::turning_steps(study.settings) + study::perspective_steps(views));
+  const lab::PerspectiveViews views = views_for(context, options, studied);
+  Progress progress("turning", lab::turning_steps(study.settings) + lab::perspective_steps(views));
   std::size_t done = 0;
   const auto step = [&] { progress.update(++done); };
-  study::measure_turning(study, frame, into_axes(camera, studied.model->axes), studied.near_plane, step);
-  study.numbers = study::measure_perspectives(frame, views, step);
+  lab::measure_turning(study, frame, into_axes(camera, studied.model->axes), studied.near_plane, step);
+  study.numbers = lab::measure_perspectives(frame, views, step);
   fmt::print("{}, {} of {}: {} x {} rays over {:g} degrees, pictures of {} x {} px\n", study.device,
              study.view, study.scene, study.settings.columns, study.settings.rows,
              study.settings.field_degrees, study.width, study.height);
   fmt::print("PSNR against the head that is not turned, along the same rays\n\n");
-  print_table(study::turning_table(study));
+  print_table(lab::turning_table(study));
   fmt::print(
       "\nAgainst {} photos; what the eyes do not share of the difference from distance and tangent; frames "
       "of "
       "a head that\nmoves sideways at 1.5 m/s, 90 a second, warped to one another by depth\n\n",
       views.photos.size());
-  print_table(study::perspectives_table(study.numbers));
-  save(options, study::to_json(study), study::turning_page(study));
+  print_table(lab::perspectives_table(study.numbers));
+  save(options, lab::to_json(study), lab::turning_page(study));
 }
 
 }  // namespace binosplat::app

@@ -16,18 +16,18 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "formats/model_output.h"
+#include "lab/fields.h"
+#include "lab/trim.h"
 #include "scene/axes.h"
-#include "study/fields.h"
-#include "study/trim.h"
 
 namespace binosplat::app {
 
 namespace {
 
 namespace fs = std::filesystem;
+using lab::Calibrator;
 using nlohmann::ordered_json;
-using study::Calibrator;
-using BoundKind = study::CalibrationTarget::Kind;
+using BoundKind = lab::CalibrationTarget::Kind;
 
 struct TrimOptions : MeasuredOptions {
   TargetOptions bound;
@@ -57,15 +57,15 @@ std::optional<fs::path> same_format(const TrimOptions& o, const std::string& for
 }
 
 std::string decibels_of_bound(BoundKind kind, double db) {
-  if (kind == BoundKind::quality && db >= study::equal_db) return "equal";
+  if (kind == BoundKind::quality && db >= lab::equal_db) return "equal";
   return fmt::format("{:.3f}", db);
 }
 
-std::string size_of(const std::vector<study::CalibrationView>& views) {
+std::string size_of(const std::vector<lab::CalibrationView>& views) {
   return fmt::format("{} x {} px", views[0].camera.width, views[0].camera.height);
 }
 
-void print_trimmed(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
+void print_trimmed(const TrimOptions& o, const lab::Trimmed& found, const lab::ViewSplit& views,
                    std::size_t gaussians) {
   const BoundKind kind = o.bound.target().kind;
   const bool two_sizes = !views.held_back_own.empty();
@@ -91,14 +91,14 @@ void print_trimmed(const TrimOptions& o, const study::Trimmed& found, const stud
                decibels_of_bound(kind, held_back.worst_db),
                has_test ? decibels_of_bound(kind, test.mean_db) : "");
   };
-  for (const study::TrimStep& s : found.steps) {
+  for (const lab::TrimStep& s : found.steps) {
     fmt::print("{:<28}{:>10}{:>4}{:>12}{:>11.0f}{:>9.3f}", s.name, s.gaussians, s.degree,
                s.bytes > 0 ? std::to_string(s.bytes) : "", s.held_back.pairs, s.held_back.ms);
     print_db(s.held_back, s.test);
     if (two_sizes) print_db(*s.held_back_own, s.test_own.value_or(Calibrator::Cost{}));
     fmt::print("\n");
   }
-  const study::TrimStep& last = found.steps.back();
+  const lab::TrimStep& last = found.steps.back();
   const auto print_worst = [&](const char* size, const Calibrator::Cost& cost) {
     fmt::print("worst of those held back{}: {}, {} dB\n", size, views.held_back[cost.worst_view].camera.name,
                decibels_of_bound(kind, cost.worst_db));
@@ -107,26 +107,25 @@ void print_trimmed(const TrimOptions& o, const study::Trimmed& found, const stud
   if (two_sizes) print_worst(", own size", *last.held_back_own);
 }
 
-ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<study::CalibrationView>& views) {
-  ordered_json json =
-      study::object("mean_db", cost.mean_db, "worst_db", cost.worst_db, "worst_view",
-                    views[cost.worst_view].camera.name, "pairs", cost.pairs, "gpu_ms", cost.ms);
+ordered_json trimmed_json(const Calibrator::Cost& cost, const std::vector<lab::CalibrationView>& views) {
+  ordered_json json = lab::object("mean_db", cost.mean_db, "worst_db", cost.worst_db, "worst_view",
+                                  views[cost.worst_view].camera.name, "pairs", cost.pairs, "gpu_ms", cost.ms);
   for (std::size_t v = 0; v < views.size(); ++v)
     json["views"].push_back({{"name", views[v].camera.name}, {"db", cost.view_db[v]}});
   return json;
 }
 
-ordered_json trimmed_json(const TrimOptions& o, const study::Trimmed& found, const study::ViewSplit& views,
+ordered_json trimmed_json(const TrimOptions& o, const lab::Trimmed& found, const lab::ViewSplit& views,
                           ModelFormat format, const std::vector<std::string>& losses) {
-  ordered_json json = study::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
-                                    "format", written_format(format).name, "as_it_was", !found.less, "unseen",
-                                    found.unseen, "views_weighed", views.training.size(), "losses", losses);
+  ordered_json json = lab::object("version", BINOSPLAT_VERSION, "model", o.scene.name, "output", o.output,
+                                  "format", written_format(format).name, "as_it_was", !found.less, "unseen",
+                                  found.unseen, "views_weighed", views.training.size(), "losses", losses);
   if (o.bound.max_drop) json["target"]["drop_db"] = *o.bound.max_drop;
   if (o.bound.quality) json["target"]["quality_db"] = *o.bound.quality;
-  for (const study::TrimStep& s : found.steps) {
-    ordered_json step = study::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
-                                      s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
-                                      trimmed_json(s.held_back, views.held_back));
+  for (const lab::TrimStep& s : found.steps) {
+    ordered_json step = lab::object("step", s.name, "gaussians", s.gaussians, "degree", s.degree, "bytes",
+                                    s.bytes > 0 ? ordered_json(s.bytes) : ordered_json(), "held_back",
+                                    trimmed_json(s.held_back, views.held_back));
     if (!views.test.empty()) step["test"] = trimmed_json(s.test, views.test);
     if (s.held_back_own) step["held_back_own_size"] = trimmed_json(*s.held_back_own, views.held_back_own);
     if (s.test_own) step["test_own_size"] = trimmed_json(*s.test_own, views.test_own);
@@ -136,7 +135,7 @@ ordered_json trimmed_json(const TrimOptions& o, const study::Trimmed& found, con
 }
 
 /// Writes what was found; the file itself where nothing of it could be left out.
-std::vector<std::string> write_trimmed(const TrimOptions& o, const study::Trimmed& found, ModelFormat format,
+std::vector<std::string> write_trimmed(const TrimOptions& o, const lab::Trimmed& found, ModelFormat format,
                                        const std::optional<fs::path>& original) {
   if (!found.less && original) {
     OutputFile file(o.output);
@@ -157,17 +156,17 @@ ExitCode trim(const TrimOptions& o) {
   refuse_scaffold(model, o.scene.name);
   const std::optional<fs::path> original = same_format(o, model.format, format);
   bring_into_axes(model, axes_of(format));
-  study::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list),
-                                       [](std::size_t, std::size_t cameras) { return cameras / 2; });
-  study::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
+  lab::ViewSplit views = split_views("trim", o, o.split, list, near_plane_of(o.camera, list),
+                                     [](std::size_t, std::size_t cameras) { return cameras / 2; });
+  lab::TrimSettings settings{o.bound.target(), format, trial_writer(o.output, format), {}};
   if (o.refit) settings.refit = photo_finder(o.photos);
   const auto context = open_context(o.context);
   leave_out_blind("trim", *context, model, views);
   add_own_size(o, list, views);
-  study::Trimmed found = study::trim(*context, model, views, settings);
+  lab::Trimmed found = lab::trim(*context, model, views, settings);
   if (const fs::path file = model_file(o.scene.name); fs::is_regular_file(file))
     found.steps.front().bytes = fs::file_size(file);
-  const study::TrimStep &first = found.steps.front(), &last = found.steps.back();
+  const lab::TrimStep &first = found.steps.front(), &last = found.steps.back();
   const bool no_smaller = found.less && original && last.bytes >= first.bytes;
   if (no_smaller) found.less = false;
   print_trimmed(o, found, views, model.count());

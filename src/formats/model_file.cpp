@@ -62,9 +62,6 @@ bool is_named_as_model(const fs::path& path) {
 }
 
 void refuse_level(const fs::path& path, const ModelOptions& options) {
-  if (options.budget)
-    fail("--gpu-memory: {} has no levels of detail to choose from; a streamed SOG's lod-meta.json has",
-         path.string());
   if (options.lod) {
     fail("--lod {}: {} has no levels of detail; a streamed SOG's lod-meta.json has", *options.lod,
          path.string());
@@ -79,7 +76,7 @@ Model load_scaffold_model(const fs::path& path, const ModelOptions& options) {
 
 Model load_json_model(const fs::path& path, std::string_view text, const ModelOptions& options) {
   const nlohmann::json root = parse_json(path.string(), text);
-  if (is_sog_levels(root)) return load_streamed_sog(path, root, options.lod, options.budget);
+  if (is_sog_levels(root)) return load_streamed_sog(path, root, options.lod);
   refuse_level(path, options);
   if (is_sog_meta(root)) return load_sog(path, root);
   if (is_gltf(root)) return load_gltf(path, std::as_bytes(std::span(text)));

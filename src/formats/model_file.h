@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "formats/detail.h"
 #include "scene/model.h"
 
 namespace binosplat {
@@ -13,8 +12,7 @@ namespace binosplat {
 struct ModelOptions {
   std::optional<int> lod;  // the level of detail of a model that has several; 0 is the finest
   std::optional<std::size_t>
-      appearance;                      // of a Scaffold-GS model that has several; the first if none is named
-  std::optional<DetailBudget> budget;  // instead of `lod`
+      appearance;  // of a Scaffold-GS model that has several; the first if none is named
 };
 
 /// The models that a folder stands for, best one: lod-meta.json or meta.json of a SOG; point_cloud.ply, also

@@ -2,17 +2,36 @@
 // lod-meta.json of a streamed SOG: which Gaussians of which files are which leaf of its tree, at which level
 // of detail.
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <glm/glm.hpp>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "formats/detail.h"
 #include "formats/json_file.h"
 #include "formats/sog_source.h"
 
 namespace binosplat {
+
+/// Directions in which what levels lose is known: along x, against it, along y and so on.
+constexpr std::size_t detail_directions = 6;
+/// A part of a model: its box, and its levels from the finest to the coarsest.
+struct DetailPart {
+  struct Level {
+    int number = 0;
+    std::size_t count = 0;  // Gaussians
+    /// By what its picture of the part, by itself over what looks much like it, differs from that of the
+    /// finest: squared, summed over pixels and meaned over channels; in each direction, in pixels of each
+    /// width.
+    std::vector<double> errors = {};
+  };
+  glm::dvec3 low{0.0}, high{0.0};
+  std::vector<Level> levels;   // may be empty
+  std::vector<double> pixels;  // widths, world units, from the narrowest; empty: the errors are not known
+  std::vector<double> seen;    // what those pictures of the finest show (SeenPart), px, likewise
+};
 
 class SogLevels {
  public:

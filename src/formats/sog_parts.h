@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "formats/detail.h"
 #include "formats/sog_levels.h"
 #include "formats/sog_source.h"
 

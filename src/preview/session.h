@@ -9,16 +9,16 @@
 #include <string>
 #include <vector>
 
-#include "formats/level_stream.h"
 #include "gl/texture.h"
 #include "preview/key_list.h"
 #include "preview/navigator.h"
 #include "render/frame.h"
-#include "render/sight.h"
 #include "scene/model.h"
 #include "stereo/present.h"
 #include "stereo/rig.h"
 #include "stereo/show.h"
+#include "stream/level_stream.h"
+#include "stream/sight.h"
 
 namespace binosplat::preview {
 
@@ -143,11 +143,11 @@ class Session {
   render::Frame frame_;
   stereo::Presenter presenter_;
   stereo::Show show_;
-  std::optional<render::Sight> sight_;  // where levels go by dB
-  std::optional<double> left_;          // of the chosen quality for frames, where there are levels
-  float drawn_quality_ = 0.0f;          // that the last frame was asked for
-  stereo::Shown shown_;                 // in place of the frame's own pictures; none: those
-  gl::Buffer shown_colours_;            // as the frame's colours
+  std::optional<Sight> sight_;  // where levels go by dB
+  std::optional<double> left_;  // of the chosen quality for frames, where there are levels
+  float drawn_quality_ = 0.0f;  // that the last frame was asked for
+  stereo::Shown shown_;         // in place of the frame's own pictures; none: those
+  gl::Buffer shown_colours_;    // as the frame's colours
   glm::ivec2 framebuffer_{0};
   bool moving_ = false;
   int divisor_ = 1;                       // of the last frame drawn

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/level_stream.h"
 #include "preview/session.h"
+#include "stream/level_stream.h"
 
 namespace binosplat::preview {
 

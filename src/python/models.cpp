@@ -18,7 +18,7 @@ std::shared_ptr<Model> load(const std::filesystem::path& path, const std::option
                             const std::optional<std::string>& axes, const std::optional<bool>& antialiased) {
   if (axes) world_from_axes(*axes);
   const Unlocked unlocked;
-  auto model = std::make_shared<Model>(load_model(path, {lod, appearance, {}}));
+  auto model = std::make_shared<Model>(load_model(path, {lod, appearance}));
   model->axes = axes.value_or(model->axes);
   model->antialiased = antialiased.value_or(model->antialiased);
   return model;

@@ -18,11 +18,11 @@
 #include "base/error.h"
 #include "base/statistics.h"
 #include "formats/cameras_file.h"
-#include "formats/level_stream.h"
 #include "formats/model_file.h"
-#include "render/sight.h"
 #include "render/squared_error.h"
 #include "stereo/rig.h"
+#include "stream/level_stream.h"
+#include "stream/sight.h"
 
 namespace binosplat {
 namespace {
@@ -298,7 +298,7 @@ class Flight {
   std::shared_ptr<render::GpuModel> gpu_model_;
   render::Frame frame_;
   render::FrameReport report_;  // of the last frame along the path
-  render::Sight sight_;
+  Sight sight_;
   PartsTrial trial_;
   render::SquaredError before_;
   Band band_;  // that was looked at last

@@ -5,6 +5,8 @@
 #include "formats/model_file.h"
 #include "formats/streamed_sog.h"
 #include "scene/reduce.h"
+#include "stream/load_within.h"
+#include "stream/streamed_sog.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 #include "support/ply_models.h"
@@ -113,8 +115,7 @@ TEST(StreamedSogArchives, AreTheSameAsFolders) {
       EXPECT_FALSE(test::equal(load_model(archives.path(), {.lod = 1 - lod}), model)) << before;
     }
     const DetailBudget budget{[](int) { return std::size_t{2500}; }, {}};
-    EXPECT_TRUE(test::equal(load_model(archives.path(), {.budget = budget}),
-                            load_model(folders.path(), {.budget = budget})));
+    EXPECT_TRUE(test::equal(load_within(archives.path(), budget), load_within(folders.path(), budget)));
     // As it is read while frames are drawn.
     const auto read = [](const fs::path& path) {
       StreamedSog scene(path);

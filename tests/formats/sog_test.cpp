@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "formats/model_file.h"
-#include "formats/streamed_sog.h"
+#include "stream/load_within.h"
+#include "stream/streamed_sog.h"
 #include "support/broken.h"
 #include "support/fixtures.h"
 
@@ -81,7 +82,7 @@ TEST(Sog, LevelsThatFitABudget) {
   const Model fine = load_model(lod / "0_0"), coarse = load_model(lod / "1_0");
   const auto load = [&](std::size_t most, const glm::dvec3& eye) {
     const auto gaussians = [most](int degree) { return degree == 3 ? most : 0; };
-    return load_model(lod, {.budget = DetailBudget{gaussians, {eye}}});
+    return load_within(lod, {gaussians, {eye}});
   };
   EXPECT_TRUE(equal_from(load(1000, {0, 0, 0}), 0, fine));
   EXPECT_TRUE(equal_from(load(250, {0, 0, 0}), 0, coarse));
@@ -97,17 +98,17 @@ TEST(Sog, LevelsThatFitABudget) {
   EXPECT_EQ(first.position[505], coarse.position[120]);
   EXPECT_TRUE(test::fails_saying(
       [&] {
-        load_model(lod / "0_0", {.budget = DetailBudget{[](int) { return 1; }, {}}});
+        load_within(lod / "0_0", {[](int) { return std::size_t{1}; }, {}});
       },
       {"--gpu-memory", "no levels of detail"}));
   const Copy copy(lod);  // what is not there is not chosen
   fs::remove_all(copy.path() / "0_0");
   const auto all = [](int) { return std::size_t{5000}; };
-  EXPECT_TRUE(equal_from(load_model(copy.path(), {.budget = DetailBudget{all, {}}}), 0, coarse));
+  EXPECT_TRUE(equal_from(load_within(copy.path(), {all, {}}), 0, coarse));
   fs::remove_all(copy.path() / "1_0");
   EXPECT_TRUE(test::fails_saying(
       [&] {
-        load_model(copy.path(), {.budget = DetailBudget{all, {}}});
+        load_within(copy.path(), {all, {}});
       },
       {"lod-meta.json", "none of its levels of detail is there"}));
 }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "formats/detail.h"
+#include "stream/detail.h"
 
 namespace binosplat::test {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "formats/detail.h"
+#include "stream/detail.h"
 #include "support/broken.h"
 
 namespace binosplat::test {

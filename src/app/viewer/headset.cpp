@@ -90,7 +90,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
   tell_first_signal();
   xr::Beside beside = {
       .step = [&] { return (!mirror || mirror->step()) && signalled == 0; }, .show = {}, .levels = {}};
-  std::optional<render::Sight> sight;
+  std::optional<Sight> sight;
   if (loaded.levels) {
     beside.levels = [&](Model& drawn, const std::shared_ptr<render::GpuModel>& gpu_model,
                         std::span<const shared::View> views, double frame_ms, double drawn_ms) {

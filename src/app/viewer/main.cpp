@@ -18,6 +18,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/memory.h"
+#include "formats/streamed_sog.h"
 #include "preview/window.h"
 
 namespace binosplat::app {

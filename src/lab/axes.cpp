@@ -1,0 +1,204 @@
+#include "lab/axes.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <set>
+
+#include "base/choices.h"
+#include "base/error.h"
+#include "base/mapped_file.h"
+#include "base/numbers.h"
+#include "formats/content.h"
+#include "formats/json_file.h"
+#include "lab/embedded.h"
+#include "lab/fields.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+/// An object of the file with a place for errors; every key must be a known one.
+class Block {
+ public:
+  Block(std::string place, const nlohmann::json& object, const std::set<std::string>& known)
+      : place_(std::move(place)), object_(object) {
+    if (!object_.is_object()) fail("{}: expected an object in braces", place_);
+    for (const auto& [key, value] : object_.items()) {
+      if (known.count(key) == 0) fail("{}: there is no key '{}'", place_, key);
+    }
+  }
+
+  /// The key's values: a list, a single one, or `otherwise`.
+  std::vector<nlohmann::json> values(const std::string& key, const nlohmann::json& otherwise) const {
+    const nlohmann::json value = object_.contains(key) ? object_.at(key) : otherwise;
+    if (!value.is_array()) return {value};
+    if (value.empty()) fail("{}: '{}' is an empty list", place_, key);
+    return {value.begin(), value.end()};
+  }
+
+  int whole(const std::string& key, const nlohmann::json& value, int low, int high) const {
+    const bool good =
+        value.is_number_integer() && value.get<std::int64_t>() >= low && value.get<std::int64_t>() <= high;
+    if (!good)
+      fail("{}: '{}' {}: expected a whole number from {} to {}", place_, key, value.dump(), low, high);
+    return value.get<int>();
+  }
+
+  int one(const std::string& key, int otherwise, int low, int high) const {
+    return object_.contains(key) ? whole(key, object_.at(key), low, high) : otherwise;
+  }
+
+  double number(const std::string& key, const nlohmann::json& value) const {
+    const double number = value.is_number() ? value.get<double>() : -1.0;
+    const bool good = number >= 0.0 && std::isfinite(static_cast<float>(number));
+    if (!good) fail("{}: '{}' {}: expected a number of 0 or more", place_, key, value.dump());
+    return number;
+  }
+
+  bool has(const std::string& key) const { return object_.contains(key); }
+
+  int choice(const std::string& key, const nlohmann::json& value, std::span<const Choice> choices) const {
+    return find_choice(place_ + ", '" + key + "'",
+                       value.is_string() ? value.get<std::string>() : value.dump(), choices);
+  }
+
+  const std::string& place() const { return place_; }
+
+ private:
+  std::string place_;
+  const nlohmann::json& object_;
+};
+
+/// One key of a block: how a value of it is set.
+struct Key {
+  const char* name;
+  nlohmann::json otherwise;
+  std::function<void(BenchSettings&, const nlohmann::json&)> set;
+};
+
+constexpr std::size_t most_settings = 10000;  // of all blocks; nobody measures that many
+
+/// All combinations of a block's lists, appended; the last key's values follow one another.
+void add_settings(const Block& block, std::vector<BenchSettings>& settings) {
+  using S = BenchSettings;
+  const auto choice = [&block](const char* key, int render::FrameSettings::*member,
+                               std::span<const Choice> choices) {
+    return Key{key, choices[static_cast<std::size_t>(S{}.*member)].name,
+               [&block, key, member, choices](S& s, const nlohmann::json& v) {
+                 s.*member = block.choice(key, v, choices);
+               }};
+  };
+  const Key keys[] = {
+      choice("th", &S::th, th_choices),
+      choice("transmittance", &S::transmittance, transmittance_choices),
+      choice("tiles", &S::tiles, tiles_choices),
+      choice("precision", &S::precision, precision_choices),
+      {"tile", TILE_SIZE_DEFAULT,
+       [&block](S& s, const nlohmann::json& v) { s.tile_size = block.whole("tile", v, 8, 32); }},
+      {"inset", nullptr,
+       [&block](S& s, const nlohmann::json& v) {
+         if (block.has("inset")) s.foveation = stereo::Foveation{.inset_degrees = block.number("inset", v)};
+       }},
+      {"context", stereo::Foveation{}.context_scale,
+       [&block](S& s, const nlohmann::json& v) {
+         if (s.foveation) s.foveation->context_scale = block.number("context", v);
+       }},
+      {"tolerance", 0.0,
+       [&block](S& s, const nlohmann::json& v) {
+         s.tolerance = static_cast<float>(block.number("tolerance", v));
+       }},
+  };
+  if (block.has("context") && !block.has("inset"))
+    fail("{}: 'context' has no effect without 'inset', its degrees", block.place());
+  std::vector<S> all(1);
+  for (const Key& key : keys) {
+    const std::vector<nlohmann::json> values = block.values(key.name, key.otherwise);
+    if (settings.size() + all.size() * values.size() > most_settings)
+      fail("{}: from here on there are more than {} combinations", block.place(), most_settings);
+    std::vector<S> next;
+    for (const S& before : all) {
+      for (const nlohmann::json& value : values) key.set(next.emplace_back(before), value);
+    }
+    all = std::move(next);
+  }
+  settings.insert(settings.end(), all.begin(), all.end());
+}
+
+void remove_repeated(std::vector<BenchSettings>& settings) {
+  std::set<NamedSettings> seen;
+  std::erase_if(settings, [&](const auto& s) { return !seen.insert(named(s)).second; });
+}
+
+std::vector<std::string> sizes_of(const Block& top) {
+  const auto is_size = [](const std::string& text) {
+    const auto two = two_numbers(text, 'x');
+    const auto side = [](unsigned px) { return px >= 1 && px <= 99999; };
+    if (text.starts_with('0') || text.find("x0") != std::string::npos) return false;
+    return text == "own" || text == "preview" || text == "headset" ||
+           (two && side(two->first) && side(two->second));
+  };
+  std::vector<std::string> sizes;
+  for (const nlohmann::json& value : top.values("sizes", "own")) {
+    if (!value.is_string() || !is_size(value.get<std::string>()))
+      fail("{}: 'sizes' {}: expected own, WxH in px, preview or headset", top.place(), value.dump());
+    sizes.push_back(value.get<std::string>());
+  }
+  return sizes;
+}
+
+}  // namespace
+
+Axes parse_axes(const std::string& name, const std::string& text) {
+  const nlohmann::json root = parse_json(name, text);
+  const Block top(name, root, {"views", "frames", "repeats", "eyes", "sizes", "settings"});
+  Axes axes;
+  axes.name = name;
+  axes.views = top.one("views", axes.views, 1, 100000);
+  axes.frames = top.one("frames", axes.frames, 1, 100000);
+  axes.repeats = top.one("repeats", axes.repeats, 1, 1000);
+  axes.eyes.clear();
+  for (const nlohmann::json& value : top.values("eyes", 1))
+    axes.eyes.push_back(top.whole("eyes", value, 1, 2));
+  axes.sizes = sizes_of(top);
+  if (!root.contains("settings") || !root["settings"].is_array() || root["settings"].empty())
+    fail("{}: expected a list 'settings' of blocks", name);
+  int number = 0;
+  for (const nlohmann::json& object : root["settings"]) {
+    const nlohmann::json present = with_present_names(object);
+    const Block block(fmt::format("{}, settings, block {} (counted from 1)", name, ++number), present,
+                      {"tiles", "tile", "th", "precision", "transmittance", "inset", "context", "tolerance"});
+    const std::size_t before = axes.settings.size();
+    add_settings(block, axes.settings);
+    for (std::size_t i = before; i < axes.settings.size(); ++i) check(block.place(), axes.settings[i]);
+  }
+  remove_repeated(axes.settings);
+  return axes;
+}
+
+std::vector<std::string> axes_presets() {
+  std::vector<std::string> names;
+  for (const auto& [file, text] : preset_files()) names.push_back(file.substr(0, file.rfind(".json")));
+  return names;
+}
+
+Axes load_axes(const std::string& preset_or_file) {
+  const auto preset = preset_files().find(preset_or_file + ".json");
+  if (preset != preset_files().end()) return parse_axes(preset_or_file, preset->second);
+  std::error_code ignored;
+  if (!std::filesystem::exists(preset_or_file, ignored))
+    fail("--axes {}: neither a preset ({}) nor a file", preset_or_file, fmt::join(axes_presets(), ", "));
+  return parse_axes(preset_or_file, std::string(as_text(MappedFile(preset_or_file).bytes())));
+}
+
+nlohmann::ordered_json to_json(const Axes& axes) {
+  std::vector<NamedSettings> settings;
+  for (const BenchSettings& s : axes.settings) settings.push_back(named(s));
+  return object("views", axes.views, "frames", axes.frames, "repeats", axes.repeats, "eyes", axes.eyes,
+                "sizes", axes.sizes, "settings", settings);
+}
+
+}  // namespace binosplat::lab

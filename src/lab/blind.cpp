@@ -1,0 +1,65 @@
+#include "lab/blind.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "base/progress.h"
+#include "render/frame.h"
+#include "scene/axes.h"
+#include "scene/point_seen.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+Camera small(const Camera& camera) {
+  constexpr int most = 160;  // px along the longer side
+  const std::int64_t longer = std::max(camera.width, camera.height);
+  if (longer <= most) return camera;
+  const auto scaled = [&](int size) {
+    return std::max(1, static_cast<int>(std::int64_t{size} * most / longer));
+  };
+  return resized(camera, scaled(camera.width), scaled(camera.height));
+}
+
+// Whether the middle of a Gaussian that is not faint lies well within the picture: the pixel there shows it,
+// whatever its shape. Of most views this is so, and nothing need be drawn. `camera` in the model's axes.
+bool has_middle(const Model& model, const Camera& camera, double near_plane) {
+  // The middle of the nearest pixel is up to half a pixel away both ways, and the low-pass at least so wide.
+  const double not_faint = 2.0 / 255.0 * std::exp(0.25 / model.kernel_px2);
+  if (model.antialiased || model.scaffold) return false;
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    if (double{model.opacity[i]} < not_faint) continue;
+    const PointSeen middle = see(camera, model.position[i]);
+    if (middle.ahead > 1.01 * near_plane && middle.is_within(1.0)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<bool> seeing(gl::Context& context, const Model& model, std::span<const Camera> cameras,
+                         double near_plane) {
+  std::optional<render::Frame> frame;
+  const auto shows_something = [&](const Camera& camera) {
+    if (!frame) frame.emplace(context, model);
+    const shared::View view = make_view(into_axes(camera, model.axes), near_plane);
+    frame->draw(std::span(&view, 1));
+    const Picture picture = frame->read_pictures()[0];
+    return std::any_of(picture.colour.begin(), picture.colour.end(),
+                       [](const glm::vec4& c) { return c.a < 1.0f; });
+  };
+  Progress progress("looking through every view", cameras.size());
+  std::vector<bool> sees;
+  for (const Camera& camera : cameras) {
+    sees.push_back(has_middle(model, into_axes(camera, model.axes), near_plane) ||
+                   shows_something(small(camera)) || shows_something(camera));
+    progress.update(sees.size());
+  }
+  return sees;
+}
+
+}  // namespace binosplat::lab

@@ -1,0 +1,181 @@
+#include "lab/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/statistics.h"
+#include "lab/stability.h"
+#include "lab/wake.h"
+#include "measure/search.h"
+#include "render/squared_error.h"
+#include "scene/axes.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+// A search ends so near to its target: a drop is asked for in tenths of a dB, a quality in whole ones.
+constexpr double drop_within_db = 0.01, quality_within_db = 0.05;
+
+double psnr_of(double squared_error) {
+  return squared_error > 0.0 ? std::min(equal_db, -10.0 * std::log10(squared_error)) : equal_db;
+}
+
+Picture as_picture(const Image& photo) {
+  Picture picture(photo.width, photo.height);
+  for (std::size_t k = 0; k < picture.colour.size(); ++k)
+    picture.colour[k] = {photo.data[3 * k], photo.data[3 * k + 1], photo.data[3 * k + 2], 0.0f};
+  return picture;
+}
+
+}  // namespace
+
+/// What a view should look like, on the GPU, and what its exact picture is worth.
+struct Calibrator::Wanted {
+  Wanted(gl::Context& context, std::span<const Picture> pictures, std::uint32_t levels, std::uint64_t pairs)
+      : error(context, pictures, levels), exact_pairs(pairs) {}
+
+  render::SquaredError error;  // against the exact picture, or the photo
+  std::uint64_t exact_pairs;
+  double exact_db = equal_db;  // of the exact picture against the photo
+};
+
+Calibrator::Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+                       double near_plane, CalibrationTarget::Kind kind)
+    : context_(context), frame_(context, model), kind_(kind) {
+  if (views.empty()) fail("calibration needs at least one view");
+  for (const CalibrationView& view : views) {
+    const bool drop = kind == CalibrationTarget::Kind::drop;
+    if (drop && (!view.photo || view.photo->width != view.camera.width ||
+                 view.photo->height != view.camera.height || view.photo->channels != 3))
+      fail("view {}: a drop in dB is against a photo in the view's size, and there is none",
+           view.camera.name);
+    names_.push_back(view.camera.name);
+    views_.push_back(make_view(into_axes(view.camera, model.axes), near_plane));
+    const std::uint64_t pairs = frame_.draw(std::span(&views_.back(), 1)).pairs;
+    const std::vector<Picture> wanted = drop ? std::vector{as_picture(*view.photo)} : frame_.read_pictures();
+    wanted_.push_back(std::make_unique<Wanted>(context, wanted, drop ? 255u : 0u, pairs));
+    wanted_.back()->exact_db = psnr_of(wanted_.back()->error.mean(frame_.colours()));
+  }
+}
+
+Calibrator::~Calibrator() = default;
+
+Calibrator::Cost Calibrator::cost(const render::FrameSettings& settings) {
+  return cost(frame_, settings, render::measures(settings.transmittance) ? render::settling_frames : 1);
+}
+
+Calibrator::Cost Calibrator::cost(const Model& other, int drawings,
+                                  const std::function<void(std::size_t)>& after_view) {
+  render::Frame frame(context_, other);
+  // It slept while the model was made.
+  if (drawings > 1) wake(context_, 500.0, [&] { frame.draw(std::span(&views_.front(), 1)); });
+  return cost(frame, {}, drawings, after_view);
+}
+
+Calibrator::Cost Calibrator::cost(render::Frame& frame, const render::FrameSettings& settings, int drawings,
+                                  const std::function<void(std::size_t)>& after_view) {
+  Cost cost;
+  const bool drop = kind_ == CalibrationTarget::Kind::drop;
+  const auto count = static_cast<double>(views_.size());
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    // Each view starts like a first frame: what another view measured says nothing here.
+    if (render::measures(settings.transmittance)) frame.forget();
+    render::FrameReport report;
+    std::vector<double> ms;
+    for (int n = 0; n < drawings; ++n) {
+      report = frame.draw(std::span(&views_[v], 1), settings);
+      ms.push_back(report.total_ms);
+    }
+    cost.ms += quantile(std::move(ms), 0.5) / count;
+    cost.pairs += static_cast<double>(report.pairs) / count;
+    const double db = psnr_of(wanted_[v]->error.mean(frame.colours())),
+                 value = drop ? wanted_[v]->exact_db - db : db;
+    const bool worse = drop ? value > cost.worst_db : value < cost.worst_db;
+    if (v == 0 || worse) {
+      cost.worst_db = value;
+      cost.worst_view = v;
+    }
+    cost.view_db.push_back(value);
+    cost.mean_db += value / count;
+    const double pairs = static_cast<double>(wanted_[v]->exact_pairs);
+    if (pairs > 0) cost.pairs_removed += (1.0 - static_cast<double>(report.pairs) / pairs) / count;
+    if (after_view) after_view(v + 1);
+  }
+  return cost;
+}
+
+double Calibrator::exact_photo_db() const {
+  double sum = 0.0;
+  for (const auto& wanted : wanted_) sum += wanted->exact_db;
+  return sum / static_cast<double>(wanted_.size());
+}
+
+render::DepthTable Calibrator::depth_table(const measure::DepthTableSettings& settings) {
+  return measure::measure_depth_table(frame_, views_, settings);
+}
+
+CalibrationEntry Calibrator::find(render::FrameSettings settings, double target_db) {
+  const Clock::time_point start = Clock::now();
+  const double sign = kind_ == CalibrationTarget::Kind::drop ? -1.0 : 1.0;
+  const auto value = [&](double tolerance) {
+    settings.tolerance = static_cast<float>(tolerance);
+    return sign * cost(settings).mean_db;
+  };
+  measure::ToleranceSearch search;
+  search.start = settings.tolerance;
+  search.narrowest = 1e-3;  // a tolerance that is a thousandth larger saves nothing
+  search.within = sign < 0 ? drop_within_db : quality_within_db;
+  const measure::FoundTolerance found = measure::find_tolerance(value, sign * target_db, search);
+  settings.tolerance = static_cast<float>(found.tolerance);
+  const Cost reached = cost(settings);
+  return {settings.th,           settings.transmittance, found.tolerance,
+          reached.mean_db,       reached.worst_db,       names_[reached.worst_view],
+          reached.pairs_removed, found.evaluations,      1e-3 * ms_since(start)};
+}
+
+std::vector<render::FrameSettings> calibrated_settings() {
+  std::vector<render::FrameSettings> all;
+  for (Variant variant : all_variants()) {
+    if (render::is_exact(variant.th)) continue;
+    variant.tolerance = static_cast<float>(render::threshold_rules[variant.th].careful_tolerance);
+    all.push_back(variant.settings());
+  }
+  return all;
+}
+
+Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+                      double near_plane, const CalibrationTarget& target,
+                      const measure::DepthTableSettings& table,
+                      const std::function<void(std::size_t, std::size_t)>& done) {
+  Calibrator calibrator(context, model, views, near_plane, target.kind);
+  Calibration c;
+  c.model_name = model.name;
+  c.gaussians = model.count();
+  c.hash = model_hash(model);
+  c.width = views.front().camera.width;
+  c.height = views.front().camera.height;
+  c.near_plane = near_plane;
+  c.target = target;
+  for (const CalibrationView& view : views) {
+    c.views.push_back({view.camera.name, view.camera.position});
+    c.focal += view.camera.fx / static_cast<double>(views.size());
+  }
+  const Clock::time_point start = Clock::now();
+  c.depth_table = calibrator.depth_table(table);
+  c.depth_table_seconds = 1e-3 * ms_since(start);
+  const std::vector<render::FrameSettings> all = calibrated_settings();
+  for (render::FrameSettings settings : all) {
+    settings.depth_table = c.depth_table;
+    // What a rule found with another source is near: each question less is a frame, or eight.
+    if (!c.entries.empty() && c.entries.back().th == settings.th && c.entries.back().tolerance > 0.0)
+      settings.tolerance = static_cast<float>(c.entries.back().tolerance);
+    c.entries.push_back(calibrator.find(settings, target.db));
+    if (done) done(c.entries.size(), all.size());
+  }
+  return c;
+}
+
+}  // namespace binosplat::lab

@@ -1,0 +1,96 @@
+#pragma once
+// Finds the transmittance bound by depth (AdaGScale, section 4.1) and the tolerance of each rule and source
+// that costs as much as is asked for, on some views of a model. The pictures stay on the GPU: only sums are
+// read back.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.h"
+#include "lab/calibration.h"
+#include "lab/settings.h"
+#include "measure/depth_table.h"
+#include "render/frame.h"
+#include "scene/camera.h"
+
+namespace binosplat::lab {
+
+struct CalibrationView {
+  Camera camera;               // of the world (scene/axes.h)
+  std::optional<Image> photo;  // RGB in the camera's size
+};
+
+/// Views of three tasks: what is learned in some is judged in others, since a model that was made for the
+/// views that it is judged in would look better than it is.
+struct ViewSplit {
+  std::vector<Camera> training;            // of the world
+  std::vector<CalibrationView> held_back;  // at least one; their mean decides
+  std::vector<CalibrationView> test;       // decide nothing: what they show is stated; may be empty
+  // The same two in the cameras' own size, where that is larger; else empty. A bound holds in both sizes.
+  std::vector<CalibrationView> held_back_own, test_own;
+  double near_plane = near_default;  // world units
+};
+
+/// A model in some views, and what each way to draw it costs there.
+class Calibrator {
+ public:
+  /// Draws the exact pictures. Context and model must outlive it. Throws Error for no views, views of
+  /// different photos (some with, some without), or none where the target is a drop.
+  Calibrator(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+             double near_plane, CalibrationTarget::Kind kind);
+  ~Calibrator();
+
+  struct Cost {
+    double mean_db = 0.0;  // in the target's terms: drop, or PSNR (at most 100)
+    double worst_db = 0.0;
+    std::size_t worst_view = 0;
+    double pairs_removed = 0.0;   // share of the exact frame's pairs, mean over the views
+    std::vector<double> view_db;  // by view
+    double pairs = 0.0;           // mean over the views
+    double ms = 0.0;              // GPU time of a frame, mean over the views
+  };
+
+  /// What settings cost; frames that go by measurements are drawn until those have settled.
+  Cost cost(const render::FrameSettings& settings);
+
+  const std::vector<shared::View>& views() const { return views_; }
+
+  /// PSNR of the exact pictures against the photos, mean over the views; 100 without photos.
+  double exact_photo_db() const;
+
+  /// What another model in the same axes costs in the place of this one, drawn exactly; of so many drawings
+  /// of a view the median time counts. `after_view(views)` is called after each.
+  Cost cost(const Model& other, int drawings = 1, const std::function<void(std::size_t)>& after_view = {});
+
+  render::DepthTable depth_table(const measure::DepthTableSettings& settings = {});
+
+  /// The largest tolerance that costs no more than the target: the mean over the views. The settings' own
+  /// tolerance is where the search begins.
+  CalibrationEntry find(render::FrameSettings settings, double target_db);
+
+ private:
+  Cost cost(render::Frame& frame, const render::FrameSettings& settings, int drawings,
+            const std::function<void(std::size_t)>& after_view = {});
+
+  struct Wanted;
+  gl::Context& context_;
+  render::Frame frame_;
+  CalibrationTarget::Kind kind_;
+  std::vector<std::string> names_;
+  std::vector<shared::View> views_;
+  std::vector<std::unique_ptr<Wanted>> wanted_;
+};
+
+/// The ways to draw that a calibration has entries for: both rules by every source that one eye has.
+std::vector<render::FrameSettings> calibrated_settings();
+
+/// Everything: the table, then every entry; `done(entries, of)` after each.
+Calibration calibrate(gl::Context& context, const Model& model, const std::vector<CalibrationView>& views,
+                      double near_plane, const CalibrationTarget& target,
+                      const measure::DepthTableSettings& table = {},
+                      const std::function<void(std::size_t, std::size_t)>& done = {});
+
+}  // namespace binosplat::lab

@@ -1,0 +1,79 @@
+#pragma once
+// JSON of structs: object(key, value, ...) writes one; fields(io, it), where one is read again, too, names
+// each member once for both directions.
+
+#include <cmath>
+#include <concepts>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "gl/dispatch.h"
+
+namespace binosplat::lab {
+
+/// T or const T.
+template <typename U, typename T>
+concept Some = std::same_as<std::remove_const_t<U>, T>;
+
+/// io(key, member, key, member, ...) sets the keys in this order; an optional that is empty is left out.
+struct FieldWriter {
+  nlohmann::ordered_json& json;
+
+  void operator()() const {}
+  template <typename T, typename... Rest>
+  void operator()(const char* key, const T& value, const Rest&... rest) const {
+    if constexpr (requires { value.has_value(); }) {
+      if (value) json[key] = *value;
+    } else if constexpr (std::same_as<T, std::vector<gl::StageTime>>) {
+      json[key] = nlohmann::ordered_json::object();
+      for (const gl::StageTime& stage : value) json[key][stage.name] = stage.ms;
+    } else {
+      json[key] = value;
+    }
+    (*this)(rest...);
+  }
+};
+
+/// Reads what is there. Numbers that are not finite are null in files.
+struct FieldReader {
+  const nlohmann::ordered_json& json;
+
+  void operator()() const {}
+  template <typename T, typename... Rest>
+  void operator()(const char* key, T& value, Rest&... rest) const {
+    if (json.contains(key)) read(json.at(key), value);
+    (*this)(rest...);
+  }
+
+ private:
+  template <typename T>
+  static void read(const nlohmann::ordered_json& from, T& value) {
+    if constexpr (requires { value.has_value(); }) {
+      read(from, value.emplace());
+    } else if constexpr (std::same_as<T, std::vector<gl::StageTime>>) {
+      for (const auto& [name, ms] : from.items()) value.push_back({name, ms.template get<double>()});
+    } else if constexpr (std::same_as<T, double>) {
+      value = from.is_null() ? NAN : from.get<double>();
+    } else {
+      from.get_to(value);
+    }
+  }
+};
+
+nlohmann::ordered_json object(const auto&... keys_and_values) {
+  nlohmann::ordered_json json;
+  FieldWriter{json}(keys_and_values...);
+  return json;
+}
+
+template <typename T>
+concept Described = requires(T& it, nlohmann::ordered_json& json) {
+  fields(FieldWriter{json}, it);
+};
+
+void to_json(nlohmann::ordered_json& json, const Described auto& it) { fields(FieldWriter{json}, it); }
+void from_json(const nlohmann::ordered_json& json, Described auto& it) { fields(FieldReader{json}, it); }
+
+}  // namespace binosplat::lab

@@ -1,0 +1,85 @@
+#include "lab/leaf_errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "formats/json_file.h"
+
+namespace binosplat {
+
+namespace {
+
+void read(const JsonValue& json, double& number) { number = json.number(); }
+
+template <typename Item>
+void read(const JsonValue& json, std::vector<Item>& list) {
+  list.resize(json.size());
+  for (std::size_t k = 0; k < list.size(); ++k) read(json.at(k), list[k]);
+}
+
+}  // namespace
+
+nlohmann::ordered_json json_of(double number, double factor) {
+  return std::stod(fmt::format("{:.3g}", factor * number));
+}
+
+nlohmann::ordered_json json_of(const std::vector<LeafErrors>& leaves) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const LeafErrors& leaf : leaves) {
+    json.push_back(
+        {{"pixels", json_of(leaf.pixels)}, {"seen", json_of(leaf.seen)}, {"errors", json_of(leaf.of_level)}});
+  }
+  return json;
+}
+
+std::vector<LeafErrors> leaf_errors(const std::string& name, const std::string& text, std::size_t leaves,
+                                    std::size_t levels) {
+  const nlohmann::json told = parse_json(name, text);
+  const JsonValue list = JsonValue(name, told).list_of(leaves);
+  std::vector<LeafErrors> errors(leaves);
+  for (std::size_t k = 0; k < leaves; ++k) {
+    const JsonValue leaf = list.at(k);
+    read(leaf.at("pixels"), errors[k].pixels);
+    const auto by_direction = [&](const JsonValue& of) {
+      for (std::size_t d = 0; d < detail_directions; ++d)
+        of.list_of(detail_directions).at(d).list_of(errors[k].pixels.size());
+      std::vector<std::vector<double>> numbers;
+      read(of, numbers);
+      return numbers;
+    };
+    errors[k].seen = by_direction(leaf.at("seen"));
+    const JsonValue of_levels = leaf.at("errors").list_of(levels);
+    for (std::size_t level = 0; level < levels; ++level)
+      errors[k].of_level.push_back(by_direction(of_levels.at(level)));
+  }
+  return errors;
+}
+
+nlohmann::ordered_json json_of(const std::vector<LossTogether>& pictures) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const LossTogether& picture : pictures) {
+    json.push_back(picture.drawn ? nlohmann::ordered_json{picture.predicted, picture.found} : nullptr);
+  }
+  return json;
+}
+
+std::vector<double> loss_shares(const std::string& name, const std::string& text) {
+  const nlohmann::json told = parse_json(name, text);
+  const JsonValue pictures(name, told);
+  std::vector<double> shares;
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    if (told[k].is_null()) continue;
+    const JsonValue picture = pictures.at(k).list_of(2);
+    const double predicted = picture.at(0).number();
+    if (predicted > 0.0) shares.push_back(picture.at(1).number() / predicted);
+  }
+  return shares;
+}
+
+bool all_drawn(const std::string& name, const std::string& text) {
+  const nlohmann::json told = parse_json(name, text);
+  return !told.empty() && std::ranges::none_of(told, [](const nlohmann::json& one) { return one.is_null(); });
+}
+
+}  // namespace binosplat

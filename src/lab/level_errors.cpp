@@ -1,0 +1,253 @@
+#include "lab/level_errors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/parallel.h"
+#include "render/frame.h"
+#include "scene/camera.h"
+#include "scene/reduce.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+constexpr int widths = 2;      // of pixels,
+constexpr double wider = 8.0;  // each so many times the one before
+// The narrowest pixel, of the distance between Gaussians as it would be if they lay on a square as wide as
+// the box's diagonal; they lie denser.
+constexpr double narrowest = 0.625;
+// Between parts, px: what the low-pass and Gaussians at the edge reach.
+constexpr int margin = 8;
+constexpr int side_most = 1280;  // px of a picture
+// How far away the eye is, in sides of a picture: nothing is seen at more than 5 degrees from the axis.
+constexpr double away = 8.0;
+
+/// Around spheres of two standard deviations.
+Box box_of(const Model& model) {
+  Box box;
+  for (std::size_t i = 0; i < model.count(); ++i) {
+    const glm::vec3& s = model.scale[i];
+    const double reach = 2.0 * std::max({s.x, s.y, s.z});
+    box.include(glm::dvec3(model.position[i]) - reach, glm::dvec3(model.position[i]) + reach);
+  }
+  return box;
+}
+
+/// A part that is judged.
+struct Part {
+  std::span<const Model> levels;
+  Box box;
+  LeafErrors* errors;
+  int square;  // px, of its narrowest picture
+};
+
+/// Squares of a picture, row by row.
+struct Grid {
+  std::uint32_t count, side, across;  // squares, px, squares in a row
+  std::uint32_t width() const { return across * side; }
+  std::uint32_t height() const { return (count + across - 1) / across * side; }
+  /// Of the first pixel.
+  glm::uvec2 corner(std::size_t i) const {
+    const auto k = static_cast<std::uint32_t>(i);
+    return side * glm::uvec2(k % across, k / across);
+  }
+};
+
+/// Draws models one after the other, in the same buffers: making new ones takes as long as drawing.
+class LevelDrawer {
+ public:
+  explicit LevelDrawer(gl::Context& context)
+      : context_(context),
+        dispatcher_(context),
+        finest_(context, "the finest level"),
+        behind_(context, "colours behind parts"),
+        sums_(context, "errors of parts") {}
+
+  /// What is drawn next, whose memory is used again.
+  Model& model() { return model_; }
+
+  /// How much of each square shows the finest level, px, with which draw() compares until the next.
+  std::vector<float> draw_finest(const shared::View& view, const Grid& grid) {
+    draw(view, Depth::seen);
+    finest_.reserve(frame_->colours().bytes());
+    behind_.reserve(std::int64_t{grid.count} * 16);
+    return sums_of(grid, "1");
+  }
+
+  /// What each square differs by from the finest level, over what looks much like its mean colour.
+  std::vector<float> draw(const shared::View& view, const Grid& grid) {
+    draw(view, Depth::none);
+    return sums_of(grid, "0");
+  }
+
+ private:
+  void draw(const shared::View& view, Depth depth) {
+    if (frame_) {
+      frame_->model()->reload();
+    } else {
+      frame_.emplace(context_, model_);
+    }
+    frame_->draw({&view, 1}, {.depth = depth});
+  }
+
+  std::vector<float> sums_of(const Grid& grid, const char* finest) {
+    sums_.reserve(std::int64_t{grid.count} * 4);
+    dispatcher_.begin_frame();
+    dispatcher_.begin_stage("level errors");
+    const gl::Program& program = context_.program("level_errors.comp", {{"FINEST", finest}});
+    dispatcher_.run(program, gl::Work::of_groups(grid.count),
+                    {{"Colours", frame_->colours()},
+                     {"Finest", finest_},
+                     {"Behind", behind_},
+                     {"Sums", sums_},
+                     {"ZSums", frame_->z_sums()}},
+                    {{"square_count", grid.count},
+                     {"square_side", grid.side},
+                     {"row_squares", grid.across},
+                     {"row_pixels", grid.width()}});
+    dispatcher_.end_frame();
+    dispatcher_.wait_and_time();
+    return sums_.read<float>(grid.count);
+  }
+
+  gl::Context& context_;
+  gl::Dispatcher dispatcher_;
+  Model model_;
+  std::optional<render::Frame> frame_;
+  gl::Buffer finest_;  // vec4 by pixel
+  gl::Buffer behind_;  // vec4 by square
+  gl::Buffer sums_;    // float by square
+};
+
+/// Parts beside one another, each in a square of its own, seen along `direction`.
+class Sheet {
+ public:
+  Sheet(std::span<const Part> parts, std::size_t width, const glm::dvec3& direction)
+      : parts_(parts), width_(width) {
+    double widest = 0.0;
+    for (const Part& part : parts)
+      widest = std::max(widest, glm::distance(part.box.low, part.box.high) / pixel(part));
+    grid_ = {static_cast<std::uint32_t>(parts.size()),
+             static_cast<std::uint32_t>(std::ceil(widest)) + 2 * margin,
+             static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(parts.size()))))};
+    camera_.width = static_cast<int>(grid_.width());
+    camera_.height = static_cast<int>(grid_.height());
+    camera_.fx = camera_.fy = away * std::max(camera_.width, camera_.height);
+    camera_.cx = 0.5 * camera_.width;
+    camera_.cy = 0.5 * camera_.height;
+    const glm::dvec3 right = glm::normalize(glm::cross(direction, glm::dvec3(0.3, 1.0, 0.2)));
+    camera_.rotation = glm::dmat3(right, glm::cross(direction, right), direction);
+  }
+
+  std::vector<float> draw_finest(LevelDrawer& drawer) const {
+    fill(drawer.model(), 0);
+    return drawer.draw_finest(make_view(camera_), grid_);
+  }
+  std::vector<float> draw(LevelDrawer& drawer, std::size_t level) const {
+    fill(drawer.model(), level);
+    return drawer.draw(make_view(camera_), grid_);
+  }
+
+ private:
+  /// One level of all parts, in their places.
+  void fill(Model& all, std::size_t level) const {
+    if (all.count() == 0) all = without_gaussians(parts_.front().levels[level]);
+    std::vector<std::size_t> first{0};
+    for (const Part& part : parts_) first.push_back(first.back() + part.levels[level].count());
+    all.resize(first.back());
+    parallel_for(parts_.size(), [&](std::size_t i) {
+      const Part& part = parts_[i];
+      copy(part.levels[level], 0, part.levels[level].count(), all, first[i]);
+      // As far away as the focal length has pixels a world unit is one of them.
+      const glm::dvec2 centre =
+          glm::dvec2(grid_.corner(i)) + 0.5 * grid_.side - glm::dvec2(camera_.cx, camera_.cy);
+      const glm::dvec3 at(centre, camera_.fx);
+      const glm::dvec3 to = camera_.rotation * at, middle = 0.5 * (part.box.low + part.box.high);
+      for (std::size_t k = first[i]; k < first[i + 1]; ++k) {
+        all.position[k] = glm::vec3((glm::dvec3(all.position[k]) - middle) / pixel(part) + to);
+        all.scale[k] = glm::vec3(glm::dvec3(all.scale[k]) / pixel(part));
+      }
+    });
+  }
+
+  double pixel(const Part& part) const { return part.errors->pixels[width_]; }
+
+  std::span<const Part> parts_;
+  std::size_t width_;
+  Grid grid_{};
+  Camera camera_;
+};
+
+/// Levels that are drawn in the narrowest pixels, too. Others lose as much of each area there as in wider
+/// ones, or less.
+constexpr std::size_t fine_levels = 3;
+
+/// In wide pixels both sides look much alike: only those directions are drawn that come first.
+bool is_drawn(std::size_t direction, std::size_t width) { return width == 0 || direction % 2 == 0; }
+
+void fill_in(LeafErrors& leaf) {
+  for (std::size_t d = 0; d < detail_directions; ++d) {
+    for (std::size_t width = 1; width < widths; ++width) {
+      const std::size_t drawn = is_drawn(d, width) ? d : d - 1;
+      leaf.seen[d][width] = leaf.seen[drawn][width];
+      for (auto& of : leaf.of_level) of[d][width] = of[drawn][width];
+    }
+    const double larger = leaf.seen[d][1] > 0.0 ? leaf.seen[d][0] / leaf.seen[d][1] : 0.0;
+    for (std::size_t level = fine_levels; level < leaf.of_level.size(); ++level)
+      leaf.of_level[level][d][0] = larger * leaf.of_level[level][d][1];
+  }
+}
+
+void judge_parts(LevelDrawer& drawer, std::span<const Part> parts) {
+  const std::size_t levels = parts.front().levels.size();
+  for (const Part& part : parts) {
+    part.errors->seen.assign(detail_directions, std::vector<double>(widths));
+    part.errors->of_level.assign(levels, part.errors->seen);
+  }
+  for (std::size_t d = 0; d < detail_directions; ++d) {
+    for (std::size_t width = 0; width < widths; ++width) {
+      if (!is_drawn(d, width)) continue;
+      const Sheet sheet(parts, width, detail_direction(d));
+      const std::vector<float> seen = sheet.draw_finest(drawer);
+      for (std::size_t i = 0; i < parts.size(); ++i) parts[i].errors->seen[d][width] = double{seen[i]};
+      for (std::size_t level = 1; level < (width == 0 ? std::min(levels, fine_levels) : levels); ++level) {
+        const std::vector<float> lost = sheet.draw(drawer, level);
+        for (std::size_t i = 0; i < parts.size(); ++i)
+          parts[i].errors->of_level[level][d][width] = double{lost[i]};
+      }
+    }
+  }
+  for (const Part& part : parts) fill_in(*part.errors);
+}
+
+}  // namespace
+
+std::vector<LeafErrors> level_errors(gl::Context& context, std::span<const std::vector<Model>> leaves) {
+  std::vector<LeafErrors> errors(leaves.size());
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const Model& finest = leaves[i].front();
+    const Box box = box_of(finest);
+    const double diagonal = glm::distance(box.low, box.high);
+    const double across = std::ceil(std::sqrt(static_cast<double>(finest.count())) / narrowest);
+    for (int k = 0; k < widths; ++k)
+      errors[i].pixels.push_back((diagonal > 0.0 ? diagonal / across : 1.0) * std::pow(wider, k));
+    parts.push_back({leaves[i], box, &errors[i], static_cast<int>(across) + 2 * margin});
+  }
+  LevelDrawer drawer(context);
+  // The squares of a sheet are all as large as its largest.
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) { return a.square > b.square; });
+  for (std::size_t first = 0, count = 0; first < parts.size(); first += count) {
+    const auto row = static_cast<std::size_t>(std::max(1, side_most / parts[first].square));
+    count = std::min(parts.size() - first, row * row);
+    judge_parts(drawer, std::span(parts).subspan(first, count));
+  }
+  return errors;
+}
+
+}  // namespace binosplat::lab

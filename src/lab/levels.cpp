@@ -1,0 +1,195 @@
+#include "lab/levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "base/error.h"
+#include "base/statistics.h"
+#include "lab/fields.h"
+#include "lab/judge.h"
+#include "lab/times.h"
+#include "lab/turns.h"
+#include "lab/wake.h"
+#include "measure/flip.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Finest {
+  Finest(gl::Context& context, Model loaded) : model(std::move(loaded)), frame(context, model) {}
+
+  Model model;
+  render::Frame frame;
+};
+
+/// Why there was no room for what is drawn; empty: there was.
+template <typename Draw>
+std::string lack_of_room(const Draw& draw) {
+  try {
+    draw();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::out_of_memory) throw;
+    return error.what();
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
+  }
+  return "";
+}
+
+std::vector<Picture> drawn(render::Frame& frame, const LevelsShot& shot) {
+  frame.draw(shot.views);
+  return frame.read_pictures();
+}
+
+void judge_levels(const LevelsShot& shot, std::span<const Picture> finest, std::span<const Picture> coarser,
+                  LevelsNumbers& numbers) {
+  const FrameErrors errors = judge(shot.views, finest, coarser, TILE_SIZE_DEFAULT);
+  numbers.psnr_db = errors.psnr;
+  if (!std::isnan(errors.disagreement)) numbers.disagreement_db = errors.disagreement;
+  std::vector<double> flips;
+  for (std::size_t eye = 0; eye < finest.size(); ++eye)
+    flips.push_back(measure::flip(on_black(finest[eye]), on_black(coarser[eye])));
+  numbers.flip = mean(flips);
+}
+
+struct TimedLevels {
+  render::Frame& frame;
+  LevelsNumbers& into;
+};
+
+void time_in_turns(gl::Context& context, const LevelsShot& shot, std::span<const TimedLevels> all,
+                   int frames) {
+  // It slept while files were read and pictures compared.
+  wake(context, 1000.0, [&] { all.front().frame.draw(shot.views); });
+  for (int round = 0; round < turn_rounds; ++round) {
+    for (const TimedLevels& timed : all) {
+      timed.frame.draw(shot.views);
+      Run run;
+      for (int n = 0; n < frames; ++n) run.add(timed.frame.draw(shot.views));
+      timed.into.frame_ms += run.frame_ms() / turn_rounds;
+    }
+  }
+}
+
+/// Of one number of the shots that have it, by `mean_of`; none where none has.
+template <typename MeanOf>
+std::optional<double> mean_number(const LevelsRow& row, std::optional<double> LevelsNumbers::*number,
+                                  const MeanOf& mean_of) {
+  std::vector<double> values;
+  for (const LevelsNumbers& shot : row.shots) {
+    if (shot.*number) values.push_back(*(shot.*number));
+  }
+  return values.empty() ? std::nullopt : std::optional<double>(mean_of(values));
+}
+
+double pooled_db(std::vector<double> all) {
+  for (double& db : all) db = std::pow(10.0, -0.1 * db);
+  return -10.0 * std::log10(mean(all));
+}
+
+void fields(const auto& io, const LevelsNumbers& n) {
+  io("gaussians", n.gaussians, "predicted_psnr_db", n.predicted_db, "psnr_db", n.psnr_db, "flip", n.flip,
+     "disagreement_db", n.disagreement_db, "frame_ms", n.frame_ms);
+}
+
+ordered_json numbers_json(const LevelsNumbers& numbers) {
+  ordered_json json;
+  fields(FieldWriter{json}, numbers);
+  return json;
+}
+
+ordered_json scene_json(const LevelsScene& scene) {
+  ordered_json json = object("name", scene.name, "finest_gaussians", scene.finest, "eyes", scene.eyes,
+                             "width", scene.width, "height", scene.height, "problem", scene.problem);
+  for (const LevelsRow& row : scene.rows) {
+    ordered_json& into =
+        json["rows"].emplace_back(object("detail", row.detail, "worst_psnr_db", worst_db(row)));
+    into["mean"] = numbers_json(mean_of(row));
+    for (std::size_t k = 0; k < row.shots.size(); ++k) {
+      into["views"].push_back(object("name", scene.shots[k]));
+      into["views"].back().update(numbers_json(row.shots[k]));
+    }
+  }
+  return json;
+}
+
+}  // namespace
+
+LevelsNumbers mean_of(const LevelsRow& row) {
+  LevelsNumbers all;
+  for (const LevelsNumbers& shot : row.shots) {
+    all.gaussians += shot.gaussians / static_cast<double>(row.shots.size());
+    all.frame_ms += shot.frame_ms / static_cast<double>(row.shots.size());
+  }
+  for (const auto number :
+       {&LevelsNumbers::predicted_db, &LevelsNumbers::psnr_db, &LevelsNumbers::disagreement_db})
+    all.*number = mean_number(row, number, pooled_db);
+  all.flip = mean_number(row, &LevelsNumbers::flip, mean);
+  return all;
+}
+
+std::optional<double> worst_db(const LevelsRow& row) {
+  return mean_number(row, &LevelsNumbers::psnr_db, [](const std::vector<double>& all) {
+    return *std::min_element(all.begin(), all.end());
+  });
+}
+
+void measure_levels(LevelsScene& scene, gl::Context& context, std::span<const LevelsShot> shots,
+                    std::span<const FollowingModel> models, const std::function<Model()>& load_finest,
+                    int frames, const std::function<void()>& progress) {
+  std::vector<std::unique_ptr<render::Frame>> of_models;
+  for (const FollowingModel& one : models) {
+    of_models.push_back(std::make_unique<render::Frame>(one.model));
+    scene.rows.push_back({one.detail, {}});
+  }
+  LevelsRow of_finest;
+  std::unique_ptr<Finest> finest;
+  for (const LevelsShot& shot : shots) {
+    scene.shots.push_back(shot.name);
+    // Before the finest come, which may take the room that is left.
+    for (std::size_t k = 0; k < models.size(); ++k) {
+      const LevelsBrought brought = models[k].bring(*of_models[k], shot.views);
+      scene.rows[k].shots.push_back(
+          {.gaussians = static_cast<double>(brought.gaussians), .predicted_db = brought.predicted_db});
+    }
+    std::vector<Picture> pictures;
+    if (scene.problem.empty()) {
+      scene.problem = lack_of_room([&] {
+        if (!finest) finest = std::make_unique<Finest>(context, load_finest());
+        pictures = drawn(finest->frame, shot);
+      });
+      if (!scene.problem.empty()) finest.reset();
+    }
+    std::vector<TimedLevels> timed;
+    for (std::size_t k = 0; k < models.size(); ++k) {
+      LevelsNumbers& numbers = scene.rows[k].shots.back();
+      if (finest) judge_levels(shot, pictures, drawn(*of_models[k], shot), numbers);
+      timed.push_back({*of_models[k], numbers});
+    }
+    if (finest) {
+      of_finest.shots.push_back({.gaussians = static_cast<double>(finest->model.count())});
+      timed.push_back({finest->frame, of_finest.shots.back()});
+    }
+    time_in_turns(context, shot, timed, frames);
+    progress();
+  }
+  const std::vector<shared::View>& views = shots.front().views;
+  scene.eyes = views.size();
+  scene.width = views.front().width;
+  scene.height = views.front().height;
+  if (!of_finest.shots.empty()) scene.rows.push_back(std::move(of_finest));
+}
+
+ordered_json to_json(const LevelsStudy& study) {
+  ordered_json json =
+      object("format", "binosplat levels of detail", "version", 1, "device", study.device, "detail_unit",
+             study.in_db ? "dB" : "px", "frames", study.frames, "rounds", turn_rounds);
+  for (const LevelsScene& scene : study.scenes) json["scenes"].push_back(scene_json(scene));
+  return json;
+}
+
+}  // namespace binosplat::lab

@@ -1,0 +1,227 @@
+#include "lab/loss_together.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "base/error.h"
+#include "base/random.h"
+#include "render/frame.h"
+#include "render/squared_error.h"
+#include "scene/camera.h"
+#include "scene/model_parts.h"
+#include "scene/reduce.h"
+#include "stream/detail.h"
+#include "stream/sight.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+constexpr double asked_db = 40.0;
+constexpr int looks = 3;  // at the levels of a picture; then a choice hardly changes any more
+// Pictures: a headset's field in few pixels, so that each shows many parts.
+constexpr int side = 512;     // px
+constexpr double fov = 95.0;  // degrees
+// Eyes are tried in small pictures of the coarsest levels.
+constexpr int tried_side = 128, tries_for_one = 24, tried_at_once = 8;
+constexpr double shows_least = 0.35;  // of a picture, that is not empty,
+constexpr double as_far_least = 0.4;  // on the whole, of how far away what it looks at is
+constexpr double hidden = 0.01;       // px of a part that is shown; of hundreds of thousands
+
+/// As lod-meta.json will tell it.
+DetailPart part_of(std::span<const Model> levels, const LeafErrors& errors) {
+  DetailPart part;
+  const Box box = reach_of(levels.front());
+  part.low = box.low;
+  part.high = box.high;
+  const auto flat = [](const std::vector<std::vector<double>>& by_direction) {
+    std::vector<double> list;
+    for (const auto& of : by_direction) list.insert(list.end(), of.begin(), of.end());
+    return list;
+  };
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    part.levels.push_back({static_cast<int>(level), levels[level].count(), flat(errors.of_level[level])});
+  }
+  part.pixels = errors.pixels;
+  part.seen = flat(errors.seen);
+  return part;
+}
+
+shared::View from(const glm::dvec3& eye, const glm::dvec3& at, int px) {
+  const glm::dvec3 ahead = glm::normalize(at - eye);
+  const glm::dvec3 up = std::abs(ahead.y) < 0.9 ? glm::dvec3(0, -1, 0) : glm::dvec3(1, 0, 0);
+  return make_view(look_at(eye, at, up, fov, px, px));
+}
+
+/// Whether there is room for what draws a picture: without, others have to do.
+bool can_draw(const std::function<void()>& draw) {
+  try {
+    draw();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::out_of_memory) throw;
+    return false;
+  }
+  return true;
+}
+
+/// The leaves as one model, at any levels.
+class Leaves {
+ public:
+  Leaves(gl::Context& context, std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors)
+      : leaves_(leaves), layout_(leaves.size()), model_(without_gaussians(leaves[0][0])) {
+    for (std::size_t i = 0; i < leaves.size(); ++i) parts_.push_back(part_of(leaves[i], errors[i]));
+    bring_to(coarsest());
+    gpu_model_ = std::make_shared<render::GpuModel>(context, model_);
+    frame_.emplace(gpu_model_);
+    sight_.emplace(gpu_model_);
+  }
+
+  std::vector<std::size_t> coarsest() const {
+    return std::vector<std::size_t>(leaves_.size(), leaves_[0].size() - 1);
+  }
+
+  void bring_to(const std::vector<std::size_t>& levels) {
+    put(levels);
+    const ModelParts::Changes changes = layout_.take_changes();
+    if (gpu_model_) gpu_model_->reload(changes);
+  }
+
+  /// When memory did not suffice, and nobody knows what is on the GPU.
+  void start_again() {
+    put(coarsest());
+    layout_.take_changes();
+    gpu_model_->reload();
+  }
+
+  /// Views from among them, as long as the levels are the coarsest; sets `room` to whether there was room to
+  /// look for them.
+  std::vector<shared::View> find_views(int pictures, bool& room) {
+    std::vector<shared::View> views;
+    room = true;
+    Random random(1);
+    const auto any = [&] {
+      const Model& level = leaves_[random.bits() % leaves_.size()].back();
+      return glm::dvec3(level.position[random.bits() % level.count()]);
+    };
+    for (int k = 0; k < tries_for_one * pictures && std::ssize(views) < pictures; k += tried_at_once) {
+      std::vector<Try> tries(tried_at_once);
+      for (Try& one : tries) {
+        one.at = any();
+        one.eye = glm::mix(one.at, any(), random.uniform(0.3, 1.0));
+      }
+      std::erase_if(tries, [](const Try& one) { return one.eye == one.at; });
+      for (const Try& one : those_that_show(tries, room)) {
+        if (std::ssize(views) < pictures) views.push_back(from(one.eye, one.at, side));
+      }
+    }
+    return views;
+  }
+
+  void draw(const shared::View& view) { frame_->draw({&view, 1}); }
+  const gl::Buffer& colours() const { return frame_->colours(); }
+
+  /// Brings them to the levels that the view needs, and says what it is predicted to lose.
+  double settle(const shared::View& view) {
+    bring_to(coarsest());
+    DetailChoice choice;
+    shows_.assign(leaves_.size(), 0.0);
+    for (int look = 0; look < looks; ++look) {
+      const DetailSeen seen{sight_->look({&view, 1}, {}, layout_), levels_};
+      for (std::size_t i = 0; i < shows_.size(); ++i)
+        shows_[i] = std::max(shows_[i], seen.by_view[0][i].area);
+      choice = choose_levels_within(parts_, detail_views({&view, 1}), error_of_psnr(asked_db),
+                                    std::numeric_limits<std::size_t>::max(), seen, {}, false);
+      if (choice.levels == levels_) break;
+      bring_to(choice.levels);
+    }
+    return choice.error();
+  }
+
+  /// Brings what the view that was settled shows to the finest levels.
+  void refine() {
+    std::vector<std::size_t> levels = levels_;
+    for (std::size_t i = 0; i < levels.size(); ++i)
+      if (shows_[i] > hidden) levels[i] = 0;
+    bring_to(levels);
+  }
+
+ private:
+  void put(const std::vector<std::size_t>& levels) {
+    std::vector<ModelParts::Replacement> replacements;
+    for (std::size_t i = 0; i < leaves_.size(); ++i)
+      if (levels_.empty() || levels[i] != levels_[i]) replacements.push_back({i, &leaves_[i][levels[i]]});
+    levels_ = levels;
+    layout_.replace(model_, replacements);
+  }
+
+  struct Try {
+    glm::dvec3 eye, at;
+  };
+
+  /// Those whose views have much to show, and nothing close before what they look at.
+  std::vector<Try> those_that_show(std::span<const Try> tries, bool& room) {
+    std::vector<shared::View> views;
+    for (const Try& one : tries) views.push_back(from(one.eye, one.at, tried_side));
+    std::vector<std::vector<SeenPart>> seen;
+    if (views.empty()) return {};
+    if (!can_draw([&] { seen = sight_->look(views, {}, layout_); })) {
+      room = false;
+      return {};
+    }
+    std::vector<Try> found;
+    for (std::size_t k = 0; k < tries.size(); ++k) {
+      double area = 0.0, logarithms = 0.0;
+      for (const SeenPart& part : seen[k]) {
+        if (part.area == 0.0) continue;
+        area += part.area;
+        logarithms += part.area * std::log(part.distance);
+      }
+      if (area > shows_least * tried_side * tried_side &&
+          std::exp(logarithms / area) > as_far_least * glm::distance(tries[k].eye, tries[k].at))
+        found.push_back(tries[k]);
+    }
+    return found;
+  }
+
+  std::span<const std::vector<Model>> leaves_;
+  std::vector<DetailPart> parts_;
+  ModelParts layout_;
+  std::vector<std::size_t> levels_;
+  std::vector<double> shows_;  // of each, the view that was settled, px
+  Model model_;
+  std::shared_ptr<render::GpuModel> gpu_model_;
+  std::optional<render::Frame> frame_;
+  std::optional<Sight> sight_;
+};
+
+}  // namespace
+
+std::vector<LossTogether> loss_together(gl::Context& context, std::span<const std::vector<Model>> of_leaves,
+                                        std::span<const LeafErrors> errors, int pictures) {
+  Leaves leaves(context, of_leaves, errors);
+  bool room = true;
+  const std::vector<shared::View> views = leaves.find_views(pictures, room);
+  std::vector<LossTogether> losses;
+  for (const shared::View& view : views) {
+    LossTogether loss;
+    render::SquaredError error(context);
+    const auto draw = [&] {
+      loss.predicted = leaves.settle(view);
+      leaves.draw(view);
+      error.add(leaves.colours(), side * side);
+      leaves.refine();
+      leaves.draw(view);
+      loss.found = error.mean(leaves.colours());
+    };
+    loss.drawn = can_draw(draw);
+    if (!loss.drawn) leaves.start_again();
+    losses.push_back(loss);
+  }
+  if (!room) losses.resize(static_cast<std::size_t>(pictures), {.drawn = false});
+  return losses;
+}
+
+}  // namespace binosplat::lab

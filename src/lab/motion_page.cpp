@@ -1,0 +1,261 @@
+#include "lab/motion_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "lab/settings.h"
+
+namespace binosplat::lab {
+
+namespace {
+
+/// Nothing where the part has no frames.
+Cell of_part(const MotionSummary& part, double MotionSummary::*number) {
+  return part.frames == 0 ? Cell() : Cell(part.*number);
+}
+
+/// The path on which something of a rule is largest; not a number where it is none on any.
+struct Worst {
+  std::string rule, path;
+  double value = -INFINITY;
+};
+
+/// By rule, of value(path, rule).
+template <typename Value>
+std::vector<Worst> worst_paths(const MotionStudy& study, const Value& value) {
+  std::vector<Worst> all;
+  for (const MotionResult& path : study.paths) {
+    all.resize(path.rules.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const double here = value(path, path.rules[k]);
+      if (here <= all[k].value || std::isnan(all[k].value)) continue;
+      all[k] = {path.rules[k].variant.name(), path.path.name, here};
+    }
+  }
+  return all;
+}
+
+bool less(const Worst& a, const Worst& b) { return a.value < b.value; }
+
+/// A column a path of what value(path, rule) is.
+template <typename Value>
+void add_columns(const MotionStudy& study, const std::string& what, const Value& value, Table& table) {
+  for (const MotionResult& path : study.paths) {
+    table.columns.push_back(fmt::format("{}: {}", path.path.name, what));
+    for (std::size_t k = 0; k < table.rows.size(); ++k)
+      table.rows[k].emplace_back(value(path, path.rules[k]));
+  }
+}
+
+Table rules_of(const MotionStudy& study) {
+  Table table{{"rule"}, {}};
+  for (const MovedRule& rule : study.paths.front().rules) table.rows.push_back(row(rule.variant.name()));
+  return table;
+}
+
+/// Whether rules keep their word.
+Section words_kept(const MotionStudy& study) {
+  Table table = rules_of(study);
+  const auto moving = [](double MotionSummary::*number) {
+    return [number](const MotionResult&, const MovedRule& rule) { return rule.asked.moving.*number; };
+  };
+  add_columns(study, "true dB", moving(&MotionSummary::true_db), table);
+  add_columns(study, "worst dB", moving(&MotionSummary::worst_db), table);
+  add_columns(study, "told minus true dB", moving(&MotionSummary::told_beyond), table);
+  const auto worst = worst_paths(
+      study, [](const MotionResult&, const MovedRule& rule) { return -rule.asked.moving.true_db; });
+  const auto [nearest, farthest] = std::minmax_element(worst.begin(), worst.end(), less);
+  std::string sentence = fmt::format(
+      "Every rule was asked for {:g} dB. “{}” falls least below: moving frames come to {:.1f} dB in the mean "
+      "where it "
+      "does worst ({})",
+      study.settings.quality, nearest->rule, -nearest->value, nearest->path);
+  if (farthest->value > nearest->value)
+    sentence +=
+        fmt::format("; “{}” falls most: {:.1f} dB ({})", farthest->rule, -farthest->value, farthest->path);
+  return {"words", "Whether rules keep their word", sentence + ".", {}, table};
+}
+
+/// What rules take at one true quality.
+Section gains(const MotionStudy& study) {
+  Section section{"gains", "What rules take at one true quality", ""};
+  bool compared = true, problems = false;
+  for (const MotionResult& path : study.paths) {
+    for (const MovedRule& rule : path.rules) {
+      compared = compared && rule.compared;
+      problems = problems || !rule.problem.empty();
+    }
+  }
+  if (!compared) {
+    section.problem = "This was not measured (--no-equal).";
+    return section;
+  }
+  Table& table = section.table.emplace(rules_of(study));
+  const auto at = [](std::optional<double> MovedShares::*share) {
+    return
+        [share](const MotionResult& path, const MovedRule& rule) { return shares(path, rule, true).*share; };
+  };
+  add_columns(study, "ms of `one`", at(&MovedShares::ms_of_one), table);
+  add_columns(study, "pairs of `one`", at(&MovedShares::pairs_of_one), table);
+  add_columns(study, "ms of exact", at(&MovedShares::ms_of_exact), table);
+  if (problems)
+    add_columns(
+        study, "why not", [](const MotionResult&, const MovedRule& rule) { return rule.problem; }, table);
+  section.sentence = fmt::format(
+      "At {:g} dB, the true mean of each path's moving frames: GPU time and pairs in those of the rule that "
+      "takes all "
+      "the light for granted, with the same threshold",
+      study.settings.target);
+  std::vector<Worst> worst = worst_paths(study, [](const MotionResult& path, const MovedRule& rule) {
+    return rule.problem.empty() ? shares(path, rule, true).ms_of_exact.value_or(NAN) : NAN;
+  });
+  std::erase_if(worst, [](const Worst& one) { return std::isnan(one.value); });
+  if (!worst.empty()) {
+    const Worst best = *std::min_element(worst.begin(), worst.end(), less);
+    section.sentence += fmt::format(". The fastest is “{}”: at most {:.2f} of the exact frame's time ({})",
+                                    best.rule, best.value, best.path);
+  }
+  section.sentence += ".";
+  return section;
+}
+
+using Number = double (*)(const MovedFrame&);
+
+/// A number of every frame of a path, its segments one after the other.
+Series line_of(const std::string& name, const MovedFrames& frames, Number number, const MotionPath& path) {
+  Series series{name, {}, true, false, false};
+  for (std::size_t s = 0; s < frames.size(); ++s) {
+    const MotionSegment& segment = path.segments[s];
+    for (std::size_t n = 0; n < frames[s].size(); ++n) {
+      const char* part = n < segment.lead ? "lead" : n < segment.lead + segment.moving() ? "moving" : "stop";
+      series.add(static_cast<double>(series.points.size()), number(frames[s][n]),
+                 fmt::format("stretch {}, {}", s + 1, part));
+    }
+  }
+  return series;
+}
+
+Section asked(const MotionStudy& study, const MotionResult& path) {
+  Plot plot{{"frame", ""}, {"PSNR", "dB"}, {}};
+  for (const MovedRule& rule : path.rules) {
+    const auto add = [&](const std::string& name, Number number) {
+      plot.series.push_back(line_of(name, rule.asked.frames, number, path.path));
+    };
+    add(rule.variant.name(), [](const MovedFrame& frame) { return frame.true_db(); });
+    add(rule.variant.name() + ": told", [](const MovedFrame& frame) { return frame.told(); });
+  }
+  const std::string& name = path.path.name;
+  return {
+      "asked-" + name, fmt::format("{}: true and told", name),
+      fmt::format(
+          "{}; {}. Asked for {:g} dB; the worse eye's PSNR against the exact frame, of 8-bit pictures, and "
+          "what the program told of itself. Means are over moving frames; {:g} dB are equal pictures.",
+          path.path.motion, lengths_of(path.path), study.settings.quality, equal_db),
+      plot, asked_table(path)};
+}
+
+/// A number of the frames where all were asked for the same; the exact frame's beside them.
+Plot costs(const MotionResult& path, const Axis& axis, Number number) {
+  Plot plot{{"frame", ""}, axis, {line_of("exact", path.exact.frames, number, path.path)}};
+  for (const MovedRule& rule : path.rules)
+    plot.series.push_back(line_of(rule.variant.name(), rule.asked.frames, number, path.path));
+  return plot;
+}
+
+Section pairs(const MotionStudy& study, const MotionResult& path) {
+  Section section{"pairs-" + path.path.name, fmt::format("{}: pairs", path.path.name),
+                  fmt::format("Gaussian-tile pairs of a frame, a probe's included, asked for {:g} dB.",
+                              study.settings.quality),
+                  costs(path, {"pairs", "M"}, [](const MovedFrame& frame) { return 1e-6 * frame.pairs; })};
+  const Table table = target_table(path);
+  if (table.rows.empty()) return section;
+  section.table = table;
+  section.sentence +=
+      fmt::format(" The table is of the requests at which moving frames come to {:g} dB in the mean.",
+                  study.settings.target);
+  return section;
+}
+
+Section motion_times(const MotionStudy& study, const MotionResult& path) {
+  return {"times-" + path.path.name, fmt::format("{}: time", path.path.name),
+          fmt::format("GPU time of a frame, the median of {} rounds in which rules took turns.",
+                      study.settings.rounds),
+          costs(path, {"GPU time", "ms"}, [](const MovedFrame& frame) { return frame.ms; })};
+}
+
+}  // namespace
+
+Table asked_table(const MotionResult& path) {
+  Table table{{"rule", "true dB", "tenth dB", "worst dB", "told minus true dB", "farthest dB",
+               "lead, worst dB", "stop dB", "stop, worst dB", "pairs, M", "removed %", "drawn", "frame ms",
+               "of exact", "of `one`", "drawn once, ms", "most ms"},
+              {}};
+  const Cell none;
+  const MotionSummary& exact = path.exact.moving;
+  table.rows.push_back(row("exact", none, none, none, none, none, none, none, none, 1e-6 * exact.pairs, 0.0,
+                           1.0, exact.ms, 1.0, none, exact.once_ms, exact.most_ms));
+  for (const MovedRule& rule : path.rules) {
+    const MotionSummary &moving = rule.asked.moving, &stop = rule.asked.stop;
+    const MovedShares part = shares(path, rule, false);
+    table.rows.push_back(row(rule.variant.name(), moving.true_db, moving.tenth_db, moving.worst_db,
+                             moving.told_beyond, moving.told_worst,
+                             of_part(rule.asked.lead, &MotionSummary::worst_db),
+                             of_part(stop, &MotionSummary::true_db), of_part(stop, &MotionSummary::worst_db),
+                             1e-6 * moving.pairs, 100.0 * moving.removed, moving.drawn, moving.ms,
+                             part.ms_of_exact, part.ms_of_one, moving.once_ms, moving.most_ms));
+  }
+  return table;
+}
+
+Table target_table(const MotionResult& path) {
+  Table table{{"rule", "asked for dB", "true dB", "tenth dB", "worst dB", "pairs, M", "pairs of `one`",
+               "removed %", "drawn", "frame ms", "of exact", "of `one`", "why not"},
+              {}};
+  for (const MovedRule& rule : path.rules) {
+    if (!rule.compared) continue;
+    const MotionSummary& moving = rule.at_target().moving;
+    const MovedShares part = shares(path, rule, true);
+    table.rows.push_back(row(rule.variant.name(), rule.at_target().request, moving.true_db, moving.tenth_db,
+                             moving.worst_db, 1e-6 * moving.pairs, part.pairs_of_one, 100.0 * moving.removed,
+                             moving.drawn, moving.ms, part.ms_of_exact, part.ms_of_one, rule.problem));
+  }
+  return table;
+}
+
+std::string lengths_of(const MotionPath& path) {
+  std::set<std::string> kinds;
+  for (const MotionSegment& one : path.segments) {
+    std::string kind = fmt::format("{} frames, after {} to find a tolerance", one.moving(), one.lead);
+    if (one.stop != 0) kind += fmt::format(", then a stop of {}", one.stop);
+    kinds.insert(std::move(kind));
+  }
+  const std::size_t count = path.segments.size();
+  return fmt::format("{} of {}", count == 1 ? "one stretch" : fmt::format("{} stretches", count),
+                     fmt::join(kinds, ", or of "));
+}
+
+Page motion_page(const MotionStudy& study) {
+  Page page;
+  page.title = "Rules along moving heads on " + study.scene;
+  page.facts = {
+      {"device", study.device},
+      {"scene", study.scene},
+      {"Gaussians", study.gaussians},
+      {"pictures", fmt::format("{} x {} x {} px", study.eyes, study.width, study.height)},
+      {"frames a second", study.frames_per_second},
+      {"a metre", fmt::format("{:.4g} world units ({})", study.units_per_metre, study.metre_source)}};
+  page.sections = {words_kept(study), gains(study)};
+  page.sentence = page.sections.front().sentence;
+  for (const MotionResult& path : study.paths) {
+    page.sections.push_back(asked(study, path));
+    page.sections.push_back(pairs(study, path));
+    page.sections.push_back(motion_times(study, path));
+  }
+  return page;
+}
+
+}  // namespace binosplat::lab

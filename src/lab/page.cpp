@@ -1,0 +1,152 @@
+#include "lab/page.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "base/output_file.h"
+#include "base/text.h"
+#include "formats/image_file.h"
+#include "gl/context.h"
+#include "lab/embedded.h"
+#include "lab/fields.h"
+
+namespace binosplat::lab {
+
+using nlohmann::ordered_json;
+
+void to_json(ordered_json& json, const Cell& cell) {
+  std::visit([&](const auto& value) { json = value; }, cell.value);
+}
+
+std::string json_text(double number) { return ordered_json(number).dump(); }
+
+static void fields(const auto& io, const Axis& a) {
+  io("label", a.label, "unit", a.unit, "log", a.log, "categories", a.categories);
+}
+
+static void fields(const auto& io, const Point& p) {
+  io("y", p.y, "label", p.label, "marked", p.marked);
+  std::visit([&](const auto& x) { io("x", x); }, p.x);
+}
+
+static void fields(const auto& io, const Series& s) {
+  io("name", s.name, "line", s.line, "step", s.step, "dots", s.dots, "points", s.points);
+}
+
+static void fields(const auto& io, const Plot& p) {
+  io("kind", p.bars ? "bars" : "curves", "x", p.x, "y", p.y, "series", p.series);
+}
+
+static void fields(const auto& io, const Table& t) {
+  for (const std::vector<Cell>& row : t.rows) {
+    if (row.size() != t.columns.size()) {
+      throw std::logic_error(fmt::format("a table of {} columns has a row of {}: {}", t.columns.size(),
+                                         row.size(), ordered_json(row).dump()));
+    }
+  }
+  io("columns", t.columns, "rows", t.rows);
+}
+
+static void fields(const auto& io, const Figure& f) {
+  io("caption", f.caption, "width", f.image.width, "height", f.image.height, "png",
+     base64(png_bytes(f.image)));
+}
+
+static void fields(const auto& io, const Section& s) {
+  io("id", s.id, "title", s.title, "sentence", s.sentence, "problem", s.problem, "plot", s.plot, "table",
+     s.table, "figures", s.figures, "compared", s.compared);
+}
+
+namespace {
+
+// As text of a script element, which ends at the first "</script" whatever it is quoted in.
+std::string for_script(const ordered_json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&') {
+      out += "&amp;";
+    } else if (c == '<') {
+      out += "&lt;";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void Series::add(std::variant<double, std::string> x, double y, std::string point, bool marked) {
+  points.push_back({std::move(x), y, std::move(point), marked});
+}
+
+Image for_page(const Image& image) {
+  constexpr int widest = 640;
+  const int by = (image.width + widest - 1) / widest;
+  Image small(image.width / by, std::max(1, image.height / by), image.channels);
+  for (int y = 0; y < std::min(small.height * by, image.height); ++y) {
+    for (int x = 0; x < small.width * by; ++x) {
+      for (int c = 0; c < image.channels; ++c)
+        small.at(x / by, y / by, c) += image.at(x, y, c) / static_cast<float>(by * by);
+    }
+  }
+  return small;
+}
+
+std::string device_text(const gl::Context& context) {
+  return fmt::format("{}, OpenGL {}", context.renderer(), context.version());
+}
+
+Series& series_of(Plot& plot, const std::string& name) {
+  const auto found = std::find_if(plot.series.begin(), plot.series.end(),
+                                  [&](const Series& series) { return series.name == name; });
+  return found == plot.series.end() ? plot.series.emplace_back(Series{name, {}}) : *found;
+}
+
+std::string html(const Page& page, const ordered_json& data) {
+  const auto& ours = page_files();
+  const auto& others = third_party_files();
+  std::string out = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n";
+  out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
+  out += "<meta name=\"generator\" content=\"binosplat\">\n";
+  out += "<title>" + escaped(page.title) + "</title>\n";
+  out += "<style id=\"style\">\n" + ours.at("page.css") + "</style>\n";
+  out += "<main></main>\n";
+  out +=
+      "<noscript><p>The plots on this page are drawn by JavaScript, which is switched off "
+      "here.</p></noscript>\n";
+  out += "<script type=\"application/json\" id=\"page\">" +
+         for_script(object("title", page.title, "sentence", page.sentence, "facts", page.facts, "sections",
+                           page.sections, "data", data)) +
+         "</script>\n";
+  for (const auto& [folder, bundle] :
+       {std::pair{"d3/", "d3.min.js"}, std::pair{"plot/", "plot.umd.min.js"}}) {
+    const std::string at = folder;
+    out += "<script>\n/*\n" + others.at(at + "LICENSE") + "*/\n" + others.at(at + bundle) + "</script>\n";
+  }
+  return out + "<script>\n" + ours.at("page.js") + "</script>\n</html>\n";
+}
+
+void save_page(const std::filesystem::path& path, const Page& page, const ordered_json& data) {
+  OutputFile file(path);
+  file.write(html(page, data));
+  file.commit();
+}
+
+}  // namespace binosplat::lab

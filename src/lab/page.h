@@ -1,0 +1,128 @@
+#pragma once
+// The page that bench and study leave: one HTML file that needs nothing but a browser. It carries the results
+// as JSON and draws its plots from them (src/lab/page, with the libraries of third_party), so that a number
+// on the page is the number in the JSON.
+
+#include <concepts>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "base/image.h"
+
+namespace binosplat::gl {
+class Context;
+}
+
+namespace binosplat::lab {
+
+struct Axis {
+  std::string label;
+  std::string unit;         // "" for none
+  bool log = false;         // only values above 0 can be drawn
+  bool categories = false;  // names, not numbers: x of bars
+};
+
+/// A value that is not finite cannot be drawn; the page says so, by the point's label.
+struct Point {
+  std::variant<double, std::string> x;
+  double y = 0.0;
+  std::string label;    // what it is, for whoever points at it
+  bool marked = false;  // filled, where others are hollow
+};
+
+struct Series {
+  void add(std::variant<double, std::string> x, double y, std::string point = "", bool marked = false);
+
+  std::string name;
+  std::vector<Point> points;
+  bool line = false;  // joined in their order
+  bool step = false;  // joined by steps: a value holds until the next
+  bool dots = true;
+};
+
+/// Points and lines over numbers, or horizontal bars stacked by series over names.
+struct Plot {
+  Axis x;
+  Axis y;
+  std::vector<Series> series;
+  bool bars = false;
+};
+
+/// A number, a text or nothing; a number that is not finite is shown as nothing.
+struct Cell {
+  Cell(std::nullptr_t = nullptr) {}
+  Cell(bool yes) : value(yes) {}
+  template <std::integral T>
+  Cell(T whole) : value(static_cast<std::int64_t>(whole)) {}
+  Cell(double number) : value(number) {}
+  Cell(const char* text) : value(text) {}
+  Cell(std::string text) : value(std::move(text)) {}
+  template <typename T>
+  Cell(const std::optional<T>& some) : Cell(some ? Cell(*some) : Cell()) {}
+  bool operator==(const Cell&) const = default;
+
+  std::variant<std::nullptr_t, bool, std::int64_t, double, std::string> value;
+};
+
+void to_json(nlohmann::ordered_json& json, const Cell& cell);
+
+/// A number as JSON has it: "40.0".
+std::string json_text(double number);
+
+std::vector<Cell> row(const auto&... cells) { return {Cell(cells)...}; }
+
+/// Rows of as many cells as there are columns.
+struct Table {
+  std::vector<std::string> columns;
+  std::vector<std::vector<Cell>> rows;
+};
+
+/// A small picture, drawn as large as there is room.
+struct Figure {
+  std::string caption;
+  Image image;  // RGB, grey or with alpha
+};
+
+/// A picture by whole factors smaller, so that a page can hold many: at most 640 px wide.
+Image for_page(const Image& image);
+
+/// The GPU and its driver, for the page's facts.
+std::string device_text(const gl::Context& context);
+
+/// One heading of the page: what it shows on this scene, in a sentence, then the plot and the table.
+struct Section {
+  std::string id;  // of the link to it and of the plot's SVG
+  std::string title;
+  std::string sentence;
+  std::optional<Plot> plot = {};
+  std::optional<Table> table = {};
+  std::string problem = {};  // why there is neither
+  std::vector<Figure> figures = {};
+  bool compared = false;  // the figures are of one size: two lie on each other, with a slider between them
+};
+
+/// The series of a plot with this name, made where there is none yet.
+Series& series_of(Plot& plot, const std::string& name);
+
+struct Page {
+  std::string title;
+  std::string sentence;
+  std::vector<std::pair<std::string, Cell>> facts;  // scene, device, date
+  std::vector<Section> sections;
+};
+
+/// The whole file, with everything that was measured, which it offers to save. Light and dark, readable at
+/// 400 px and printed; colours are told apart by everyone, and never alone. Throws std::logic_error for a
+/// table whose rows do not fit its columns.
+std::string html(const Page& page, const nlohmann::ordered_json& data);
+
+/// Writes it whole or not at all. Throws Error where that fails.
+void save_page(const std::filesystem::path& path, const Page& page, const nlohmann::ordered_json& data);
+
+}  // namespace binosplat::lab

@@ -1,0 +1,399 @@
+#include "lab/streamed_sog_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <utility>
+
+#include "base/parallel.h"
+#include "base/progress.h"
+#include "base/statistics.h"
+#include "formats/json_file.h"
+#include "formats/model_writers.h"
+#include "formats/morton.h"
+#include "formats/sog_source.h"
+#include "lab/leaf_errors.h"
+#include "scene/merge.h"
+#include "scene/reduce.h"
+#include "scene/space_tree.h"
+
+namespace binosplat {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+// A pixel as a level is seen, of the distance between Gaussians by which levels are chosen
+// (stream/detail.h): that is as if they lay on a square as wide as the box's diagonal, and they lie denser.
+constexpr double pixel_share = 0.2;
+// Which pairs are merged is judged once for all levels, as this one sees them.
+constexpr int judged_level = 3;
+
+constexpr int pictures_in_all = 12;  // that tell what levels lose together; one of each scene, at least
+constexpr double more_most = 4.0;    // that they may lose more or less than each by itself
+
+constexpr const char* meta_name = "/meta.json";
+
+/// A leaf of the tree.
+struct Leaf {
+  std::span<const std::uint32_t> indices;
+  Box box;                    // around ellipsoids of one standard deviation
+  ordered_json lods;          // where its levels lie, and what they lose
+  ordered_json pixels, seen;  // by which that was found
+
+  std::size_t count(int level) const { return ((indices.size() - 1) >> level) + 1; }
+  double pixel(int level) const {
+    return pixel_share * glm::distance(box.low, box.high) / std::sqrt(static_cast<double>(count(level)));
+  }
+};
+
+/// A SOG: one level of leaves that follow one another.
+struct File {
+  std::string folder;
+  int level = 0;
+  std::size_t first_leaf = 0, leaves = 0;
+  std::size_t count = 0;
+  bool is_there = false;
+};
+
+/// Leaves that are worked on together, and the files in which all their levels lie.
+struct Piece {
+  std::string errors;  // the file that tells what its levels lose
+  std::size_t first_leaf = 0, leaves = 0;
+  std::vector<File> files;
+};
+
+using Levels = std::vector<Model>;  // of a leaf, from the finest
+
+/// Pieces that are drawn together, as a model they may be.
+struct Scene {
+  std::string losses;  // the file that tells what its pictures lose
+  std::size_t first_piece = 0, pieces = 0, count = 0;
+};
+
+/// In Morton order, whose pictures pack best.
+Model finest(const Model& model, const Leaf& leaf) {
+  const Model as_it_lies = with_order(model, leaf.indices);
+  return with_order(as_it_lies, morton_order(as_it_lies.position));
+}
+
+Levels levels_of(const Model& model, const Leaf& leaf, int coarsest) {
+  Levels levels{finest(model, leaf)};
+  Merger merger(levels[0], leaf.pixel(judged_level));
+  std::vector<Model> merged;
+  for (int level = 1; level <= coarsest; ++level) {
+    merger.bring_to(leaf.count(level));
+    merged.push_back(merger.result(leaf.pixel(level)));
+  }
+  std::move(merged.begin(), merged.end(), std::back_inserter(levels));
+  return levels;
+}
+
+ordered_json box_json(const Box& b) {
+  return {{"min", {b.low.x, b.low.y, b.low.z}}, {"max", {b.high.x, b.high.y, b.high.z}}};
+}
+
+class LevelsWriter {
+ public:
+  LevelsWriter(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
+               const JudgeLevels& judge)
+      : model_(model),
+        settings_(settings),
+        folder_(folder),
+        judge_(judge),
+        tree_(make_space_tree(model.position, settings.leaf)),
+        gaussians_(static_cast<std::size_t>(settings.levels)) {
+    plan();
+    const auto measure = [&](Leaf& leaf) { leaf.box = reach_of(model_, leaf.indices); };
+    parallel_for(leaves_.size(), [&](std::size_t i) { measure(leaves_[i]); });
+  }
+
+  LevelsWritten write() {
+    LevelsWritten written{gaussians_, filenames_.size(), 0, sog_losses(model_)};
+    std::size_t work = 0;
+    for (Piece& piece : pieces_) {
+      for (File& file : piece.files) {
+        file.is_there = folder_.has(file.folder + meta_name);
+        (file.is_there ? written.kept : work) += file.is_there ? 1 : file.count;
+      }
+      for (std::size_t i = 0; i < piece.leaves && !std::ranges::all_of(piece.files, &File::is_there); ++i)
+        work += leaves_[piece.first_leaf + i].count(0);
+    }
+    Progress progress("writing levels of detail", work);
+    write_pieces(progress);
+    tell_errors();
+    std::size_t leaf = 0;
+    const ordered_json meta = {
+        {"version", 1},
+        {"asset", {{"generator", "binosplat"}}},
+        {"count", std::accumulate(gaussians_.begin(), gaussians_.end(), std::size_t{0})},
+        {"counts", gaussians_},
+        {"lodLevels", settings_.levels},
+        {"environment", nullptr},
+        {"filenames", filenames_},
+        {"tree", node_json(tree_.root, leaf).first}};
+    write("lod-meta.json", meta);
+    return written;
+  }
+
+ private:
+  /// Which leaves are a piece, and what of it goes where. Nodes that follow one another share a piece, since
+  /// what lies far out is a node of a few.
+  void plan() {
+    std::vector<const SpaceNode*> nodes;
+    find_nodes(tree_.root, nodes);
+    for (std::size_t i = 0; i < nodes.size();) {
+      Piece piece{fmt::format("errors_{}.json", pieces_.size()), leaves_.size(), 0, {}};
+      std::size_t count = 0;
+      do {
+        add_leaves(*nodes[i]);
+        count += nodes[i]->count;
+      } while (++i < nodes.size() && count + nodes[i]->count <= settings_.piece);
+      piece.leaves = leaves_.size() - piece.first_leaf;
+      for (int level = 0; level < settings_.levels; ++level) add_files(piece, level);
+      add_to_scene(count);
+      pieces_.push_back(std::move(piece));
+    }
+  }
+
+  /// Scenes are of about as many Gaussians.
+  void add_to_scene(std::size_t count) {
+    const std::size_t all = model_.count(), scenes = (all - 1) / settings_.together + 1;
+    if (scenes_.empty() || scenes_.back().count * scenes >= all)
+      scenes_.push_back({fmt::format("together_{}.json", scenes_.size()), pieces_.size()});
+    ++scenes_.back().pieces;
+    scenes_.back().count += count;
+  }
+
+  /// Those that fit into a piece, in order.
+  void find_nodes(const SpaceNode& node, std::vector<const SpaceNode*>& nodes) const {
+    if (node.count <= settings_.piece || node.children.empty()) return nodes.push_back(&node);
+    for (const SpaceNode& child : node.children) find_nodes(child, nodes);
+  }
+
+  void add_leaves(const SpaceNode& node) {
+    for (const SpaceNode& child : node.children) add_leaves(child);
+    if (node.children.empty())
+      leaves_.push_back({std::span(tree_.order).subspan(node.first, node.count), {}, {}});
+  }
+
+  void add_files(Piece& piece, int level) {
+    for (std::size_t i = piece.first_leaf; i < leaves_.size(); ++i) {
+      Leaf& leaf = leaves_[i];
+      const std::size_t count = leaf.count(level);
+      if (i == piece.first_leaf || piece.files.back().count + count > settings_.file) {
+        piece.files.push_back({fmt::format("{}_{}", level, files_of_level_[level]++), level, i});
+        filenames_.push_back(piece.files.back().folder + meta_name);
+      }
+      File& file = piece.files.back();
+      leaf.lods[std::to_string(level)] = {
+          {"file", filenames_.size() - 1}, {"offset", file.count}, {"count", count}};
+      ++file.leaves;
+      file.count += count;
+      gaussians_[static_cast<std::size_t>(level)] += count;
+    }
+  }
+
+  /// While one is judged, which one thread does that may leave all cores idle, the next is written and the
+  /// one after it is merged.
+  void write_pieces(Progress& progress) {
+    std::vector<const Piece*> left;
+    for (const Piece& piece : pieces_) {
+      if (!is_judged(piece)) left.push_back(&piece);
+    }
+    const auto merge = [&](const Piece& piece) {
+      return std::async(std::launch::async, [&] { return merged(piece, progress); });
+    };
+    std::future<std::vector<Levels>> merging;
+    if (!left.empty()) merging = merge(*left[0]);
+    std::future<void> writing;
+    for (std::size_t k = 0; k <= left.size(); ++k) {
+      if (writing.valid()) writing.get();
+      if (k < left.size()) {
+        writing = std::async(
+            std::launch::async,
+            [this, &progress, &piece = *left[k], levels = merging.get()] { write(piece, levels, progress); });
+      }
+      if (k + 1 < left.size()) merging = merge(*left[k + 1]);
+      if (k == 0) continue;
+      if (!folder_.has(left[k - 1]->errors)) judge(*left[k - 1]);
+      judge_scenes();
+    }
+    judge_scenes();
+  }
+
+  void count(Progress& progress, std::size_t gaussians) {
+    const std::lock_guard lock(counting_);
+    progress.update(done_ += gaussians);
+  }
+
+  /// None where nothing is left to write.
+  std::vector<Levels> merged(const Piece& piece, Progress& progress) {
+    int coarsest = -1;
+    for (const File& file : piece.files) {
+      if (!file.is_there) coarsest = std::max(coarsest, file.level);
+    }
+    std::vector<Levels> levels(coarsest < 0 ? 0 : piece.leaves);
+    parallel_for(levels.size(), [&](std::size_t i) {
+      const Leaf& leaf = leaves_[piece.first_leaf + i];
+      levels[i] = levels_of(model_, leaf, coarsest);
+      count(progress, leaf.count(0));
+    });
+    return levels;
+  }
+
+  /// By what was written: rounded colours, scales and rotations cost as much as a level may.
+  void judge(const Piece& piece) {
+    write(piece.errors, json_of(judge_.alone(decoded_[&piece] = written(piece))));
+  }
+
+  /// As far as the folder has it.
+  bool is_judged(const Piece& piece) const {
+    return folder_.has(piece.errors) && std::ranges::all_of(piece.files, [&](const File& file) {
+             return folder_.has(file.folder + meta_name);
+           });
+  }
+
+  /// Those of which all pieces are judged.
+  void judge_scenes() {
+    for (const Scene& scene : scenes_) {
+      const auto pieces = std::span(pieces_).subspan(scene.first_piece, scene.pieces);
+      if (folder_.has(scene.losses) ||
+          !std::ranges::all_of(pieces, [&](const Piece& p) { return is_judged(p); }))
+        continue;
+      std::vector<Levels> leaves;
+      std::vector<LeafErrors> errors;
+      for (const Piece& piece : pieces) {
+        const auto kept = decoded_.extract(&piece);
+        std::ranges::move(kept ? std::move(kept.mapped()) : written(piece), std::back_inserter(leaves));
+        std::ranges::move(errors_of(piece), std::back_inserter(errors));
+      }
+      const int pictures = std::max(1, pictures_in_all / static_cast<int>(scenes_.size()));
+      write(scene.losses, json_of(settings_.levels > 1 ? judge_.together(leaves, errors, pictures)
+                                                       : std::vector<LossTogether>()));
+    }
+  }
+
+  void write(const std::string& name, const ordered_json& json) const {
+    const std::string text = json.dump() + "\n";
+    folder_.write(name, std::as_bytes(std::span(text)));
+  }
+
+  std::vector<Levels> written(const Piece& piece) const {
+    std::vector<Levels> levels(piece.leaves, Levels(gaussians_.size()));
+    parallel_for(piece.files.size(), [&](std::size_t i) {
+      const File& file = piece.files[i];
+      const auto level = static_cast<std::size_t>(file.level);
+      const std::string meta = file.folder + meta_name;
+      const SogSource sog(meta, parse_json(meta, folder_.read(meta)), [&](const std::string& name) {
+        const std::string text = folder_.read(file.folder + "/" + name);
+        const auto bytes = std::as_bytes(std::span(text));
+        return std::vector(bytes.begin(), bytes.end());
+      });
+      if (sog.count() != file.count) {
+        fail("{}: {} Gaussians, where {} were written: remove its folder, and start again", meta, sog.count(),
+             file.count);
+      }
+      std::vector<SogSource::Range> ranges;
+      std::size_t at = 0;
+      for (std::size_t k = 0; k < file.leaves; ++k) {
+        const std::size_t of_leaf = leaves_[file.first_leaf + k].count(file.level);
+        ranges.push_back({std::exchange(at, at + of_leaf), of_leaf, 0});
+      }
+      std::vector<Model> models = sog.decode_each(model_, ranges, *sog.textures());
+      for (std::size_t k = 0; k < file.leaves; ++k)
+        levels[file.first_leaf - piece.first_leaf + k][level] = std::move(models[k]);
+    });
+    return levels;
+  }
+
+  void write(const Piece& piece, std::span<const Levels> levels, Progress& progress) {
+    parallel_for(piece.files.size(), [&](std::size_t i) {
+      const File& file = piece.files[i];
+      if (file.is_there) return;
+      Model all = without_gaussians(model_);
+      for (std::size_t k = 0; k < file.leaves; ++k) {
+        const Levels& of_leaf = levels[file.first_leaf - piece.first_leaf + k];
+        const Model& level = of_leaf[static_cast<std::size_t>(file.level)];
+        append(all, level, 0, level.count());
+      }
+      const ZipEntries entries = sog_files(all);
+      for (std::size_t k = entries.size(); k-- > 0;)  // meta.json last
+        folder_.write(file.folder + "/" + entries[k].first, entries[k].second);
+      count(progress, file.count);
+    });
+  }
+
+  void tell_errors() {
+    const double more = lost_together();
+    for (const Piece& piece : pieces_) {
+      const std::vector<LeafErrors> told = errors_of(piece);
+      for (std::size_t i = 0; i < piece.leaves; ++i) {
+        Leaf& leaf = leaves_[piece.first_leaf + i];
+        leaf.pixels = json_of(told[i].pixels);
+        leaf.seen = json_of(told[i].seen);
+        for (std::size_t level = 0; level < gaussians_.size(); ++level)
+          leaf.lods[std::to_string(level)]["errors"] = json_of(told[i].of_level[level], more);
+      }
+    }
+  }
+
+  std::vector<LeafErrors> errors_of(const Piece& piece) const {
+    return leaf_errors(piece.errors, folder_.read(piece.errors), piece.leaves, gaussians_.size());
+  }
+
+  /// Over what each by itself would lose: the median, since eyes from which hardly anything is seen are far
+  /// off.
+  double lost_together() const {
+    std::vector<double> shares;
+    for (const Scene& scene : scenes_)
+      std::ranges::copy(loss_shares(scene.losses, folder_.read(scene.losses)), std::back_inserter(shares));
+    return shares.empty() ? 1.0 : std::clamp(quantile(shares, 0.5), 1.0 / more_most, more_most);
+  }
+
+  /// The node and the box around it, from the next leaf on.
+  std::pair<ordered_json, Box> node_json(const SpaceNode& node, std::size_t& next_leaf) const {
+    if (node.children.empty()) {
+      const Leaf& leaf = leaves_[next_leaf++];
+      return {
+          {{"bound", box_json(leaf.box)}, {"pixels", leaf.pixels}, {"seen", leaf.seen}, {"lods", leaf.lods}},
+          leaf.box};
+    }
+    Box around;
+    ordered_json children;
+    for (const SpaceNode& child : node.children) {
+      auto [json, box] = node_json(child, next_leaf);
+      children.push_back(std::move(json));
+      around.include(box.low, box.high);
+    }
+    return {{{"bound", box_json(around)}, {"children", std::move(children)}}, around};
+  }
+
+  const Model& model_;
+  const LevelSettings& settings_;
+  const LevelFolder& folder_;
+  const JudgeLevels& judge_;
+  SpaceTree tree_;
+  std::vector<Leaf> leaves_;
+  std::vector<Piece> pieces_;
+  std::vector<Scene> scenes_;
+  std::vector<std::string> filenames_;
+  std::map<int, int> files_of_level_;
+  std::vector<std::size_t> gaussians_;                   // by level
+  std::map<const Piece*, std::vector<Levels>> decoded_;  // until they are drawn together
+  std::mutex counting_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace
+
+LevelsWritten write_streamed_sog(const Model& model, const LevelSettings& settings, const LevelFolder& folder,
+                                 const JudgeLevels& judge) {
+  return LevelsWriter(model, settings, folder, judge).write();
+}
+
+}  // namespace binosplat

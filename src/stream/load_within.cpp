@@ -1,0 +1,53 @@
+#include "stream/load_within.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "formats/sog_parts.h"
+#include "formats/streamed_sog.h"
+#include "stream/detail.h"
+#include "stream/level_chooser.h"
+
+namespace binosplat {
+
+Model load_within(const std::filesystem::path& path, const DetailBudget& budget) {
+  const std::filesystem::path lod_meta = lod_meta_of(path);
+  const auto root = read_lod_meta(lod_meta);
+  if (!root)
+    fail("--gpu-memory: {} has no levels of detail to choose from; a streamed SOG's lod-meta.json has",
+         path.string());
+  const SogLevels levels(lod_meta, *root);
+  const std::vector<DetailPart> leaves = levels.leaves(*root);
+  check_leaves(lod_meta, leaves);
+  std::size_t file = 0;
+  while (!levels.there(file)) ++file;
+  std::size_t most = budget.gaussians(open_part(levels.files()[file]).degree());
+  const std::size_t around = levels.environment() ? open_part(*levels.environment()).count() : 0;
+  most -= std::min(most, around);
+  const std::vector<std::size_t> chosen = choose_levels(leaves, budget.eyes, most);
+  std::vector<std::size_t> of_level(static_cast<std::size_t>(levels.count()), 0);
+  std::size_t total = 0;
+  std::vector<int> numbers(leaves.size(), no_level);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    if (leaves[i].levels.empty()) continue;
+    const DetailPart::Level& level = leaves[i].levels[chosen[i]];
+    numbers[i] = level.number;
+    of_level[static_cast<std::size_t>(level.number)] += level.count;
+    total += level.count;
+  }
+  if (total > most) warn_of_no_room(lod_meta.string(), total, most);
+  std::string parts;
+  for (std::size_t level = 0; level < of_level.size(); ++level) {
+    if (of_level[level] > 0)
+      parts += fmt::format("{}{} Gaussians of level {}", parts.empty() ? "" : ", ", of_level[level], level);
+  }
+  log_info("{}: {}", lod_meta.string(), parts);
+  return load_taken(lod_meta, levels, levels.taken([&](std::size_t leaf) { return numbers[leaf]; }),
+                    format_of_chosen(levels));
+}
+
+}  // namespace binosplat

@@ -1,0 +1,139 @@
+#include "lab/axes.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "lab/settings.h"
+#include "support/errors.h"
+#include "support/program.h"
+
+namespace binosplat::lab {
+namespace {
+
+TEST(Axes, AreEveryCombination) {
+  const Axes axes = parse_axes("a.json", R"({"views": 3, "frames": 7, "repeats": 2, "eyes": [1, 2],
+    "sizes": ["own", "64x48"], "settings": [
+      {"tiles": ["aabb", "ellipse"], "tile": [8, 16]},
+      {"th": ["peripheral", "squared"], "transmittance": ["one", "last"], "tolerance": [0.5, 2]},
+      {"tiles": "ellipse"}]})");
+  EXPECT_EQ(axes.views, 3);
+  EXPECT_EQ(axes.frames, 7);
+  EXPECT_EQ(axes.repeats, 2);
+  EXPECT_EQ(axes.eyes, (std::vector{1, 2}));
+  EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own", "64x48"}));
+  // 2 x 2 and 2 x 2 x 2; the last block's only one is in the first.
+  std::vector<std::string> names;
+  for (const BenchSettings& s : axes.settings) names.push_back(describe(s));
+  EXPECT_EQ(names, (std::vector<std::string>{"aabb, tile 8", "aabb", "ellipse, tile 8", "ellipse",
+                                             "peripheral, 0.5", "peripheral, 2", "peripheral, last, 0.5",
+                                             "peripheral, last, 2", "squared, 0.5", "squared, 2",
+                                             "squared, last, 0.5", "squared, last, 2"}));
+  EXPECT_EQ(to_json(axes.settings.back()).dump(),
+            R"({"tiles":"ellipse","tile":16,"th":"squared","transmittance":"last","tolerance":2.0})");
+}
+
+TEST(Axes, ATolerancesFormerNameIsRead) {
+  const Axes axes = parse_axes("a", R"({"settings": [{"th": "squared", "loss": [0.5, 2]}]})");
+  ASSERT_EQ(axes.settings.size(), 2);
+  EXPECT_EQ(axes.settings[1].tolerance, 2.0f);
+  EXPECT_TRUE(test::fails_saying(
+      [] { parse_axes("a", R"({"settings": [{"th": "squared", "loss": 2, "tolerance": 1}]})"); },
+      {"'loss'"}));
+}
+
+TEST(Axes, HalfPrecisionIsOneAndNotExact) {
+  const Axes axes = parse_axes("a", R"({"settings": [{"precision": ["full", "half"]}]})");
+  ASSERT_EQ(axes.settings.size(), 2);
+  EXPECT_TRUE(is_exact(axes.settings[0]));
+  EXPECT_FALSE(is_exact(axes.settings[1]));
+  EXPECT_EQ(describe(axes.settings[1]), "ellipse, half");
+  EXPECT_EQ(to_json(axes.settings[1]).dump(),
+            R"({"tiles":"ellipse","tile":16,"th":"tau","precision":"half"})");
+}
+
+TEST(Axes, InsetsAreExactAndTheirPicturesAreNot) {
+  const Axes axes = parse_axes("a", R"({"settings": [{}, {"inset": 20, "context": [0.25, 0.5]},
+    {"inset": [10, 30], "th": "squared", "tolerance": 0.3}]})");
+  std::vector<std::string> names;
+  for (const BenchSettings& s : axes.settings) names.push_back(describe(s));
+  EXPECT_EQ(names, (std::vector<std::string>{
+                       "ellipse", "ellipse, inset 20, context 0.25", "ellipse, inset 20, context 0.5",
+                       "squared, inset 10, context 0.4, 0.3", "squared, inset 30, context 0.4, 0.3"}));
+  EXPECT_TRUE(is_exact(axes.settings[0]));
+  EXPECT_FALSE(is_exact(axes.settings[1]));
+  EXPECT_EQ(to_json(axes.settings[1]).dump(),
+            R"({"tiles":"ellipse","tile":16,"th":"tau","inset":20.0,"context":0.25})");
+}
+
+TEST(Axes, OnesThatAreLeftOut) {
+  const Axes axes = parse_axes("a", R"({"settings": [{}]})");
+  EXPECT_EQ(axes.settings.size(), 1);
+  EXPECT_TRUE(is_exact(axes.settings[0]));
+  EXPECT_EQ(axes.sizes, (std::vector<std::string>{"own"}));
+  EXPECT_EQ(axes.eyes, (std::vector{1}));
+}
+
+TEST(Axes, PresetsAreWellFormed) {
+  EXPECT_EQ(axes_presets(), (std::vector<std::string>{"foveate", "headset", "paper", "quick"}));
+  for (const std::string& name : axes_presets()) EXPECT_GT(load_axes(name).settings.size(), 5) << name;
+  EXPECT_EQ(load_axes("headset").eyes, std::vector{2});
+}
+
+TEST(Axes, ErrorsNameThePlace) {
+  const struct {
+    const char* text;
+    const char* said;
+  } cases[] = {
+      {"{", "a.json is not valid JSON"},
+      {R"({"frames": 1e999})", "a.json is not valid JSON"},
+      {"[]", "a.json: expected an object"},
+      {R"({"settings": []})", "expected a list 'settings'"},
+      {R"({"settings": {}})", "expected a list 'settings'"},
+      {R"({})", "expected a list 'settings'"},
+      {R"({"settings": [{}], "frmaes": 3})", "there is no key 'frmaes'"},
+      {R"({"settings": [{}, 5]})", "block 2 (counted from 1): expected an object"},
+      {R"({"settings": [{"tile": 12}]})", "tile 12: expected 8, 16 or 32"},
+      {R"({"settings": [{"tiles": "box"}]})", "'tiles': 'box' is not one of aabb, ellipse"},
+      {R"({"settings": [{"tiles": []}]})", "'tiles' is an empty list"},
+      {R"({"settings": [{"th": 3}]})", "'th': '3' is not one of tau"},
+      {R"({"settings": [{"th": "squared"}]})", "th needs a tolerance above 0"},
+      {R"({"settings": [{"tolerance": 1}]})", "tolerance has no effect with th tau"},
+      {R"({"settings": [{"transmittance": "last"}]})", "transmittance has no effect with th tau"},
+      {R"({"settings": [{"th": "squared", "tolerance": 1, "contrast": "final"}]})",
+       "there is no key 'contrast'"},
+      {R"({"settings": [{"th": "squared", "tolerance": 1, "transmittance": "both"}]})",
+       "'transmittance': 'both' is not one of one, depth, last"},
+      {R"({"settings": [{"th": "squared", "tolerance": -1}]})",
+       "'tolerance' -1: expected a number of 0 or more"},
+      {R"({"settings": [{"th": "squared", "tolerance": 1e99}]})", "'tolerance' 1e+99: expected"},
+      {R"({"settings": [{"context": 0.5}]})", "'context' has no effect without 'inset'"},
+      {R"({"settings": [{"inset": "wide"}]})", "'inset' \"wide\": expected a number"},
+      {R"({"settings": [{"inset": 0}]})", "inset 0: expected 1 to 120 degrees"},
+      {R"({"settings": [{"inset": 20, "context": 2}]})", "context 2: expected 0.05 to 1"},
+      {R"({"settings": [{}], "frames": 0})", "'frames' 0: expected a whole number from 1"},
+      {R"({"settings": [{}], "frames": 1.5})", "'frames' 1.5: expected a whole number"},
+      {R"({"settings": [{}], "eyes": 3})", "'eyes' 3: expected a whole number from 1 to 2"},
+      {R"({"settings": [{}], "sizes": "big"})", "'sizes' \"big\": expected own, WxH"},
+      {R"({"settings": [{}], "sizes": "0x5"})", "'sizes' \"0x5\""},
+  };
+  for (const auto& c : cases) {
+    try {
+      parse_axes("a.json", c.text);
+      ADD_FAILURE() << "accepted: " << c.text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::bad_input);
+      EXPECT_NE(std::string(error.what()).find(c.said), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_TRUE(test::fails_saying([] { load_axes("fovate"); }, {"fovate", "foveate, headset, paper, quick"}));
+  // Lists whose combinations no memory would hold.
+  const nlohmann::json block = {
+      {"th", "squared"}, {"tolerance", nlohmann::json(500, 0.5)}, {"tile", nlohmann::json(50, 8)}};
+  const std::string many = nlohmann::json{{"settings", {block}}}.dump();
+  EXPECT_TRUE(
+      test::fails_saying([&] { parse_axes("a.json", many); }, {"block 1", "more than 10000 combinations"}));
+}
+
+}  // namespace
+}  // namespace binosplat::lab

@@ -1,0 +1,75 @@
+// What levels lose in pictures of many parts.
+#include "lab/loss_together.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lab/level_errors.h"
+#include "scene/reduce.h"
+#include "support/gl.h"
+#include "support/models.h"
+
+namespace binosplat::lab {
+namespace {
+
+/// Leaves all around, which hide what is behind them; a level has every other Gaussian of the one before.
+std::vector<std::vector<Model>> leaves_around(int count) {
+  std::vector<std::vector<Model>> leaves;
+  for (int k = 0; k < count; ++k) {
+    std::vector<Model>& levels = leaves.emplace_back();
+    levels.push_back(test::random_model(static_cast<unsigned>(k) + 1, 64, 1));
+    const double height = 2.0 * (k + 0.5) / count - 1.0, turn = 2.4 * k,
+                 away = std::sqrt(1.0 - height * height);
+    const glm::vec3 at(4.0 * away * std::cos(turn), 4.0 * away * std::sin(turn), 4.0 * height);
+    for (glm::vec3& p : levels[0].position) p = 0.2f * (p - glm::vec3(0, 0, 3)) + at;
+    for (glm::vec3& of_one : levels[0].scale) of_one = glm::vec3(0.3f);
+    for (float& opacity : levels[0].opacity) opacity = 0.5f + 0.5f * opacity;
+    for (int level = 1; level < 4; ++level) {
+      std::vector<std::uint32_t> others;
+      for (std::uint32_t i = 0; i < levels.back().count(); i += 2) others.push_back(i);
+      levels.push_back(with_order(levels.back(), others));
+    }
+  }
+  return leaves;
+}
+
+TEST(LossTogether, GoesWithTheErrorsThatAreToldAndWithWhatIsDrawn) {
+  const std::vector<std::vector<Model>> leaves = leaves_around(80);
+  std::vector<LeafErrors> errors = level_errors(test::gl_context(), leaves);
+  const auto losses = loss_together(test::gl_context(), leaves, errors, 3);
+  ASSERT_EQ(losses.size(), 3u);
+  const auto again = loss_together(test::gl_context(), leaves, errors, 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_GT(losses[k].predicted, 0.0);
+    EXPECT_LE(losses[k].predicted, 1.01e-4) << "40 dB";
+    EXPECT_GT(losses[k].found, 0.0);
+    EXPECT_EQ(again.at(k).predicted, losses[k].predicted);
+    EXPECT_EQ(again[k].found, losses[k].found);
+  }
+
+  // Planted: a hundredth of what levels lose. Pictures that are taken to have 40 dB lose far more.
+  for (LeafErrors& leaf : errors)
+    for (auto& of_level : leaf.of_level)
+      for (auto& of_direction : of_level)
+        for (double& error : of_direction) error *= 0.01;
+  const auto wrong = loss_together(test::gl_context(), leaves, errors, 3);
+  ASSERT_EQ(wrong.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_GT(wrong[k].found / wrong[k].predicted, 4.0 * losses[k].found / losses[k].predicted);
+}
+
+TEST(LossTogether, IsNothingWhereLevelsAreTheSame) {
+  std::vector<std::vector<Model>> leaves = leaves_around(9);
+  for (std::vector<Model>& levels : leaves) levels.assign(levels.size(), levels[0]);
+  const auto errors = level_errors(test::gl_context(), leaves);
+  const auto losses = loss_together(test::gl_context(), leaves, errors, 2);
+  ASSERT_FALSE(losses.empty());
+  for (const LossTogether& loss : losses) {
+    EXPECT_EQ(loss.predicted, 0.0);
+    EXPECT_EQ(loss.found, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::lab

@@ -1,0 +1,253 @@
+#include "lab/page.h"
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "formats/image_file.h"
+#include "lab/chromium.h"
+#include "support/scenes.h"
+
+namespace binosplat::lab {
+namespace {
+
+using nlohmann::ordered_json;
+using test::TempFolder;
+
+/// A page with everything that pages have, right and wrong.
+Page sample_page() {
+  Page page;
+  page.title = "Speed against accuracy: fox </script> & <b>";
+  page.sentence = "The quickest of 12 settings above 40 dB takes 1.25 ms.";
+  page.facts = {{"scene", "fox.ply"}, {"Gaussians", 140131}, {"device", "llvmpipe (LLVM 15.0.6, 256 bits)"}};
+  Plot curve{{"frame time", "ms", true}, {"PSNR against exact", "dB"}, {}, false};
+  const char* const names[] = {"aabb (3D-GS)",      "obb (GSCore)",           "snug (Speedy-Splat)",
+                               "ellipse (FlashGS)", "peripheral (AdaGScale)", "squared",
+                               "squared, last",     "squared, last, final"};
+  for (int s = 0; s < 8; ++s) {
+    Series series{names[s], {}, s > 3, false, true};
+    for (int i = 0; i < 6; ++i) {
+      series.points.push_back({0.5 * std::pow(1.7, i) * (1 + 0.1 * s), 30.0 + 5.123456789 * i - s,
+                               "setting " + std::to_string(10 * s + i), i == s % 6});
+    }
+    curve.series.push_back(series);
+  }
+  curve.series[0].points.push_back({2.5, std::numeric_limits<double>::infinity(), "exact", false});
+  page.sections.push_back(
+      {"speed", "Accuracy against frame time", "Up and to the left is better.", curve, {}, ""});
+  Plot stages{{"setting", "", false, true}, {"time", "ms"}, {}, true};
+  for (const char* stage : {"project", "order", "pairs", "tile_sort", "ranges", "blend"}) {
+    Series series{stage, {}};
+    for (const char* setting : {"aabb", "ellipse", "squared, last"})
+      series.points.push_back(
+          {std::string(setting), 0.1 + 0.01 * std::strlen(stage) * std::strlen(setting), ""});
+    stages.series.push_back(series);
+  }
+  page.sections.push_back({"stages", "Where the time goes", "Blending takes most.", stages, {}, ""});
+  Table table{{"view", "pairs", "dB"},
+              {{"0001", 371596, 46.25}, {"0042", 308963, nullptr}, {"0089", 12, 0.000123456}}};
+  page.sections.push_back({"views", "By view", "The worst view is 0001.", {}, table, ""});
+  page.sections.push_back({"nothing", "Empty plot", "No view was measured.", Plot{}, {}, ""});
+  page.sections.push_back({"bare", "Empty table", "No view was measured.", {}, Table{{"view"}, {}}, ""});
+  page.sections.push_back({"broken", "Failed", "There are no photos.", {}, {}, "No photos: --photos DIR."});
+  return page;
+}
+
+const ordered_json data = {{"version", 1}, {"results", {1, 2, 3}}};
+
+ordered_json embedded(const std::string& text) {
+  const std::string start = "<script type=\"application/json\" id=\"page\">";
+  const std::size_t begin = text.find(start) + start.size();
+  return ordered_json::parse(text.substr(begin, text.find("</script>", begin) - begin));
+}
+
+TEST(Page, CarriesItsDataAndNeedsNoNetwork) {
+  const std::string text = html(sample_page(), data);
+  const ordered_json json = embedded(text);
+  EXPECT_EQ(json["data"], data);
+  EXPECT_EQ(json["title"], sample_page().title) << "what looks like a tag must come through";
+  const ordered_json& points = json["sections"][0]["plot"]["series"][0]["points"];
+  EXPECT_EQ(points[1]["y"].get<double>(), 35.123456789);
+  EXPECT_TRUE(points[6]["y"].is_null()) << "infinite";
+  for (const char* loads : {"<script src", "<link", "@import", "<img", "fetch(\"", "url(http"})
+    EXPECT_EQ(text.find(loads), std::string::npos) << loads;
+  EXPECT_NE(text.find("Copyright 2010-2023 Mike Bostock"), std::string::npos) << "licences travel along";
+  EXPECT_NE(text.find("Copyright 2020-2025 Observable"), std::string::npos);
+  EXPECT_NE(text.find("<title>Speed against accuracy: fox &lt;/script> &amp; &lt;b></title>"),
+            std::string::npos);
+}
+
+TEST(Page, RefusesTablesThatDoNotFit) {
+  Page page = sample_page();
+  page.sections[2].table->rows.push_back({"0100", 5});
+  EXPECT_THROW(html(page, data), std::logic_error);
+}
+
+TEST(Page, IsWrittenWholeOrNotAtAll) {
+  const TempFolder folder;
+  save_page(folder / "a" / "page.html", sample_page(), data);
+  EXPECT_EQ(folder.files(), (std::set<std::string>{"a/page.html"}));
+  EXPECT_EQ(test::read_text(folder / "a" / "page.html"), html(sample_page(), data));
+}
+
+/// The page as Chromium shows it; long.
+struct ShownPage : testing::Test {
+  TempFolder folder;
+  test::Chromium chromium;
+  std::filesystem::path file = folder / "page.html";
+  const Page page = sample_page();
+
+  void SetUp() override {
+    if (!test::switched_on("BINOSPLAT_LONG")) GTEST_SKIP() << "BINOSPLAT_LONG=1 opens the page in Chromium";
+    ASSERT_TRUE(test::has_chromium()) << "install the package chromium (packages/long.txt)";
+    save_page(file, page, data);
+  }
+  std::string ask(const std::string& script, int width = 1280, bool dark = false) const {
+    return chromium.ask(file, width, dark, script);
+  }
+};
+
+TEST_F(ShownPage, EveryNumberIsTheJsons) {
+  // Every cell of every table, in order: exact in data-value, to five digits as text.
+  const std::string cells =
+      ask("return JSON.stringify([...document.querySelectorAll('#views tbody tr')].map((row) =>"
+          "[...row.cells].map((c) => [c.textContent, c.dataset.value ?? null])));");
+  EXPECT_EQ(cells,
+            "[[[\"0001\",null],[\"371,596\",\"371596\"],[\"46.25\",\"46.25\"]],"
+            "[[\"0042\",null],[\"308,963\",\"308963\"],[\"–\",null]],"
+            "[[\"0089\",null],[\"12\",\"12\"],[\"1.23e-4\",\"0.000123456\"]]]");
+  const std::string numbers =
+      ask("return JSON.stringify([...document.querySelectorAll('#speed tbody tr')].map((row) =>"
+          "[row.cells[0].textContent, row.cells[2].dataset.value, row.cells[3].dataset.value ?? null]));");
+  const ordered_json rows = ordered_json::parse(numbers, nullptr, false);
+  ASSERT_EQ(rows.size(), 49) << numbers;
+  std::size_t k = 0;
+  for (const Series& series : page.sections[0].plot->series) {
+    for (const Point& p : series.points) {
+      EXPECT_EQ(rows[k][0], series.name);
+      EXPECT_EQ(std::stod(rows[k][1].get<std::string>()), std::get<double>(p.x));
+      EXPECT_EQ(rows[k][2].is_null(), !std::isfinite(p.y));
+      if (std::isfinite(p.y)) {
+        EXPECT_EQ(std::stod(rows[k][2].get<std::string>()), p.y);
+      }
+      ++k;
+    }
+  }
+}
+
+/// The largest distance of `y` from a straight line through the first and last of `x`, in px.
+double largest_bend(const std::vector<double>& x, const std::vector<double>& y) {
+  double bend = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double slope = (y.back() - y.front()) / (x.back() - x.front());
+    bend = std::max(bend, std::abs(y[i] - y.front() - slope * (x[i] - x.front())));
+  }
+  return bend;
+}
+
+TEST_F(ShownPage, PointsStandWhereTheirNumbersSay) {
+  const std::string places = ask(
+      "return JSON.stringify([...document.querySelectorAll('#speed figure svg g[aria-label=dot]')].map((g) =>"
+      "[...g.children].map((mark) => { const at = mark.getBoundingClientRect();"
+      "return [at.x + at.width / 2, at.y + at.height / 2]; })));");
+  const ordered_json found = ordered_json::parse(places, nullptr, false);
+  ASSERT_EQ(found.size(), 8) << places;
+  const Series& series = page.sections[0].plot->series[0];  // circles, whose middle is their box's
+  ASSERT_EQ(found[0].size(), 6) << "what is not finite is left out, the rest drawn";
+  std::vector<double> x, y, at_x, at_y;
+  for (std::size_t i = 0; i < 6; ++i) {
+    x.push_back(std::log(std::get<double>(series.points[i].x)));
+    y.push_back(series.points[i].y);
+    at_x.push_back(found[0][i][0]);
+    at_y.push_back(found[0][i][1]);
+  }
+  EXPECT_GT(at_x.back() - at_x.front(), 300);
+  EXPECT_LT(at_y.back() - at_y.front(), -100) << "more is up";
+  EXPECT_LT(largest_bend(x, at_x), 0.6);
+  EXPECT_LT(largest_bend(y, at_y), 0.6);
+  y[3] += 1.0;
+  EXPECT_GT(largest_bend(y, at_y), 0.6) << "a point in the wrong place goes unnoticed";
+}
+
+TEST_F(ShownPage, BarsAreAsLongAsTheirNumbers) {
+  const std::string widths =
+      ask("return JSON.stringify([...document.querySelectorAll('#stages figure svg g[aria-label=bar] rect')]"
+          ".map((bar) => Number(bar.getAttribute('width'))));");
+  const ordered_json found = ordered_json::parse(widths, nullptr, false);
+  ASSERT_EQ(found.size(), 18) << widths;
+  std::vector<double> values;
+  for (const Series& series : page.sections[1].plot->series) {
+    for (const Point& p : series.points) values.push_back(p.y);
+  }
+  const double px = (found[17].get<double>() + 1) / values[17];
+  for (std::size_t i = 0; i < 18; ++i) EXPECT_NEAR(found[i].get<double>() + 1, px * values[i], 0.6) << i;
+}
+
+TEST_F(ShownPage, WhatIsEmptyOrBrokenSaysSo) {
+  const std::string problems =
+      ask("return [...document.querySelectorAll('.problem')].map((p) => p.parentElement.id + ': ' +"
+          " p.textContent).join('|');");
+  EXPECT_EQ(
+      problems,
+      "speed: Not drawn, because a value is missing or not finite (an equal picture has no PSNR): exact.|"
+      "nothing: There is nothing to draw: no result has a value here.|"
+      "bare: This table is empty: nothing was measured.|broken: No photos: --photos DIR.");
+  // Data cut short.
+  std::string text = test::read_text(file);
+  text.replace(text.find("\"sections\""), 3, "");
+  test::write_text(file, text);
+  EXPECT_NE(ask("return document.querySelector('.problem').textContent;").find("are broken"),
+            std::string::npos);
+  Page empty;
+  empty.title = "Nothing";
+  save_page(file, empty, {});
+  EXPECT_EQ(ask("return document.querySelector('.problem').textContent;"), "There are no results.");
+}
+
+TEST_F(ShownPage, LegendSwitchesSeriesAndCopiesStandAlone) {
+  EXPECT_EQ(ask("const button = document.querySelectorAll('#speed .legend button')[2]; button.click();"
+                "return button.getAttribute('aria-pressed') + ' ' +"
+                "document.querySelectorAll('#speed figure svg g[aria-label=dot]').length;"),
+            "false 7");
+  // The SVG that is saved has its own colours and namespace, and is well formed.
+  const std::string saved = ask(
+      "let blob; window.URL.createObjectURL = (b) => { blob = b; return 'blob:x'; };"
+      "window.HTMLAnchorElement.prototype.click = () => {};"
+      "document.querySelector('#speed .tools button').click(); const text = await blob.text();"
+      "const parsed = new DOMParser().parseFromString(text, 'image/svg+xml');"
+      "return [parsed.documentElement.tagName, parsed.querySelectorAll('parsererror').length,"
+      "text.includes('--series-1: #0072b2'), text.includes('xmlns=\"http://www.w3.org/2000/svg\"')].join();");
+  EXPECT_EQ(saved, "svg,0,true,true");
+}
+
+TEST_F(ShownPage, FitsPhonesAndFollowsLightAndDark) {
+  const std::string fits =
+      "return [document.documentElement.scrollWidth, window.getComputedStyle(document.body).backgroundColor,"
+      "Math.min(...[...document.querySelectorAll('figure svg')].map((s) => s.getBoundingClientRect().width)),"
+      "[...document.querySelectorAll('section > p:not(.problem)')].every((p) => p.textContent.length > "
+      "10)].join(' ');";
+  EXPECT_EQ(ask(fits, 1280, false), "1280 rgb(255, 255, 255) 928 true");
+  EXPECT_EQ(ask(fits, 400, true), "400 rgb(21, 23, 26) 368 true");
+}
+
+// For eyes: BINOSPLAT_PAGES=FOLDER keeps the pictures.
+TEST_F(ShownPage, ScreenshotsAreMade) {
+  const char* kept = std::getenv("BINOSPLAT_PAGES");
+  const std::filesystem::path to = kept != nullptr ? std::filesystem::path(kept) : folder.path();
+  for (const bool dark : {false, true}) {
+    for (const int width : {1280, 400}) {
+      const auto png = to / fmt::format("page-{}-{}.png", width, dark ? "dark" : "light");
+      chromium.screenshot(file, width, 2200, dark, png);
+      const Image image = load_image(png);
+      EXPECT_EQ(image.height, 2200);
+      EXPECT_EQ(image.at(3, 3, 0) < 0.5f, dark);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace binosplat::lab

@@ -1,0 +1,377 @@
+#include "lab/streamed_sog_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+
+#include "base/parallel.h"
+#include "formats/content.h"
+#include "formats/streamed_sog.h"
+#include "scene/reduce.h"
+#include "stream/streamed_sog.h"
+#include "support/models.h"
+#include "support/program.h"
+
+namespace binosplat {
+namespace {
+
+using nlohmann::json;
+using WrittenFiles = std::map<std::string, std::string>;
+
+struct StreamedSogWriter : testing::Test {
+  StreamedSogWriter() { model.name = "model"; }
+
+  /// Files go to `files`; after `most` of them nothing more can be written.
+  LevelsWritten write(WrittenFiles& files, std::size_t most = SIZE_MAX) const {
+    std::mutex one_at_a_time;
+    return write_streamed_sog(
+        model, settings,
+        {[&](const std::string& name) {
+           const std::lock_guard lock(one_at_a_time);
+           return files.contains(name);
+         },
+         [&](const std::string& name) {
+           const std::lock_guard lock(one_at_a_time);
+           return files.at(name);
+         },
+         [&](const std::string& name, std::span<const std::byte> bytes) {
+           const std::lock_guard lock(one_at_a_time);
+           if (files.size() == most) throw std::runtime_error("interrupted");
+           EXPECT_FALSE(files.contains(name)) << name << " is written twice";
+           files[name] = as_text(bytes);
+         }},
+        {[&](std::span<const std::vector<Model>> leaves) {
+           for (const std::vector<Model>& levels : leaves) {
+             for (std::size_t k = 0; k < levels.size(); ++k)
+               append(judged[k], levels[k], 0, levels[k].count());
+           }
+           return errors_of(leaves);
+         },
+         [&](std::span<const std::vector<Model>> leaves, std::span<const LeafErrors> errors, int of_scene) {
+           EXPECT_EQ(leaves.size(), errors.size());
+           EXPECT_EQ(errors.back().pixels.at(1), 1000.0);
+           pictures.push_back(of_scene);
+           return together ? *together : of_all(leaves, errors);
+         }});
+  }
+
+  /// By what can be told apart in lod-meta.json.
+  static std::vector<LeafErrors> errors_of(std::span<const std::vector<Model>> leaves) {
+    std::vector<LeafErrors> errors;
+    for (const std::vector<Model>& levels : leaves) {
+      LeafErrors& leaf = errors.emplace_back();
+      leaf.pixels = {levels[0].position[0].x + 100.0, 1000.0};
+      leaf.seen.assign(detail_directions, {levels[0].position[0].y + 100.0, 4.0});
+      for (std::size_t level = 0; level < levels.size(); ++level)
+        leaf.of_level.emplace_back(
+            detail_directions,
+            std::vector{0.123456 * static_cast<double>(level), static_cast<double>(levels[level].count())});
+    }
+    return errors;
+  }
+
+  /// By what can be told apart in the factor that errors get.
+  static std::vector<LossTogether> of_all(std::span<const std::vector<Model>> leaves,
+                                          std::span<const LeafErrors> errors) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < leaves.size(); ++k) {
+      sum = 0.7 * sum + errors[k].seen[0][0];
+      for (const Model& level : leaves[k]) sum = 0.7 * sum + level.position[0].x;
+    }
+    return {{1.0, 1.0 + 0.4 * std::sin(sum)}};
+  }
+
+  Model read(const WrittenFiles& files, int lod) const {
+    const test::TempFolder folder;
+    for (const auto& [name, bytes] : files) {
+      std::filesystem::create_directories((folder / name).parent_path());
+      test::write_text(folder / name, bytes);
+    }
+    return load_streamed_sog(folder / "lod-meta.json", json::parse(files.at("lod-meta.json")), lod);
+  }
+
+  Model model = test::random_model(1, 3000, 1);
+  mutable std::vector<Model> judged = std::vector(4, without_gaussians(model));  // by level, all that was
+  mutable std::vector<int> pictures;                  // that were asked for, by scene
+  std::optional<std::vector<LossTogether>> together;  // of each
+  LevelSettings settings{.leaf = 200, .levels = 4};
+};
+
+/// Calls see(leaf) for each.
+void for_leaves(const json& node, const std::function<void(const json&)>& see) {
+  if (node.contains("lods")) see(node);
+  for (const json& child : node.value("children", json::array())) for_leaves(child, see);
+}
+
+TEST_F(StreamedSogWriter, JudgesWhatTheFilesHave) {
+  WrittenFiles files;
+  write(files);
+  for (int lod = 0; lod < 4; ++lod) {
+    const Model drawn = read(files, lod);
+    const Model& seen = judged[static_cast<std::size_t>(lod)];
+    EXPECT_EQ(seen.position, drawn.position) << lod;
+    EXPECT_EQ(seen.scale, drawn.scale) << lod;
+    EXPECT_EQ(seen.sh, drawn.sh) << lod;
+  }
+  EXPECT_NE(judged[0].sh, model.sh) << "planted: what was to be written";
+}
+
+bool within(const json& bound, const glm::vec3& p, double slack) {
+  for (int c = 0; c < 3; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    if (p[c] < bound["min"][k].get<double>() - slack || p[c] > bound["max"][k].get<double>() + slack)
+      return false;
+  }
+  return true;
+}
+
+/// How many Gaussians of a level that was read lie beyond the bounds of their leaf, where the offsets say
+/// that it is theirs. All of a level are in one file.
+int outside(const json& meta, const Model& level, int lod) {
+  int count = 0;
+  for_leaves(meta["tree"], [&](const json& leaf) {
+    const json& part = leaf["lods"][std::to_string(lod)];
+    const std::size_t first = part["offset"];
+    for (std::size_t i = first; i < first + part["count"].get<std::size_t>(); ++i)
+      count += i < level.count() && within(leaf["bound"], level.position[i], 1e-3) ? 0 : 1;
+  });
+  return count;
+}
+
+TEST_F(StreamedSogWriter, HalvesEachLevelWithinItsLeaves) {
+  together.emplace();  // no pictures
+  WrittenFiles files;
+  const LevelsWritten written = write(files);
+  json meta = json::parse(files.at("lod-meta.json"));
+  EXPECT_EQ(meta["version"], 1);
+  EXPECT_EQ(meta["lodLevels"], 4);
+  EXPECT_EQ(meta["counts"], json(written.gaussians));
+  EXPECT_EQ(meta["filenames"], json({"0_0/meta.json", "1_0/meta.json", "2_0/meta.json", "3_0/meta.json"}));
+  EXPECT_EQ(written.files, 4u);
+  EXPECT_EQ(written.kept, 0u);
+  std::size_t total = 0;
+  for (int lod = 0; lod < 4; ++lod) {
+    const Model level = read(files, lod);
+    EXPECT_EQ(level.count(), written.gaussians[static_cast<std::size_t>(lod)]);
+    total += level.count();
+    EXPECT_EQ(outside(meta, level, lod), 0);
+  }
+  EXPECT_EQ(meta["count"], total);
+  int leaves = 0;
+  for_leaves(meta["tree"], [&](const json& leaf) {
+    ++leaves;
+    const std::size_t finest = leaf["lods"]["0"]["count"];
+    EXPECT_LE(finest, 200u);
+    for (std::size_t lod = 0; lod < 4; ++lod) {
+      const json& part = leaf["lods"][std::to_string(lod)];
+      EXPECT_EQ(part["count"], (finest + (1u << lod) - 1) >> lod);
+      const double error = lod == 1 ? 0.123 : lod == 2 ? 0.247 : lod == 3 ? 0.37 : 0.0;
+      EXPECT_EQ(part["errors"],
+                json(std::vector(detail_directions, std::vector{error, part["count"].get<double>()})))
+          << "three digits";
+    }
+    EXPECT_EQ(leaf["pixels"][1], 1000.0);
+    EXPECT_EQ(leaf["seen"][1][1], 4.0);
+    const std::array of_leaf = {leaf["pixels"][0].get<double>(), leaf["seen"][1][0].get<double>()};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      EXPECT_GE(of_leaf[axis] - 100.0, leaf["bound"]["min"][axis].get<double>() - 0.5) << "of this leaf";
+      EXPECT_LE(of_leaf[axis] - 100.0, leaf["bound"]["max"][axis].get<double>() + 0.5);
+    }
+  });
+  EXPECT_GT(leaves, 16);
+  EXPECT_EQ(written.gaussians[0], model.count());
+  EXPECT_THROW(read(files, 4), Error);
+
+  // Planted: the offsets of two leaves are exchanged.
+  std::vector<json*> parts;
+  const std::function<void(json&)> walk = [&](json& node) {
+    if (node.contains("lods")) parts.push_back(&node["lods"]["0"]);
+    for (json& child : node["children"]) walk(child);
+  };
+  walk(meta["tree"]);
+  std::swap((*parts.front())["offset"], (*parts.back())["offset"]);
+  EXPECT_GT(outside(meta, read(files, 0), 0), 100);
+}
+
+TEST_F(StreamedSogWriter, TellsErrorsByWhatPicturesLoseTogether) {
+  settings.piece = 700;
+  settings.together = 1500;  // two pieces
+  together = {{1e-4, 2e-4}, {1e-4, 9e-4}, {1e-4, 1e-6}, {0.0, 0.0}};
+  WrittenFiles files;
+  write(files);
+  const auto scenes = pictures.size();
+  EXPECT_GE(scenes, 2u);
+  EXPECT_LE(scenes, 3u);
+  EXPECT_TRUE(std::ranges::all_of(pictures, [&](int of_scene) { return of_scene == 12 / int(scenes); }));
+  const auto expect_errors = [&](double expected) {
+    for_leaves(json::parse(files.at("lod-meta.json"))["tree"], [&](const json& leaf) {
+      EXPECT_EQ(leaf["lods"]["2"]["errors"][0][0], expected);
+      EXPECT_EQ(leaf["seen"][1][1], 4.0) << "the finest is as it was";
+    });
+  };
+  expect_errors(0.494);  // twice 0.247
+  for (const auto& absurd :
+       {std::vector<LossTogether>{{1e-9, 1e-3}}, std::vector<LossTogether>{{0.0, 0.0}}, {}}) {
+    files.clear();
+    together = absurd;
+    write(files);
+    expect_errors(!absurd.empty() && absurd[0].predicted > 0.0 ? 0.988 : 0.247);
+  }
+}
+
+TEST_F(StreamedSogWriter, GoesOnWithThePicturesThatAreLeft) {
+  settings.piece = 700;
+  settings.together = 1500;  // two pieces, or more
+  WrittenFiles files;
+  write(files);
+  EXPECT_FALSE(files.contains("together_2.json"));
+  WrittenFiles again = files;
+  again.erase("lod-meta.json");
+  again.erase("together_1.json");
+  pictures.clear();
+  write(again);
+  EXPECT_EQ(again, files);
+  EXPECT_EQ(pictures.size(), 1u);
+  again.erase("lod-meta.json");
+  again.erase("errors_1.json");
+  again.erase("together_0.json");
+  write(again);
+  EXPECT_EQ(again, files);
+}
+
+/// Gaussians by their places, which rounding hardly moves.
+std::vector<std::size_t> by_x(const Model& model) {
+  std::vector<std::size_t> order(model.count());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return model.position[a].x < model.position[b].x; });
+  return order;
+}
+
+TEST_F(StreamedSogWriter, KeepsTheModelAsItsFinestLevel) {
+  for (std::size_t i = 0; i < model.count(); ++i)  // farther apart than a step
+    model.position[i].x = static_cast<float>((i * 977) % model.count()) / 300.0f;
+  WrittenFiles files;
+  write(files);
+  const Model level = read(files, 0);
+  ASSERT_EQ(level.count(), model.count());
+  EXPECT_EQ(level.degree, model.degree);
+  const auto a = by_x(model), b = by_x(level);
+  double opacity = 0.0, colour = 0.0, scale = 0.0, place = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const std::size_t i = a[k], j = b[k];
+    place = std::max<double>(place, glm::distance(model.position[i], level.position[j]));
+    opacity = std::max<double>(opacity, std::abs(model.opacity[i] - level.opacity[j]));
+    scale = std::max<double>(scale, glm::distance(glm::log(model.scale[i]), glm::log(level.scale[j])));
+    for (std::size_t c = 0; c < 3; ++c)
+      colour = std::max<double>(colour, std::abs(model.sh[12 * i + c] - level.sh[12 * j + c]));
+  }
+  EXPECT_LT(place, 1e-3);
+  EXPECT_LE(opacity, 0.5 / 255.0 + 1e-6);
+  EXPECT_LT(scale, 0.1);
+  EXPECT_LT(colour, 0.05);
+}
+
+TEST_F(StreamedSogWriter, GoesOnAfterAnInterruption) {
+  WrittenFiles whole;
+  write(whole);
+  ASSERT_EQ(whole.size(), 4u * 8 + 3);  // seven pictures and meta.json each
+  for (const std::size_t most : {0, 1, 8, 9, 20, 32, 33, 34}) {
+    WrittenFiles files;
+    EXPECT_THROW(write(files, most), std::runtime_error);
+    ASSERT_EQ(files.size(), most);
+    EXPECT_FALSE(files.contains("lod-meta.json"));
+    std::size_t complete = 0;
+    for (int lod = 0; lod < 4; ++lod) {
+      const std::string folder = std::to_string(lod) + "_0/";
+      complete += files.contains(folder + "meta.json") ? 1 : 0;
+      // Pictures without meta.json are written again.
+      if (!files.contains(folder + "meta.json"))
+        std::erase_if(files, [&](const auto& file) { return file.first.starts_with(folder); });
+    }
+    EXPECT_EQ(files.size(), 8 * complete + files.count("errors_0.json") + files.count("together_0.json"))
+        << "meta.json is written last";
+    EXPECT_EQ(write(files).kept, complete);
+    EXPECT_EQ(files, whole) << most;
+  }
+  WrittenFiles again = whole;
+  again.erase("lod-meta.json");
+  EXPECT_EQ(write(again).kept, 4u);
+  EXPECT_EQ(again, whole);
+  again.erase("lod-meta.json");
+  again.erase("errors_0.json");
+  EXPECT_EQ(write(again).kept, 4u);
+  EXPECT_EQ(again, whole);
+}
+
+TEST_F(StreamedSogWriter, WritesAFewLeavesAFile) {
+  settings.file = 1000;   // five leaves of the finest level, or more
+  settings.piece = 1500;  // seven leaves, or more
+  WrittenFiles files;
+  const std::size_t count = write(files).files;
+  EXPECT_GT(count, 4u * 2);
+  const json meta = json::parse(files.at("lod-meta.json"));
+  std::map<std::string, std::size_t> ends;
+  for_leaves(meta["tree"], [&](const json& leaf) {
+    for (const auto& [lod, part] : leaf["lods"].items()) {
+      const std::string file = meta["filenames"][part["file"].get<std::size_t>()];
+      EXPECT_EQ(file[0], lod[0]);
+      EXPECT_EQ(part["offset"], ends[file]);
+      ends[file] += part["count"].get<std::size_t>();
+    }
+  });
+  EXPECT_EQ(ends.size(), count);
+  for (const auto& [file, end] : ends) {
+    EXPECT_LE(end, 1000u) << file;
+    EXPECT_EQ(json::parse(files.at(file))["count"], end) << file;
+  }
+  for (int lod = 0; lod < 4; ++lod)
+    EXPECT_EQ(read(files, lod).count(), meta["counts"][static_cast<std::size_t>(lod)]);
+  // The second half goes on by itself.
+  WrittenFiles half = files;
+  half.erase("lod-meta.json");
+  std::erase_if(half, [](const auto& file) { return file.first.starts_with("1_1/"); });
+  EXPECT_EQ(write(half).kept, count - 1);
+  EXPECT_EQ(half, files);
+}
+
+TEST_F(StreamedSogWriter, TakesOneGaussian) {
+  model = test::random_model(1, 1, 0);
+  WrittenFiles files;
+  EXPECT_EQ(write(files).gaussians, std::vector<std::size_t>(4, 1));
+  for (int lod = 0; lod < 4; ++lod) EXPECT_EQ(read(files, lod).count(), 1u);
+}
+
+// Farther apart than fp32 can tell, and larger.
+TEST_F(StreamedSogWriter, TakesWhatIsFarAway) {
+  for (std::size_t i = 0; i < model.count(); i += 100) {
+    model.position[i] *= 3e37f;
+    model.scale[i] = glm::vec3(3e38f);
+  }
+  WrittenFiles files;
+  const LevelsWritten written = write(files);
+  ASSERT_EQ(written.losses.size(), 1u);
+  EXPECT_NE(written.losses[0].find("30 of 3000 Gaussians have scales beyond e^-20 to e^20"),
+            std::string::npos);
+  for (int lod = 0; lod < 4; ++lod)
+    EXPECT_EQ(read(files, lod).count(), written.gaussians[static_cast<std::size_t>(lod)]);
+}
+
+TEST_F(StreamedSogWriter, WritesTheSameByOneThread) {
+  settings.file = 1000;
+  WrittenFiles many, one;
+  write(many);
+  const auto alone = without_helpers();
+  write(one);
+  EXPECT_EQ(one, many);
+}
+
+}  // namespace
+}  // namespace binosplat

@@ -1,0 +1,381 @@
+// Levels of detail that follow the eyes: leaves of 505 and 120, 247 and 65, 248 and 65 Gaussians.
+
+#include "stream/streamed_sog.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <set>
+#include <thread>
+
+#include "formats/model_file.h"
+#include "formats/streamed_sog.h"
+#include "scene/model_parts.h"
+#include "scene/reduce.h"
+#include "support/broken.h"
+#include "support/details.h"
+#include "support/fixtures.h"
+#include "support/ply_models.h"
+
+namespace binosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using test::beside_first;
+using test::beside_last;
+using test::Copy;
+using test::far_away;
+using test::view_at;
+
+/// A streamed SOG, and the parts of it that were read, in their order.
+struct Followed {
+  StreamedSog scene;
+  std::vector<Model> parts;
+  std::size_t read_at_last = 0;
+
+  explicit Followed(const fs::path& path) : scene(path), parts(scene.parts(), scene.like()) {}
+
+  Model read() {
+    read_at_last = 0;
+    scene.read([&](StreamedSog::Piece piece) {
+      parts.at(piece.part) = std::move(piece.model);
+      ++read_at_last;
+    });
+    Model all = scene.like();
+    for (const Model& part : parts) append(all, part, 0, part.count());
+    return all;
+  }
+
+  Model read(const std::vector<shared::View>& views, const DetailNeed& need) {
+    scene.choose(views, need);
+    return read();
+  }
+};
+
+/// The same without anything read before.
+Model read_anew(const fs::path& path, const glm::dvec3& eye, const DetailNeed& need) {
+  return Followed(path).read({view_at(eye)}, need);
+}
+
+TEST(StreamedSog, FineWhereItIsNearCoarseWhereItIsFar) {
+  REQUIRE_FIXTURES(folder);
+  const fs::path lod = folder / "sog/st-lod";
+  const Model fine = load_model(lod, {.lod = 0}), coarse = load_model(lod, {.lod = 1});
+  Followed scene(lod);
+  EXPECT_EQ(scene.scene.like().degree, 3);
+  EXPECT_TRUE(scene.scene.choose({}, {}));
+  EXPECT_TRUE(test::equal(scene.read(), coarse)) << "the coarsest, unless somebody looks";
+  EXPECT_FALSE(scene.scene.choose(std::vector{view_at(far_away)}, {30.0}));
+  EXPECT_TRUE(test::equal(scene.read({view_at(beside_last)}, {0.0}), fine)) << "0 px: nothing is fine enough";
+  EXPECT_TRUE(test::equal(scene.read({view_at(far_away)}, {30.0}), coarse));
+  const Model last = scene.read({view_at(beside_last)}, {30.0});
+  EXPECT_EQ(last.count(), 120u + 65 + 248);
+  const Model first = scene.read({view_at(beside_first)}, {30.0});
+  EXPECT_EQ(first.count(), 505u + 65 + 65);
+  EXPECT_EQ(first.position[0], fine.position[0]);
+  EXPECT_EQ(first.position[505], coarse.position[120]);
+  // A longer lens sees more of it.
+  EXPECT_TRUE(test::equal(scene.read({view_at(far_away, 1e5f)}, {30.0}), fine));
+}
+
+TEST(StreamedSog, WhatIsTakenFromTheLastModelIsWhatTheFilesSay) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) { meta["environment"] = "1_0/meta.json"; });
+  Followed scene(copy.path());
+  for (const glm::dvec3& eye : {far_away, beside_last, beside_first, far_away, beside_first}) {
+    const Model model = scene.read({view_at(eye)}, {30.0});
+    const Model anew = read_anew(copy.path(), eye, {30.0});
+    EXPECT_TRUE(test::equal(model, anew)) << eye.x;
+    Model faulty = anew;  // planted: a Gaussian of another level
+    std::swap(faulty.position.front(), faulty.position.back());
+    EXPECT_FALSE(test::equal(model, faulty));
+  }
+}
+
+TEST(StreamedSog, OnlyWhatSwitchesIsReadAndWhatShrinksFirst) {
+  REQUIRE_FIXTURES(folder);
+  Followed scene(folder / "sog/st-lod");
+  scene.read({view_at(beside_last)}, {30.0});
+  EXPECT_EQ(scene.read_at_last, 3u);
+  scene.read({view_at(beside_last)}, {30.0});
+  EXPECT_EQ(scene.read_at_last, 0u);
+  scene.scene.choose(std::vector{view_at(beside_first)}, {30.0});
+  std::vector<std::size_t> counts;
+  const auto take = [&](const StreamedSog::Piece& piece) { counts.push_back(piece.model.count()); };
+  scene.scene.read(take, [] { return false; });
+  EXPECT_EQ(counts, std::vector<std::size_t>{65}) << "a file, and then it was asked to end";
+  EXPECT_TRUE(scene.scene.choose(std::vector{view_at(beside_first)}, {30.0}));
+  scene.scene.read(take);
+  EXPECT_EQ(counts, (std::vector<std::size_t>{65, 505}));
+  scene.scene.forget();
+  scene.read({view_at(beside_first)}, {30.0});
+  EXPECT_EQ(scene.read_at_last, 3u);
+}
+
+TEST(StreamedSog, OneChoiceForBothEyes) {
+  REQUIRE_FIXTURES(folder);
+  const fs::path lod = folder / "sog/st-lod";
+  const shared::View left = view_at(beside_first), right = view_at(beside_last);
+  Followed scene(lod), swapped(lod);
+  const Model both = scene.read({left, right}, {30.0});
+  EXPECT_EQ(both.count(), 505u + 65 + 248) << "each part as the nearer eye sees it";
+  EXPECT_TRUE(test::equal(both, swapped.read({right, left}, {30.0})));
+  EXPECT_FALSE(test::equal(both, read_anew(lod, beside_first, {30.0}))) << "planted: the left eye's choice";
+}
+
+TEST(StreamedSog, AHeadThatTremblesSwitchesOnce) {
+  REQUIRE_FIXTURES(folder);
+  StreamedSog scene(folder / "sog/st-lod");
+  const auto place = [](int n) { return glm::dvec3(n % 2 == 0 ? -45.0 : -47.0, -1, 3); };
+  // The outer leaves are seen 5.6 and 5.5 px coarse from the one place, 5.3 from the other.
+  int switches = 0;
+  std::set<std::size_t> anew;
+  for (int n = 0; n < 20; ++n) {
+    if (scene.choose(std::vector{view_at(place(n))}, {5.4})) {
+      ++switches;
+      scene.read([](const StreamedSog::Piece&) {});
+    }
+    anew.insert(read_anew(folder / "sog/st-lod", place(n), {5.4}).count());
+  }
+  EXPECT_EQ(switches, 1) << "the first";
+  EXPECT_EQ(anew.size(), 2u) << "without a memory it would switch with each step";
+}
+
+TEST(StreamedSog, KeepsToTheRoomThereIs) {
+  REQUIRE_FIXTURES(folder);
+  Followed scene(folder / "sog/st-lod");
+  for (const std::size_t most : {1000, 999, 700, 440, 250}) {
+    for (const glm::dvec3& eye : {beside_first, far_away, beside_last})
+      EXPECT_LE(scene.read({view_at(eye)}, {0.0, most}).count(), most);
+  }
+}
+
+TEST(StreamedSog, SaysWhatItCannotOpen) {
+  REQUIRE_FIXTURES(folder);
+  EXPECT_TRUE(is_streamed_sog(folder / "sog/st-lod"));
+  for (const char* other : {"sog/st-lod/0_0", "sog/st-train-sh3.sog", "nothing"}) {
+    EXPECT_FALSE(is_streamed_sog(folder / other));
+    EXPECT_TRUE(test::fails_saying([&] { StreamedSog scene(folder / other); },
+                                   {"--detail", "no levels of detail", other}));
+  }
+  const Copy copy(folder / "sog/st-lod");  // what is not there is not chosen
+  fs::remove_all(copy.path() / "0_0");
+  EXPECT_EQ(read_anew(copy.path(), beside_first, {0.0}).count(), 250u);
+  fs::remove_all(copy.path() / "1_0");
+  EXPECT_TRUE(test::fails_saying([&] { StreamedSog scene(copy.path()); },
+                                 {"lod-meta.json", "none of its levels of detail is there"}));
+}
+
+/// The tree's leaves, and what their level 1 loses in pixels 0.02 and 0.04 wide, from everywhere.
+const std::vector<std::pair<const char*, std::vector<double>>> learnt = {
+    {"/tree/children/0", {40.0, 10.0}},
+    {"/tree/children/1/children/0", {20.0, 5.0}},
+    {"/tree/children/1/children/1", {30.0, 6.0}}};
+
+/// Such errors in lod-meta.json.
+void teach(nlohmann::json& meta) {
+  for (const auto& [pointer, errors] : learnt) {
+    nlohmann::json& leaf = meta[nlohmann::json::json_pointer(pointer)];
+    const auto from_everywhere = [](const std::vector<double>& by_width) {
+      return std::vector(detail_directions, by_width);
+    };
+    leaf["pixels"] = {0.02, 0.04};
+    leaf["seen"] = from_everywhere({4000.0, 1000.0});
+    leaf["lods"]["0"]["errors"] = from_everywhere({0.0, 0.0});
+    leaf["lods"]["1"]["errors"] = from_everywhere(errors);
+  }
+}
+
+/// A picture of 100 x 100 px of all that is ahead.
+shared::View ahead(const glm::dvec3& eye, float forward = 1.0f) {
+  shared::View view = view_at(eye);
+  view.row_x = {forward, 0, 0, 0};
+  view.row_y = {0, 1, 0, 0};
+  view.row_z = {0, 0, forward, 0};
+  view.lens = {100, 100, 50, 50};
+  view.width = view.height = 100;
+  return view;
+}
+
+TEST(StreamedSog, ByErrorsThatItsFileTells) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", teach);
+  Followed scene(copy.path());
+  EXPECT_FALSE(scene.scene.predicted_psnr());
+  // So far away its pixels are 3.8 to 4 wide, and a 10,000th of the pixels is left that the narrowest show.
+  const std::size_t coarse = scene.read({ahead(far_away)}, {.db = 40.0}).count();
+  EXPECT_EQ(coarse, 250u);
+  const double lost = 4000.0 * 0.02 * 0.02 / (3.9 * 3.9) * 21.0 / 1000.0 / 1e4;
+  EXPECT_NEAR(*scene.scene.predicted_psnr(), -10.0 * std::log10(lost), 1.0);
+  std::size_t last = coarse;
+  for (const double db : {60.0, 66.0, 69.0, 72.0, 80.0}) {
+    const std::size_t count = scene.read({ahead(far_away)}, {.db = db}).count();
+    EXPECT_GE(count, last) << db;
+    EXPECT_GE(*scene.scene.predicted_psnr(), db - 0.5) << db;
+    last = count;
+  }
+  EXPECT_EQ(last, 1000u);
+  // Nothing of it is seen: nothing is lost.
+  Followed behind(copy.path());
+  behind.scene.choose(std::vector{ahead(far_away, -1.0f)}, {.db = 40.0});
+  EXPECT_TRUE(std::isinf(*behind.scene.predicted_psnr()));
+  EXPECT_TRUE(behind.scene.choose({}, {.db = 40.0}));
+  EXPECT_FALSE(behind.scene.predicted_psnr()) << "the coarsest, unless somebody looks";
+  EXPECT_EQ(behind.read().count(), 250u);
+}
+
+// Its finest level shows nothing, they say, and another does: nobody knows what that loses of a picture.
+TEST(StreamedSog, WhatIsNotKnownIsRefined) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  for (const double seen : {4000.0, 1e-20, 0.0}) {
+    copy.edit("lod-meta.json", [&](nlohmann::json& meta) {
+      teach(meta);
+      for (nlohmann::json& of : meta["tree"]["children"][0]["seen"]) of[1] = seen;
+    });
+    StreamedSog scene(copy.path());
+    scene.choose(std::vector{ahead(far_away)}, {.db = 40.0});
+    EXPECT_EQ(scene.chosen()[0] == 0, seen < 1.0) << seen;
+    EXPECT_NE(scene.chosen()[1], 0u);
+  }
+}
+
+/// What the view shows of each part: so many px, a thousand at most, and 21 units away.
+DetailSeen showing(const StreamedSog& scene, const std::vector<double>& areas) {
+  DetailSeen seen{{std::vector<SeenPart>(scene.parts())}, scene.chosen()};
+  for (std::size_t p = 0; p < areas.size(); ++p) seen.by_view[0][p] = {areas[p], 21.0};
+  return seen;
+}
+
+TEST(StreamedSog, FinerLevelsStayWhereThereIsRoom) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", teach);
+  const std::vector<shared::View> views = {ahead({0, 0, -20})};
+  const auto count = [&](const DetailNeed& need, int after_ms) {
+    Followed scene(copy.path());
+    scene.scene.choose({}, {});
+    const std::vector<double> all = {1000, 1000, 1000}, first_two = {1000, 1000, 1e-9};
+    scene.scene.choose(views, need, showing(scene.scene, all));
+    EXPECT_EQ(scene.read().count(), need.most == 999 ? 615u : 1000u);
+    const auto chosen = scene.scene.chooser().choose(views, need, showing(scene.scene, first_two));
+    EXPECT_EQ(chosen->lingers, need.stays_s > 0.0 && need.most != 999);
+    scene.scene.choose(chosen);
+    scene.read();
+    std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+    scene.scene.choose(views, need, showing(scene.scene, first_two));
+    return scene.read().count();
+  };
+  EXPECT_EQ(count({.db = 42.0}, 0), 817u) << "none stays";
+  EXPECT_EQ(count({.db = 42.0, .stays_s = 100.0}, 0), 1000u);
+  EXPECT_EQ(count({.most = 999, .db = 42.0, .stays_s = 100.0}, 0), 817u) << "no room";
+  EXPECT_EQ(count({.db = 42.0, .stays_s = 0.05}, 100), 817u) << "not for ever";
+}
+
+TEST(StreamedSog, WhatSavesMostIsReadFirst) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  fs::copy(copy.path() / "0_0", copy.path() / "0_1", fs::copy_options::recursive);
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    teach(meta);
+    meta["filenames"].push_back("0_1/meta.json");
+    meta["tree"]["children"][1]["children"][1]["lods"]["0"]["file"] = 2;
+  });
+  const std::vector<shared::View> views = {ahead({0, 0, -20})};
+  for (const bool last_is_first : {false, true}) {
+    Followed scene(copy.path());
+    scene.scene.choose({}, {});
+    scene.read();
+    const double much = 1000.0, little = 100.0;
+    scene.scene.choose(
+        views, {.db = 80.0},
+        showing(scene.scene, {last_is_first ? little : much, little, last_is_first ? much : little}));
+    std::vector<std::size_t> order;
+    std::vector<double> worth;
+    scene.scene.read([&](const StreamedSog::Piece& piece) {
+      order.push_back(piece.part);
+      worth.push_back(scene.scene.worth(piece));
+    });
+    ASSERT_EQ(order.size(), 3u);
+    EXPECT_EQ(order[last_is_first ? 0 : 2], 2u);
+    EXPECT_GT(worth[last_is_first ? 0 : 1], 0.0);
+    EXPECT_EQ(std::ranges::max_element(worth) - worth.begin(), 0);
+    scene.scene.choose({}, {});
+    scene.scene.read([&](const StreamedSog::Piece& piece) {
+      EXPECT_TRUE(std::isinf(scene.scene.worth(piece))) << "what shrinks comes before all";
+    });
+  }
+}
+
+TEST(StreamedSog, SaysWhatIsWrongWithErrors) {
+  REQUIRE_FIXTURES(folder);
+  const auto says = [&](auto edit, std::initializer_list<std::string> parts) {
+    const Copy copy(folder / "sog/st-lod");
+    copy.edit("lod-meta.json", [&](nlohmann::json& meta) {
+      teach(meta);
+      edit(meta["tree"]["children"][0]);
+    });
+    return test::fails_saying([&] { StreamedSog(copy.path()).choose({}, {.db = 40.0}); }, parts);
+  };
+  using Json = nlohmann::json;
+  const std::string leaf_key = "lod-meta.json, key 'tree.children[0].";
+  for (const auto& [wrong, text] : {std::pair<Json, std::string>{0, "': expected a list"},
+                                    {Json::array(), "': expected one width at least"},
+                                    {{0.0, 1.0}, "[0]': expected a width above 0, found 0"},
+                                    {{0.5, 0.5}, "[1]': expected a width above 0.5, found 0.5"},
+                                    {{0.5, 1e21}, "[1]': expected at most 1e+20, found 1e+21"},
+                                    {{0.5, "x"}, "[1]': expected a finite number"}}) {
+    EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["pixels"] = wrong; }, {leaf_key + "pixels" + text}))
+        << wrong;
+  }
+  const Json right = std::vector(detail_directions, std::vector(2, 1.0));
+  const auto with = [&](std::size_t d, const Json& wrong) {
+    Json json = right;
+    json[d] = wrong;
+    return json;
+  };
+  for (const auto& [wrong, text] : {std::pair<Json, std::string>{nullptr, "': expected a list"},
+                                    {Json::array(), "': expected 6 values, found 0"},
+                                    {with(2, 3), "[2]': expected a list"},
+                                    {with(5, {1.0}), "[5]': expected 2 values, found 1"},
+                                    {with(0, {1, 2, 3}), "[0]': expected 2 values, found 3"},
+                                    {with(1, {1.0, -1.0}), "[1][1]': expected 0 or more, found -1"},
+                                    {with(4, {1e308, 1.0}), "[4][0]': expected at most 1e+20, found 1e+308"},
+                                    {with(1, {nullptr, 1.0}), "[1][0]': expected a finite number"},
+                                    {with(1, {1.0, "x"}), "[1][1]': expected a finite number"}}) {
+    EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["lods"]["1"]["errors"] = wrong; },
+                     {leaf_key + "lods.1.errors" + text}))
+        << wrong;
+    EXPECT_TRUE(says([&wrong = wrong](Json& leaf) { leaf["seen"] = wrong; }, {leaf_key + "seen" + text}))
+        << wrong;
+  }
+  EXPECT_TRUE(says([](Json& leaf) { leaf["lods"]["1"].erase("errors"); },
+                   {"the key 'tree.children[0].lods.1.errors' is missing"}));
+  EXPECT_TRUE(says([](Json& leaf) { leaf.erase("seen"); }, {"the key 'tree.children[0].seen' is missing"}));
+  // Without widths they are nobody's, and without any there is nothing to go by.
+  EXPECT_FALSE(says([](Json& leaf) { leaf.erase("pixels"), leaf["lods"]["1"]["errors"] = -1; }, {""}));
+  StreamedSog none(folder / "sog/st-lod");
+  EXPECT_TRUE(
+      test::fails_saying([&] { none.choose(std::vector{ahead(far_away)}, {.db = 40.0}); },
+                         {"--detail 40dB", "st-lod/lod-meta.json has no errors of its levels to go by",
+                          "`binosplat levels` writes them", "--detail PX"}));
+}
+
+TEST(StreamedSog, RoomIsMadeForWhatIsThere) {
+  REQUIRE_FIXTURES(folder);
+  const Copy copy(folder / "sog/st-lod");
+  copy.edit("lod-meta.json", [](nlohmann::json& meta) {
+    meta["tree"]["children"][1]["children"][1]["lods"]["0"]["count"] = 4'000'000'000u;
+  });
+  StreamedSog scene(copy.path());
+  scene.choose(std::vector{view_at(beside_last)}, {0.0});
+  EXPECT_TRUE(test::fails_saying([&] { scene.read([](const StreamedSog::Piece&) {}); },
+                                 {"Gaussians 752 to 4000000751 of", "0_0/meta.json", "which has 1000"}));
+}
+
+}  // namespace
+}  // namespace binosplat
