@@ -127,7 +127,7 @@ TEST_F(LevelsTest, TakeNoFolderOfOthers) {
   EXPECT_EQ(hashed_contents(out), before);
 }
 
-// 35.4 and 30.7 dB; where areas leave the low-pass out 32.5 and less (docs/levels.md).
+// 35.4 and 30.7 dB; where areas leave the low-pass out 32.5 and less.
 TEST(LevelsScenes, LookLikeFox) {
   REQUIRE_SCENE("fox", scene);
   const test::TempFolder folder;
