@@ -40,7 +40,7 @@ void blend_block(const std::vector<Splat>& splats, std::span<const std::uint32_t
     bool is_dark = true;
     for (Pixel& p : pixels) {
       const auto ignore = [](auto&&...) {};
-      p.ended = p.ended || blend_on(p.sum, splats, some, p.at.x, p.at.y, {}, ignore);
+      p.ended = p.ended || blend_on(p.sum, splats, some, p.at, {}, ignore);
       is_dark = is_dark && (p.ended || p.sum.transmittance <= loss.last_light);
     }
     if (!is_dark || !(loss.last_light > 0.0) || from + step >= list.size()) continue;
@@ -84,7 +84,7 @@ BlendCounts blend_tile(const std::vector<Splat>& splats, const TileLists& lists,
         ++walked;
         if (verdict == Verdict::blended) ++counts.visible;
       };
-      put(blend_pixel(splats, list, x, y, faults, count), x, y, picture);
+      put(blend_pixel(splats, list, {x, y}, faults, count), x, y, picture);
       walked_by_tile = std::max(walked_by_tile, walked);
     }
   }

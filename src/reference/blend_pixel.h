@@ -44,14 +44,14 @@ inline void add(PixelSum& sum, const Splat& splat, double z, double alpha) {
   sum.transmittance *= 1 - alpha;
 }
 
-/// Blends the list at pixel (x, y) behind what there is; whether the pixel ended. For each Gaussian, before
+/// Blends the list at a pixel behind what there is; whether the pixel ended. For each Gaussian, before
 /// it is added, visit(index, alpha, sum so far, verdict) is called.
 template <typename Visit>
-bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x,
-              int y, Faults faults, const Visit& visit) {
+bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
+              const glm::ivec2& pixel, Faults faults, const Visit& visit) {
   for (const std::uint32_t i : list) {
     const Splat& splat = splats[i];
-    const double alpha = alpha_at(splat, x, y);
+    const double alpha = alpha_at(splat, pixel.x, pixel.y);
     if (alpha < ALPHA_MIN) {
       visit(i, alpha, sum, Verdict::skipped);
       continue;
@@ -59,7 +59,7 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
     const bool stop = sum.transmittance * (1 - alpha) < TRANSMITTANCE_MIN;
     visit(i, alpha, sum, stop ? Verdict::stopped : Verdict::blended);
     if (stop && !faults.stop_late) return true;
-    add(sum, splat, depth_at(splat, x, y), alpha);
+    add(sum, splat, depth_at(splat, pixel.x, pixel.y), alpha);
     if (stop) return true;
   }
   return false;
@@ -67,10 +67,10 @@ bool blend_on(PixelSum& sum, const std::vector<Splat>& splats, std::span<const s
 
 /// The whole of it.
 template <typename Visit>
-PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y,
-                     Faults faults, const Visit& visit) {
+PixelSum blend_pixel(const std::vector<Splat>& splats, std::span<const std::uint32_t> list,
+                     const glm::ivec2& pixel, Faults faults, const Visit& visit) {
   PixelSum sum;
-  blend_on(sum, splats, list, x, y, faults, visit);
+  blend_on(sum, splats, list, pixel, faults, visit);
   return sum;
 }
 

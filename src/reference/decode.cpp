@@ -28,28 +28,28 @@ std::vector<double> run(const Network& network, const std::vector<double>& input
 }
 
 // What the eye adds to an anchor's feature.
-struct Sight {
+struct AnchorRay {
   glm::dvec3 direction;  // from the eye to the anchor, unit length
   double distance;
 };
 
 // feature, direction, and distance where the network takes it.
 std::vector<double> inputs_of(const Network& network, const std::vector<double>& feature,
-                              const Sight& sight) {
+                              const AnchorRay& ray) {
   std::vector<double> inputs = feature;
-  for (int c = 0; c < 3; ++c) inputs.push_back(sight.direction[c]);
-  if (network.distance) inputs.push_back(sight.distance);
+  for (int c = 0; c < 3; ++c) inputs.push_back(ray.direction[c]);
+  if (network.distance) inputs.push_back(ray.distance);
   return inputs;
 }
 
-// The anchor's feature; with a feature bank mixed, by the sight, with itself at half and a quarter of its
+// The anchor's feature; with a feature bank mixed, by that ray, with itself at half and a quarter of its
 // resolution.
-std::vector<double> feature_of(const Scaffold& scaffold, std::size_t n, const Sight& sight) {
+std::vector<double> feature_of(const Scaffold& scaffold, std::size_t n, const AnchorRay& ray) {
   const std::size_t count = scaffold.feature_count;
   const float* stored = &scaffold.feature[n * count];
   std::vector<double> feature(stored, stored + count);
   if (!scaffold.bank) return feature;
-  std::vector<double> weight = run(*scaffold.bank, inputs_of(*scaffold.bank, {}, sight));
+  std::vector<double> weight = run(*scaffold.bank, inputs_of(*scaffold.bank, {}, ray));
   double sum = 0.0;
   const double most = *std::max_element(weight.begin(), weight.end());
   for (double& w : weight) sum += w = std::exp(w - most);
@@ -85,12 +85,12 @@ Decoded decode_one(const Scaffold& scaffold, std::size_t id, double alpha, const
 std::vector<Decoded> decode_anchor(const Scaffold& scaffold, std::size_t n, const glm::dvec3& eye) {
   const glm::dvec3 towards = glm::dvec3(scaffold.position[n]) - eye;
   const double distance = glm::length(towards);
-  const Sight sight{towards / distance, distance};
-  const std::vector<double> feature = feature_of(scaffold, n, sight);
-  const std::vector<double> opacity = run(scaffold.opacity, inputs_of(scaffold.opacity, feature, sight));
+  const AnchorRay ray{towards / distance, distance};
+  const std::vector<double> feature = feature_of(scaffold, n, ray);
+  const std::vector<double> opacity = run(scaffold.opacity, inputs_of(scaffold.opacity, feature, ray));
   const std::vector<double> covariance =
-      run(scaffold.covariance, inputs_of(scaffold.covariance, feature, sight));
-  std::vector<double> inputs = inputs_of(scaffold.colour, feature, sight);
+      run(scaffold.covariance, inputs_of(scaffold.covariance, feature, ray));
+  std::vector<double> inputs = inputs_of(scaffold.colour, feature, ray);
   const std::size_t row = scaffold.appearance * scaffold.appearance_size;
   for (std::size_t i = 0; i < scaffold.appearance_size; ++i) inputs.push_back(scaffold.appearances[row + i]);
   const std::vector<double> colour = run(scaffold.colour, inputs);

@@ -28,10 +28,19 @@ struct Fragment {
   int bin;
 };
 
+/// A view's splats by tile, and the transmittance that each Gaussian is taken to meet; empty: what it does
+/// meet.
+struct Listed {
+  const std::vector<Splat>& splats;
+  const TileLists& lists;
+  const shared::View& view;
+  std::span<const double> transmittances;
+};
+
 /// Calls visit(pixel, its fragments front to back) for every pixel of tiles [begin, end).
 template <typename Visit>
-void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, const shared::View& view,
-                    std::span<const double> bounds, std::size_t begin, std::size_t end, const Visit& visit) {
+void for_each_pixel(const Listed& listed, std::size_t begin, std::size_t end, const Visit& visit) {
+  const auto& [splats, lists, view, transmittances] = listed;
   for (std::size_t t = begin; t < end; ++t) {
     const auto tx = static_cast<std::uint32_t>(t % lists.tiles_x),
                ty = static_cast<std::uint32_t>(t / lists.tiles_x);
@@ -42,12 +51,13 @@ void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, co
     for (std::uint32_t y = ty * lists.tile_size; y < bottom; ++y) {
       for (std::uint32_t x = tx * lists.tile_size; x < right; ++x) {
         fragments.clear();
-        blend_pixel(splats, list, static_cast<int>(x), static_cast<int>(y), {},
-                    [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
-                      if (verdict != Verdict::blended) return;
-                      const double transmittance = bounds.empty() ? before.transmittance : bounds[i];
-                      fragments.push_back({i, alpha, bin_of(alpha * transmittance)});
-                    });
+        const auto keep = [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
+          if (verdict != Verdict::blended) return;
+          const double transmittance =
+              listed.transmittances.empty() ? before.transmittance : listed.transmittances[i];
+          fragments.push_back({i, alpha, bin_of(alpha * transmittance)});
+        };
+        blend_pixel(splats, list, {x, y}, {}, keep);
         visit(std::size_t{y} * view.width + x, fragments);
       }
     }
@@ -59,6 +69,7 @@ void for_each_pixel(const std::vector<Splat>& splats, const TileLists& lists, co
 std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLists& lists,
                                  const shared::View& view, std::span<const double> bounds,
                                  std::span<const double> shares) {
+  const Listed listed{splats, lists, view, bounds};
   const std::size_t tiles = lists.begin.size() - 1;
   std::array<std::uint64_t, bins + 1> below{};  // fragments in the bins below
   std::mutex adding;
@@ -67,7 +78,7 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
     const auto count = [&](std::size_t, const std::vector<Fragment>& fragments) {
       for (const Fragment& fragment : fragments) ++counts[static_cast<std::size_t>(fragment.bin)];
     };
-    for_each_pixel(splats, lists, view, bounds, begin, end, count);
+    for_each_pixel(listed, begin, end, count);
     const std::lock_guard lock(adding);
     for (std::size_t b = 0; b < bins; ++b) below[b + 1] += counts[b];
   });
@@ -96,9 +107,8 @@ std::vector<Skipped> skip_lowest(const std::vector<Splat>& splats, const TileLis
       results[k].picture.z_sum[pixel] = static_cast<float>(sum.z_sum);
     }
   };
-  parallel_chunks(tiles, 1, [&](std::size_t begin, std::size_t end) {
-    for_each_pixel(splats, lists, view, bounds, begin, end, blend);
-  });
+  parallel_chunks(tiles, 1,
+                  [&](std::size_t begin, std::size_t end) { for_each_pixel(listed, begin, end, blend); });
   return results;
 }
 

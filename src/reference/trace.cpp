@@ -75,7 +75,7 @@ void consider_behind(NearDecision& best, const std::vector<Splat>& splats,
 PixelTrace trace(const std::vector<Splat>& splats, std::span<const std::uint32_t> list, int x, int y) {
   std::vector<Met> way;
   const glm::dvec3 final_colour =
-      blend_pixel(splats, list, x, y, {},
+      blend_pixel(splats, list, {x, y}, {},
                   [&](std::uint32_t i, double alpha, const PixelSum& before, Verdict verdict) {
                     way.push_back({i, alpha, before, verdict});
                   })

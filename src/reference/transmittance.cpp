@@ -24,7 +24,7 @@ std::vector<double> measure_pairs(const std::vector<Splat>& splats, const TileLi
     for (int y = ty * size; y < std::min((ty + 1) * size, static_cast<int>(view.height)); ++y) {
       for (int x = tx * size; x < std::min((tx + 1) * size, static_cast<int>(view.width)); ++x) {
         std::size_t pair = lists.begin[t];
-        blend_pixel(splats, list, x, y, {},
+        blend_pixel(splats, list, {x, y}, {},
                     [&](std::uint32_t, double alpha, const PixelSum& before, Verdict verdict) {
                       if (verdict == Verdict::blended) measure(of_pairs[pair], alpha, before.transmittance);
                       ++pair;
