@@ -1,9 +1,8 @@
-# cmake --install, cpack: the program, the rooms as libraries with their headers as binosplat/..., and what
+# cmake --install, cpack: the programs, the Python module, the library with the headers of include/, and what
 # find_package(binosplat) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-get_property(rooms GLOBAL PROPERTY binosplat_rooms)
 install(TARGETS binosplat RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 if(TARGET binosplat_view)
   install(TARGETS binosplat_view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} OPTIONAL)  # ./demo builds without it
@@ -26,7 +25,8 @@ if(TARGET binosplat_python)
   install(TARGETS binosplat_python LIBRARY DESTINATION ${python_modules} COMPONENT python
           OPTIONAL)  # ./demo builds without it
 endif()
-install(TARGETS ${rooms} EXPORT binosplat_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS binosplat_archive EXPORT binosplat_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/binosplat DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/binosplat)
 install(EXPORT binosplat_targets NAMESPACE binosplat:: FILE binosplatTargets.cmake DESTINATION ${package})
 configure_package_config_file(cmake/binosplatConfig.cmake.in binosplatConfig.cmake INSTALL_DESTINATION ${package})
@@ -34,10 +34,6 @@ write_basic_package_version_file(binosplatConfigVersion.cmake COMPATIBILITY Same
 install(FILES ${PROJECT_BINARY_DIR}/binosplatConfig.cmake ${PROJECT_BINARY_DIR}/binosplatConfigVersion.cmake
         DESTINATION ${package})
 
-# Headers name each other by their rooms; installed ones by binosplat/ROOM, so that nobody else's room is meant.
-install(CODE "set(ROOT \"${PROJECT_SOURCE_DIR}\")\nset(OUT \"${PROJECT_BINARY_DIR}/include\")")
-install(SCRIPT cmake/public_headers.cmake)
-install(DIRECTORY ${PROJECT_BINARY_DIR}/include/binosplat DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 # With docs/ and what they name beside them, so that their links hold.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -54,8 +50,8 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# Opened at run time: a GPU's driver or Mesa. And for programs that link to the libraries, the headers of theirs.
+# Opened at run time: a GPU's driver or Mesa. And for programs that link to the library, what it is linked to.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, pkg-config, libegl-dev, libgl-dev, libglm-dev, libfmt-dev, \
-libopenexr-dev, libpng-dev, libturbojpeg0-dev, libwebp-dev, libzip-dev, libzstd-dev, zlib1g-dev, libtbb-dev, nlohmann-json3-dev, libosmesa6")
+libopenexr-dev, libpng-dev, libturbojpeg0-dev, libwebp-dev, libzip-dev, libzstd-dev, zlib1g-dev, libtbb-dev, libosmesa6")
 include(CPack)

@@ -5,13 +5,14 @@
 #include <EGL/eglext.h>
 #include <GL/glcorearb.h>
 
+#include <binosplat/renderer.h>
+#include <png.h>
+
+#include <array>
 #include <cstdio>
-
-#include "binosplat/formats/image_file.h"
-#include "binosplat/formats/model_file.h"
-#include "binosplat/stereo/embed.h"
-
-using namespace binosplat;
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 // What a VR application has anyway: an OpenGL 4.5 core context that is current. Here without a window.
 void make_context() {
@@ -31,28 +32,27 @@ int main(int argc, char** argv) try {
   glCreateTextures(GL_TEXTURE_2D, 2, textures);
   for (const GLuint texture : textures) glTextureStorage2D(texture, 1, GL_SRGB8_ALPHA8, width, height);
 
-  const Model model = load_model(argv[1]);
-  stereo::EmbeddedRenderer renderer(eglGetProcAddress, model);
+  const binosplat::SplatModel model(argv[1]);
+  binosplat::Renderer renderer(eglGetProcAddress, model);
+  // The floor lies 1.6 m below the origin of the model's world.
+  const binosplat::Placement placement = model.placement({0.0, 1.6, 0.0});
   // Each frame: xrLocateViews' poses and angles, 49 degrees outwards and 37 inwards, into this frame's
   // textures.
-  const stereo::Fov left = {-0.855, 0.646, 0.7, -0.7}, right = {-0.646, 0.855, 0.7, -0.7};
-  const std::array<stereo::XrEye, 2> eyes = {stereo::XrEye{.position = {-0.0315, 1.6, 0.0}, .fov = left},
-                                             stereo::XrEye{.position = {0.0315, 1.6, 0.0}, .fov = right}};
-  const stereo::Stage stage = stereo::stage_of(model, {0.0, 1.6, 0.0});  // the floor lies 1.6 below the origin
-  const glm::ivec2 size(width, height);
-  const stereo::EyePair pair = stereo::eyes_from_xr(eyes, stage, {size, size});
-  const stereo::Target targets[] = {{.texture = textures[0]}, {.texture = textures[1]}};
-  renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  const binosplat::Eye left = {.position = {-0.0315, 1.6, 0.0}, .fov = {-0.855, 0.646, 0.7, -0.7}};
+  const binosplat::Eye right = {.position = {0.0315, 1.6, 0.0}, .fov = {-0.646, 0.855, 0.7, -0.7}};
+  const std::array views = {binosplat::View{left, {width, height}, {.texture = textures[0]}},
+                            binosplat::View{right, {width, height}, {.texture = textures[1]}}};
+  renderer.draw(views, placement, {.background = glm::vec3(0.0f)});
 
   for (int eye = 0; eye < 2; ++eye) {
     std::vector<unsigned char> bytes(4 * width * height);
     glGetTextureImage(textures[eye], 0, GL_RGBA, GL_UNSIGNED_BYTE, 4 * width * height, bytes.data());
-    Image image(width, height, 3);
-    for (int k = 0; k < 3 * width * height; ++k) {  // OpenGL's rows begin below
-      const int pixel = k / 3, row = height - 1 - pixel / width;
-      image.data[k] = bytes[4 * (row * width + pixel % width) + k % 3] / 255.0f;
-    }
-    save_png(std::string(argv[2]) + (eye == 0 ? "/left.png" : "/right.png"), image);
+    const std::string path = std::string(argv[2]) + (eye == 0 ? "/left.png" : "/right.png");
+    png_image image = {
+        .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_RGBA};
+    // A step below zero: OpenGL's rows begin at the bottom.
+    if (png_image_write_to_file(&image, path.c_str(), 0, bytes.data(), -4 * width, nullptr) == 0)
+      throw std::runtime_error(path + ": " + image.message);
   }
 } catch (const std::exception& error) {  // binosplat::Error tells which kind, too
   std::fprintf(stderr, "embed: %s\n", error.what());

@@ -9,14 +9,16 @@
 #include <openxr/openxr.h>
 #include <openxr/openxr_platform.h>
 
+#include <binosplat/renderer.h>
+
+#include <array>
+#include <chrono>
 #include <cstdio>
 #include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "binosplat/formats/model_file.h"
-#include "binosplat/stereo/embed.h"
-
-using namespace binosplat;
 XrInstance instance = XR_NULL_HANDLE;
 
 // Every call of OpenXR goes through this one: a negative result is an error.
@@ -116,8 +118,8 @@ bool handle_events(XrSession session, bool& running) {
 
 // Draws what the eyes will see at `time`; `submitted` is what was drawn, pose and fov as they were given.
 // False where the runtime does not know the eyes' poses.
-bool draw(XrSession session, XrSpace space, XrTime time, stereo::EmbeddedRenderer& renderer,
-          const stereo::Stage& stage, const std::array<Swapchain, 2>& swapchains,
+bool draw(XrSession session, XrSpace space, XrTime time, binosplat::Renderer& renderer,
+          const binosplat::Placement& placement, const std::array<Swapchain, 2>& swapchains,
           std::array<XrCompositionLayerProjectionView, 2>& submitted) {
   const XrViewLocateInfo info = {XR_TYPE_VIEW_LOCATE_INFO, nullptr, stereo_views, time, space};
   XrViewState state = {XR_TYPE_VIEW_STATE};
@@ -127,32 +129,30 @@ bool draw(XrSession session, XrSpace space, XrTime time, stereo::EmbeddedRendere
   XR(xrLocateViews, session, &info, &state, 2, &count, views.data());
   constexpr XrViewStateFlags valid = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
   if ((state.viewStateFlags & valid) != valid) return false;
-  std::array<stereo::XrEye, 2> eyes;
-  std::array<stereo::Target, 2> targets;
+  std::array<binosplat::View, 2> pictures;
   for (std::size_t k = 0; k < 2; ++k) {
     const XrVector3f& p = views[k].pose.position;
     const XrQuaternionf& q = views[k].pose.orientation;
     const XrFovf& fov = views[k].fov;
-    eyes[k] = {
-        {p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown}};
     const auto& [swapchain, size, images, in_place] = swapchains[k];
     std::uint32_t image = 0;
     XR(xrAcquireSwapchainImage, swapchain, nullptr, &image);
     const XrSwapchainImageWaitInfo wait = {XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO, nullptr, XR_INFINITE_DURATION};
     XR(xrWaitSwapchainImage, swapchain, &wait);
-    targets[k] = {.texture = images[image].image, .in_place = in_place};
+    const binosplat::Eye eye = {
+        {p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}, {fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown}};
+    pictures[k] = {eye, size, {.texture = images[image].image, .in_place = in_place}};
     const XrSwapchainSubImage whole = {swapchain, {{0, 0}, {size.x, size.y}}, 0};
     submitted[k] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, nullptr, views[k].pose, fov, whole};
   }
-  const auto pair = stereo::eyes_from_xr(eyes, stage, {swapchains[0].size, swapchains[1].size});
-  renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  renderer.draw(pictures, placement, {.background = glm::vec3(0.0f)});
   for (const Swapchain& swapchain : swapchains) XR(xrReleaseSwapchainImage, swapchain.handle, nullptr);
   return true;
 }
 
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: openxr MODEL.ply\n"), 2;
-  const Model model = load_model(argv[1]);
+  const binosplat::SplatModel model(argv[1]);
   make_instance();
   const XrSystemGetInfo headset = {XR_TYPE_SYSTEM_GET_INFO, nullptr, XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY};
   XrSystemId system = XR_NULL_SYSTEM_ID;
@@ -169,8 +169,8 @@ int main(int argc, char** argv) try {
   where.poseInReferenceSpace.orientation.w = 1.0f;
   XrSpace space = XR_NULL_HANDLE;
   XR(xrCreateReferenceSpace, session, &where, &space);
-  const stereo::Stage stage = stereo::stage_of(model);
-  stereo::EmbeddedRenderer renderer(eglGetProcAddress, model);
+  const binosplat::Placement placement = model.placement();
+  binosplat::Renderer renderer(eglGetProcAddress, model);
   bool running = false;
   while (handle_events(session, running)) {
     if (!running) {
@@ -181,8 +181,8 @@ int main(int argc, char** argv) try {
     XR(xrWaitFrame, session, nullptr, &frame);
     XR(xrBeginFrame, session, nullptr);
     std::array<XrCompositionLayerProjectionView, 2> views{};
-    const bool drawn = frame.shouldRender == XR_TRUE &&
-                       draw(session, space, frame.predictedDisplayTime, renderer, stage, swapchains, views);
+    const bool drawn = frame.shouldRender == XR_TRUE && draw(session, space, frame.predictedDisplayTime,
+                                                             renderer, placement, swapchains, views);
     const XrCompositionLayerProjection layer = {
         XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, views.data()};
     const auto* layers = reinterpret_cast<const XrCompositionLayerBaseHeader*>(&layer);

@@ -3,10 +3,10 @@
 // for nothing. Textures that a compute shader can write are written in place; others, and framebuffers, are
 // copied into.
 
+#include <binosplat/targets.h>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <limits>
 #include <memory>
 #include <span>
 
@@ -18,39 +18,6 @@
 #include "shared/axes.h"
 
 namespace binosplat::stereo {
-
-/// Where a picture goes: a texture of any colour-renderable format, or a framebuffer. A 2D texture, or a
-/// layer of an array, is written without a copy where its format is GL_RGBA8, RGBA16, RGBA16F, RGBA32F or
-/// RGB10_A2, or GL_SRGB8_ALPHA8 with immutable storage (glTextureStorage2D and its like), and so is a
-/// framebuffer that has one such texture and no other colours; all else takes a picture of the presenter's
-/// own, of 4 bytes a pixel, or of 16 where the target keeps more than 8 bits of a colour.
-struct Target {
-  std::uint32_t texture = 0;      // 2D, or 2D array with a layer; 0: the framebuffer below
-  int level = 0;                  // of the texture
-  int layer = -1;                 // of an array texture; -1: not one
-  std::uint32_t framebuffer = 0;  // 0: the default framebuffer
-  int x = 0;                      // px, lower left corner of the picture in it, as glViewport counts
-  int y = 0;
-  /// Its numbers mean light, not what a screen takes, as OpenXR's runtimes have it of every format but
-  /// sRGB's: colours are converted.
-  bool linear = false;
-  /// Shaders may write into it. False, as for a swapchain that OpenXR's runtime makes without unordered
-  /// access: it is rendered into, through a copy.
-  bool in_place = true;
-};
-
-/// Where a view's depths go: a 2D texture, or a layer of an array, of a depth format without stencil. What
-/// lies at z (world units, along the view's axis) has the depth far (1 - near / z) / (far - near), from 0 at
-/// `near_plane` to 1 at `far_plane`; either may be infinite, and near the farther one. What covers less than
-/// half of a pixel is infinitely far. The texture may have fewer pixels than the view: GPUs of servers fill
-/// depths slowly, and a headset's runtime needs no more.
-struct DepthTarget {
-  std::uint32_t texture = 0;
-  int level = 0;
-  int layer = -1;  // of an array texture; -1: not one
-  double near_plane = near_default;
-  double far_plane = std::numeric_limits<double>::infinity();
-};
 
 /// render::Canvas by view, and what they go by.
 struct Canvases {

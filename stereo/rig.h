@@ -6,6 +6,7 @@
 // else (positions, near plane) is in world units already. Eye 0 is the left one, eye 1 the right one.
 
 #include <array>
+#include <binosplat/eyes.h>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
@@ -55,15 +56,6 @@ HeadViews views_of_head(std::span<const Camera> cameras, double near_plane = nea
 
 /// The cameras called NAME_left and NAME_right, or nothing if either is missing.
 std::optional<std::array<Camera, 2>> find_eyes(const std::vector<Camera>& cameras, std::string_view name);
-
-/// A frustum by the angles of its four sides from the forward axis, in radians, left and down negative: the
-/// shape of OpenXR's XrFovf.
-struct Fov {
-  double left = 0;
-  double right = 0;
-  double up = 0;
-  double down = 0;
-};
 
 /// The camera of a pose and a frustum; `rotation` has the axes x right, y down, z forward as columns (an
 /// OpenXR pose has y up and z backward: negate its second and third columns). Throws Error for angles that

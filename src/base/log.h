@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <binosplat/error.h>
 #include <string>
 #include <utility>
 
@@ -12,8 +13,7 @@ namespace binosplat {
 /// characters but newlines, which could drive the terminal, come out as '?'.
 void log_line(const std::string& text);
 
-/// Whether nothing is said but warnings and errors; of the whole program, false at first.
-void set_quiet(bool quiet);
+/// What set_quiet() said last.
 bool is_quiet();
 
 /// Something worth knowing: which device is used, what was left out, that a frame was drawn again.

@@ -1,19 +1,13 @@
 #pragma once
 // The entrance for model files: what a file is, is decided by its content, never by its name.
 
+#include <binosplat/model.h>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "scene/model.h"
 
 namespace binosplat {
-
-struct ModelOptions {
-  std::optional<int> lod;  // the level of detail of a model that has several; 0 is the finest
-  std::optional<std::size_t>
-      appearance;  // of a Scaffold-GS model that has several; the first if none is named
-};
 
 /// The models that a folder stands for, best one: lod-meta.json or meta.json of a SOG; point_cloud.ply, also
 /// in point_cloud/ or the latest point_cloud/iteration_N/ (INRIA, Scaffold-GS); the latest

@@ -30,7 +30,7 @@ bool Mirror::step() {
   return glfwWindowShouldClose(window_) == GLFW_FALSE && glfwGetKey(window_, GLFW_KEY_ESCAPE) != GLFW_PRESS;
 }
 
-void Mirror::show(const stereo::Target& picture, const glm::ivec2& size) {
+void Mirror::show(const Target& picture, const glm::ivec2& size) {
   const gl::Functions& gl = context_->gl();
   if (framebuffer_ == 0) gl.CreateFramebuffers(1, &framebuffer_);
   gl.NamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, picture.texture, 0);

@@ -22,7 +22,7 @@ class Mirror {
   gl::Context& context() { return *context_; }
 
   /// Takes what lies in the lower left corner of a texture, so many px, as large as the window has room for.
-  void show(const stereo::Target& picture, const glm::ivec2& size);
+  void show(const Target& picture, const glm::ivec2& size);
 
   /// Brings it onto the screen, and takes the window's events: false once it is closed, or Escape was pressed
   /// in it.

@@ -237,7 +237,7 @@ void Session::present() {
   const shared::View& eye = drawn_[0];
   const glm::ivec2 size =
       stereo::layout_size(shown_layout_, {static_cast<int>(eye.width), static_cast<int>(eye.height)});
-  stereo::Target target;
+  Target target;
   if (divisor_ == 1) {
     target.y = std::max(0, framebuffer_.y - size.y);
   } else {

@@ -1,6 +1,7 @@
 #pragma once
 // A pinhole camera in float64, and the View that shaders see of it.
 
+#include <binosplat/eyes.h>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -23,9 +24,6 @@ struct Camera {
   glm::dmat3 rotation{1.0};    // columns: the camera's axes x right, y down, z forward in the world
   std::optional<double> time;  // s, for cameras of a path
 };
-
-/// Depth below which nothing is drawn (3D-GS), for worlds measured in metres or so.
-constexpr double near_default = 0.2;
 
 /// Fills in what a View says of the camera's lens and picture: lens, slopes, width and height.
 void set_lens(shared::View& view, const Camera& camera);

@@ -2,6 +2,7 @@
 // A trained 3D Gaussian Splatting model in memory, decoded (docs/method.md 1).
 
 #include <array>
+#include <binosplat/model.h>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -79,10 +80,6 @@ void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
 
 /// Box around the middle of the model, robust against far outliers: the 2nd to 98th percentile of positions
 /// per axis, of Gaussians that are not wholly transparent, unless all are.
-struct Bounds {
-  glm::vec3 low{0.0f};
-  glm::vec3 high{0.0f};
-};
 Bounds core_bounds(const Model& model);
 
 /// Box around all positions, far outliers included; the model must not be empty.

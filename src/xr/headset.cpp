@@ -105,7 +105,7 @@ class Viewer {
     const std::optional<XrPosef> gaze =
         settings_.projection.foveation ? hands.gaze(time.display) : std::nullopt;
     const render::FrameReport report =
-        projection->draw(frame_, views, walk_->stage(), settings, effort.scale, beside_.show, gaze);
+        projection->draw(frame_, views, walk_->placement(), settings, effort.scale, beside_.show, gaze);
     times_.push_back(report.total_ms);
     if (budget_) budget_->took(report.total_ms, period_ms);
     session.end_frame(time, projection->layer());
@@ -121,8 +121,8 @@ class Viewer {
   /// To where hands take the head.
   void follow(const Session& session, Hands& hands, const std::vector<XrView>& views, const FrameTime& time) {
     const Deeds deeds = hands.read(time.display);
-    const stereo::XrEye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
-    stereo::XrEye head = left;  // between both eyes, which may be canted
+    const Eye left = eye_of(views[0].pose), right = eye_of(views[1].pose);
+    Eye head = left;  // between both eyes, which may be canted
     head.position = 0.5 * (left.position + right.position);
     head.orientation =
         left.orientation + glm::sign(glm::dot(left.orientation, right.orientation)) * right.orientation;
@@ -156,25 +156,25 @@ class Viewer {
 
 }  // namespace
 
-stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor, const stereo::XrEye* head) {
+Placement start_of(const HeadsetSettings& settings, bool on_floor, const Eye* head) {
   const glm::dvec3 up = glm::normalize(settings.up);
   const Camera& start = settings.start;
   glm::dvec3 forward = start.rotation[2] - glm::dot(start.rotation[2], up) * up;
   // Straight up or down: where its upper edge points.
   if (glm::length(forward) < 1e-3) forward = -start.rotation[1] + glm::dot(start.rotation[1], up) * up;
   forward = glm::normalize(forward);
-  stereo::Stage stage;
-  stage.axes = glm::dmat3(glm::cross(forward, up), up, -forward);
-  stage.units_per_metre = settings.units_per_metre;
-  stage.origin = start.position;
-  if (on_floor) stage.origin -= eyes_above_floor * settings.units_per_metre * up;
-  if (head == nullptr) return stage;
+  Placement placement;
+  placement.axes = glm::dmat3(glm::cross(forward, up), up, -forward);
+  placement.units_per_metre = settings.units_per_metre;
+  placement.origin = start.position;
+  if (on_floor) placement.origin -= eyes_above_floor * settings.units_per_metre * up;
+  if (head == nullptr) return placement;
   const glm::dvec3 ahead = heading_of(*head);
   const double turned = std::atan2(-ahead.x, -ahead.z);  // to the left
-  stage.axes *= glm::mat3_cast(glm::angleAxis(-turned, glm::dvec3(0.0, 1.0, 0.0)));
-  stage.origin -=
-      settings.units_per_metre * (stage.axes * glm::dvec3(head->position.x, 0.0, head->position.z));
-  return stage;
+  placement.axes *= glm::mat3_cast(glm::angleAxis(-turned, glm::dvec3(0.0, 1.0, 0.0)));
+  placement.origin -=
+      settings.units_per_metre * (placement.axes * glm::dvec3(head->position.x, 0.0, head->position.z));
+  return placement;
 }
 
 void run(Instance& instance, gl::Context& context, Model& model, const HeadsetSettings& settings,

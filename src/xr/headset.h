@@ -38,7 +38,7 @@ struct Beside {
 /// Where OpenXR's space lies at first: its origin at the start camera, 1.6 m lower where it lies on the
 /// floor, upright, and with the start camera's heading. Where its origin is not where a head is at first, as
 /// in the middle of a room, this head is there, and looks that way.
-stereo::Stage start_of(const HeadsetSettings& settings, bool on_floor, const stereo::XrEye* head = nullptr);
+Placement start_of(const HeadsetSettings& settings, bool on_floor, const Eye* head = nullptr);
 
 /// Draws with the OpenGL context that is current. A session that the runtime loses is followed by another, if
 /// the headset is there again within some seconds. Throws Error(no_gl) for what a runtime refuses or loses,

@@ -90,7 +90,7 @@ std::vector<glm::dvec2> gaze_of(const XrPosef& gaze, std::span<const XrView> loc
 
 }  // namespace
 
-stereo::XrEye eye_of(const XrPosef& pose, const XrFovf& fov) {
+Eye eye_of(const XrPosef& pose, const XrFovf& fov) {
   const XrVector3f& p = pose.position;
   const XrQuaternionf& q = pose.orientation;
   return {{p.x, p.y, p.z},
@@ -195,7 +195,7 @@ std::vector<render::ViewPart> Projection::parts_of(const render::FrameSettings& 
 }
 
 render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
-                                     const stereo::Stage& stage, render::FrameSettings settings, double part,
+                                     const Placement& placement, render::FrameSettings settings, double part,
                                      const DrawnLeft& drawn_left, const std::optional<XrPosef>& gaze) {
   const std::size_t count = eyes_.size();
   if (located.size() != count)
@@ -204,7 +204,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
   const bool has_depths = eyes_[0].depths != nullptr;
   settings.depth = has_depths ? Depth::median : Depth::none;
   settings.background = settings_.background;
-  std::vector<stereo::XrEye> drawn(count);
+  std::vector<binosplat::Eye> drawn(count);
   std::vector<glm::ivec2> sizes(count);
   for (std::size_t k = 0; k < count; ++k) {
     drawn[place_of(k, count)] = eye_of(located[k].pose, located[k].fov);
@@ -212,11 +212,11 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
   }
   // Hands that enlarge the world do not push the near plane away.
   const double near_plane =
-      settings_.near_plane * std::min(1.0, stage.units_per_metre / settings_.units_per_metre);
-  const stereo::HeadViews head = stereo::views_from_xr(drawn, stage, sizes, near_plane);
-  const double far_plane = std::max(far_metres * stage.units_per_metre, 2.0 * near_plane);
-  std::vector<stereo::Target> targets(count);
-  std::vector<stereo::DepthTarget> depths(has_depths ? count : 0);
+      settings_.near_plane * std::min(1.0, placement.units_per_metre / settings_.units_per_metre);
+  const stereo::HeadViews head = stereo::views_from_xr(drawn, placement, sizes, near_plane);
+  const double far_plane = std::max(far_metres * placement.units_per_metre, 2.0 * near_plane);
+  std::vector<Target> targets(count);
+  std::vector<DepthTarget> depths(has_depths ? count : 0);
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t at = place_of(k, count);
     targets[at] = {.texture = eyes_[k].colours->acquire(), .linear = linear_, .in_place = in_place_};
@@ -242,7 +242,7 @@ render::FrameReport Projection::draw(stereo::FoveatedFrame& frame, std::span<con
   }
   const std::size_t shown = count == 4 ? place_of(2, count) : 0;  // of four views the inset
   if (drawn_left) drawn_left(targets[shown], sizes[shown]);
-  submit(located, sizes, near_plane / stage.units_per_metre, far_plane / stage.units_per_metre);
+  submit(located, sizes, near_plane / placement.units_per_metre, far_plane / placement.units_per_metre);
   return report;
 }
 

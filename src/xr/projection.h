@@ -8,8 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "stereo/embed.h"
+#include "stereo/eyes.h"
 #include "stereo/foveate.h"
+#include "stereo/present.h"
 #include "xr/swapchain.h"
 #include "xr/visibility.h"
 
@@ -33,9 +34,9 @@ class Projection {
   /// Draws the located views, each `part` of its texture's sides, at a place of the model's world. Calls
   /// `drawn_left`, if any, while the left eye's texture may still be read: its picture lies there in the
   /// lower left corner, so large. `gaze`, where it is known, is where the foveated eyes look.
-  using DrawnLeft = std::function<void(const stereo::Target& left, const glm::ivec2& size)>;
+  using DrawnLeft = std::function<void(const Target& left, const glm::ivec2& size)>;
   render::FrameReport draw(stereo::FoveatedFrame& frame, std::span<const XrView> located,
-                           const stereo::Stage& stage, render::FrameSettings settings, double part = 1.0,
+                           const Placement& placement, render::FrameSettings settings, double part = 1.0,
                            const DrawnLeft& drawn_left = {}, const std::optional<XrPosef>& gaze = {});
 
   /// Whether the runtime recommends other sizes now: a new Projection would have them.
@@ -80,7 +81,7 @@ class Projection {
   XrCompositionLayerProjection layer_;
 };
 
-/// As stereo::XrEye has it.
-stereo::XrEye eye_of(const XrPosef& pose, const XrFovf& fov = {});
+/// As the library takes it.
+Eye eye_of(const XrPosef& pose, const XrFovf& fov = {});
 
 }  // namespace binosplat::xr

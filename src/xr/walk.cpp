@@ -20,7 +20,7 @@ double beyond_slack(double push) {
 
 }  // namespace
 
-glm::dvec3 heading_of(const stereo::XrEye& head) {
+glm::dvec3 heading_of(const Eye& head) {
   const glm::dvec4 q = glm::normalize(head.orientation);
   const glm::dvec3 ahead = glm::dquat(q.w, q.x, q.y, q.z) * glm::dvec3(0.0, 0.0, -1.0);
   const glm::dvec3 level(ahead.x, 0.0, ahead.z);
@@ -28,20 +28,20 @@ glm::dvec3 heading_of(const stereo::XrEye& head) {
 }
 
 void Walk::turn(double radians, const glm::dvec3& about) {
-  const glm::dmat3 turned = stage_.axes * glm::mat3_cast(glm::angleAxis(radians, glm::dvec3(0.0, 1.0, 0.0)));
-  stage_.origin += stage_.units_per_metre * (stage_.axes * about - turned * about);
-  stage_.axes = turned;
+  const glm::dmat3 turned = placement_.axes * glm::mat3_cast(glm::angleAxis(radians, glm::dvec3(0.0, 1.0, 0.0)));
+  placement_.origin += placement_.units_per_metre * (placement_.axes * about - turned * about);
+  placement_.axes = turned;
 }
 
 void Walk::scale(double factor, const glm::dvec3& about) {
-  const double wanted = std::clamp(stage_.units_per_metre * factor, start_.units_per_metre / scale_most,
+  const double wanted = std::clamp(placement_.units_per_metre * factor, start_.units_per_metre / scale_most,
                                    start_.units_per_metre * scale_most);
-  stage_.origin += (stage_.units_per_metre - wanted) * (stage_.axes * about);
-  stage_.units_per_metre = wanted;
+  placement_.origin += (placement_.units_per_metre - wanted) * (placement_.axes * about);
+  placement_.units_per_metre = wanted;
 }
 
 void Walk::shift(const glm::dvec3& metres) {
-  stage_.origin += stage_.units_per_metre * (stage_.axes * metres);
+  placement_.origin += placement_.units_per_metre * (placement_.axes * metres);
 }
 
 // What a hand held stays in it.
@@ -66,7 +66,7 @@ void Walk::grab(const std::array<Hand, 2>& hands) {
   }
 }
 
-void Walk::step(const stereo::XrEye& head, const std::array<Hand, 2>& hands, double seconds) {
+void Walk::step(const Eye& head, const std::array<Hand, 2>& hands, double seconds) {
   grab(hands);
   last_ = hands;
   const glm::dvec3 forward = heading_of(head), right(-forward.z, 0.0, forward.x);

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "stereo/embed.h"
+#include "stereo/eyes.h"
 
 namespace binosplat::xr {
 
@@ -18,19 +18,19 @@ struct Hand {
 };
 
 /// Where a head looks, level; forwards where it looks straight up or down.
-glm::dvec3 heading_of(const stereo::XrEye& head);
+glm::dvec3 heading_of(const Eye& head);
 
 class Walk {
  public:
-  explicit Walk(const stereo::Stage& start) : start_(start), stage_(start) {}
+  explicit Walk(const Placement& start) : start_(start), placement_(start) {}
 
-  const stereo::Stage& stage() const { return stage_; }
-  void reset() { stage_ = start_; }
+  const Placement& placement() const { return placement_; }
+  void reset() { placement_ = start_; }
 
   /// So many seconds later. The left stick walks, level and towards where the head looks; the right one
   /// turns by 30 degrees a push, and pushed forward or back raises or lowers. A hand that grabs holds the
   /// world where it is; two turn it about the vertical and scale it, too.
-  void step(const stereo::XrEye& head, const std::array<Hand, 2>& hands, double seconds);
+  void step(const Eye& head, const std::array<Hand, 2>& hands, double seconds);
 
  private:
   void turn(double radians, const glm::dvec3& about);
@@ -38,7 +38,7 @@ class Walk {
   void shift(const glm::dvec3& metres);
   void grab(const std::array<Hand, 2>& hands);
 
-  stereo::Stage start_, stage_;
+  Placement start_, placement_;
   std::array<Hand, 2> last_;
   bool turned_ = false;  // by the push at hand
 };

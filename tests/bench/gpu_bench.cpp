@@ -192,7 +192,7 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
   // Into textures, as a headset takes them; the exact pair likewise.
   gl::Context& context = frame.model()->context();
   stereo::Presenter presenter(context);
-  std::array<stereo::Target, 2> targets;
+  std::array<Target, 2> targets;
   for (std::size_t eye = 0; eye < 2; ++eye) {
     context.gl().CreateTextures(GL_TEXTURE_2D, 1, &targets[eye].texture);
     context.gl().TextureStorage2D(targets[eye].texture, 1, GL_SRGB8_ALPHA8,
@@ -204,7 +204,7 @@ Json time_foveated(stereo::FoveatedFrame& foveated, render::Frame& frame, const 
   Json json =
       time([&] { return foveated.draw(shot.eyes, *how.foveate, how.settings, {}, canvases.list); }, how);
   json["exact"] = time([&] { return frame.draw(shot.eyes, exact, {}, canvases.list); }, how);
-  for (const stereo::Target& target : targets) context.gl().DeleteTextures(1, &target.texture);
+  for (const Target& target : targets) context.gl().DeleteTextures(1, &target.texture);
   json["windows"] = insets;
   json["contexts"] = contexts;
   return json;

@@ -57,7 +57,7 @@ struct Bench {
     for (int layout = LAYOUT_PARALLEL; layout <= LAYOUT_GREY; ++layout) {
       const glm::ivec2 size = stereo::layout_size(layout, {head.width, head.height});
       fmt::print("| {} ", layout_choices[layout].name);
-      const auto print = [&](const stereo::Target& to) {
+      const auto print = [&](const Target& to) {
         fmt::print("| {:.3f} ", time(dispatcher, frames, [&] { presenter.draw(frame, 0, layout, to); }));
       };
       const auto [texture, framebuffer] = target(size);
@@ -74,8 +74,8 @@ struct Bench {
     const auto views = stereo::make_rig(head, {}).views;
     stereo::Presenter presenter(*context);
     const glm::ivec2 size(head.width, head.height), few = (size + 3) / 4, fewest = (size + 7) / 8;
-    std::array<stereo::Target, 2> colours;
-    std::array<stereo::DepthTarget, 2> depths, eighth, whole;
+    std::array<Target, 2> colours;
+    std::array<DepthTarget, 2> depths, eighth, whole;
     const auto depth_texture = [&](const glm::ivec2& of) {
       std::uint32_t texture = 0;
       context->gl().CreateTextures(GL_TEXTURE_2D, 1, &texture);
@@ -100,7 +100,7 @@ struct Bench {
         if (n >= 0) times[kind].push_back(ms);
       }
     }
-    const auto of_depths = [&](std::span<const stereo::DepthTarget> to) {
+    const auto of_depths = [&](std::span<const DepthTarget> to) {
       return time(dispatcher, frames, [&] {
         for (std::size_t eye = 0; eye < 2; ++eye) presenter.draw_depth(frame, eye, to[eye]);
       });

@@ -35,6 +35,7 @@ const std::map<std::string, std::set<std::string>> may_see = {
     {"measure", {"render", "primitives", "gl", "reference", "scene", "base", "shared"}},
     {"stereo", {"measure", "render", "primitives", "gl", "reference", "scene", "base", "shared"}},
     {"stream", {"render", "primitives", "gl", "formats", "scene", "base", "shared"}},
+    {"library", {"stereo", "formats", "render", "primitives", "gl", "scene", "base", "shared"}},
     {"lab",
      {"stream", "stereo", "measure", "render", "primitives", "gl", "reference", "formats", "scene", "base",
       "shared"}},
@@ -139,7 +140,7 @@ Texts breaches(const Files& files) {
 Files tree() {
   Files files;
   const fs::path root = BINOSPLAT_SOURCE_DIR;
-  for (const char* folder : {"src", "stereo", "shaders", "tests", "cmake"}) {
+  for (const char* folder : {"include", "src", "stereo", "shaders", "tests", "cmake"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       static const std::set<std::string> sources = {".cpp", ".h", ".comp", ".glsl", ".txt", ".cmake"};
       if (!entry.is_regular_file() || !sources.count(entry.path().extension().string())) continue;

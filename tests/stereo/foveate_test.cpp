@@ -257,8 +257,8 @@ TEST(Foveate, ComposesOntoCanvases) {
   stereo::Presenter presenter(*caller.context);
   const Background background = glm::vec3(0.1f, 0.2f, 0.6f);
   const render::FrameSettings settings = {.background = *background};
-  std::array<stereo::Target, 2> targets;
-  for (stereo::Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
+  std::array<Target, 2> targets;
+  for (Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const auto written = [&](std::size_t eye) {
     return caller.read<unsigned char>(targets[eye].texture, size.x, size.y);
   };
@@ -266,7 +266,7 @@ TEST(Foveate, ComposesOntoCanvases) {
   for (std::size_t eye = 0; eye < 2; ++eye)
     presenter.draw(frame.colours(), frame.views(), eye, LAYOUT_SEPARATE, targets[eye], background);
   const std::array presented = {written(0), written(1)};
-  for (stereo::Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
+  for (Target& target : targets) target.texture = caller.texture(GL_SRGB8_ALPHA8, size.x, size.y);
   const stereo::Canvases canvases = presenter.canvases(targets, background);
   EXPECT_TRUE(frame.draw(eyes_of_rig(rigs[0]), {.gaze = {{5, 5}}}, settings, {}, canvases.list).on_canvases);
   EXPECT_EQ(written(0), presented[0]);

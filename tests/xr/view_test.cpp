@@ -63,9 +63,9 @@ struct XrView : testing::Test {
   }
 
   /// The views of a frame's line as they were located, and their pictures' sizes.
-  static std::pair<std::vector<stereo::XrEye>, std::vector<glm::ivec2>> views_of(const Json& frame) {
+  static std::pair<std::vector<Eye>, std::vector<glm::ivec2>> views_of(const Json& frame) {
     const Json& located = frame["located"][0]["views"];
-    std::vector<stereo::XrEye> eyes;
+    std::vector<Eye> eyes;
     std::vector<glm::ivec2> sizes;
     for (std::size_t k = 0; k < located.size(); ++k) {
       const auto p = located[k]["pose"]["position"].get<std::array<float, 3>>();
@@ -79,7 +79,7 @@ struct XrView : testing::Test {
   }
 
   /// What a frame of this line should be, in a place of the world.
-  std::vector<Picture> expected(const Json& frame, const stereo::Stage& at,
+  std::vector<Picture> expected(const Json& frame, const Placement& at,
                                 const render::FrameSettings& settings = {.depth = Depth::median}) const {
     const auto [eyes, sizes] = views_of(frame);
     render::Frame drawn(gl_context(), model);
@@ -88,7 +88,7 @@ struct XrView : testing::Test {
   }
 
   /// Where the program begins: the script's own stage is a floor.
-  static stereo::Stage start() {
+  static Placement start() {
     xr::HeadsetSettings settings;
     settings.start.position = {0, 0, -1};
     return xr::start_of(settings, true);
@@ -264,7 +264,7 @@ TEST_F(XrView, FollowsStatesAndRecentring) {
   EXPECT_EQ(log.faults(), Strings()) << log.text();
   xr::HeadsetSettings settings;
   settings.start.position = {0, 0, -1};
-  const stereo::Stage no_floor = xr::start_of(settings, false);
+  const Placement no_floor = xr::start_of(settings, false);
   for (const Json& frame : log.frames()) {
     if (frame["layers"].empty()) continue;
     EXPECT_TRUE(log.colours(frame, 0) == bytes_of(expected(frame, no_floor)[0])) << frame["frame"];
@@ -335,7 +335,7 @@ TEST_F(XrView, HandsWalkAndTurn) {
   const XrLog log = stage.log();
   EXPECT_EQ(log.faults(), Strings()) << log.text();
   xr::Walk walk(start());
-  const stereo::XrEye eyes = {.position = {0, 1.6, 0}};
+  const Eye eyes = {.position = {0, 1.6, 0}};
   std::array<xr::Hand, 2> hands;
   const auto shown = [&](std::size_t frame) {
     return log.colours(log.frames().at(frame), 0) == bytes_of(expected(log.frames()[frame], walk.stage())[0]);

@@ -16,14 +16,14 @@ namespace {
 
 constexpr double upm = 2.0;  // world units per metre
 
-const stereo::Stage start = {.origin = {1.0, 2.0, 3.0}, .units_per_metre = upm};
+const Placement start = {.origin = {1.0, 2.0, 3.0}, .units_per_metre = upm};
 
 /// Where a point of the space lies in the world.
-glm::dvec3 in_world(const stereo::Stage& stage, const glm::dvec3& p) {
-  return stage.origin + stage.units_per_metre * (stage.axes * p);
+glm::dvec3 in_world(const Placement& at, const glm::dvec3& p) {
+  return at.origin + at.units_per_metre * (at.axes * p);
 }
 
-stereo::XrEye head_at(const glm::dvec3& position, double degrees = 0.0) {
+Eye head_at(const glm::dvec3& position, double degrees = 0.0) {
   const glm::dquat turn = glm::angleAxis(glm::radians(degrees), glm::dvec3(0, 1, 0));
   return {.position = position, .orientation = {turn.x, turn.y, turn.z, turn.w}};
 }
@@ -38,27 +38,27 @@ std::array<Hand, 2> sticks(const glm::dvec2& left, const glm::dvec2& right = glm
 TEST(Walk, GoesWhereTheHeadLooks) {
   Walk walk(start);
   walk.step(head_at({0, 1.6, 0}, 90.0), sticks({0, 1}), 0.5);  // turned to the left: looks along -x
-  const glm::dvec3 moved = glm::transpose(start.axes) * (walk.stage().origin - start.origin) / upm;
+  const glm::dvec3 moved = glm::transpose(start.axes) * (walk.placement().origin - start.origin) / upm;
   EXPECT_NEAR(glm::length(moved - glm::dvec3(-0.75, 0, 0)), 0.0, 1e-12) << "1.5 m/s";
   walk.reset();
   walk.step(head_at({0, 1.6, 0}), sticks({0.1, 0.1}), 1.0);
-  EXPECT_EQ(walk.stage().origin, start.origin) << "a stick at rest is never quite at rest";
+  EXPECT_EQ(walk.placement().origin, start.origin) << "a stick at rest is never quite at rest";
 }
 
 TEST(Walk, TurnsAboutTheHeadOnceAPush) {
   Walk walk(start);
-  const stereo::XrEye head = head_at({0.4, 1.6, -0.3});
-  const glm::dvec3 before = in_world(walk.stage(), head.position);
+  const Eye head = head_at({0.4, 1.6, -0.3});
+  const glm::dvec3 before = in_world(walk.placement(), head.position);
   walk.step(head, sticks({}, {1, 0}), 0.01);
   walk.step(head, sticks({}, {1, 0}), 0.01);
-  EXPECT_NEAR(glm::length(in_world(walk.stage(), head.position) - before), 0.0, 1e-12);
+  EXPECT_NEAR(glm::length(in_world(walk.placement(), head.position) - before), 0.0, 1e-12);
   // To the right: what was ahead is to the left.
-  const glm::dvec3 ahead = glm::transpose(start.axes) * (walk.stage().axes * glm::dvec3(0, 0, -1));
+  const glm::dvec3 ahead = glm::transpose(start.axes) * (walk.placement().axes * glm::dvec3(0, 0, -1));
   EXPECT_NEAR(ahead.x, std::sin(glm::radians(30.0)), 1e-12);
   EXPECT_NEAR(ahead.z, -std::cos(glm::radians(30.0)), 1e-12);
   walk.step(head, sticks({}, {0, 0}), 0.01);
   walk.step(head, sticks({}, {1, 0}), 0.01);
-  EXPECT_NEAR((glm::transpose(start.axes) * (walk.stage().axes * glm::dvec3(0, 0, -1))).x,
+  EXPECT_NEAR((glm::transpose(start.axes) * (walk.placement().axes * glm::dvec3(0, 0, -1))).x,
               std::sin(glm::radians(60.0)), 1e-12);
 }
 
@@ -71,27 +71,27 @@ std::array<Hand, 2> holding(const glm::dvec3& left, const glm::dvec3& right, boo
 
 TEST(Walk, WhatAHandHoldsStaysInIt) {
   Walk walk(start);
-  const stereo::XrEye head = head_at({0, 1.6, 0});
+  const Eye head = head_at({0, 1.6, 0});
   const glm::dvec3 from(0.2, 1.2, -0.4), to(0.5, 1.0, -0.1);
   walk.step(head, holding({}, from, false), 0.01);
-  const glm::dvec3 held = in_world(walk.stage(), from);
+  const glm::dvec3 held = in_world(walk.placement(), from);
   walk.step(head, holding({}, to, false), 0.01);
-  EXPECT_NEAR(glm::length(in_world(walk.stage(), to) - held), 0.0, 1e-12);
-  EXPECT_EQ(walk.stage().units_per_metre, upm);
+  EXPECT_NEAR(glm::length(in_world(walk.placement(), to) - held), 0.0, 1e-12);
+  EXPECT_EQ(walk.placement().units_per_metre, upm);
 }
 
 TEST(Walk, TwoHandsTurnAndScale) {
   Walk walk(start);
-  const stereo::XrEye head = head_at({0, 1.6, 0});
+  const Eye head = head_at({0, 1.6, 0});
   const glm::dvec3 left(-0.2, 1.2, -0.4), right(0.2, 1.2, -0.4);
   const glm::dvec3 left_to(-0.1, 1.3, -0.9), right_to(-0.1, 1.3, -0.1);  // twice as far apart, turned
   walk.step(head, holding(left, right, true), 0.01);
-  const glm::dvec3 held[] = {in_world(walk.stage(), left), in_world(walk.stage(), right)};
+  const glm::dvec3 held[] = {in_world(walk.placement(), left), in_world(walk.placement(), right)};
   walk.step(head, holding(left_to, right_to, true), 0.01);
-  EXPECT_NEAR(walk.stage().units_per_metre, upm / 2.0, 1e-12);
-  EXPECT_NEAR(glm::length(in_world(walk.stage(), left_to) - held[0]), 0.0, 1e-9);
-  EXPECT_NEAR(glm::length(in_world(walk.stage(), right_to) - held[1]), 0.0, 1e-9);
-  EXPECT_NEAR(glm::length(in_world(walk.stage(), left_to) - held[1]), 0.4 * upm, 1e-9)
+  EXPECT_NEAR(walk.placement().units_per_metre, upm / 2.0, 1e-12);
+  EXPECT_NEAR(glm::length(in_world(walk.placement(), left_to) - held[0]), 0.0, 1e-9);
+  EXPECT_NEAR(glm::length(in_world(walk.placement(), right_to) - held[1]), 0.0, 1e-9);
+  EXPECT_NEAR(glm::length(in_world(walk.placement(), left_to) - held[1]), 0.4 * upm, 1e-9)
       << "hands that are swapped would go unnoticed";
 }
 
@@ -101,7 +101,7 @@ TEST(Headset, BeginsWhereTheCameraStands) {
   settings.start.rotation =
       glm::dmat3(glm::mat3_cast(glm::angleAxis(0.7, glm::dvec3(1, 0, 0))));  // looks down
   settings.units_per_metre = upm;
-  const stereo::Stage standing = start_of(settings, false), floor = start_of(settings, true);
+  const Placement standing = start_of(settings, false), floor = start_of(settings, true);
   EXPECT_EQ(standing.origin, settings.start.position);
   EXPECT_NEAR(glm::length(in_world(floor, {0, 1.6, 0}) - settings.start.position), 0.0, 1e-12);
   EXPECT_NEAR(glm::length(standing.axes[1] - settings.up), 0.0, 1e-12) << "upright";

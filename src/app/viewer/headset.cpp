@@ -106,7 +106,7 @@ void view_in_headset(const RenderOptions& o, const preview::Opened& scene, previ
     };
   }
   if (mirror)
-    beside.show = [&](const stereo::Target& left, const glm::ivec2& size) { mirror->show(left, size); };
+    beside.show = [&](const Target& left, const glm::ivec2& size) { mirror->show(left, size); };
   xr::run(instance, context, model, settings, beside);
 }
 

@@ -1,0 +1,60 @@
+#pragma once
+// A trained 3D Gaussian Splatting model (Kerbl et al. 2023) in memory, read from a file.
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <binosplat/eyes.h>
+
+namespace binosplat {
+
+struct Model;  // the library's own
+
+/// Which of the models in a file is meant, where it has several.
+struct ModelOptions {
+  std::optional<int> lod = {};  // the level of detail; 0 is the finest, and what is read where none is named
+  std::optional<std::size_t> appearance = {};  // of a Scaffold-GS model; the first where none is named
+};
+
+/// A box with sides along the axes of the model's world.
+struct Bounds {
+  glm::vec3 low{0.0f};  // world units
+  glm::vec3 high{0.0f};
+};
+
+/// A model, which never changes. Copies are cheap, and share the numbers; so does a Renderer, which may
+/// outlive what it was made from. Everything here may be called from any thread, and needs no context.
+class SplatModel {
+ public:
+  /// Reads a file, or a folder that holds a model. What it is, is decided by its content, never by its name:
+  /// INRIA's .ply and PlayCanvas' compressed one, .spz, .splat, .ksplat, SOG (a folder, or .sog), glTF with
+  /// Gaussians, and Scaffold-GS's .ply with the networks beside it. Gaussians whose numbers are not finite
+  /// are left out, and counted on standard error. Throws Error(bad_input) for a path that is no such model;
+  /// the text says what it looks like instead.
+  explicit SplatModel(const std::filesystem::path& path, const ModelOptions& options = {});
+
+  /// For the library's own code, which has models in memory. Not null.
+  explicit SplatModel(std::shared_ptr<const Model> model);
+
+  const std::string& name() const;  // for people: that of the file
+  std::size_t count() const;        // Gaussians; of a Scaffold-GS model anchors
+
+  /// The 2nd to the 98th percentile of the Gaussians' positions along each axis of the world, those left
+  /// aside that are wholly transparent: what the model is about, in spite of far outliers. Takes as long as
+  /// sorting the positions.
+  Bounds bounds() const;
+
+  /// Places the eyes' space at a point of the world in which the model's cameras live (x right, y down, z
+  /// forward, as COLMAP leaves it), upright as they were, whichever way the axes of the file point. `origin`
+  /// is in units of the world.
+  Placement placement(const glm::dvec3& origin = glm::dvec3(0.0), double units_per_metre = 1.0) const;
+
+ private:
+  friend class Renderer;
+  std::shared_ptr<const Model> model_;
+};
+
+}  // namespace binosplat

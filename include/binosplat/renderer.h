@@ -1,0 +1,99 @@
+#pragma once
+// Draws a model into the textures of a program that has an OpenGL context of its own, as VR applications do.
+//
+//   const binosplat::SplatModel model("model.ply");
+//   binosplat::Renderer renderer(eglGetProcAddress, model);
+//   const binosplat::Placement placement = model.placement();
+//   // Each frame, with the eyes from xrLocateViews and the textures from xrAcquireSwapchainImage:
+//   const std::array views = {binosplat::View{left_eye, size, {.texture = left_texture}},
+//                             binosplat::View{right_eye, size, {.texture = right_texture}}};
+//   renderer.draw(views, placement, {.background = glm::vec3(0.0f)});
+//
+// examples/embed.cpp and examples/openxr.cpp are whole programs.
+
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <binosplat/error.h>
+#include <binosplat/eyes.h>
+#include <binosplat/model.h>
+#include <binosplat/report.h>
+#include <binosplat/settings.h>
+#include <binosplat/targets.h>
+
+namespace binosplat {
+
+/// How OpenGL's functions are found by name: eglGetProcAddress, glfwGetProcAddress and their like.
+using GetProcAddress = void (*(*)(const char* name))();
+
+/// What is drawn of a view, and how exactly; by default all of it, as the settings say. Rows count from the
+/// top of the picture.
+struct ViewRegion {
+  static constexpr int tile = 16;  // px, a side of the tiles below
+  /// For each row of tiles the columns of tiles [x, y) that are drawn; nothing is drawn of others, such as
+  /// those that no lens shows. Empty: all.
+  std::vector<glm::uvec2> columns = {};
+  /// px. Of tiles that lie within [hole_begin, hole_end) nothing is drawn, either: what an inset covers.
+  glm::uvec2 hole_begin{0}, hole_end{0};
+  float tolerance_share = 1.0f;  // the view goes by so many times the frame's tolerance; 0: it is exact
+  /// Of a picture with fewer pixels than what it stands for, as the wide one around an inset: the square of
+  /// how many times fewer it has by degree, at most 1. The low-pass is as many px wide in every picture, so
+  /// that thin Gaussians would be too bright in this one. Changes nothing of anti-aliased models.
+  float low_pass_share = 1.0f;
+
+  bool operator==(const ViewRegion&) const = default;
+};
+
+/// A picture that is drawn: from where, how large, and into what.
+struct View {
+  Eye eye = {};
+  glm::ivec2 size{0};  // px, above 0
+  Target target = {};  // at least so large from its corner on
+  /// For all views of a frame, or for none, which is faster.
+  std::optional<DepthTarget> depth = {};
+  ViewRegion region = {};
+};
+
+/// A model on the GPU, and what drawing it needs there.
+///
+/// Threads: everything belongs to the thread that the caller's context is current on, which it must be in
+/// every call, the destructor included. Renderers of different contexts do not know of each other.
+///
+/// State: after each call, and after an error, the context's state is what it was before. What is bound,
+/// enabled or masked does not change what is drawn. Do not call within transform feedback or conditional
+/// rendering; queries that are active count what is done here.
+class Renderer {
+ public:
+  /// Uploads the model into the context that is current, of OpenGL 4.5 core or later. Context, textures and
+  /// framebuffers stay the caller's. Throws Error: no_gl for what the context lacks, out_of_memory.
+  Renderer(GetProcAddress get_proc_address, const SplatModel& model);
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// Draws up to 8 views of one head in one frame, each into its target; or, with another layout than
+  /// `separate`, the left and the right eye's, of one size, into the first one's. Returns when the GPU has
+  /// finished the frame. What reads the targets next sees it.
+  ///
+  /// Views of one orientation, and but for rounding of one depth, share a depth order if they follow one
+  /// another: put an eye's views side by side. Each has the same bits drawn with others or alone. Positions
+  /// may be moved along the axis by a millionth of the first one's distance from the space's origin, which
+  /// is what rounding puts one eye before the other.
+  ///
+  /// Frames go by what earlier ones measured, where the settings let them; a head that jumps costs no more
+  /// than a first frame.
+  ///
+  /// Throws Error: bad_input for an orientation that is not finite or zero, a frustum that encloses no
+  /// picture, an empty picture, settings that contradict each other, a target that cannot be drawn into,
+  /// views that do not go into the layout; out_of_memory; no_gl for a GPU that was reset.
+  Report draw(std::span<const View> views, const Placement& placement, const Settings& settings = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace binosplat

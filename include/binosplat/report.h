@@ -1,0 +1,37 @@
+#pragma once
+// What drawing a frame took.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace binosplat {
+
+struct StageTime {
+  std::string name = {};  // decode, project, order, pairs, tile_sort, ranges, blend
+  double ms = 0;          // on the GPU
+};
+
+struct Report {
+  std::vector<StageTime> stages = {};  // of the last, complete drawing; empty where the driver tells no times
+  double gpu_ms = 0;                   // their sum; with a quality of all attempts
+  double submit_ms = 0;                // CPU time of handing the last drawing to the driver
+  std::int64_t gpu_bytes = 0;          // in the renderer's buffers, the model's included
+
+  std::uint64_t visible = 0;  // Gaussians drawn, summed over the order groups
+  std::uint64_t pairs = 0;    // (Gaussian, tile) over all views
+  /// Depth orders: one where the views look the same way from the same depth, as those of parallel eyes do.
+  std::uint32_t order_groups = 0;
+
+  float tolerance = 0.0f;  // that the frame went by; 0: it is exact
+  double quality = 0.0;    // with Settings::quality: PSNR in dB, as measured; infinite where nothing differs
+  int attempts = 0;        // times that it was drawn until the quality held
+  int redrawn = 0;         // times that it was drawn again, since a buffer was too small
+
+  bool in_place = false;  // the pictures were written into the targets themselves, without a copy
+  /// OpenGL errors that were recorded before the frame began: the caller's own. The frame is drawn all the
+  /// same.
+  std::vector<std::uint32_t> callers_errors = {};
+};
+
+}  // namespace binosplat

@@ -1,0 +1,81 @@
+#include "library/settings.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace binosplat::library {
+
+namespace {
+
+static_assert(ViewRegion::tile == TILE_SIZE_DEFAULT);
+static_assert(static_cast<int>(Order::distance) == ORDER_DISTANCE);
+static_assert(static_cast<int>(Projection::tangent) == PROJECTION_TANGENT);
+
+int rule_of(const Settings& settings) {
+  if (!settings.threshold) return settings.quality || settings.tolerance ? TH_SQUARED : TH_TAU;
+  if (*settings.threshold == Threshold::squared) return TH_SQUARED;
+  return *settings.threshold == Threshold::peripheral ? TH_PERIPHERAL : TH_TAU;
+}
+
+render::ViewPart part_of(const ViewRegion& region) {
+  render::ViewPart part;
+  part.columns = region.columns;
+  part.hole_begin = region.hole_begin;
+  part.hole_end = region.hole_end;
+  part.tolerance_share = region.tolerance_share;
+  part.low_pass_share = region.low_pass_share;
+  return part;
+}
+
+}  // namespace
+
+render::FrameSettings frame_settings(const Settings& from, std::span<const View> views) {
+  render::FrameSettings to;
+  to.th = rule_of(from);
+  to.transmittance = from.transmittance == Transmittance::measured ? TRANSMITTANCE_LAST : TRANSMITTANCE_ONE;
+  if (from.quality && !(*from.quality > 0.0f))
+    fail("quality {}: expected decibels above zero", *from.quality);
+  to.quality = from.quality.value_or(0.0f);
+  to.tolerance = from.tolerance.value_or(0.0f);
+  if (!render::is_exact(to.th) && !from.quality && !from.tolerance)
+    fail("threshold {} needs a tolerance or a quality: what it may cost", th_choices[to.th].name);
+  if (from.order) to.order = static_cast<int>(*from.order);
+  if (from.projection) to.projection = static_cast<int>(*from.projection);
+  to.decode = from.cyclopean ? DECODE_CYCLOPEAN : DECODE_EYES;
+  to.background = from.background.value_or(glm::vec3(0.0f));
+  const bool has_depths = !views.empty() && views[0].depth.has_value();
+  to.depth = !has_depths ? Depth::none : from.depth == DepthKind::median ? Depth::median : Depth::mean;
+  const auto is_whole = [](const View& view) { return view.region == ViewRegion{}; };
+  if (!std::all_of(views.begin(), views.end(), is_whole)) {
+    for (const View& view : views) to.parts.push_back(part_of(view.region));
+  }
+  render::check_choice(to);
+  return to;
+}
+
+int layout_of(Layout layout) {
+  const int number = static_cast<int>(layout);
+  const bool named = number == LAYOUT_SEPARATE || (number >= LAYOUT_PARALLEL && number <= LAYOUT_GREY);
+  if (!named) fail("layout {}: there is none of this number", number);
+  return number;
+}
+
+Report report_of(const render::FrameReport& frame) {
+  Report report;
+  for (const gl::StageTime& stage : frame.stages) report.stages.push_back({stage.name, stage.ms});
+  report.gpu_ms = frame.total_ms;
+  report.submit_ms = frame.submit_ms;
+  report.gpu_bytes = frame.gpu_bytes;
+  report.visible = frame.visible;
+  report.pairs = frame.pairs;
+  report.order_groups = frame.order_groups;
+  report.tolerance = frame.tolerance;
+  report.quality = frame.quality;
+  report.attempts = frame.attempts;
+  report.redrawn = frame.redrawn;
+  report.in_place = frame.on_canvases;
+  return report;
+}
+
+}  // namespace binosplat::library

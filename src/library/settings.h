@@ -1,0 +1,18 @@
+#pragma once
+// The library's plain settings and report as the rooms below have them.
+
+#include <binosplat/renderer.h>
+
+#include "render/frame.h"
+
+namespace binosplat::library {
+
+/// Throws Error(bad_input) for values and settings that no frame has; render::Frame checks the rest.
+render::FrameSettings frame_settings(const Settings& settings, std::span<const View> views);
+
+/// One of shared/axes.h. Throws Error(bad_input) for a number that names none.
+int layout_of(Layout layout);
+
+Report report_of(const render::FrameReport& frame);
+
+}  // namespace binosplat::library
