@@ -62,9 +62,10 @@ struct View {
 /// Threads: everything belongs to the thread that the caller's context is current on, which it must be in
 /// every call, the destructor included. Renderers of different contexts do not know of each other.
 ///
-/// State: after each call, and after an error, the context's state is what it was before. What is bound,
-/// enabled or masked does not change what is drawn. Do not call within transform feedback or conditional
-/// rendering; queries that are active count what is done here.
+/// State: after each call, and after an error, the context's state is what it was before, but for a program
+/// in use that was deleted, which OpenGL does not set again. What is bound, enabled or masked does not change
+/// what is drawn. Do not call within transform feedback or conditional rendering; queries that are active
+/// count what is done here.
 class Renderer {
  public:
   /// Uploads the model into the context that is current, of OpenGL 4.5 core or later. Context, textures and
@@ -75,16 +76,16 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws up to 8 views of one head in one frame, each into its target; or, with another layout than
-  /// `separate`, the left and the right eye's, of one size, into the first one's. Returns when the GPU has
-  /// finished the frame. What reads the targets next sees it.
+  /// `separate`, the left and the right eye's, of one size, into the first one's. Waits until the GPU
+  /// has drawn the frame, but not for copies into targets; what reads them next sees it.
   ///
-  /// Views of one orientation, and but for rounding of one depth, share a depth order if they follow one
-  /// another: put an eye's views side by side. Each has the same bits drawn with others or alone. Positions
-  /// may be moved along the axis by a millionth of the first one's distance from the space's origin, which
-  /// is what rounding puts one eye before the other.
+  /// Views that look the same way from the same depth share a depth order, which saves time, if they follow
+  /// one another: put an eye's views side by side. Those of one orientation that lie before or behind the
+  /// first one by less than a millionth of its distance from the eyes' origin are moved to its depth: poses
+  /// of parallel eyes are as far apart by rounding.
   ///
-  /// Frames go by what earlier ones measured, where the settings let them; a head that jumps costs no more
-  /// than a first frame.
+  /// With a quality, or a transmittance that is measured, a frame goes by what earlier ones measured; after a
+  /// jump of the head it is drawn as a first one is.
   ///
   /// Throws Error: bad_input for an orientation that is not finite or zero, a frustum that encloses no
   /// picture, an empty picture, settings that contradict each other, a target that cannot be drawn into,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <regex>
 
@@ -9,7 +10,8 @@
 #include "formats/image_file.h"
 #include "formats/model_file.h"
 #include "measure/metrics.h"
-#include "stereo/embed.h"
+#include "render/frame.h"
+#include "stereo/eyes.h"
 
 namespace binosplat {
 namespace {
@@ -34,14 +36,12 @@ testing::AssertionResult succeeds(const test::TempFolder& folder, const std::str
 std::vector<Image> expected_eyes(const fs::path& file, bool swapped = false) {
   const auto context = gl::Context::open(gl::Backend::surfaceless);
   const Model model = load_model(file);
-  std::array<stereo::Fov, 2> fov = {stereo::Fov{-0.855, 0.646, 0.7, -0.7},
-                                    stereo::Fov{-0.646, 0.855, 0.7, -0.7}};
+  std::array<Fov, 2> fov = {Fov{-0.855, 0.646, 0.7, -0.7}, Fov{-0.646, 0.855, 0.7, -0.7}};
   if (swapped) std::swap(fov[0], fov[1]);
-  const std::array<stereo::XrEye, 2> eyes = {stereo::XrEye{.position = {-0.0315, 0, 0}, .fov = fov[0]},
-                                             stereo::XrEye{.position = {0.0315, 0, 0}, .fov = fov[1]}};
-  const glm::ivec2 size(320, 300);
+  const std::array<Eye, 2> eyes = {Eye{.position = {-0.0315, 0, 0}, .fov = fov[0]},
+                                   Eye{.position = {0.0315, 0, 0}, .fov = fov[1]}};
   render::Frame frame(*context, model);
-  frame.draw(stereo::eyes_from_xr(eyes, {}, {size, size}).views);
+  frame.draw(stereo::views_from_xr(eyes, {}, std::array{glm::ivec2(320, 300), glm::ivec2(320, 300)}).views);
   std::vector<Image> images;
   for (const Picture& picture : frame.read_pictures()) images.push_back(composite(picture, glm::vec3(0.0f)));
   return images;
@@ -106,27 +106,55 @@ TEST(Install, DocumentsLinksHoldAndShellsAndManFindTheirFiles) {
   EXPECT_TRUE(fs::exists(share / "fish/vendor_completions.d/binosplat.fish"));
 }
 
-TEST(Install, HeadersNameNobodyElsesRooms) {
-  const test::TempFolder folder;
-  ASSERT_TRUE(succeeds(folder, std::string("cmake -DROOT=") + BINOSPLAT_SOURCE_DIR +
-                                   " -DOUT=" + (folder / "include").string() + " -P " + BINOSPLAT_SOURCE_DIR +
-                                   "/cmake/public_headers.cmake"));
+/// What is wrong with installed headers: how many there are, what they include, and whether each compiles by
+/// itself, with none of this tree's beside it.
+std::vector<std::string> faults_of_headers(const test::TempFolder& folder, const fs::path& include) {
+  std::vector<std::string> faults;
   int headers = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder / "include")) {
+  std::ptrdiff_t lines = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(include)) {
     if (!entry.is_regular_file()) continue;
+    const std::string name = fs::relative(entry.path(), include).string(),
+                      text = test::read_text(entry.path());
     ++headers;
-    std::istringstream lines(test::read_text(entry.path()));
-    for (std::string line; std::getline(lines, line);) {
-      if (line.rfind("#include \"", 0) != 0) continue;
-      const std::string name = line.substr(10, line.find('"', 10) - 10);
-      EXPECT_TRUE(fs::exists(folder / ("include/" + name))) << entry.path() << ": " << line;
+    lines += std::count(text.begin(), text.end(), '\n');
+    // The standard library's, GLM's and each other, no more.
+    static const std::regex included(R"(#include (<[^>]*>|"[^"]*"))"),
+        allowed(R"(<(binosplat/\w+\.h|glm/.*|\w+)>)");
+    for (std::sregex_iterator at(text.begin(), text.end(), included), end; at != end; ++at) {
+      if (!std::regex_match((*at)[1].str(), allowed)) faults.push_back(name + " includes " + (*at)[1].str());
     }
+    test::write_text(folder / "alone.cpp", "#include <" + name + ">\n");
+    const auto compiles = succeeds(
+        folder, std::string(BINOSPLAT_CXX) + " -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I" +
+                    include.string() + " " + (folder / "alone.cpp").string());
+    if (!compiles) faults.push_back(name + " does not compile: " + compiles.message());
   }
-  EXPECT_GT(headers, 50);
-  EXPECT_FALSE(fs::exists(folder / "include/binosplat/app")) << "the programs' own";
-  EXPECT_FALSE(fs::exists(folder / "include/binosplat/preview")) << "the programs' own";
-  EXPECT_FALSE(fs::exists(folder / "include/binosplat/python")) << "the module's own";
-  EXPECT_TRUE(fs::exists(folder / "include/binosplat/shared/axes.h"));
+  if (headers > 8) faults.push_back(std::to_string(headers) + " headers: at most 8 are to be read");
+  if (lines > 1500) faults.push_back(std::to_string(lines) + " lines: at most 1,500 are to be read");
+  if (headers == 0) faults.push_back("no headers");
+  return faults;
+}
+
+TEST(Install, HeadersAreFewAndStandByThemselves) {
+  const test::TempFolder folder;
+  const fs::path include = folder / "include";
+  ASSERT_TRUE(succeeds(
+      folder, std::string("cmake --install ") + BINOSPLAT_BUILD_DIR + " --prefix " + folder.path().string()));
+  EXPECT_EQ(faults_of_headers(folder, include), std::vector<std::string>());
+  const auto noticed = [&](const std::string& text) {
+    const fs::path planted = include / "binosplat/planted.h";
+    test::write_text(planted, text);
+    const auto faults = faults_of_headers(folder, include);
+    fs::remove(planted);
+    return faults.size();
+  };
+  EXPECT_GE(noticed("#pragma once\nstruct Planted { std::vector<int> numbers; };\n"), 1u)
+      << "a header that misses an include goes unnoticed";
+  EXPECT_GE(noticed("#include <fmt/core.h>\n"), 1u) << "another library's header goes unnoticed";
+  EXPECT_GE(noticed("#pragma once\n" + std::string(1500, '\n')), 1u) << "many lines go unnoticed";
+  test::write_text(include / "binosplat/eighth.h", "#pragma once\n");
+  EXPECT_GE(noticed("#pragma once\n"), 1u) << "a ninth header goes unnoticed";
 }
 
 TEST(Install, PackagesHoldAProgramThatRuns) {

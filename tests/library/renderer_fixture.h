@@ -1,21 +1,26 @@
 #pragma once
-// A caller with two textures, and eyes as OpenXR gives them, for tests of stereo/embed.h.
+// A caller with two textures, and eyes as OpenXR gives them, for tests of include/binosplat.
 
+#include <binosplat/renderer.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
+#include <utility>
+#include <vector>
 
-#include "stereo/embed.h"
+#include "scene/model.h"
 #include "support/caller.h"
 
-namespace binosplat::stereo {
+namespace binosplat {
 
 constexpr glm::ivec2 size(72, 64);
-constexpr std::array<glm::ivec2, 2> sizes = {size, size};
 
 /// Eyes as a Quest gives them: 49 degrees outwards and 37 inwards, each turned outwards by `cant` degrees.
-inline std::array<XrEye, 2> quest_eyes(double cant = 0.0) {
-  std::array<XrEye, 2> eyes;
+inline std::array<Eye, 2> quest_eyes(double cant = 0.0) {
+  std::array<Eye, 2> eyes;
   for (std::size_t k = 0; k < 2; ++k) {
     const double side = k == 0 ? -1.0 : 1.0;
     eyes[k].position = {side * 0.0315, 1.6, 0.0};
@@ -28,15 +33,24 @@ inline std::array<XrEye, 2> quest_eyes(double cant = 0.0) {
 }
 
 /// The head of quest_eyes() is at the origin of the model's world, which looks along z with y down.
-inline const Stage stage = {.origin = {0.0, 1.6, 0.0}};
+inline const Placement placement = {.origin = {0.0, 1.6, 0.0}};
 
-struct Embed : testing::Test {
+inline const Settings over_black = {.background = glm::vec3(0.0f)};
+
+inline SplatModel in_memory(Model model) {
+  return SplatModel(std::make_shared<const Model>(std::move(model)));
+}
+
+struct Library : testing::Test {
   test::Caller caller;
   const std::array<std::uint32_t, 2> textures = {caller.texture(GL_RGBA32F, size.x, size.y),
                                                  caller.texture(GL_RGBA32F, size.x, size.y)};
-  const std::array<Target, 2> targets = {Target{.texture = textures[0]}, Target{.texture = textures[1]}};
 
+  /// Both eyes, each into its texture.
+  std::vector<View> views(const std::array<Eye, 2>& eyes = quest_eyes()) const {
+    return {View{eyes[0], size, {.texture = textures[0]}}, View{eyes[1], size, {.texture = textures[1]}}};
+  }
   std::vector<float> read(std::size_t eye) const { return caller.read<float>(textures[eye], size.x, size.y); }
 };
 
-}  // namespace binosplat::stereo
+}  // namespace binosplat

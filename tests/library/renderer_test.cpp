@@ -1,22 +1,15 @@
 // binosplat in another program: views as OpenXR gives them, that program's state, and whose errors are whose.
 
-#include "stereo/embed.h"
-
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
-#include <glm/gtc/quaternion.hpp>
+#include <string>
 
-#include "gl/state.h"
-#include "stereo/embed_fixture.h"
-#include "support/caller.h"
+#include "library/renderer_fixture.h"
 #include "support/errors.h"
 #include "support/models.h"
 
-namespace binosplat::stereo {
+namespace binosplat {
 namespace {
 
 /// One bright ball at (right, up, forward) of the head, in metres.
@@ -47,19 +40,17 @@ glm::dvec2 expected_centre(const Fov& fov, const glm::dvec3& v) {
   return {along(fov.left, fov.right, v.x / v.z, size.x), along(fov.down, fov.up, v.y / v.z, size.y)};
 }
 
-TEST_F(Embed, AnglesAndPosesAreOpenXrs) {
+TEST_F(Library, AnglesAndPosesAreOpenXrs) {
   for (const double cant : {0.0, 10.0}) {
     for (const double units : {1.0, 4.0}) {
       const glm::dvec3 at(0.3, 0.2, 1.5);
       const Model model = ball(at, units);
-      EmbeddedRenderer renderer(caller.get_proc_address(), model);
+      Renderer renderer(caller.get_proc_address(), in_memory(model));
       const auto eyes = quest_eyes(cant);
-      Stage there = stage;
+      Placement there = placement;
       there.origin *= units;
       there.units_per_metre = units;
-      const EyePair pair = eyes_from_xr(eyes, there, sizes);
-      EXPECT_EQ(pair.parallel, cant == 0.0);
-      renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+      EXPECT_EQ(renderer.draw(views(eyes), there, over_black).order_groups, cant == 0.0 ? 1u : 2u);
       for (std::size_t k = 0; k < 2; ++k) {
         const double side = k == 0 ? -1.0 : 1.0, turn = glm::radians(side * cant);
         const glm::dvec3 v(at.x - side * 0.0315, at.y, at.z);
@@ -78,56 +69,58 @@ TEST_F(Embed, AnglesAndPosesAreOpenXrs) {
   }
 }
 
-TEST_F(Embed, EachEyeIsTheSameAlone) {
-  const Model model = test::random_model(3, 400, 2);
+TEST_F(Library, AnEyeIsTheSameWhateverIsDrawnWithIt) {
+  const SplatModel model = in_memory(test::random_model(3, 400, 2));
   for (const double cant : {0.0, 10.0}) {
-    EmbeddedRenderer renderer(caller.get_proc_address(), model);
-    const EyePair pair = eyes_from_xr(quest_eyes(cant), stage, sizes);
-    const EmbeddedReport report = renderer.draw(pair.views, targets);
-    EXPECT_EQ(report.order_groups, cant == 0.0 ? 1u : 2u);
+    Renderer renderer(caller.get_proc_address(), model);
+    const std::vector<View> pair = views(quest_eyes(cant));
+    renderer.draw(pair, placement);
     const std::array<std::vector<float>, 2> both = {read(0), read(1)};
-    for (std::size_t k = 0; k < 2; ++k) {
-      renderer.draw(std::span(&pair.views[k], 1), std::span(&targets[k], 1));
+    const Target elsewhere = {.texture = caller.texture(GL_RGBA32F, size.x, size.y)};
+    const std::array four = {pair[0], View{pair[0].eye, size / 2, elsewhere},
+                             View{pair[1].eye, size / 2, elsewhere}, pair[1]};
+    renderer.draw(four, placement);
+    for (std::size_t k = 0; k < 2; ++k)
       EXPECT_EQ(std::memcmp(both[k].data(), read(k).data(), both[k].size() * sizeof(float)), 0) << cant << k;
-    }
     EXPECT_NE(both[0], both[1]) << "one eye twice goes unnoticed";
   }
 }
 
-TEST_F(Embed, ModelsKnowWhichWayIsUp) {
+TEST_F(Library, ModelsKnowWhichWayIsUp) {
   // One ball to the upper right, in the frame of trained models and in that of OpenGL.
   Model down = ball({0.3, 0.2, 1.5}), up = down;
   up.axes = "RUB";
   up.position[0] = {0.3f, 0.2f, -1.5f};
   std::vector<std::vector<float>> seen;
-  for (const Model* model : {&down, &up}) {
-    EmbeddedRenderer renderer(caller.get_proc_address(), *model);
-    renderer.draw(eyes_from_xr(quest_eyes(), stage_of(*model, {0, 1.6, 0}), sizes).views, targets,
-                  LAYOUT_SEPARATE, glm::vec3(0.0f));
+  for (const SplatModel& model : {in_memory(down), in_memory(up)}) {
+    Renderer renderer(caller.get_proc_address(), model);
+    renderer.draw(views(), model.placement({0, 1.6, 0}), over_black);
     seen.push_back(read(0));
   }
   EXPECT_LT(glm::length(centre_of_pixels(seen[0]) - centre_of_pixels(seen[1])), 1e-3);
-  EmbeddedRenderer renderer(caller.get_proc_address(), up);
-  renderer.draw(eyes_from_xr(quest_eyes(), stage, sizes).views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+  Renderer renderer(caller.get_proc_address(), in_memory(up));
+  renderer.draw(views(), placement, over_black);
   EXPECT_NE(read(0), seen[0]) << "the model's axes go unnoticed";
 }
 
-TEST_F(Embed, RoundedPosesAreStillParallel) {
+TEST_F(Library, RoundedPosesAreStillParallel) {
+  Renderer renderer(caller.get_proc_address(), in_memory(ball({0, 0, 1})));
   auto eyes = quest_eyes();
   eyes[1].position.z += 1e-7;  // as floats have it
-  const EyePair pair = eyes_from_xr(eyes, stage, sizes);
-  EXPECT_TRUE(pair.parallel);
+  EXPECT_EQ(renderer.draw(views(eyes), placement).order_groups, 1u);
   eyes[1].position.z += 1e-3;
-  EXPECT_FALSE(eyes_from_xr(eyes, stage, sizes).parallel);
+  EXPECT_EQ(renderer.draw(views(eyes), placement).order_groups, 2u);
 }
 
-TEST_F(Embed, LayoutsGoIntoOneTarget) {
-  const Model model = test::random_model(3, 400, 2);
-  EmbeddedRenderer renderer(caller.get_proc_address(), model);
-  const EyePair pair = eyes_from_xr(quest_eyes(), stage, sizes);
-  renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+TEST_F(Library, LayoutsGoIntoOneTarget) {
+  Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 2)));
+  std::vector<View> pair = views();
+  renderer.draw(pair, placement, over_black);
   const std::uint32_t wide = caller.texture(GL_RGBA32F, 2 * size.x, size.y);
-  renderer.draw(pair.views, std::array{Target{.texture = wide}}, LAYOUT_PARALLEL, glm::vec3(0.0f));
+  pair[0].target.texture = wide;
+  Settings side_by_side = over_black;
+  side_by_side.layout = Layout::parallel;
+  renderer.draw(pair, placement, side_by_side);
   const auto pixels = caller.read<float>(wide, 2 * size.x, size.y);
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const auto alone = read(eye);
@@ -136,35 +129,35 @@ TEST_F(Embed, LayoutsGoIntoOneTarget) {
       ASSERT_EQ(std::memcmp(&pixels[2 * row + 4 * eye * size.x], &alone[row], 4 * sizeof(float) * size.x), 0);
     }
   }
+  pair.pop_back();
   EXPECT_TRUE(
-      test::fails_saying([&] { renderer.draw(pair.views, targets, LAYOUT_PARALLEL); }, {"2 targets"}));
-  EXPECT_TRUE(
-      test::fails_saying([&] { renderer.draw(pair.views, std::span(targets).first(1)); }, {"1 targets"}));
+      test::fails_saying([&] { renderer.draw(pair, placement, side_by_side); }, {"1 views", "parallel"}));
 }
 
-TEST_F(Embed, BadEyesAreRefused) {
-  auto eyes = quest_eyes();
-  eyes[0].orientation = glm::dvec4(0.0);
-  EXPECT_TRUE(test::fails_saying([&] { eyes_from_xr(eyes, stage, sizes); }, {"quaternion"}));
-  eyes = quest_eyes();
-  std::swap(eyes[1].fov.left, eyes[1].fov.right);
-  EXPECT_TRUE(test::fails_saying([&] { eyes_from_xr(eyes, stage, sizes); }, {"field of view of right"}));
-  EXPECT_TRUE(test::fails_saying(
-      [&] {
-        eyes_from_xr(quest_eyes(), stage, {glm::ivec2(0, 4), size});
-      },
-      {"0 x 4"}));
+TEST_F(Library, BadEyesAreRefused) {
+  Renderer renderer(caller.get_proc_address(), in_memory(ball({0, 0, 1})));
+  const auto refused = [&](const std::vector<View>& bad, const char* saying) {
+    return test::fails_saying([&] { renderer.draw(bad, placement); }, {saying});
+  };
+  std::vector<View> bad = views();
+  bad[0].eye.orientation = glm::dvec4(0.0);
+  EXPECT_TRUE(refused(bad, "quaternion"));
+  bad = views();
+  std::swap(bad[1].eye.fov.left, bad[1].eye.fov.right);
+  EXPECT_TRUE(refused(bad, "field of view of right"));
+  bad = views();
+  bad[0].size = {0, 4};
+  EXPECT_TRUE(refused(bad, "0 x 4"));
+  EXPECT_TRUE(refused({}, "0 eyes"));
 }
 
-TEST_F(Embed, TheCallersErrorsAreTheCallers) {
-  const Model model = ball({0, 0, 1});
-  EmbeddedRenderer renderer(caller.get_proc_address(), model);
-  const EyePair pair = eyes_from_xr(quest_eyes(), stage, sizes);
+TEST_F(Library, TheCallersErrorsAreTheCallers) {
+  Renderer renderer(caller.get_proc_address(), in_memory(ball({0, 0, 1})));
   caller.gl.Enable(0xDEAD);
-  const EmbeddedReport report = renderer.draw(pair.views, targets);
-  EXPECT_EQ(report.callers_errors, std::vector<GLenum>{GL_INVALID_ENUM});
+  const Report report = renderer.draw(views(), placement);
+  EXPECT_EQ(report.callers_errors, std::vector<std::uint32_t>{GL_INVALID_ENUM});
   EXPECT_GT(report.pairs, 0u) << "the frame was not drawn";
-  EXPECT_TRUE(renderer.draw(pair.views, targets).callers_errors.empty());
+  EXPECT_TRUE(renderer.draw(views(), placement).callers_errors.empty());
   EXPECT_EQ(caller.gl.GetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
@@ -179,15 +172,13 @@ struct LostGpu {
   }
 };
 
-TEST_F(Embed, ALostGpuIsSaid) {
-  const Model model = ball({0, 0, 1});
+TEST_F(Library, ALostGpuIsSaid) {
   LostGpu::driver = caller.get_proc_address();
-  EmbeddedRenderer renderer(LostGpu::get_proc_address, model);
-  const EyePair pair = eyes_from_xr(quest_eyes(), stage, sizes);
-  EXPECT_NO_THROW(renderer.draw(pair.views, targets));
+  Renderer renderer(LostGpu::get_proc_address, in_memory(ball({0, 0, 1})));
+  EXPECT_NO_THROW(renderer.draw(views(), placement));
   LostGpu::status = GL_INNOCENT_CONTEXT_RESET;
   try {
-    renderer.draw(pair.views, targets);
+    renderer.draw(views(), placement);
     ADD_FAILURE() << "a frame of a lost GPU was handed out";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::no_gl);
@@ -198,27 +189,32 @@ TEST_F(Embed, ALostGpuIsSaid) {
 }
 
 // Both eyes and an inset in each, as headsets with four views have them.
-TEST_F(Embed, FourViewsOfParallelEyesShareOneOrder) {
-  const Model model = test::random_model(3, 200, 0);
-  render::Frame frame(*caller.context, model);
-  auto eyes = quest_eyes();
-  XrEye left = eyes[0], right = eyes[1];
-  left.fov = right.fov = {-0.2, 0.2, 0.2, -0.2};
-  const std::array four = {eyes[0], left, eyes[1], right};
-  const std::array<glm::ivec2, 4> of_four = {size, size, size, size};
-  const HeadViews head = views_from_xr(four, stage, of_four);
-  EXPECT_TRUE(head.parallel);
-  EXPECT_EQ(frame.draw(head.views).order_groups, 1u);
-  const EyePair pair = eyes_from_xr(eyes, stage, sizes);
-  EXPECT_EQ(std::memcmp(&head.views[0], &pair.views[0], sizeof(shared::View)), 0);
-  EXPECT_EQ(std::memcmp(&head.views[2], &pair.views[1], sizeof(shared::View)), 0);
-  const auto canted = quest_eyes(8.0);
-  const std::array turned = {canted[0], canted[0], canted[1], canted[1]};
-  const HeadViews apart = views_from_xr(turned, stage, of_four);
-  EXPECT_FALSE(apart.parallel);
-  EXPECT_EQ(frame.draw(apart.views).order_groups, 2u) << "an eye's views share theirs";
-  EXPECT_EQ(frame.draw(apart.views, {.order = ORDER_DISTANCE}).order_groups, 1u);
+TEST_F(Library, FourViewsOfParallelEyesShareOneOrder) {
+  Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 200, 0)));
+  const auto with_insets = [&](const std::array<Eye, 2>& eyes) {
+    const std::vector<View> pair = views(eyes);
+    std::vector<View> four = {pair[0], pair[0], pair[1], pair[1]};
+    four[1].eye.fov = four[3].eye.fov = {-0.2, 0.2, 0.2, -0.2};
+    return four;
+  };
+  EXPECT_EQ(renderer.draw(with_insets(quest_eyes()), placement).order_groups, 1u);
+  const auto canted = with_insets(quest_eyes(8.0));
+  EXPECT_EQ(renderer.draw(canted, placement).order_groups, 2u) << "an eye's views share theirs";
+  EXPECT_EQ(renderer.draw(canted, placement, {.order = Order::distance}).order_groups, 1u);
+}
+
+// A model that was loaded, and what a program may ask of it.
+TEST(LibraryModel, IsSharedAndTellsOfItself) {
+  Model model = test::random_model(3, 200, 0);
+  model.name = "small";
+  const SplatModel splats = in_memory(model), copy = splats;
+  EXPECT_EQ(copy.name(), "small");
+  EXPECT_EQ(copy.count(), 200u);
+  const Bounds bounds = copy.bounds(), expected = core_bounds(model);
+  EXPECT_EQ(bounds.low, expected.low);
+  EXPECT_EQ(bounds.high, expected.high);
+  EXPECT_TRUE(test::fails_saying([] { SplatModel("/no/such.ply"); }, {"/no/such.ply"}));
 }
 
 }  // namespace
-}  // namespace binosplat::stereo
+}  // namespace binosplat

@@ -3,17 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <set>
 #include <string>
 
-#include "base/error.h"
 #include "gl/state.h"
-#include "stereo/embed.h"
-#include "support/caller.h"
+#include "library/renderer_fixture.h"
+#include "render/frame.h"
+#include "stereo/rig.h"
 #include "support/models.h"
 
-namespace binosplat::stereo {
+namespace binosplat {
 namespace {
 
 using Values = std::vector<double>;
@@ -257,66 +258,76 @@ struct State : testing::Test {
   }
 };
 
-std::array<shared::View, 2> views() { return make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views; }
+/// Both eyes of a head at the origin, in pictures of 40 x 32 px and 40 px to a slope of 1.
+std::array<View, 2> views_into(const std::array<Target, 2>& targets) {
+  const double across = std::atan(0.5), up = std::atan(0.4);
+  const Fov fov = {-across, across, up, -up};
+  return {View{{.position = {-0.05, 0, 0}, .fov = fov}, {40, 32}, targets[0]},
+          View{{.position = {0.05, 0, 0}, .fov = fov}, {40, 32}, targets[1]}};
+}
 
-/// One that is written in place, and one that is copied into.
-struct Targets {
-  std::array<std::uint32_t, 2> textures;
-  std::array<Target, 2> both;
+/// The first one is written in place, the other copied into. With textures of depths, one of them smaller.
+struct Textures {
+  std::array<std::uint32_t, 2> colours, depths;
+  std::array<Target, 2> targets;
 
-  explicit Targets(const test::Caller& caller)
-      : textures{caller.texture(GL_RGBA32F, 40, 32), caller.texture(GL_RGB8, 40, 32)} {
-    both[0].texture = textures[0];
-    caller.gl.CreateFramebuffers(1, &both[1].framebuffer);
-    caller.gl.NamedFramebufferTexture(both[1].framebuffer, GL_COLOR_ATTACHMENT0, textures[1], 0);
+  explicit Textures(const test::Caller& caller)
+      : colours{caller.texture(GL_RGBA32F, 40, 32), caller.texture(GL_RGB8, 40, 32)},
+        depths{caller.texture(GL_DEPTH_COMPONENT32F, 40, 32), caller.texture(GL_DEPTH_COMPONENT24, 20, 16)} {
+    targets[0].texture = colours[0];
+    caller.gl.CreateFramebuffers(1, &targets[1].framebuffer);
+    caller.gl.NamedFramebufferTexture(targets[1].framebuffer, GL_COLOR_ATTACHMENT0, colours[1], 0);
+  }
+  std::array<View, 2> views() const { return views_into(targets); }
+  std::array<View, 2> views_with_depths() const {
+    std::array<View, 2> both = views();
+    for (std::size_t k = 0; k < 2; ++k) both[k].depth = {.texture = depths[k]};
+    return both;
+  }
+  static std::vector<float> read_depths(const test::Caller& caller, std::uint32_t id) {
+    std::vector<float> all(40 * 32);
+    caller.gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    caller.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    caller.GetTextureSubImage(id, 0, 0, 0, 0, 40, 32, 1, GL_DEPTH_COMPONENT, GL_FLOAT, 4 * 40 * 32,
+                              all.data());
+    return all;
   }
 };
 
 TEST_F(State, IsTheSameAfterAFrame) {
-  const Model model = test::random_model(1, 200, 1);
-  std::unique_ptr<EmbeddedRenderer> renderer;
+  const SplatModel model = in_memory(test::random_model(1, 200, 1));
+  std::unique_ptr<Renderer> renderer;
   const auto made =
-      changed_by([&] { renderer = std::make_unique<EmbeddedRenderer>(caller.get_proc_address(), model); });
+      changed_by([&] { renderer = std::make_unique<Renderer>(caller.get_proc_address(), model); });
   EXPECT_EQ(made, std::set<std::string>()) << "by uploading the model";
-  const Targets targets(caller);
-  const std::array depths = {DepthTarget{.texture = caller.texture(GL_DEPTH_COMPONENT32F, 40, 32)},
-                             DepthTarget{.texture = caller.texture(GL_DEPTH_COMPONENT24, 20, 16)}};
-  const auto drawn = changed_by(
-      [&] { renderer->draw(views(), targets.both, LAYOUT_SEPARATE, glm::vec3(0.0f), {}, depths); });
+  const Textures odd(caller);
+  const auto drawn = changed_by([&] { renderer->draw(odd.views_with_depths(), {}, over_black); });
   EXPECT_EQ(drawn, std::set<std::string>());
-  const std::array in_place = {targets.both[0], Target{.texture = caller.texture(GL_SRGB8_ALPHA8, 40, 32)}};
-  const auto on_canvases = changed_by(
-      [&] { EXPECT_TRUE(renderer->draw(views(), in_place, LAYOUT_SEPARATE, {}, {}, depths).on_canvases); });
-  EXPECT_EQ(on_canvases, std::set<std::string>());
-
-  // And the pictures are those of a plain context: none of that state reached them.
-  const auto odd = caller.read<float>(targets.textures[0], 40, 32),
-             odd_copy = caller.read<float>(targets.textures[1], 40, 32);
-  const auto depths_of = [](const test::Caller& of, std::uint32_t id) {
-    std::vector<float> all(40 * 32);
-    of.gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-    of.PixelStorei(GL_PACK_ALIGNMENT, 4);
-    of.GetTextureSubImage(id, 0, 0, 0, 0, 40, 32, 1, GL_DEPTH_COMPONENT, GL_FLOAT, 4 * 40 * 32, all.data());
-    return all;
-  };
-  const std::vector<float> odd_depths = depths_of(caller, depths[0].texture);
+  const std::vector<float> depths = Textures::read_depths(caller, odd.depths[0]);
+  auto in_place = odd.views_with_depths();
+  in_place[1].target = {.texture = caller.texture(GL_SRGB8_ALPHA8, 40, 32)};
+  EXPECT_EQ(changed_by([&] { EXPECT_TRUE(renderer->draw(in_place, {}).in_place); }), std::set<std::string>());
   const auto refused = changed_by([&] {
-    EXPECT_THROW(renderer->draw(views(), std::array{targets.both[0], Target{.texture = 4711}}), Error);
+    auto deleted = odd.views();
+    deleted[1].target = {.texture = 4711};
+    EXPECT_THROW(renderer->draw(deleted, {}), Error);
   });
   EXPECT_EQ(refused, std::set<std::string>()) << "by a frame that failed";
-  test::Caller plain;
-  EmbeddedRenderer other(plain.get_proc_address(), model);
-  const Targets plain_targets(plain);
-  const auto both_views = views();
-  const std::array plain_depth = {DepthTarget{.texture = plain.texture(GL_DEPTH_COMPONENT32F, 40, 32)}};
-  other.draw(std::span(both_views).first(1), std::span(&plain_targets.both[0], 1), LAYOUT_SEPARATE,
-             glm::vec3(0.0f), {}, plain_depth);
-  const std::vector<float> plain_depths = depths_of(plain, plain_depth[0].texture);
-  EXPECT_EQ(plain_depths, odd_depths);
-  EXPECT_LT(*std::min_element(plain_depths.begin(), plain_depths.end()), 0.9f) << "no depth was drawn";
-  other.draw(views(), plain_targets.both);
-  EXPECT_EQ(plain.read<float>(plain_targets.textures[0], 40, 32), odd);
-  EXPECT_EQ(plain.read<float>(plain_targets.textures[1], 40, 32), odd_copy);
+
+  // And the pictures are those of a plain context: none of that state reached them.
+  set_all();
+  renderer->draw(odd.views(), {});
+  const auto odd_picture = caller.read<float>(odd.colours[0], 40, 32),
+             odd_copy = caller.read<float>(odd.colours[1], 40, 32);
+  test::Caller plain_caller;
+  Renderer other(plain_caller.get_proc_address(), model);
+  const Textures plain(plain_caller);
+  other.draw(plain.views_with_depths(), {}, over_black);
+  EXPECT_EQ(Textures::read_depths(plain_caller, plain.depths[0]), depths);
+  EXPECT_LT(*std::min_element(depths.begin(), depths.end()), 0.9f) << "no depth was drawn";
+  other.draw(plain.views(), {});
+  EXPECT_EQ(plain_caller.read<float>(plain.colours[0], 40, 32), odd_picture);
+  EXPECT_EQ(plain_caller.read<float>(plain.colours[1], 40, 32), odd_copy);
   EXPECT_GT(*std::max_element(odd_copy.begin(), odd_copy.end()), 0.1f) << "nothing was copied";
 }
 
@@ -335,7 +346,7 @@ TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
   render::Frame frame(*caller.context, model);
   const gl::KeptState kept(*caller.context);  // of the caller's before the test sets its own: ends it all
   const auto careless = changed_by([&] {
-    frame.draw(views());
+    frame.draw(stereo::make_rig(test::front_camera(40, 32, 40.0), {.ipd = 0.1}).views);
     kept.set_plain();
     for (const GLuint unit : {0u, MAX_CANVASES - 1u})
       gl.BindImageTexture(unit, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
@@ -348,4 +359,4 @@ TEST_F(State, DrawingWithoutCareIsNoticedInEveryPiece) {
 }
 
 }  // namespace
-}  // namespace binosplat::stereo
+}  // namespace binosplat

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "stereo/embed_fixture.h"
+#include "base/image.h"
+#include "library/renderer_fixture.h"
+#include "render/frame.h"
+#include "stereo/eyes.h"
+#include "stereo/present.h"
+#include "support/errors.h"
 #include "support/models.h"
 
-namespace binosplat::stereo {
+namespace binosplat {
 namespace {
 
 /// Depths of a layer, rows from OpenGL's bottom.
@@ -19,12 +23,11 @@ std::vector<float> read_depths(const test::Caller& caller, std::uint32_t id, int
   return depths;
 }
 
-TEST_F(Embed, DepthsAreAsOpenGLKeepsThem) {
+TEST_F(Library, DepthsAreAsOpenGLKeepsThem) {
   const Model model = test::random_model(3, 400, 0);
-  EmbeddedRenderer renderer(caller.get_proc_address(), model);
-  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
-  render::Frame frame(renderer.context(), model);
-  frame.draw(views);
+  Renderer renderer(caller.get_proc_address(), in_memory(model));
+  render::Frame frame(*caller.context, model);
+  frame.draw(stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views);
   const std::vector<Picture> pictures = frame.read_pictures();
   constexpr double inf = std::numeric_limits<double>::infinity();
   const std::uint32_t layers = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y, 3);
@@ -51,39 +54,40 @@ TEST_F(Embed, DepthsAreAsOpenGLKeepsThem) {
       }
       return count;
     };
-    renderer.draw(
-        views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f), {},
-        std::array{DepthTarget{.texture = formats[0], .near_plane = near, .far_plane = far},
-                   DepthTarget{.texture = layers, .layer = 2, .near_plane = near, .far_plane = far}});
+    std::vector<View> pair = views();
+    pair[0].depth = {.texture = formats[0], .near_plane = near, .far_plane = far};
+    pair[1].depth = {.texture = layers, .layer = 2, .near_plane = near, .far_plane = far};
+    renderer.draw(pair, placement, over_black);
     EXPECT_EQ(differing(read_depths(caller, formats[0]), pictures[0]), 0) << near << " " << far;
     EXPECT_EQ(differing(read_depths(caller, layers, 2), pictures[1]), 0) << near << " " << far;
     EXPECT_GT(differing(read_depths(caller, formats[0]), pictures[1]), 100) << "the other eye goes unnoticed";
     EXPECT_GT(differing(read_depths(caller, formats[0]), pictures[0], true), 100)
         << "upside down goes unnoticed";
-    renderer.draw(std::span(&views[0], 1), std::span(&targets[0], 1), LAYOUT_SEPARATE, glm::vec3(0.0f), {},
-                  std::array{DepthTarget{.texture = formats[1], .near_plane = near, .far_plane = far}});
+    pair[0].depth->texture = formats[1];
+    renderer.draw(pair, placement, over_black);
     EXPECT_EQ(differing(read_depths(caller, formats[1]), pictures[0]), 0) << "24 bits";
   }
   const auto refused = [&](const DepthTarget& target) {
-    EXPECT_THROW(renderer.draw(std::span(&views[0], 1), std::span(&targets[0], 1), LAYOUT_SEPARATE,
-                               glm::vec3(0.0f), {}, std::array{target}),
-                 Error);
+    std::vector<View> one = {views()[0]};
+    one[0].depth = target;
+    EXPECT_THROW(renderer.draw(one, placement, over_black), Error);
   };
   refused({.texture = textures[0]});  // of colours
   refused({.texture = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y, 2), .layer = 2});
   refused({.texture = formats[0], .near_plane = 0.0});
   refused({.texture = formats[0], .near_plane = inf, .far_plane = inf});
-  EXPECT_THROW(renderer.draw(views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f), {},
-                             std::array{DepthTarget{.texture = formats[0]}}),
-               Error)
-      << "one for two views";
+  std::vector<View> half = views();
+  half[1].depth = {.texture = formats[0]};
+  EXPECT_TRUE(
+      test::fails_saying([&] { renderer.draw(half, placement); }, {"1 of 2 views have a depth target"}));
 }
 
 // In place, the blend itself writes what the presenter writes afterwards.
-TEST_F(Embed, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
+TEST_F(Library, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
   const Model model = test::random_model(3, 400, 0);
-  EmbeddedRenderer renderer(caller.get_proc_address(), model);
-  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
+  Renderer renderer(caller.get_proc_address(), in_memory(model));
+  View one = views()[0];
+  const auto drawn = stereo::views_from_xr(std::span(&one.eye, 1), placement, std::span(&one.size, 1)).views;
   const std::uint32_t depth = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
   for (const GLenum format : {GL_SRGB8_ALPHA8, GL_RGBA8, GL_RGB10_A2, GL_RGBA16, GL_RGBA16F, GL_RGBA32F}) {
     for (const bool linear : {false, true}) {
@@ -96,46 +100,49 @@ TEST_F(Embed, WhatTheBlendWritesInPlaceIsWhatThePresenterWrites) {
         const auto written = [&](int layer) {
           return caller.read<float>(texture, 2 * size.x, 2 * size.y, layer);
         };
-        const EmbeddedReport in_place =
-            renderer.draw(std::span(&views[0], 1), std::span(&to, 1), LAYOUT_SEPARATE, background, {},
-                          std::array{DepthTarget{.texture = depth}});
-        EXPECT_TRUE(in_place.on_canvases) << format;
-        render::Frame frame(renderer.context(), model);
-        frame.draw(std::span(&views[0], 1));
-        Presenter presenter(renderer.context());
+        one.target = to;
+        one.depth = {.texture = depth};
+        EXPECT_TRUE(renderer.draw(std::span(&one, 1), placement, {.background = background}).in_place)
+            << format;
+        render::Frame frame(*caller.context, model);
+        frame.draw(drawn);
+        stereo::Presenter presenter(*caller.context);
         presenter.draw(frame, 0, LAYOUT_SEPARATE, other, background);
         presenter.draw(frame, 0, LAYOUT_SEPARATE, third, background);
         EXPECT_EQ(written(1), written(2)) << format << linear;
         EXPECT_NE(written(1), written(0)) << "light for display values goes unnoticed";
-        EXPECT_THROW(frame.draw(views, {}, {}, presenter.canvases(std::span(&to, 1), background).list), Error)
+        const std::array twice = {drawn[0], drawn[0]};
+        EXPECT_THROW(frame.draw(twice, {}, {}, presenter.canvases(std::span(&to, 1), background).list), Error)
             << "one for two views";
         caller.gl.DeleteTextures(1, &texture);
       }
     }
   }
   // A copy is needed for one of them: none is written in place.
-  const std::array mixed = {targets[0], Target{.texture = caller.texture(GL_RGB8, size.x, size.y)}};
-  EXPECT_FALSE(renderer.draw(views, mixed, LAYOUT_SEPARATE, glm::vec3(0.0f)).on_canvases);
+  std::vector<View> mixed = views();
+  mixed[1].target.texture = caller.texture(GL_RGB8, size.x, size.y);
+  EXPECT_FALSE(renderer.draw(mixed, placement, over_black).in_place);
 }
 
 // Textures of fewer pixels take the depth in the middle of each of theirs.
-TEST_F(Embed, SmallerTexturesOfDepths) {
-  const Model model = test::random_model(3, 400, 0);
-  EmbeddedRenderer renderer(caller.get_proc_address(), model);
-  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
-  const std::array copied = {Target{.texture = caller.texture(GL_RGB8, size.x, size.y)}};
+TEST_F(Library, SmallerTexturesOfDepths) {
+  Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
+  const Target copied = {.texture = caller.texture(GL_RGB8, size.x, size.y)};
+  const Target written = {.texture = textures[0]};
   const std::uint32_t whole = caller.texture(GL_DEPTH_COMPONENT32F, size.x, size.y);
-  for (const Depth kind : {Depth::mean, Depth::median}) {
-    const auto draw = [&](std::span<const Target> to, std::uint32_t texture) {
-      return renderer.draw(std::span(&views[0], 1), to, LAYOUT_SEPARATE, glm::vec3(0.0f), {.depth = kind},
-                           std::array{DepthTarget{.texture = texture}});
+  for (const DepthKind kind : {DepthKind::mean, DepthKind::median}) {
+    const auto draw = [&](const Target& to, std::uint32_t texture) {
+      const View view = {quest_eyes()[0], size, to, DepthTarget{.texture = texture}};
+      Settings settings = over_black;
+      settings.depth = kind;
+      return renderer.draw(std::span(&view, 1), placement, settings);
     };
-    EXPECT_FALSE(draw(copied, whole).on_canvases);
+    EXPECT_FALSE(draw(copied, whole).in_place);
     const std::vector<float> all = read_depths(caller, whole);
     for (const int step : {1, 2, 4}) {
       const glm::ivec2 few = size / step;
       const std::uint32_t texture = caller.texture(GL_DEPTH_COMPONENT32F, few.x, few.y);
-      EXPECT_TRUE(draw(std::span(&targets[0], 1), texture).on_canvases);
+      EXPECT_TRUE(draw(written, texture).in_place);
       std::vector<float> depths(static_cast<std::size_t>(few.x) * static_cast<std::size_t>(few.y));
       caller.GetTextureSubImage(texture, 0, 0, 0, 0, few.x, few.y, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
                                 static_cast<GLsizei>(4 * depths.size()), depths.data());
@@ -157,13 +164,12 @@ TEST_F(Embed, SmallerTexturesOfDepths) {
 }
 
 // Numbers that mean light.
-TEST_F(Embed, LinearTargetsHoldLight) {
-  const Model model = test::random_model(3, 400, 0);
-  EmbeddedRenderer renderer(caller.get_proc_address(), model);
-  const auto views = eyes_from_xr(quest_eyes(), stage, sizes).views;
-  const std::array<Target, 2> linear = {targets[0], Target{.texture = textures[1], .linear = true}};
-  const std::array same = {views[0], views[0]};
-  renderer.draw(same, linear, LAYOUT_SEPARATE, glm::vec3(0.0f));
+TEST_F(Library, LinearTargetsHoldLight) {
+  Renderer renderer(caller.get_proc_address(), in_memory(test::random_model(3, 400, 0)));
+  std::vector<View> same = views();
+  same[1].eye = same[0].eye;
+  same[1].target.linear = true;
+  renderer.draw(same, placement, over_black);
   const std::vector<float> shown = read(0), light = read(1);
   int differ = 0;
   for (std::size_t k = 0; k < shown.size(); ++k) {
@@ -176,4 +182,4 @@ TEST_F(Embed, LinearTargetsHoldLight) {
 }
 
 }  // namespace
-}  // namespace binosplat::stereo
+}  // namespace binosplat

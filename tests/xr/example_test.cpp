@@ -1,10 +1,9 @@
 // examples/openxr.cpp against the test runtime: what it draws, how it goes, and what the validation layer
 // says.
 
+#include <binosplat/renderer.h>
 #include <gtest/gtest.h>
 
-#include "formats/model_file.h"
-#include "stereo/embed.h"
 #include "support/caller.h"
 #include "support/ply.h"
 #include "xr/xr_script.h"
@@ -52,28 +51,23 @@ glm::dvec4 four(const Json& json) { return {json[0], json[1], json[2], json[3]};
 
 /// A frame's picture as the example is expected to draw it, from what the runtime located.
 struct Expected : Caller {
-  explicit Expected(const std::filesystem::path& file)
-      : model(load_model(file)), renderer(get_proc_address(), model) {}
+  explicit Expected(const std::filesystem::path& file) : model(file), renderer(get_proc_address(), model) {}
 
   std::array<std::string, 2> draw(const Json& frame) {
-    std::array<stereo::XrEye, 2> eyes;
+    std::array<View, 2> views;
     for (std::size_t k = 0; k < 2; ++k) {
-      const Json& view = frame["located"][0]["views"][k];
-      const Json& at = view["pose"]["position"];
-      const glm::dvec4 fov = four(view["fov"]);
-      eyes[k].position = {at[0], at[1], at[2]};
-      eyes[k].orientation = four(view["pose"]["orientation"]);
-      eyes[k].fov = {fov[0], fov[1], fov[2], fov[3]};
+      const Json& located = frame["located"][0]["views"][k];
+      const Json& at = located["pose"]["position"];
+      const glm::dvec4 fov = four(located["fov"]);
+      views[k].eye = {
+          {at[0], at[1], at[2]}, four(located["pose"]["orientation"]), {fov[0], fov[1], fov[2], fov[3]}};
+      views[k].size = {example_width, example_height};
+      views[k].target.texture = texture(GL_SRGB8_ALPHA8, example_width, example_height);
     }
-    const glm::ivec2 size(example_width, example_height);
-    const auto pair = stereo::eyes_from_xr(eyes, stereo::stage_of(model), {size, size});
-    const std::array<stereo::Target, 2> targets = {
-        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, example_width, example_height)},
-        stereo::Target{.texture = texture(GL_SRGB8_ALPHA8, example_width, example_height)}};
-    renderer.draw(pair.views, targets, LAYOUT_SEPARATE, glm::vec3(0.0f));
+    renderer.draw(views, model.placement(), {.background = glm::vec3(0.0f)});
     std::array<std::string, 2> out;
     for (std::size_t k = 0; k < 2; ++k) {
-      const auto pixels = read<unsigned char>(targets[k].texture, example_width, example_height);
+      const auto pixels = read<unsigned char>(views[k].target.texture, example_width, example_height);
       for (int row = example_height - 1; row >= 0; --row) {
         const auto begin = pixels.begin() + 4 * row * example_width;
         out[k].append(begin, begin + 4 * example_width);
@@ -82,8 +76,8 @@ struct Expected : Caller {
     return out;
   }
 
-  const Model model;
-  stereo::EmbeddedRenderer renderer;
+  const SplatModel model;
+  Renderer renderer;
 };
 
 TEST(XrExample, SubmitsToTheBitWhatOthersDraw) {

@@ -338,7 +338,8 @@ TEST_F(XrView, HandsWalkAndTurn) {
   const Eye eyes = {.position = {0, 1.6, 0}};
   std::array<xr::Hand, 2> hands;
   const auto shown = [&](std::size_t frame) {
-    return log.colours(log.frames().at(frame), 0) == bytes_of(expected(log.frames()[frame], walk.stage())[0]);
+    return log.colours(log.frames().at(frame), 0) ==
+           bytes_of(expected(log.frames()[frame], walk.placement())[0]);
   };
   EXPECT_TRUE(shown(0));
   hands[0].stick = {0, 1};

@@ -1,0 +1,95 @@
+// The library's plain settings and report mean what a frame's own do.
+
+#include "library/settings.h"
+
+#include <cmath>
+
+#include "library/renderer_fixture.h"
+#include "stereo/eyes.h"
+#include "support/errors.h"
+#include "support/models.h"
+
+namespace binosplat {
+namespace {
+
+TEST(LibrarySettings, AreAFramesOwn) {
+  const std::array<View, 2> views;
+  const auto of = [&](const Settings& settings) { return library::frame_settings(settings, views); };
+  const render::FrameSettings plain = of({});
+  EXPECT_TRUE(render::is_exact(plain.th));
+  EXPECT_EQ(plain.depth, Depth::none) << "nobody asked for depths";
+  EXPECT_FALSE(plain.order || plain.projection);
+  EXPECT_TRUE(plain.parts.empty());
+  EXPECT_EQ(of({.quality = 40.0f}).th, TH_SQUARED) << "what the command line takes by itself";
+  EXPECT_EQ(of({.quality = 40.0f}).quality, 40.0f);
+  EXPECT_EQ(of({.tolerance = 0.5f}).th, TH_SQUARED);
+  EXPECT_EQ(of({.tolerance = 0.5f}).tolerance, 0.5f);
+  EXPECT_EQ(of({.tolerance = 0.5f, .threshold = Threshold::peripheral}).th, TH_PERIPHERAL);
+  EXPECT_EQ(of({.quality = 40.0f, .transmittance = Transmittance::measured}).transmittance,
+            TRANSMITTANCE_LAST);
+  EXPECT_EQ(of({.order = Order::distance}).order, ORDER_DISTANCE);
+  EXPECT_EQ(of({.projection = Projection::tangent}).projection, PROJECTION_TANGENT);
+  EXPECT_EQ(of({.cyclopean = true}).decode, DECODE_CYCLOPEAN);
+  EXPECT_EQ(of({.background = glm::vec3(0.5f)}).background, glm::vec3(0.5f));
+  std::array<View, 2> with_depth;
+  for (View& view : with_depth) view.depth = DepthTarget{};
+  EXPECT_EQ(library::frame_settings({}, with_depth).depth, Depth::mean);
+  EXPECT_EQ(library::frame_settings({.depth = DepthKind::median}, with_depth).depth, Depth::median);
+}
+
+TEST(LibrarySettings, ContradictionsAreRefused) {
+  const auto refused = [](const Settings& settings, const char* saying) {
+    return test::fails_saying([&] { library::frame_settings(settings, {}); }, {saying});
+  };
+  EXPECT_TRUE(refused({.quality = 40.0f, .tolerance = 1.0f}, "leave one of them out"));
+  EXPECT_TRUE(refused({.quality = 40.0f, .threshold = Threshold::exact}, "exact"));
+  EXPECT_TRUE(refused({.threshold = Threshold::squared}, "what it may cost"));
+  EXPECT_TRUE(refused({.quality = 0.0f}, "decibels"));
+  EXPECT_TRUE(refused({.quality = 400.0f}, "decibels"));
+  EXPECT_TRUE(refused({.tolerance = NAN}, "zero or more"));
+  EXPECT_TRUE(refused({.transmittance = Transmittance::measured}, "no effect"));
+  EXPECT_TRUE(test::fails_saying([] { library::layout_of(static_cast<Layout>(77)); }, {"layout 77"}));
+  EXPECT_TRUE(
+      test::fails_saying([] { library::layout_of(static_cast<Layout>(LAYOUT_MULTI_VIEW)); }, {"layout 1"}));
+}
+
+TEST_F(Library, RegionsAndReportsAreAFramesOwn) {
+  const Model model = test::random_model(3, 400, 2);
+  Renderer renderer(caller.get_proc_address(), in_memory(model));
+  std::vector<View> pair = views();
+  const Settings settings = {.tolerance = 0.5f};
+  pair[1].region.hole_begin = {16, 16};
+  pair[1].region.hole_end = {48, 32};
+  pair[1].region.tolerance_share = 0.0f;
+  const Report report = renderer.draw(pair, placement, settings);
+  const std::vector<float> with_hole = read(1);
+  const auto row = [](int from_top) {
+    return 4 * static_cast<std::size_t>((size.y - 1 - from_top) * size.x);
+  };
+  for (int x = 16; x < 48; ++x)
+    EXPECT_EQ(with_hole[row(20) + 4 * static_cast<std::size_t>(x) + 3], 0.0f) << x;
+
+  render::Frame frame(*caller.context, model);
+  render::FrameSettings same;
+  same.th = TH_SQUARED;
+  same.tolerance = 0.5f;
+  same.depth = Depth::none;
+  same.parts = {render::ViewPart{}, render::ViewPart{}};
+  same.parts[1].hole_begin = pair[1].region.hole_begin;
+  same.parts[1].hole_end = pair[1].region.hole_end;
+  same.parts[1].tolerance_share = 0.0f;
+  const auto drawn = stereo::views_from_xr(quest_eyes(), placement, std::array{size, size}).views;
+  const render::FrameReport expected = frame.draw(drawn, same);
+  EXPECT_EQ(report.pairs, expected.pairs);
+  EXPECT_EQ(report.visible, expected.visible);
+  EXPECT_EQ(report.tolerance, 0.5f);
+  EXPECT_GT(report.gpu_bytes, 0);
+  EXPECT_EQ(report.stages.size(), expected.stages.size());
+  const Report whole = renderer.draw(views(), placement, settings);
+  EXPECT_GT(whole.pairs, 0u);
+  EXPECT_NE(whole.pairs, report.pairs) << "regions go unnoticed";
+  EXPECT_NE(read(1), with_hole);
+}
+
+}  // namespace
+}  // namespace binosplat
