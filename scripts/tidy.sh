@@ -5,13 +5,13 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Names of changed and of new files below src, stereo, shaders and tests; fails where there is no history to compare with.
+# Names of changed and of new files below include, src, stereo, shaders and tests; fails where there is no history to compare with.
 changed() {
   local base
   base=$(git merge-base HEAD origin/main) || base=$(git rev-parse HEAD) || return
   if [[ $base == $(git rev-parse HEAD) ]]; then base=$(git rev-parse --verify HEAD~1) || return; fi
-  git diff --name-only --diff-filter=d "$base" -- src stereo shaders tests
-  git ls-files --others --exclude-standard -- src stereo shaders tests
+  git diff --name-only --diff-filter=d "$base" -- include src stereo shaders tests
+  git ls-files --others --exclude-standard -- include src stereo shaders tests
 }
 
 # The .cpp files to look at: those that changed, and for each changed header one that includes it.
@@ -24,6 +24,7 @@ chosen() {
   for name in $names; do
     case $name in
       *.cpp) echo "$name" ;;
+      include/*.h) grep -rlF --include='*.cpp' "<${name#*/}>" src stereo tests | head -n 1 || true ;;
       stereo/*.h) grep -rlF --include='*.cpp' "\"$name\"" src stereo tests | head -n 1 || true ;;
       *.h) grep -rlF --include='*.cpp' "\"${name#*/}\"" src stereo tests | head -n 1 || true ;;
     esac

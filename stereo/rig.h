@@ -5,8 +5,8 @@
 // Units: `ipd` and `convergence` are metres; `units_per_metre` brings them to the world's units. Everything
 // else (positions, near plane) is in world units already. Eye 0 is the left one, eye 1 the right one.
 
-#include <array>
 #include <binosplat/eyes.h>
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>

@@ -1,8 +1,8 @@
 #pragma once
 // A trained 3D Gaussian Splatting model in memory, decoded (docs/method.md 1).
 
-#include <array>
 #include <binosplat/model.h>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

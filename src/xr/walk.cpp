@@ -28,7 +28,8 @@ glm::dvec3 heading_of(const Eye& head) {
 }
 
 void Walk::turn(double radians, const glm::dvec3& about) {
-  const glm::dmat3 turned = placement_.axes * glm::mat3_cast(glm::angleAxis(radians, glm::dvec3(0.0, 1.0, 0.0)));
+  const glm::dmat3 turned =
+      placement_.axes * glm::mat3_cast(glm::angleAxis(radians, glm::dvec3(0.0, 1.0, 0.0)));
   placement_.origin += placement_.units_per_metre * (placement_.axes * about - turned * about);
   placement_.axes = turned;
 }
