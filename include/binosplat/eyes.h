@@ -8,6 +8,10 @@
 
 namespace binosplat {
 
+// The library is compiled with GLM's types as they come. A program that has them aligned
+// (GLM_FORCE_DEFAULT_ALIGNED_GENTYPES) would see other structs than the library does.
+static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::dvec3) == 3 * sizeof(double));
+
 /// World units in front of an eye within which nothing is drawn, unless something else is asked for: what
 /// 3D Gaussian Splatting is trained with, for worlds that are measured in metres or so.
 constexpr double near_default = 0.2;
