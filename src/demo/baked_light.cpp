@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <limits>
 
 #include "scene/harmonics.h"
 
-namespace binosplat::procedural {
+namespace binosplat::demo::room {
 
 namespace {
 
@@ -282,8 +281,7 @@ void Baker::add(const Disc& disc, Model& model) const {
   const auto sh = seen(disc);
   model.position.emplace_back(disc.position);
   model.scale.emplace_back(disc.scale);
-  const glm::dquat q = glm::normalize(glm::quat_cast(disc.axes));
-  model.rotation.emplace_back(q.w, q.x, q.y, q.z);
+  model.rotation.push_back(quaternion(disc.axes));
   model.opacity.push_back(static_cast<float>(disc.material.opacity));
   for (const dvec3& value : sh) {
     for (int i = 0; i < 3; ++i) model.sh.push_back(static_cast<float>(value[i]));
@@ -301,4 +299,4 @@ Model bake(const Stage& stage, const Lighting& light) {
   return model;
 }
 
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo::room

@@ -6,10 +6,10 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "demo/procedural.h"
+#include "demo/shapes.h"
 #include "scene/model.h"
 
-namespace binosplat::procedural {
+namespace binosplat::demo::room {
 
 /// Irradiances are linear, in units in which 1 on a white wall is white.
 struct Lighting {
@@ -32,4 +32,4 @@ struct Lighting {
 /// The Model of degree 3 that the stage's discs make in this light.
 Model bake(const Stage& stage, const Lighting& light);
 
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo::room

@@ -12,7 +12,8 @@ namespace binosplat {
 
 namespace {
 
-using namespace city;
+using namespace demo;
+using namespace demo::city;
 
 std::vector<Surface> surfaces_of(const City& plan, double grain) {
   Builder builder(plan, grain);

@@ -5,13 +5,13 @@
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
 constexpr dvec3 horizon{0.84, 0.88, 0.92};
 
-Look paint_tower(const City& city, const Surface& surface, double u, double v) {
+Material paint_tower(const City& city, const Surface& surface, double u, double v) {
   const std::uint32_t number = surface.subject;
   const dvec3 wall = mix(dvec3(0.78, 0.73, 0.66), dvec3(0.52, 0.55, 0.60), hash(number, 1));
   if (city.towers[number].tiers == 5) {  // the church
@@ -28,13 +28,13 @@ Look paint_tower(const City& city, const Surface& surface, double u, double v) {
 }
 
 /// Wooded hills, already hazy.
-Look paint_hill(const City&, const Surface& surface, double u, double v) {
+Material paint_hill(const City&, const Surface& surface, double u, double v) {
   const double woods = fractal(0.02 * u + 9.0, 0.03 * v + surface.subject);
   const dvec3 near = mix(dvec3(0.44, 0.55, 0.52), dvec3(0.58, 0.65, 0.55), woods);
-  return {.colour = mix(near, horizon, surface.subject == 0 ? 0.25 : 0.60)};
+  return {.colour = mix(near, horizon, surface.subject == 0 ? 0.25 : 0.60), .lit = false};
 }
 
-Look paint_sky(const City& city, const Surface& surface, double u, double v) {
+Material paint_sky(const City& city, const Surface& surface, double u, double v) {
   const dvec3 direction = glm::normalize(surface.point(u, v) - sky_centre);
   const double up = -direction.y;
   dvec3 colour = mix(horizon, dvec3(0.35, 0.56, 0.84), ramp(-0.05, 0.65, up));
@@ -42,7 +42,7 @@ Look paint_sky(const City& city, const Surface& surface, double u, double v) {
   const auto shift = static_cast<double>(city.seed % 1000);
   const double cloud = fractal(0.85 * flat * direction.x + shift, 0.85 * flat * direction.z + 40.0);
   colour = mix(colour, dvec3(0.98, 0.97, 0.96), ramp(0.53, 0.72, cloud) * ramp(0.02, 0.16, up));
-  return {.colour = colour};
+  return {.colour = colour, .lit = false};
 }
 
 void add_tower(Builder& builder, std::uint32_t number) {
@@ -85,8 +85,7 @@ void add_city_hills(Builder& builder, std::uint32_t range, double radius, double
                    .subject = range,
                    .at = {30.0 * k, 0.0},
                    .borders = border_high,
-                   .coarseness = 3.0,
-                   .lit = false});
+                   .coarseness = 3.0});
   }
 }
 
@@ -100,8 +99,7 @@ void add_city_sky(Builder& builder) {
         const double x = 2.0 * i / cells - 1.0, y = 2.0 * j / cells - 1.0, step = 2.0 / cells;
         const dvec3 corner = middle + x * right + y * up;
         const dvec3 a = point(corner), b = point(corner + step * right), c = point(corner + step * up);
-        builder.sheet(
-            {.corner = a, .u = b - a, .v = c - a, .paint = paint_sky, .coarseness = 7.0, .lit = false});
+        builder.sheet({.corner = a, .u = b - a, .v = c - a, .paint = paint_sky, .coarseness = 7.0});
       }
     }
   };
@@ -123,4 +121,4 @@ void add_far_away(Builder& builder) {
   add_city_sky(builder);
 }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

@@ -6,7 +6,7 @@
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
@@ -24,32 +24,32 @@ std::uint32_t house_at(const City& city, const Row& row, double along) {
   return h;
 }
 
-Look paint_row_front(const City& city, const Surface& surface, double u, double v) {
+Material paint_row_front(const City& city, const Surface& surface, double u, double v) {
   const std::uint32_t h = house_at(city, city.rows[surface.subject], u);
   return paint_wall(city, Surface{.subject = city.houses[h].first_wall}, u - city.houses[h].begin, v);
 }
 
-Look paint_row_back(const City& city, const Surface& surface, double u, double v) {
+Material paint_row_back(const City& city, const Surface& surface, double u, double v) {
   const Row& row = city.rows[surface.subject];
   const std::uint32_t h = house_at(city, row, row.length - u);
   const double from_end = u - (row.length - city.houses[h].begin - city.houses[h].width);
   return paint_wall(city, Surface{.subject = city.houses[h].first_wall + 1}, from_end, v);
 }
 
-Look paint_row_roof(const City& city, const Surface& surface, double u, double v) {
+Material paint_row_roof(const City& city, const Surface& surface, double u, double v) {
   return paint_roof(city, Surface{.subject = house_at(city, city.rows[surface.subject], u)}, u, v);
 }
 
-Look paint_frame(const City& city, const Surface& surface, double, double) {
+Material paint_frame(const City& city, const Surface& surface, double, double) {
   return {.colour = city.houses[surface.subject].trim * 0.9};
 }
 
-Look paint_chimney(const City& city, const Surface& surface, double u, double v) {
+Material paint_chimney(const City& city, const Surface& surface, double u, double v) {
   const House& house = city.houses[surface.subject];
   return {.colour = mix(house.roof, dvec3(0.45, 0.33, 0.28), 0.6) * (0.85 + 0.25 * noise(6.0 * u, 9.0 * v))};
 }
 
-Look paint_awning(const City& city, const Surface& surface, double u, double) {
+Material paint_awning(const City& city, const Surface& surface, double u, double) {
   const bool stripe = (static_cast<int>(u / 0.3) & 1) != 0;
   return {.colour =
               stripe ? dvec3(0.90, 0.88, 0.82) : mix(city.houses[surface.subject].door, dvec3(0.6), 0.15)};
@@ -263,4 +263,4 @@ void add_houses(Builder& builder) {
   }
 }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

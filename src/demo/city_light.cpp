@@ -5,7 +5,7 @@
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
@@ -117,27 +117,27 @@ double Light::sun_at(const dvec3& p, const dvec3& normal, bool leaves) const {
   return share * (leaves ? 0.35 + 0.65 * ramp(-0.6, 0.9, facing) : facing);
 }
 
-Light::Seen Light::seen(const dvec3& p, const dvec3& normal, const Look& look, bool leaves) const {
+Light::Seen Light::seen(const dvec3& p, const dvec3& normal, const Material& material, bool leaves) const {
   const double height = city_.relief.at(0.0, p.z).y - p.y;
   // Between houses little of the sky is seen.
   const double open = 0.62 + 0.38 * ramp(0.0, 14.0, height);
   const double upwards = -normal.y;
   const dvec3 light = sun * sun_at(p, normal, leaves) + sky * (open * (0.72 + 0.28 * upwards)) +
-                      bounce * (0.55 - 0.45 * upwards) + look.glow;
+                      bounce * (0.55 - 0.45 * upwards) + material.glow;
   const dvec3 from_camera = p - dvec3(0.0, -1.6, 0.0);
   const double far = glm::dot(from_camera, from_camera);
   const double hazy = far / (far + 1500.0 * 1500.0);
   Seen seen;
-  seen.colour = mix(developed_city(look.colour * look.colour * light), haze, hazy);
+  seen.colour = mix(developed_city(material.colour * material.colour * light), haze, hazy);
   if (leaves) {  // the sun shines through
-    seen.shine = look.colour * 0.16;
+    seen.shine = material.colour * 0.16;
     seen.shine_axis = to_sun;
   } else {  // the brighter half of the sky, mirrored
     const dvec3 bright = glm::normalize(to_sun + dvec3(0.0, -1.0, 0.0));
-    seen.shine = dvec3(0.28, 0.30, 0.32) * (look.gloss * (1.0 - hazy));
+    seen.shine = dvec3(0.28, 0.30, 0.32) * (material.gloss * (1.0 - hazy));
     seen.shine_axis = bright - normal * (2.0 * glm::dot(bright, normal));
   }
   return seen;
 }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

@@ -5,7 +5,7 @@
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
@@ -15,13 +15,14 @@ constexpr dvec3 stone{0.56, 0.54, 0.51};
 double lot(const Wall& wall, int a, int b) { return hash(wall.number * 977 + a, b); }
 
 /// A pane behind its frame; (a, b) in metres from the opening's lower left corner.
-Look window_look(const Wall& wall, const House& house, const Opening& opening, int key, double a, double b) {
+Material window_look(const Wall& wall, const House& house, const Opening& opening, int key, double a,
+                     double b) {
   const double wide = opening.u1 - opening.u0, tall = opening.v1 - opening.v0;
   const double border = std::min({a, wide - a, b, tall - b});
   const bool bar = std::abs(a - 0.5 * wide) < 0.025 || std::abs(b - 0.66 * tall) < 0.025;
   if (border < 0.06 || bar) return {.colour = house.trim * 0.98, .gloss = 0.1};
   const double up = b / tall;
-  Look glass{.colour = mix(dvec3(0.20, 0.23, 0.26), dvec3(0.46, 0.55, 0.64), up), .gloss = 0.8};
+  Material glass{.colour = mix(dvec3(0.20, 0.23, 0.26), dvec3(0.46, 0.55, 0.64), up), .gloss = 0.8};
   const double curtain = 0.16 + 0.2 * lot(wall, key, 3);
   if (lot(wall, key, 4) < 0.55 && std::min(a, wide - a) < curtain * wide) {
     const double fold = std::abs(a * 14.0 - std::floor(a * 14.0) - 0.5);
@@ -35,7 +36,7 @@ Look window_look(const Wall& wall, const House& house, const Opening& opening, i
   return glass;
 }
 
-Look door_look(const House& house, const Opening& opening, double a, double b) {
+Material door_look(const House& house, const Opening& opening, double a, double b) {
   const double wide = opening.u1 - opening.u0;
   if (std::min(a, wide - a) < 0.07 || b > opening.v1 - opening.v0 - 0.07) return {.colour = house.trim};
   if (b > 1.98) return {.colour = dvec3(0.30, 0.34, 0.38), .gloss = 0.8};
@@ -47,7 +48,8 @@ Look door_look(const House& house, const Opening& opening, double a, double b) {
 }
 
 /// A shop window with shelves behind it.
-Look shop_look(const Wall& wall, const House& house, const Opening& opening, int key, double a, double b) {
+Material shop_look(const Wall& wall, const House& house, const Opening& opening, int key, double a,
+                   double b) {
   const double wide = opening.u1 - opening.u0, tall = opening.v1 - opening.v0;
   if (std::min({a, wide - a, b, tall - b}) < 0.07) return {.colour = house.door * 0.8, .gloss = 0.3};
   const double shelf = b / 0.52, place = a / 0.34;
@@ -63,7 +65,7 @@ Look shop_look(const Wall& wall, const House& house, const Opening& opening, int
   return {.colour = colour * 0.8, .gloss = 0.7, .glow = 0.25};
 }
 
-Look brick_look(const House& house, double u, double v) {
+Material brick_look(const House& house, double u, double v) {
   const double course = v / 0.075, row = std::floor(course);
   const double along = u / 0.225 + 0.5 * (static_cast<std::int64_t>(row) & 1), column = std::floor(along);
   const bool joint = course - row < 0.14 || along - column < 0.05;
@@ -92,28 +94,9 @@ Opening opening_of(const City& city, const Wall& wall, int floor, int column) {
   return between(Opening::Kind::window, half, sill, sill + 1.55);
 }
 
-namespace {
-
-Look opening_look(const City& city, const Wall& wall, const Opening& opening, int floor, int column, double u,
-                  double v) {
-  const House& house = city.houses[wall.house];
-  const double a = u - opening.u0, b = v - opening.v0;
-  const int key = 32 * floor + column;
-  switch (opening.kind) {
-    case Opening::Kind::door:
-      return door_look(house, opening, a, b);
-    case Opening::Kind::shop:
-      return shop_look(wall, house, opening, key, a, b);
-    default:
-      return window_look(wall, house, opening, key, a, b);
-  }
-}
-
-}  // namespace
-
-Look paint_masonry(const City& city, const Surface& surface, double u, double v) {
+Material paint_masonry(const City& city, const Surface& surface, double u, double v) {
   const House& house = city.houses[surface.subject];
-  Look look = house.brick ? brick_look(house, u, v) : Look{.colour = house.wall};
+  Material look = house.brick ? brick_look(house, u, v) : Material{.colour = house.wall};
   // Weather: large soft spots, and streaks below the eaves.
   const double spots = fractal(0.6 * u + 13.0 * house.number, 0.45 * v);
   const double streaks = noise(3.0 * u + 7.0 * house.number, 0.25 * v);
@@ -122,7 +105,7 @@ Look paint_masonry(const City& city, const Surface& surface, double u, double v)
   return look;
 }
 
-Look paint_wall(const City& city, const Surface& surface, double u, double v) {
+Material paint_wall(const City& city, const Surface& surface, double u, double v) {
   const Wall& wall = city.walls[surface.subject];
   const House& house = city.houses[wall.house];
   const int floor = static_cast<int>(v / house.floor_height);
@@ -131,7 +114,13 @@ Look paint_wall(const City& city, const Surface& surface, double u, double v) {
     const Opening o = opening_of(city, wall, floor, column);
     if (o.kind != Opening::Kind::none) {
       const double out = std::max({o.u0 - u, u - o.u1, o.v0 - v, v - o.v1});
-      if (out < 0.0) return opening_look(city, wall, o, floor, column, u, v);
+      if (out < 0.0) {
+        const int key = 32 * floor + column;
+        const double a = u - o.u0, b = v - o.v0;
+        if (o.kind == Opening::Kind::door) return door_look(house, o, a, b);
+        const auto look = o.kind == Opening::Kind::shop ? shop_look : window_look;
+        return look(wall, house, o, key, a, b);
+      }
       if (out < 0.11 && v > 0.05) return {.colour = house.trim * 0.95};
       const bool sign = o.kind == Opening::Kind::shop && v > o.v1 && v < o.v1 + 0.5;
       if (sign) return {.colour = mix(house.door, dvec3(0.5), 0.15), .gloss = 0.2};
@@ -144,7 +133,7 @@ Look paint_wall(const City& city, const Surface& surface, double u, double v) {
   return paint_masonry(city, Surface{.subject = wall.house}, u, v);
 }
 
-Look paint_roof(const City& city, const Surface& surface, double u, double v) {
+Material paint_roof(const City& city, const Surface& surface, double u, double v) {
   const House& house = city.houses[surface.subject];
   const double mottled = 0.84 + 0.3 * fractal(0.5 * u + 5.0 * house.number, 0.5 * v);
   if (house.roof_rise == 0.0) return {.colour = house.roof * mottled};
@@ -155,4 +144,4 @@ Look paint_roof(const City& city, const Surface& surface, double u, double v) {
   return {.colour = house.roof * (mottled * edge * (0.92 + 0.16 * own)), .gloss = 0.12};
 }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

@@ -11,19 +11,9 @@
 #include <vector>
 
 #include "demo/city.h"
-#include "demo/procedural.h"
+#include "demo/shapes.h"
 
-namespace binosplat::city {
-
-using glm::dmat3;
-using glm::dvec2;
-using glm::dvec3;
-using procedural::fractal;
-using procedural::Frame;
-using procedural::hash;
-using procedural::mix;
-using procedural::noise;
-using procedural::ramp;
+namespace binosplat::demo::city {
 
 // The plan, in metres. Streets lie along z, narrower side streets along x.
 constexpr int streets_beside = 5;  // on either side of the main street, which is at x = 0
@@ -90,10 +80,6 @@ struct Car {
   dvec3 paint;
 };
 
-struct Lamp {
-  Frame frame;  // x over the street
-};
-
 /// What is seen from afar: boxes stacked on each other, each narrower.
 struct Tower {
   dvec3 foot;
@@ -118,26 +104,19 @@ struct City {
   std::vector<Row> rows;
   std::vector<Tree> trees;
   std::vector<Car> cars;
-  std::vector<Lamp> lamps;
+  std::vector<Frame> lamps;  // x over the street
   std::vector<Tower> towers;
   std::vector<Caster> casters;
 };
 
 City plan_city(std::uint64_t seed);
 
-/// What is seen at a point of a surface. Colours are display-referred, as people choose them.
-struct Look {
-  dvec3 colour{0.5};
-  double gloss = 0.0;  // 0 dull to 1 glass
-  double glow = 0.0;   // light of its own, in units of the colour
-};
-
 struct Surface;
-/// The look at (u, v), in metres from Surface::at.
-using Paint = Look (*)(const City& city, const Surface& surface, double u, double v);
+/// The material at (u, v), in metres from Surface::at.
+using Paint = Material (*)(const City& city, const Surface& surface, double u, double v);
 
 // Borders at which a sheet ends, so that its Gaussians must not reach over them.
-enum Border : unsigned { border_left = 1, border_right = 2, border_low = 4, border_high = 8 };
+enum Borders : unsigned { border_left = 1, border_right = 2, border_low = 4, border_high = 8 };
 constexpr unsigned all_borders = 15;
 
 /// A parallelogram of Gaussians, seen from where cross(u, v) points; or a ball of leaves.
@@ -151,7 +130,6 @@ struct Surface {
   double coarseness = 1.0;  // of its Gaussians, compared with others
   double thickness = 0.0;   // standard deviation along the normal; 0: flat
   bool ball = false;
-  bool lit = true;          // false: the colour is what is seen
   double weight = 0.0;      // how many Gaussians its grain asks for
   std::uint32_t count = 0;  // how many it has
 
@@ -194,9 +172,9 @@ struct Opening {
 Opening opening_of(const City& city, const Wall& wall, int floor, int column);
 
 // Paints of houses; their surfaces' subjects are a wall, a house and a house.
-Look paint_wall(const City& city, const Surface& surface, double u, double v);
-Look paint_masonry(const City& city, const Surface& surface, double u, double v);
-Look paint_roof(const City& city, const Surface& surface, double u, double v);
+Material paint_wall(const City& city, const Surface& surface, double u, double v);
+Material paint_masonry(const City& city, const Surface& surface, double u, double v);
+Material paint_roof(const City& city, const Surface& surface, double u, double v);
 
 // The cameras that demo_city gives, around which its detail lies: eye, and what it looks at, on the plan.
 struct Head {
@@ -224,7 +202,7 @@ class Light {
     dvec3 shine_axis{0};
   };
   /// `leaves`: the surface is of leaves, which other leaves do not darken and which light shines through.
-  Seen seen(const dvec3& p, const dvec3& normal, const Look& look, bool leaves) const;
+  Seen seen(const dvec3& p, const dvec3& normal, const Material& material, bool leaves) const;
 
  private:
   double sun_at(const dvec3& p, const dvec3& normal, bool leaves) const;
@@ -236,4 +214,4 @@ class Light {
 /// Adds the Gaussians of a surface to the model, from `first` on.
 void fill(const City& city, const Light& light, const Surface& surface, std::size_t first, Model& model);
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

@@ -5,7 +5,7 @@
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
@@ -76,7 +76,7 @@ class Planner {
     }
     for (double z = z0 + (side < 0.0 ? 6.0 : 18.0); z < z1; z += 25.0) {
       const dvec3 foot = city_.relief.at(x + side * 5.0, z, kerb);
-      city_.lamps.push_back({Frame{foot, dmat3(dvec3(-side, 0, 0), down, dvec3(0, 0, -side))}});
+      city_.lamps.push_back({foot, dmat3(dvec3(-side, 0, 0), down, dvec3(0, 0, -side))});
     }
     for (double z = z0 + 8.5; z < z1 - 8.0; z += 5.4) {
       if (random_.uniform() < 0.45) continue;
@@ -232,4 +232,4 @@ dvec3 Relief::at(double x, double z, double height) const {
 
 City plan_city(std::uint64_t seed) { return Planner(seed).plan(); }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

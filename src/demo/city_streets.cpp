@@ -5,7 +5,7 @@
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
@@ -15,19 +15,19 @@ constexpr double grain_of_kerbs = 0.8, grain_of_slopes = 1.0, grain_of_yard_wall
 
 double part_of(double value, double period) { return value - period * std::floor(value / period); }
 
-Look asphalt(double x, double z) {
+Material asphalt(double x, double z) {
   const double patches = fractal(0.35 * x + 31.0, 0.22 * z), grit = noise(19.0 * x, 19.0 * z);
   const dvec3 grey(0.345, 0.35, 0.365);
   return {.colour = grey * (0.82 + 0.24 * patches + 0.12 * grit), .gloss = 0.16};
 }
 
-Look marking(double x, double z) {
+Material marking(double x, double z) {
   const double worn = 0.82 + 0.12 * noise(6.0 * x, 6.0 * z);
   return {.colour = dvec3(0.90, 0.90, 0.87) * worn, .gloss = 0.1};
 }
 
 /// A street along z, crossings included; x is from its middle.
-Look paint_road(const City&, const Surface&, double x, double z) {
+Material paint_road(const City&, const Surface&, double x, double z) {
   const double along = part_of(z - first_crossing, crossing_pitch);
   const double from_crossing = std::min(along, crossing_pitch - along);
   if (from_crossing > side_road) {
@@ -42,18 +42,18 @@ Look paint_road(const City&, const Surface&, double x, double z) {
   }
   const double cover = glm::length(dvec2(x - 1.2, part_of(z, 37.0) - 18.0));
   if (cover < 0.34) return {.colour = dvec3(cover > 0.29 ? 0.22 : 0.31), .gloss = 0.25};
-  Look look = asphalt(x, z);
+  Material look = asphalt(x, z);
   look.colour *= 0.84 + 0.16 * ramp(0.0, 0.4, road - std::abs(x));  // dirt in the gutter
   return look;
 }
 
-Look paint_side_road(const City&, const Surface&, double x, double z) {
+Material paint_side_road(const City&, const Surface&, double x, double z) {
   const double dash = part_of(x, 4.0);
   if (std::abs(z) < 0.06 && dash < 1.6) return marking(x, z);
   return asphalt(x, z);
 }
 
-Look paint_pavement(const City&, const Surface&, double x, double z) {
+Material paint_pavement(const City&, const Surface&, double x, double z) {
   const double i = std::floor(x / 0.5), j = std::floor(z / 0.75);
   const double a = x - 0.5 * i, b = z - 0.75 * j;
   const double own = hash(static_cast<std::int64_t>(i) + 5000, static_cast<std::int64_t>(j));
@@ -62,29 +62,29 @@ Look paint_pavement(const City&, const Surface&, double x, double z) {
   return {.colour = slab * (joint ? 0.78 : 1.0), .gloss = 0.06};
 }
 
-Look paint_kerb(const City&, const Surface&, double u, double) {
+Material paint_kerb(const City&, const Surface&, double u, double) {
   return {.colour = dvec3(0.70, 0.69, 0.67) * (part_of(u, 1.0) < 0.03 ? 0.75 : 1.0)};
 }
 
-Look paint_yard(const City&, const Surface&, double x, double z) {
+Material paint_yard(const City&, const Surface&, double x, double z) {
   const double tufts = fractal(0.4 * x + 3.0, 0.4 * z + 8.0), blades = noise(9.0 * x, 9.0 * z);
   const dvec3 grass = mix(dvec3(0.27, 0.38, 0.15), dvec3(0.47, 0.52, 0.24), tufts);
   return {.colour = grass * (0.88 + 0.24 * blades)};
 }
 
 /// A whole block: a yard with pavements around it.
-Look paint_block(const City& city, const Surface& surface, double x, double z) {
+Material paint_block(const City& city, const Surface& surface, double x, double z) {
   const bool yard =
       x > front && x < street_pitch - front && z > side_front && z < crossing_pitch - side_front;
   return yard ? paint_yard(city, surface, x, z) : paint_pavement(city, surface, x, z);
 }
 
-Look paint_yard_wall(const City&, const Surface&, double u, double v) {
+Material paint_yard_wall(const City&, const Surface&, double u, double v) {
   return {.colour = dvec3(0.62, 0.55, 0.47) * (0.85 + 0.2 * fractal(1.5 * u, 2.0 * v))};
 }
 
 /// Fields with hedges, each of its own green or yellow.
-Look paint_fields(const City&, const Surface&, double x, double z) {
+Material paint_fields(const City&, const Surface&, double x, double z) {
   const double u = x / 90.0 + 0.6 * noise(x / 240.0, z / 240.0),
                v = z / 70.0 + 0.6 * noise(z / 200.0, x / 200.0);
   const double own =
@@ -192,4 +192,4 @@ void add_streets(Builder& builder) {
   add_ground(builder, {-around, end}, {around, around + 400.0}, rim, paint_fields, zero, 5.0);
 }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

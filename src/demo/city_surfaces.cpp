@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
@@ -47,36 +46,24 @@ double distance_to_heads(const City& city, const dvec3& p) {
   return nearest;
 }
 
-/// How a length is divided into `count` cells.
-struct Cells {
-  double first, size;
-  Cells(double length, std::uint32_t count, bool ends_low, bool ends_high) {
-    const double low = ends_low ? margin_at_end : 0.5, high = ends_high ? margin_at_end : 0.5;
-    size = length / (count - 1 + low + high);
-    first = low * size;
-  }
-};
+double margin(bool ends) { return ends ? margin_at_end : 0.5; }
 
-/// The mean look of a cell: of more points, the larger the cell is.
-Look mean_look(const City& city, const Surface& surface, double a, double b, double wide, double tall) {
-  const double size = std::max(wide, tall);
+/// The mean material of a cell: of more points, the larger the cell is.
+Material mean_material(const City& city, const Surface& surface, const dvec2& middle, const dvec2& cell) {
+  const double size = std::max(cell.x, cell.y);
   const int n = size < 0.05 ? 1 : size < 0.4 ? 2 : size < 2.0 ? 3 : 4;
-  Look mean{dvec3(0.0), 0.0, 0.0};
+  Material mean{.colour = dvec3(0.0)};
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i) {
-      const Look look =
-          surface.paint(city, surface, a + ((i + 0.5) / n - 0.5) * wide, b + ((j + 0.5) / n - 0.5) * tall);
-      mean.colour += look.colour / double(n * n);
-      mean.gloss += look.gloss / (n * n);
-      mean.glow += look.glow / (n * n);
+      const Material at = surface.paint(city, surface, middle.x + ((i + 0.5) / n - 0.5) * cell.x,
+                                        middle.y + ((j + 0.5) / n - 0.5) * cell.y);
+      mean.colour += at.colour / double(n * n);
+      mean.gloss += at.gloss / (n * n);
+      mean.glow += at.glow / (n * n);
+      mean.lit = at.lit;
     }
   }
   return mean;
-}
-
-glm::vec4 quaternion(const dmat3& axes) {
-  const glm::dquat q = glm::normalize(glm::quat_cast(axes));
-  return {q.w, q.x, q.y, q.z};
 }
 
 void put(Model& model, std::size_t i, const dvec3& position, const glm::vec4& rotation, const dvec3& scale,
@@ -100,17 +87,17 @@ void fill_sheet(const City& city, const Light& light, const Surface& s, std::siz
   const double length_u = glm::length(s.u), length_v = glm::length(s.v);
   const dvec3 u = s.u / length_u, v = s.v / length_v;
   const dvec3 normal = glm::normalize(glm::cross(u, v));
-  const glm::vec4 rotation = quaternion(procedural::axes_from_normal(normal, u));
+  const glm::vec4 rotation = quaternion(axes_from_normal(normal, u));
   const std::uint64_t n = s.count;
   const double even = std::sqrt(static_cast<double>(n) * length_v / length_u);
   const auto rows = std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::llround(even)), 1, n);
-  const Cells high(length_v, static_cast<std::uint32_t>(rows), s.borders & border_low,
-                   s.borders & border_high);
+  const Cells high(length_v, static_cast<std::uint32_t>(rows), margin(s.borders & border_low),
+                   margin(s.borders & border_high));
   std::size_t at = first;
   for (std::uint64_t j = 0; j < rows; ++j) {
     const std::uint64_t in_row = (j + 1) * n / rows - j * n / rows;
-    const Cells wide(length_u, static_cast<std::uint32_t>(in_row), s.borders & border_left,
-                     s.borders & border_right);
+    const Cells wide(length_u, static_cast<std::uint32_t>(in_row), margin(s.borders & border_left),
+                     margin(s.borders & border_right));
     const double flat = std::min(thickest, city_overlap * city_flatness * std::min(wide.size, high.size));
     const double thin = s.thickness > 0.0 ? s.thickness : flat;
     const dvec3 scale(city_overlap * wide.size, city_overlap * high.size, thin);
@@ -121,8 +108,8 @@ void fill_sheet(const City& city, const Light& light, const Surface& s, std::siz
       const double a = wide.first + (static_cast<double>(i) + shift_u) * wide.size;
       const double b = high.first + (static_cast<double>(j) + shift_v) * high.size;
       const dvec3 p = s.corner + a * u + b * v;
-      const Look look = mean_look(city, s, s.at.x + a, s.at.y + b, wide.size, high.size);
-      const Light::Seen seen = s.lit ? light.seen(p, normal, look, false) : Light::Seen{look.colour};
+      const Material mean = mean_material(city, s, {s.at.x + a, s.at.y + b}, {wide.size, high.size});
+      const Light::Seen seen = mean.lit ? light.seen(p, normal, mean, false) : Light::Seen{mean.colour};
       put(model, at, p, rotation, scale, seen);
     }
   }
@@ -160,10 +147,10 @@ void fill_ball(const City& city, const Light& light, const Surface& s, std::size
     const dvec3 p = s.corner + place * s.u;
     const dvec3 normal = glm::normalize(in_ball(random) + 0.6 * out);
     const dvec3 along = in_ball(random);
-    Look look = s.paint(city, s, glm::length(place), glm::dot(place, out));
-    look.colour *= 0.90 + 0.2 * random.uniform();
-    const glm::vec4 rotation = quaternion(procedural::axes_from_normal(normal, along));
-    const Light::Seen seen = light.seen(p, glm::normalize(out + place), look, true);
+    Material leaf = s.paint(city, s, glm::length(place), glm::dot(place, out));
+    leaf.colour *= 0.90 + 0.2 * random.uniform();
+    const glm::vec4 rotation = quaternion(axes_from_normal(normal, along));
+    const Light::Seen seen = light.seen(p, glm::normalize(out + place), leaf, true);
     put(model, first + i, p, rotation, dvec3(1.15, 0.85, 0.45) * size, seen);
   }
 }
@@ -260,4 +247,4 @@ void fill(const City& city, const Light& light, const Surface& surface, std::siz
   }
 }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

@@ -5,27 +5,27 @@
 
 #include "demo/city_parts.h"
 
-namespace binosplat::city {
+namespace binosplat::demo::city {
 
 namespace {
 
 constexpr double grain_of_trees = 3.0, grain_of_trunks = 1.0, grain_of_lamps = 0.6, grain_of_cars = 0.7;
 
 /// `reach`: how far from the middle of the crown; `out`: how far outside its lump. Deep inside it is dark.
-Look paint_leaves(const City& city, const Surface& surface, double reach, double out) {
+Material paint_leaves(const City& city, const Surface& surface, double reach, double out) {
   const Tree& tree = city.trees[surface.subject];
   return {.colour = tree.leaves * (0.50 + 0.35 * ramp(0.25, 0.95, reach) + 0.25 * ramp(-0.2, 0.8, out))};
 }
 
-Look paint_bark(const City&, const Surface& surface, double u, double v) {
+Material paint_bark(const City&, const Surface& surface, double u, double v) {
   return {.colour = dvec3(0.40, 0.33, 0.27) * (0.75 + 0.4 * noise(12.0 * u + surface.subject, 5.0 * v))};
 }
 
-Look paint_iron(const City&, const Surface&, double, double) {
+Material paint_iron(const City&, const Surface&, double, double) {
   return {.colour = dvec3(0.20, 0.23, 0.23), .gloss = 0.2};
 }
 
-Look paint_lantern(const City&, const Surface&, double, double v) {
+Material paint_lantern(const City&, const Surface&, double, double v) {
   if (v < 0.06 || v > 0.44) return {.colour = dvec3(0.20, 0.23, 0.23)};
   return {.colour = dvec3(0.96, 0.92, 0.80), .gloss = 0.3, .glow = 0.35};
 }
@@ -63,7 +63,7 @@ void add_city_tree(Builder& builder, std::uint32_t number) {
 }
 
 void add_lamp(Builder& builder, std::uint32_t number) {
-  const Frame& frame = builder.city.lamps[number].frame;
+  const Frame& frame = builder.city.lamps[number];
   if (builder.grain_at(frame.origin) > grain_of_lamps) return;
   builder.rod(frame.at(0, 0, 0), frame.at(0, -0.9, 0), 0.08, paint_iron, number);
   builder.rod(frame.at(0, -0.9, 0), frame.at(0, -4.6, 0), 0.045, paint_iron, number);
@@ -78,7 +78,7 @@ constexpr std::array<dvec2, 9> outline = {dvec2(2.08, -0.28),  dvec2(2.12, -0.62
 constexpr double car_half = 0.85, belt = -0.94, side_top = -0.84;
 
 /// Painted by where a point is in the car's frame.
-Look paint_car(const City& city, const Surface& surface, double u, double v) {
+Material paint_car(const City& city, const Surface& surface, double u, double v) {
   const Car& car = city.cars[surface.subject];
   const dvec3 p = glm::transpose(car.frame.axes) * (surface.point(u, v) - car.frame.origin);
   const double across = std::abs(p.x), along = std::abs(p.z);
@@ -153,4 +153,4 @@ void add_things(Builder& builder) {
   for (std::uint32_t k = 0; k < city.cars.size(); ++k) add_car(builder, k);
 }
 
-}  // namespace binosplat::city
+}  // namespace binosplat::demo::city

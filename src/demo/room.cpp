@@ -7,7 +7,8 @@ namespace binosplat {
 
 namespace {
 
-using namespace procedural;
+using namespace demo;
+using namespace demo::room;
 
 /// A late afternoon: a low sun through the window, the lamp already on.
 Lighting evening_light(const dvec3& to_sun) {

@@ -4,13 +4,13 @@
 
 #include "demo/room_parts.h"
 
-namespace binosplat::procedural {
+namespace binosplat::demo::room {
 
 namespace {
 
 /// Wood with its grain along u.
 Texture wooden(const dvec3& colour, double seed, double gloss = 1.5) {
-  return [=](double u, double v) -> std::optional<Material> {
+  return [=](double u, double v) {
     const double grain = fractal(2.0 * u + 13.0 * seed, 45.0 * v + 31.0 * seed);
     return Material{.colour = colour * (0.78 + 0.44 * grain), .gloss = gloss, .sharpness = 12};
   };
@@ -34,7 +34,7 @@ void add_table(Stage& stage) {
   stage.group();
   const Frame frame{{0.95, 0, 0.5}};
   constexpr double radius = 0.55, top = -0.74;
-  const auto plate = [=](double angle, double v) -> std::optional<Material> {
+  const auto plate = [=](double angle, double v) {
     // The boards of the top run across it, whatever the ring.
     const double r = std::min(v, radius), x = r * std::cos(angle), z = r * std::sin(angle);
     const double board = std::floor(z / 0.11), grain = fractal(2.5 * x + 7.0 * board, 50.0 * z);
@@ -64,14 +64,12 @@ void add_table(Stage& stage) {
 void add_chair(Stage& stage, const Frame& frame) {
   stage.group();
   constexpr double seat = -0.45;
-  stage.box(frame, {-0.21, seat, -0.20}, {0.21, seat + 0.03, 0.20}, {0.05, 0.025}, wooden(oak, 11));
-  stage.block(Shape::box, frame, {-0.21, seat, -0.20}, {0.21, seat + 0.03, 0.20});
-  stage.ellipsoid({frame.at(0, seat - 0.012, 0), frame.axes}, {0.19, 0.03, 0.18}, 0.018,
-                  [](double a, double) -> std::optional<Material> {
-                    return Material{.colour = std::abs(std::remainder(a, pi / 6.0)) < 0.08
-                                                  ? dvec3(0.90, 0.86, 0.76)
-                                                  : dvec3(0.28, 0.42, 0.52)};
-                  });
+  stage.solid_box(frame, {-0.21, seat, -0.20}, {0.21, seat + 0.03, 0.20}, {0.05, 0.025}, wooden(oak, 11));
+  stage.ellipsoid(
+      {frame.at(0, seat - 0.012, 0), frame.axes}, {0.19, 0.03, 0.18}, 0.018, [](double a, double) {
+        return Material{.colour = std::abs(std::remainder(a, pi / 6.0)) < 0.08 ? dvec3(0.90, 0.86, 0.76)
+                                                                               : dvec3(0.28, 0.42, 0.52)};
+      });
   for (const double x : {-1.0, 1.0}) {
     for (const double z : {-1.0, 1.0}) {
       stage.tube(straight(frame.at(0.17 * x, seat + 0.03, 0.16 * z), frame.at(0.21 * x, 0, 0.20 * z), 0.04),
@@ -96,13 +94,12 @@ void add_chair(Stage& stage, const Frame& frame) {
 void add_armchair(Stage& stage) {
   stage.group();
   const Frame frame = turned({-1.72, 0, 0.95}, 35.0);  // the sitter looks to low z
-  const auto cloth = [](double u, double v) -> std::optional<Material> {
+  const auto cloth = [](double u, double v) {
     const double weave = noise(90.0 * u, 90.0 * v);
     return Material{.colour = dvec3(0.80, 0.56, 0.18) * (0.90 + 0.2 * weave)};
   };
   const auto block = [&](const dvec3& low, const dvec3& high) {
-    stage.box(frame, low, high, Grain(0.036), cloth);
-    stage.block(Shape::box, frame, low, high);
+    stage.solid_box(frame, low, high, Grain(0.036), cloth);
   };
   const auto roll = [&](const dvec3& from, const dvec3& to,
                         double radius) {  // a rounded edge with its two ends
@@ -117,7 +114,7 @@ void add_armchair(Stage& stage) {
                      angle = k * (k < 7 ? pi / 3.0 : pi / 6.0);
         const dmat3 axes = axes_from_normal(normal, {0, 1, 0});
         const dvec3 p = (end ? to : from) + r * (std::cos(angle) * axes[0] + std::sin(angle) * axes[1]);
-        stage.disc(p, axes, {0.26 * radius, 0.26 * radius, 0.002}, *cloth(angle, r));
+        stage.disc(p, axes, {0.26 * radius, 0.26 * radius, 0.002}, cloth(angle, r));
       }
     }
   };
@@ -136,7 +133,7 @@ void add_armchair(Stage& stage) {
     }
   }
   const Frame cushion = rolled({frame.at(0.08, -0.58, 0.16), frame.axes}, 14.0);
-  stage.ellipsoid(cushion, {0.20, 0.19, 0.08}, 0.018, [](double a, double b) -> std::optional<Material> {
+  stage.ellipsoid(cushion, {0.20, 0.19, 0.08}, 0.018, [](double a, double b) {
     const bool stripe = std::fmod(std::cos(a) * std::cos(b) + 2.0, 0.4) < 0.2;
     return Material{.colour = stripe ? dvec3(0.20, 0.40, 0.44) : dvec3(0.90, 0.86, 0.76)};
   });
@@ -144,55 +141,58 @@ void add_armchair(Stage& stage) {
 
 namespace {
 
-/// A row of books on a shelf from z0 to z1; their spines look to low x, `front` is the shelf's edge.
-void add_books(Stage& stage, int shelf, double front, double y, double room, double z0, double z1) {
-  double z = z0 + 0.01;
-  for (int book = 0; z < z1 - 0.08; ++book) {
+// The bookshelf: its front and back, and its sides within.
+constexpr double shelf_front = 2.18, shelf_back = 2.48, shelf_begin = 0.55, shelf_end = 1.75;
+
+/// A row of books on a shelf, whose spines look to low x; `room` is the height that there is for them.
+void add_books(Stage& stage, int shelf, double y, double room) {
+  double z = shelf_begin + 0.01;
+  for (int book = 0; z < shelf_end - 0.08; ++book) {
     const double thick = 0.022 + 0.032 * hash(shelf, book),
                  tall = room * (0.62 + 0.28 * hash(book, shelf + 50));
     if (hash(shelf + 9, book) < 0.10) {  // a gap
       z += 0.08;
       continue;
     }
-    const double x = front + 0.03 + 0.03 * hash(book, shelf + 70), hue = 2.0 * pi * hash(shelf + 20, book);
+    const double x = shelf_front + 0.03 + 0.03 * hash(book, shelf + 70),
+                 hue = 2.0 * pi * hash(shelf + 20, book);
     const dvec3 dye(0.46 + 0.20 * std::cos(hue), 0.38 + 0.12 * std::cos(hue + 2.3),
                     0.33 + 0.12 * std::cos(hue + 4.4));
     const dvec3 cover = dye * (0.65 + 0.65 * hash(book, shelf + 33));
     const double label = 0.15 + 0.5 * hash(book + 3, shelf);
-    stage.patch({x, y, z}, {0, -tall, 0}, {0, 0, thick}, {0.024, 0.020},
-                [&](double u, double) -> std::optional<Material> {
-                  const bool band = std::abs(u / tall - label) < 0.07 || std::abs(u / tall - 0.9) < 0.03;
-                  return Material{.colour = band ? mix(cover, {0.92, 0.82, 0.55}, 0.7) : cover, .gloss = 0.5};
-                });
+    stage.patch({x, y, z}, {0, -tall, 0}, {0, 0, thick}, {0.024, 0.020}, [&](double u, double) {
+      const bool band = std::abs(u / tall - label) < 0.07 || std::abs(u / tall - 0.9) < 0.03;
+      return Material{.colour = band ? mix(cover, {0.92, 0.82, 0.55}, 0.7) : cover, .gloss = 0.5};
+    });
     stage.patch({x, y - tall, z}, {0.18, 0, 0}, {0, 0, thick}, {0.05, 0.025},
-                plain({.colour = {0.88, 0.84, 0.74}}));
-    stage.patch({x, y, z}, {0.10, 0, 0}, {0, -tall, 0}, {0.05, 0.05}, plain({.colour = cover}));
+                Material{.colour = {0.88, 0.84, 0.74}});
+    stage.patch({x, y, z}, {0.10, 0, 0}, {0, -tall, 0}, {0.05, 0.05}, Material{.colour = cover});
     z += thick + 0.003;
   }
 }
 
 void add_globe(Stage& stage, const dvec3& foot) {
   const Frame globe{foot - dvec3(0, 0.19, 0)};
-  stage.ellipsoid(globe, dvec3(0.13), 0.013, [](double a, double b) -> std::optional<Material> {
+  stage.ellipsoid(globe, dvec3(0.13), 0.013, [](double a, double b) {
     const double land =
         fractal(1.6 * std::cos(a) * std::cos(b) + 5.0, 2.6 * b + 1.6 * std::sin(a) * std::cos(b));
     return Material{.colour = land > 0.52 ? dvec3(0.72, 0.66, 0.38) : dvec3(0.26, 0.46, 0.60), .gloss = 2.0};
   });
   stage.block(Shape::ellipsoid, globe, dvec3(-0.13), dvec3(0.13));
   stage.lathe({foot}, {{0.012, -0.07}, {0.015, -0.03}, {0.075, -0.015}, {0.08, 0.0}}, 0.013,
-              plain({.colour = brass, .gloss = 3.0}));
+              Material{.colour = brass, .gloss = 3.0});
 }
 
 }  // namespace
 
 void add_bookshelf(Stage& stage) {
   stage.group();
-  constexpr double x0 = 2.18, x1 = 2.48, z0 = 0.55, z1 = 1.75, top = -2.05, board = 0.025;
+  constexpr double x0 = shelf_front, x1 = shelf_back, z0 = shelf_begin, z1 = shelf_end;
+  constexpr double top = -2.05, board = 0.025;
   const Frame world;
   const auto plank = wooden({0.46, 0.30, 0.19}, 31);
   const auto part = [&](const dvec3& low, const dvec3& high) {
-    stage.box(world, low, high, {0.07, 0.03}, plank);
-    stage.block(Shape::box, world, low, high);
+    stage.solid_box(world, low, high, {0.07, 0.03}, plank);
   };
   part({x0, top, z0 - board}, {x1, 0, z0});
   part({x0, top, z1}, {x1, 0, z1 + board});
@@ -204,7 +204,7 @@ void add_bookshelf(Stage& stage) {
     part({x0, y, z0}, {x1, y + board, z1});
     if (shelf == shelves) break;
     const double room = -(top + 0.06) / shelves - board;
-    add_books(stage, shelf, x0, y, room, z0, z1);
+    add_books(stage, shelf, y, room);
     // The books as one: what is behind their spines is not seen, and casts the same shadow.
     stage.block(Shape::box, world, {x0 + 0.06, y - 0.7 * room, z0}, {x1 - 0.02, y, z1});
   }
@@ -216,18 +216,17 @@ void add_lamp(Stage& stage) {
   stage.wire({{bulb.x, room_low.y, bulb.z}, bulb - dvec3(0, 0.22, 0)}, 0.004, 0.02,
              {.colour = {0.12, 0.11, 0.10}});
   stage.lathe({{bulb.x, room_low.y, bulb.z}}, {{0.01, 0.05}, {0.06, 0.03}, {0.06, 0.0}}, 0.015,
-              plain({.colour = brass, .gloss = 3.0}));
+              Material{.colour = brass, .gloss = 3.0});
   // The shade glows from within.
   stage.lathe(
-      {bulb}, {{0.05, -0.20}, {0.09, -0.17}, {0.19, -0.04}, {0.25, 0.08}}, 0.017,
-      [](double angle, double) -> std::optional<Material> {
+      {bulb}, {{0.05, -0.20}, {0.09, -0.17}, {0.19, -0.04}, {0.25, 0.08}}, 0.017, [](double angle, double) {
         const double rib = 0.9 + 0.1 * std::cos(16.0 * angle);
         return Material{
             .colour = dvec3(0.96, 0.80, 0.52) * rib, .opacity = 0.93, .glow = 0.16, .two_sided = true};
       });
   stage.lathe({bulb}, {{0.02, -0.23}, {0.035, -0.22}, {0.05, -0.195}}, 0.012,
-              plain({.colour = brass, .gloss = 3.0}));
-  stage.ellipsoid({bulb}, {0.045, 0.055, 0.045}, 0.012, plain({.colour = {1.0, 0.95, 0.82}, .glow = 6.0}));
+              Material{.colour = brass, .gloss = 3.0});
+  stage.ellipsoid({bulb}, {0.045, 0.055, 0.045}, 0.012, Material{.colour = {1.0, 0.95, 0.82}, .glow = 6.0});
 }
 
 namespace {
@@ -256,23 +255,30 @@ dvec3 fern(double x, double y) {
   return leaf || (stem < 0.012 && y < 0.9) ? dvec3(0.22, 0.38, 0.24) : dvec3(0.93, 0.91, 0.84);
 }
 
-/// Hangs a picture behind glass: its lower left corner on the wall, its edges to the right and upwards.
-void hang(Stage& stage, const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, double grain,
-          const dvec3& frame_colour, dvec3 (*motif)(double, double)) {
+struct Picture {
+  dvec3 corner;          // the lower left one, on the wall
+  dvec3 edge_u, edge_v;  // to the right and upwards
+  double grain;
+  dvec3 frame_colour;
+  dvec3 (*motif)(double x, double y);
+};
+
+/// Hangs a picture behind glass.
+void hang(Stage& stage, const Picture& picture) {
+  const dvec3 &corner = picture.corner, &edge_u = picture.edge_u, &edge_v = picture.edge_v;
   const double w = glm::length(edge_u), h = glm::length(edge_v);
   const dvec3 u = edge_u / w, v = edge_v / h, out = glm::cross(u, v);
-  stage.patch(corner + 0.012 * out, edge_u, edge_v, Grain(grain),
-              [&](double a, double b) -> std::optional<Material> {
-                constexpr double margin = 0.045;
-                const double x = (a - margin) / (w - 2.0 * margin), y = (b - margin) / (h - 2.0 * margin);
-                const bool painted = x > 0.0 && x < 1.0 && y > 0.0 && y < 1.0;
-                return Material{
-                    .colour = painted ? motif(x, y) : dvec3(0.94, 0.92, 0.87), .gloss = 2.0, .sharpness = 14};
-              });
+  stage.patch(corner + 0.012 * out, edge_u, edge_v, Grain(picture.grain), [&](double a, double b) {
+    constexpr double margin = 0.045;
+    const double x = (a - margin) / (w - 2.0 * margin), y = (b - margin) / (h - 2.0 * margin);
+    const bool painted = x > 0.0 && x < 1.0 && y > 0.0 && y < 1.0;
+    return Material{
+        .colour = painted ? picture.motif(x, y) : dvec3(0.94, 0.92, 0.87), .gloss = 2.0, .sharpness = 14};
+  });
   const Frame frame{corner + edge_v, dmat3(u, -v, -out)};  // x to the right, y down, z into the wall
   constexpr double bar = 0.03, front = -0.03;
   const auto rail = [&](const dvec3& low, const dvec3& high) {
-    stage.box(frame, low, high, {0.035, 0.015}, wooden(frame_colour, 41));
+    stage.box(frame, low, high, {0.035, 0.015}, wooden(picture.frame_colour, 41));
   };
   rail({-bar, -bar, front}, {w + bar, 0, 0});
   rail({-bar, h, front}, {w + bar, h + bar, 0});
@@ -286,10 +292,10 @@ void hang(Stage& stage, const dvec3& corner, const dvec3& edge_u, const dvec3& e
 void add_pictures(Stage& stage) {
   const double back = room_high.z, left = room_low.x;
   stage.group();
-  hang(stage, {0.95, -1.28, back}, {0.42, 0, 0}, {0, -0.56, 0}, 0.015, walnut, fern);
-  hang(stage, {1.52, -1.36, back}, {0.42, 0, 0}, {0, -0.42, 0}, 0.016, brass, two_circles);
+  hang(stage, {{0.95, -1.28, back}, {0.42, 0, 0}, {0, -0.56, 0}, 0.015, walnut, fern});
+  hang(stage, {{1.52, -1.36, back}, {0.42, 0, 0}, {0, -0.42, 0}, 0.016, brass, two_circles});
   stage.group();
-  hang(stage, {left, -1.12, -0.75}, {0, 0, 1.3}, {0, -0.85, 0}, 0.025, walnut, evening_by_the_sea);
+  hang(stage, {{left, -1.12, -0.75}, {0, 0, 1.3}, {0, -0.85, 0}, 0.025, walnut, evening_by_the_sea});
 }
 
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo::room

@@ -6,7 +6,7 @@
 
 #include "demo/room_parts.h"
 
-namespace binosplat::procedural {
+namespace binosplat::demo::room {
 
 namespace {
 
@@ -128,4 +128,4 @@ void add_outside(Stage& stage, const dvec3& to_sun) {
   add_room_tree(stage, ground + dvec3(9.0, 0, 55.0), 7.5, 4);
 }
 
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo::room

@@ -1,9 +1,9 @@
 #pragma once
 // What demo:room is put together from. Every function adds one thing to the stage, at its place in the room.
 
-#include "demo/procedural.h"
+#include "demo/shapes.h"
 
-namespace binosplat::procedural {
+namespace binosplat::demo::room {
 
 using Shape = Solid::Shape;
 
@@ -40,4 +40,4 @@ void add_fairy_lights(Stage& stage);
 void add_toys(Stage& stage);
 void add_near_plant(Stage& stage);
 
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo::room

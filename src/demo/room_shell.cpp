@@ -4,7 +4,7 @@
 
 #include "demo/room_parts.h"
 
-namespace binosplat::procedural {
+namespace binosplat::demo::room {
 
 namespace {
 
@@ -16,6 +16,7 @@ constexpr dvec3 rug_middle{0.15, 0.0, -0.25};
 constexpr dvec2 rug_size{2.6, 1.8};
 constexpr double rug_overhang = 0.06;  // of the rug over the floor that is left out under it
 
+const Material hole{.opacity = 0.0};
 const dvec3 off_white{0.90, 0.88, 0.83};
 const dvec3 right{1, 0, 0}, down{0, 1, 0}, away{0, 0, 1};
 
@@ -62,7 +63,7 @@ void add_bricks(Stage& stage) {
     const dvec3 row = corner - course * j * down;
     const double shift = (j % 2) * 0.5 * brick;
     stage.patch(row - joint * down, depth * away, joint * down, {0.13, joint},
-                plain({.colour = {0.72, 0.67, 0.60}}), Border::overlaps);
+                Material{.colour = {0.72, 0.67, 0.60}}, Border::overlaps);
     for (int i = -1; i <= static_cast<int>(depth / brick); ++i) {
       const double from = std::max(0.0, i * brick + shift),
                    to = std::min(depth, (i + 1) * brick + shift - joint);
@@ -73,13 +74,13 @@ void add_bricks(Stage& stage) {
       const dvec3 start = row - course * down + from * away;
       stage.patch(
           start, (to - from) * away, (course - joint) * down, {0.055, 0.032},
-          [&](double u, double v) -> std::optional<Material> {
+          [&](double u, double v) {
             return Material{.colour =
                                 colour * (0.88 + 0.24 * fractal(40.0 * u + 9.0 * i, 40.0 * v + 7.0 * j))};
           },
           Border::overlaps);
       stage.patch(start + (to - from) * away, joint * away, (course - joint) * down, {joint, course},
-                  plain({.colour = {0.72, 0.67, 0.60}}), Border::overlaps);
+                  Material{.colour = {0.72, 0.67, 0.60}}, Border::overlaps);
     }
   }
 }
@@ -117,13 +118,13 @@ void add_floor(Stage& stage) {
     const double joint = 2.0 * hash(k, 7);  // where one board ends and the next one starts
     stage.patch(
         {x, 0, room_high.z}, -depth * away, across * right, {0.08, 0.036},
-        [&](double u, double v) -> std::optional<Material> {
+        [&](double u, double v) {
           const double seed = k * 10 + std::floor((u + joint) / 2.0);
           return Material{.colour = wood({0.60, 0.41, 0.25}, u, v, seed), .gloss = 3.5, .sharpness = 14};
         },
         Border::overlaps);
     stage.patch({x + across, 0, room_high.z}, -depth * away, gap * right, {0.08, gap},
-                plain({.colour = {0.22, 0.14, 0.09}}), Border::overlaps);
+                Material{.colour = {0.22, 0.14, 0.09}}, Border::overlaps);
   }
 }
 
@@ -132,11 +133,10 @@ void add_rug(Stage& stage) {
   stage.group();
   stage.block(Solid::Shape::box, {rug_middle}, {-half.x, -0.009, -half.y}, {half.x, 0.02, half.y});
   const dvec3 corner = rug_middle + dvec3(-0.5 * rug_size.x, -0.012, 0.5 * rug_size.y);
-  stage.patch(corner, -rug_size.y * away, rug_size.x * right, Grain(0.023),
-              [](double u, double v) -> std::optional<Material> {
-                const dvec3 colour = woven(v - 0.5 * rug_size.x, u - 0.5 * rug_size.y);
-                return Material{.colour = colour * (0.9 + 0.2 * noise(70.0 * u, 70.0 * v))};
-              });
+  stage.patch(corner, -rug_size.y * away, rug_size.x * right, Grain(0.023), [](double u, double v) {
+    const dvec3 colour = woven(v - 0.5 * rug_size.x, u - 0.5 * rug_size.y);
+    return Material{.colour = colour * (0.9 + 0.2 * noise(70.0 * u, 70.0 * v))};
+  });
   for (const double side : {-1.0, 1.0}) {  // fringes
     for (int i = 0; i < 90; ++i) {
       const dvec3 from =
@@ -148,7 +148,6 @@ void add_rug(Stage& stage) {
 }
 
 void add_walls(Stage& stage) {
-  const auto boards = [](double u, double up) { return std::optional<Material>(boarding(u, up)); };
   // The wall with the window.
   const dvec3 back(room_low.x, 0, room_high.z);
   const auto in_window = [](double u, double up) {
@@ -157,29 +156,22 @@ void add_walls(Stage& stage) {
   };
   stage.patch(
       back, room_width * right, -panelling * down, {0.028, 0.035},
-      [&](double u, double up) {
-        return in_window(u, up) ? std::nullopt : std::optional<Material>(boarding(u, up));
-      },
-      Border::overlaps);
+      [&](double u, double up) { return in_window(u, up) ? hole : boarding(u, up); }, Border::overlaps);
   stage.patch(
       back - panelling * down, room_width * right, (panelling - height) * down, Grain(0.028),
-      [&](double u, double v) {
-        return in_window(u, panelling + v) ? std::nullopt
-                                           : std::optional<Material>(wallpaper(u, panelling + v));
-      },
+      [&](double u, double v) { return in_window(u, panelling + v) ? hole : wallpaper(u, panelling + v); },
       Border::overlaps);
   // Left: plaster above the same boards.
   const dvec3 left(room_low.x, 0, room_low.z);
-  stage.patch(left, depth * away, -panelling * down, {0.028, 0.040}, boards, Border::overlaps);
+  stage.patch(left, depth * away, -panelling * down, {0.028, 0.040}, boarding, Border::overlaps);
   stage.patch(
       left - panelling * down, depth * away, (panelling - height) * down, Grain(0.075),
-      [](double u, double v) { return std::optional<Material>(plaster(u, panelling + v)); },
-      Border::overlaps);
+      [](double u, double v) { return plaster(u, panelling + v); }, Border::overlaps);
   add_bricks(stage);
   // Behind the default camera: plaster, with a door.
   stage.patch(
       {room_low.x, room_low.y, room_low.z}, room_width * right, height * down, Grain(0.090),
-      [](double u, double v) -> std::optional<Material> {
+      [](double u, double v) {
         const double up = height - v, x = std::abs(u - 3.6);
         if (x < 0.45 && up < 2.05) {
           const bool panel = x < 0.32 && std::abs(std::remainder(up - 0.55, 0.95)) < 0.36;
@@ -193,9 +185,9 @@ void add_walls(Stage& stage) {
 
 void add_ceiling(Stage& stage) {
   stage.patch({room_low.x, room_low.y, room_low.z}, depth * away, room_width * right, Grain(0.14),
-              plain({.colour = {0.93, 0.92, 0.89}}), Border::overlaps);
+              Material{.colour = {0.93, 0.92, 0.89}}, Border::overlaps);
   const Frame world;
-  const auto stucco = plain({.colour = {0.94, 0.93, 0.90}});
+  const auto stucco = Material{.colour = {0.94, 0.93, 0.90}};
   for (int step = 0; step < 2; ++step) {  // a moulding of two steps
     const double out = 0.08 - 0.04 * step, top = room_low.y + 0.04 * step, low = top + 0.04;
     stage.box(world, {room_low.x, top, room_high.z - out}, {room_high.x, low, room_high.z}, {0.08, 0.04},
@@ -210,10 +202,9 @@ void add_ceiling(Stage& stage) {
 void add_window(Stage& stage) {
   stage.group();
   const Frame world;
-  const auto paint = plain({.colour = {0.95, 0.94, 0.91}, .gloss = 0.5});
+  const auto paint = Material{.colour = {0.95, 0.94, 0.91}, .gloss = 0.5};
   const auto bar = [&](const dvec3& low, const dvec3& high) {
-    stage.box(world, low, high, {0.07, 0.028}, paint);
-    stage.block(Solid::Shape::box, world, low, high);
+    stage.solid_box(world, low, high, {0.07, 0.028}, paint);
   };
   const double front = room_high.z - 0.02, back = room_high.z + 0.14;
   const dvec2 l = window_low, h = window_high;
@@ -231,7 +222,7 @@ void add_window(Stage& stage) {
   for (const double y : {l.y, l.y + 0.52, h.y - 0.05}) bar({l.x, y, z + 0.005}, {h.x, y + 0.05, z + 0.045});
   // Panes: hardly there, but they mirror the lamp and the room.
   stage.patch({l.x, h.y, z + 0.025}, (l.y - h.y) * down, (h.x - l.x) * right, Grain(0.09),
-              plain({.colour = {0.75, 0.84, 0.86}, .opacity = 0.05, .gloss = 2.0, .sharpness = 12}));
+              Material{.colour = {0.75, 0.84, 0.86}, .opacity = 0.05, .gloss = 2.0, .sharpness = 12});
 }
 
 void add_curtains(Stage& stage) {
@@ -253,10 +244,10 @@ void add_curtains(Stage& stage) {
   }
   const double y = window_low.y - 0.16, z = room_high.z - 0.12;
   stage.tube(curve({{window_low.x - 0.5, y, z}, {window_high.x + 0.5, y, z}}, 0.04), 0.013, 0.012,
-             plain({.colour = {0.35, 0.24, 0.16}, .gloss = 1.0}));
+             Material{.colour = {0.35, 0.24, 0.16}, .gloss = 1.0});
   for (const double x : {window_low.x - 0.5, window_high.x + 0.5}) {
-    stage.ellipsoid({{x, y, z}}, dvec3(0.03), 0.012, plain({.colour = {0.70, 0.53, 0.26}, .gloss = 3.0}));
+    stage.ellipsoid({{x, y, z}}, dvec3(0.03), 0.012, Material{.colour = {0.70, 0.53, 0.26}, .gloss = 3.0});
   }
 }
 
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo::room

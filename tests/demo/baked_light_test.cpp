@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace binosplat::procedural {
+namespace binosplat::demo {
 namespace {
 
 /// The brightness (green) of Gaussian i seen along `direction`, as a model of degree 3 defines it.
@@ -98,4 +98,4 @@ TEST(BakedLight, OutsideNothingIsLit) {
 }
 
 }  // namespace
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo

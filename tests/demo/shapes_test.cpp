@@ -1,13 +1,13 @@
-#include "demo/procedural.h"
+#include "demo/shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace binosplat::procedural {
+namespace binosplat::demo {
 namespace {
 
-const Texture grey = plain({.colour = dvec3(0.5)});
+const Texture grey = Material{.colour = dvec3(0.5)};
 
 /// Whether all axes are orthonormal and right-handed, and all normals point away from `centre`.
 bool faces_outwards(const Stage& stage, const dvec3& centre) {
@@ -61,11 +61,10 @@ TEST(Stage, SurfacesFaceOutwards) {
 TEST(Stage, PatchesStayWithinTheirBorder) {
   Stage stage(1);
   stage.patch({0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0.1, 0.05}, grey);
-  stage.patch({0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0.1, 0.05},
-              [](double u, double v) -> std::optional<Material> {
-                EXPECT_TRUE(u > 0.0 && u < 1.0 && v > 0.0 && v < 0.5);
-                return std::nullopt;
-              });
+  stage.patch({0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0.1, 0.05}, [](double u, double v) {
+    EXPECT_TRUE(u > 0.0 && u < 1.0 && v > 0.0 && v < 0.5);
+    return std::nullopt;
+  });
   EXPECT_GT(stage.discs.size(), 50u);
   for (const Disc& disc : stage.discs) {
     EXPECT_GE(disc.position.x - disc.scale.x, -1e-9);
@@ -93,4 +92,4 @@ TEST(Stage, HiddenDiscsAreRemoved) {
 }
 
 }  // namespace
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo

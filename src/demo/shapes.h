@@ -1,20 +1,23 @@
 #pragma once
-// A small vocabulary for scenes made of Gaussians: flat discs on surfaces, long ones along wires, and the
-// solids that cast their shadows. demo/baked_light.h turns the discs into a Model. Deterministic: no
-// library's random distributions, and no two random numbers in one expression, whose order compilers choose
-// freely.
+// The shapes that demo:room and demo:city are made of: what a surface is made of (Material), where it lies
+// (Frame), how it is divided into Gaussians (Cells), and the sheets, boxes, balls, lathed and bent surfaces
+// of the room, whose grain is given (Stage). The city's sheets, boxes, balls and rods, whose grain grows with
+// the distance, are in demo/city_parts.h.
 //
-// World axes are COLMAP's: y points down, so heights above the floor are negative y. Lengths are metres.
+// Deterministic: no library's random distributions, and no two random numbers in one expression, whose order
+// compilers choose freely. World axes are COLMAP's: y points down, so heights above the floor are negative y.
+// Lengths are metres.
 
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <optional>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/random.h"
 
-namespace binosplat::procedural {
+namespace binosplat::demo {
 
 using glm::dmat3;
 using glm::dvec2;
@@ -36,19 +39,29 @@ dvec3 mix(const dvec3& a, const dvec3& b, double t);
 /// 0 below `low`, 1 above `high`, smooth between them.
 double ramp(double low, double high, double x);
 
-/// What a disc is made of. Colours are display-referred, as people choose them.
+/// What a point of a surface is made of. Colours are display-referred, as people choose them.
 struct Material {
   dvec3 colour{0.5};
-  double opacity = 0.97;
-  double gloss = 0.0;      // how strongly the lights are mirrored
+  double opacity = 0.97;   // 0: a hole
+  double gloss = 0.0;      // how strongly lights are mirrored; in the city 0 dull to 1 glass
   double sharpness = 8.0;  // exponent of the mirrored lobe
   double glow = 0.0;       // light of its own, in units of the colour
   bool two_sided = false;  // leaves and cloth: lit from both sides
   bool lit = true;         // false: the colour is what is seen (the world outside)
 };
 
-/// What a surface shows at (u, v), in metres from its corner; nothing where it has a hole.
-using Texture = std::function<std::optional<Material>(double u, double v)>;
+/// What a surface shows at (u, v), in metres from its corner, or one material throughout.
+class Texture {
+ public:
+  Texture(const Material& material) : at_([material](double, double) { return material; }) {}
+  template <typename Function>
+  requires std::is_invocable_r_v<Material, Function, double, double> Texture(Function at)
+      : at_(std::move(at)) {}
+  Material operator()(double u, double v) const { return at_(u, v); }
+
+ private:
+  std::function<Material(double u, double v)> at_;
+};
 
 /// One Gaussian-to-be. Its axes are tangent, bitangent (their cross product points away from the surface) and
 /// normal.
@@ -90,6 +103,17 @@ struct SolidGroup {
   std::vector<Solid> solids;
 };
 
+/// How a length is divided into `count` Gaussians: the first lies `first` from its start, the others a cell
+/// apart. Where the surface ends at its border (a silhouette), the outermost Gaussian lies `low` or `high`
+/// cells inside of it, so that it is half transparent just there; where it goes on, half a cell.
+struct Cells {
+  double first, size;
+  Cells(double length, std::uint32_t count, double low, double high)
+      : size(length / (count - 1 + low + high)) {
+    first = low * size;
+  }
+};
+
 /// How far apart the discs of a surface lie.
 struct Grain {
   double u;
@@ -114,6 +138,9 @@ class Stage {
   /// The faces of a box from `low` to `high` in a frame; a texture's u runs along the longer side of each
   /// face. The face on the floor is left out where `low` or `high` touch y = 0 of the frame.
   void box(const Frame& frame, const dvec3& low, const dvec3& high, Grain grain, const Texture& texture);
+  /// A box that casts a shadow.
+  void solid_box(const Frame& frame, const dvec3& low, const dvec3& high, Grain grain,
+                 const Texture& texture);
 
   /// An ellipsoid; u and v are longitude and latitude in radians.
   void ellipsoid(const Frame& frame, const dvec3& radii, double grain, const Texture& texture);
@@ -151,9 +178,6 @@ class Stage {
                       const Texture& texture, double done);
 };
 
-/// A texture of one material throughout.
-Texture plain(const Material& material);
-
 /// Points of a smooth curve (Catmull-Rom) through `points`, about `step` apart.
 std::vector<dvec3> curve(const std::vector<dvec3>& points, double step);
 
@@ -161,4 +185,7 @@ std::vector<dvec3> curve(const std::vector<dvec3>& points, double step);
 /// can.
 dmat3 axes_from_normal(const dvec3& normal, const dvec3& along);
 
-}  // namespace binosplat::procedural
+/// A rotation as models have it: w, x, y, z, of unit length.
+glm::vec4 quaternion(const dmat3& axes);
+
+}  // namespace binosplat::demo

@@ -1,39 +1,31 @@
-#include "demo/procedural.h"
+#include "demo/shapes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 
-namespace binosplat::procedural {
+namespace binosplat::demo {
 
 namespace {
 
 /// Discs a cell apart overlap enough to close the surface when their standard deviation is this share of the
 /// cell: at an opacity of 0.97 the corner between four of them is covered by 99 %.
 constexpr double patch_overlap = 0.74;
-/// A patch's outermost discs lie this many standard deviations inside its border: half transparent just
-/// there.
-constexpr double inset = 1.1;
+/// A patch's outermost discs lie this many cells inside its border: half transparent just there.
+constexpr double margin_at_border = 1.1 * patch_overlap;
 /// Thickness of a disc as a share of its smaller side.
 constexpr double patch_flatness = 0.08;
 
-/// How a length is divided into a row of discs.
-struct Row {
+/// A row of discs of about this grain.
+struct Row : Cells {
   int count;
-  double first;  // the first disc's centre
-  double cell;   // from centre to centre
-
-  Row(double length, double grain, Border border) {
-    if (border == Border::overlaps) {
-      count = std::max(1, static_cast<int>(std::lround(length / grain)));
-      cell = length / count;
-      first = 0.5 * cell;
-    } else {
-      const double margin = inset * patch_overlap;
-      count = std::max(1, static_cast<int>(std::lround(length / grain - 2.0 * margin + 1.0)));
-      cell = length / (count - 1 + 2.0 * margin);
-      first = margin * cell;
-    }
+  Row(double length, double grain, double margin)
+      : Row(length, margin, std::max(1, static_cast<int>(std::lround(length / grain - 2.0 * margin + 1.0)))) {
   }
+
+ private:
+  Row(double length, double margin, int discs)
+      : Cells(length, static_cast<std::uint32_t>(discs), margin, margin), count(discs) {}
 };
 
 /// Lengths of a polyline from its start to each point.
@@ -89,13 +81,14 @@ Frame rolled(const Frame& frame, double degrees) {
   return {frame.origin, frame.axes * dmat3(dvec3(c, s, 0), dvec3(-s, c, 0), dvec3(0, 0, 1))};
 }
 
-Texture plain(const Material& material) {
-  return [material](double, double) { return std::optional<Material>(material); };
-}
-
 dmat3 axes_from_normal(const dvec3& normal, const dvec3& along) {
   const dvec3 tangent = glm::normalize(along - normal * glm::dot(normal, along));
   return dmat3(tangent, glm::cross(normal, tangent), normal);
+}
+
+glm::vec4 quaternion(const dmat3& axes) {
+  const glm::dquat q = glm::normalize(glm::quat_cast(axes));
+  return {q.w, q.x, q.y, q.z};
 }
 
 std::vector<dvec3> curve(const std::vector<dvec3>& points, double step) {
@@ -116,7 +109,7 @@ std::vector<dvec3> curve(const std::vector<dvec3>& points, double step) {
 }
 
 void Stage::disc(const dvec3& position, const dmat3& axes, const dvec3& scale, const Material& material) {
-  discs.push_back({position, axes, scale, material});
+  if (material.opacity > 0.0) discs.push_back({position, axes, scale, material});
 }
 
 void Stage::patch(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
@@ -124,14 +117,13 @@ void Stage::patch(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v,
   const double length_u = glm::length(edge_u), length_v = glm::length(edge_v);
   const dvec3 u = edge_u / length_u, v = edge_v / length_v;
   const dmat3 axes = axes_from_normal(glm::normalize(glm::cross(u, v)), u);
-  const Row row_u(length_u, grain.u, border), row_v(length_v, grain.v, border);
-  const double su = patch_overlap * row_u.cell, sv = patch_overlap * row_v.cell;
+  const double margin = border == Border::ends ? margin_at_border : 0.5;
+  const Row row_u(length_u, grain.u, margin), row_v(length_v, grain.v, margin);
+  const double su = patch_overlap * row_u.size, sv = patch_overlap * row_v.size;
   for (int j = 0; j < row_v.count; ++j) {
     for (int i = 0; i < row_u.count; ++i) {
-      const double a = row_u.first + i * row_u.cell, b = row_v.first + j * row_v.cell;
-      const std::optional<Material> material = texture(a, b);
-      if (material)
-        disc(corner + a * u + b * v, axes, {su, sv, patch_flatness * std::min(su, sv)}, *material);
+      const double a = row_u.first + i * row_u.size, b = row_v.first + j * row_v.size;
+      disc(corner + a * u + b * v, axes, {su, sv, patch_flatness * std::min(su, sv)}, texture(a, b));
     }
   }
 }
@@ -157,6 +149,12 @@ void Stage::box(const Frame& frame, const dvec3& low, const dvec3& high, Grain g
   }
 }
 
+void Stage::solid_box(const Frame& frame, const dvec3& low, const dvec3& high, Grain grain,
+                      const Texture& texture) {
+  box(frame, low, high, grain, texture);
+  block(Solid::Shape::box, frame, low, high);
+}
+
 void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, const Texture& texture) {
   const double mean = std::cbrt(radii.x * radii.y * radii.z);
   const int count = std::max(12, static_cast<int>(std::lround(4.0 * pi * mean * mean / (grain * grain))));
@@ -166,8 +164,7 @@ void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, cons
     const double y = 1.0 - 2.0 * (i + 0.5) / count, ring = std::sqrt(1.0 - y * y);
     const double longitude = golden * i;
     const dvec3 p(ring * std::cos(longitude), y, ring * std::sin(longitude));
-    const std::optional<Material> material = texture(std::remainder(longitude, 2.0 * pi), std::asin(y));
-    if (!material) continue;
+    const Material material = texture(std::remainder(longitude, 2.0 * pi), std::asin(y));
     const dvec3 normal = glm::normalize(frame.axes * (p / radii));
     const dmat3 axes = axes_from_normal(normal, frame.axes * dvec3(-p.z, 0.0, p.x));
     dvec3 scale(0.0);
@@ -178,7 +175,7 @@ void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, cons
     scale.z = patch_flatness * std::min(scale.x, scale.y);
     // Half the disc's sagitta inwards, so that the silhouette keeps the radius.
     disc(frame.at(p.x * radii.x, p.y * radii.y, p.z * radii.z) - 0.5 * sigma * sigma * mean * normal, axes,
-         scale, *material);
+         scale, material);
   }
 }
 
@@ -203,9 +200,9 @@ void Stage::lathe(const Frame& frame, const std::vector<dvec2>& profile, double 
 double Stage::smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile, double grain,
                            const Texture& texture, double done) {
   const std::vector<double> way = lengths(profile);
-  const Row row(way.back(), grain, Border::ends);
+  const Row row(way.back(), grain, margin_at_border);
   for (int j = 0; j < row.count; ++j) {
-    const double v = row.first + j * row.cell;
+    const double v = row.first + j * row.size;
     std::size_t k = 1;
     while (k + 1 < profile.size() && way[k] < v) ++k;
     const double t = (v - way[k - 1]) / std::max(way[k] - way[k - 1], 1e-9);
@@ -213,16 +210,15 @@ double Stage::smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile
     const dvec2 along = glm::normalize(profile[k] - profile[k - 1]);
     const double round = 2.0 * pi * at.x;
     const int count = std::max(3, static_cast<int>(std::lround(round / grain)));
-    const double su = patch_overlap * round / count, sv = patch_overlap * row.cell;
+    const double su = patch_overlap * round / count, sv = patch_overlap * row.size;
     for (int i = 0; i < count; ++i) {
       const double angle = 2.0 * pi * (i + 0.5 * (j % 2)) / count;
-      const std::optional<Material> material = texture(angle, done + v);
-      if (!material) continue;
+      const Material material = texture(angle, done + v);
       const dvec3 outwards(std::cos(angle), 0.0, std::sin(angle));
       const dvec3 normal = frame.axes * (along.y * outwards - dvec3(0.0, along.x, 0.0));
       const dvec3 around = frame.axes * dvec3(-outwards.z, 0.0, outwards.x);
       const dvec3 p = frame.origin + frame.axes * (at.x * outwards + dvec3(0.0, at.y, 0.0));
-      disc(p, axes_from_normal(normal, around), {su, sv, patch_flatness * std::min(su, sv)}, *material);
+      disc(p, axes_from_normal(normal, around), {su, sv, patch_flatness * std::min(su, sv)}, material);
     }
   }
   return way.back();
@@ -239,12 +235,11 @@ void Stage::tube(const std::vector<dvec3>& path, double radius, double grain, co
     const dvec3 up = glm::cross(forward, side);
     for (int k = 0; k < around; ++k) {
       const double angle = 2.0 * pi * (k + 0.5 * static_cast<double>(i % 2)) / around;
-      const std::optional<Material> material = texture(angle, way[i] + 0.5 * length);
-      if (!material) continue;
+      const Material material = texture(angle, way[i] + 0.5 * length);
       const dvec3 normal = std::cos(angle) * side + std::sin(angle) * up;
       const double su = patch_overlap * length, sv = patch_overlap * 2.0 * pi * radius / around;
       disc(0.5 * (path[i] + path[i + 1]) + 0.9 * radius * normal, axes_from_normal(normal, forward),
-           {su, sv, patch_flatness * std::min(su, sv)}, *material);
+           {su, sv, patch_flatness * std::min(su, sv)}, material);
     }
   }
 }
@@ -310,4 +305,4 @@ void Stage::remove_hidden() {
   std::erase_if(discs, hidden);
 }
 
-}  // namespace binosplat::procedural
+}  // namespace binosplat::demo
