@@ -69,8 +69,7 @@ void fill_all(const City& plan, const std::vector<Surface>& surfaces, const std:
   for (std::size_t part = 0; part < parts; ++part) {
     const std::size_t begin = surfaces.size() * part / parts, end = surfaces.size() * (part + 1) / parts;
     parallel_for(
-        end - begin, [&](std::size_t k) { fill(plan, light, surfaces[begin + k], begins[begin + k], model); },
-        8);
+        end - begin, [&](std::size_t k) { fill(light, surfaces[begin + k], begins[begin + k], model); }, 8);
     progress.update(end);
   }
 }

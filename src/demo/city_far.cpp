@@ -11,10 +11,10 @@ namespace {
 
 constexpr dvec3 horizon{0.84, 0.88, 0.92};
 
-Material paint_tower(const City& city, const Surface& surface, double u, double v) {
-  const std::uint32_t number = surface.subject;
+Material tower_at(const Tower& tower, double u, double v) {
+  const std::uint32_t number = tower.number;
   const dvec3 wall = mix(dvec3(0.78, 0.73, 0.66), dvec3(0.52, 0.55, 0.60), hash(number, 1));
-  if (city.towers[number].tiers == 5) {  // the church
+  if (tower.tiers == 5) {  // the church
     const bool slit =
         std::abs(u / 5.0 - std::floor(u / 5.0) - 0.5) < 0.12 && v - 14.0 * std::floor(v / 14.0) > 8.0;
     return {.colour = slit ? dvec3(0.25, 0.24, 0.23) : dvec3(0.80, 0.74, 0.62)};
@@ -28,14 +28,13 @@ Material paint_tower(const City& city, const Surface& surface, double u, double 
 }
 
 /// Wooded hills, already hazy.
-Material paint_hill(const City&, const Surface& surface, double u, double v) {
-  const double woods = fractal(0.02 * u + 9.0, 0.03 * v + surface.subject);
+Material hill_at(std::uint32_t range, double u, double v) {
+  const double woods = fractal(0.02 * u + 9.0, 0.03 * v + range);
   const dvec3 near = mix(dvec3(0.44, 0.55, 0.52), dvec3(0.58, 0.65, 0.55), woods);
-  return {.colour = mix(near, horizon, surface.subject == 0 ? 0.25 : 0.60), .lit = false};
+  return {.colour = mix(near, horizon, range == 0 ? 0.25 : 0.60), .lit = false};
 }
 
-Material paint_sky(const City& city, const Surface& surface, double u, double v) {
-  const dvec3 direction = glm::normalize(surface.point(u, v) - sky_centre);
+Material sky_at(const City& city, const dvec3& direction) {
   const double up = -direction.y;
   dvec3 colour = mix(horizon, dvec3(0.35, 0.56, 0.84), ramp(-0.05, 0.65, up));
   const double flat = 1.0 / (std::max(up, 0.0) + 0.14);
@@ -45,14 +44,14 @@ Material paint_sky(const City& city, const Surface& surface, double u, double v)
   return {.colour = colour, .lit = false};
 }
 
-void add_tower(Builder& builder, std::uint32_t number) {
-  const Tower& tower = builder.city.towers[number];
+void add_tower(Builder& builder, const Tower& tower) {
   double below = 0.0;
   for (int k = 0; k < tower.tiers; ++k) {
     const double half = 0.5 * tower.width * (1.0 - 0.17 * k);
     const double top = tower.height * (k + 1) / tower.tiers;
-    builder.box({tower.foot, dmat3(1)}, {-half, -top, -half}, {half, k == 0 ? 12.0 : -below, half},
-                {.paint = paint_tower, .subject = number, .coarseness = 0.8});
+    builder.box(
+        {tower.foot, dmat3(1)}, {-half, -top, -half}, {half, k == 0 ? 12.0 : -below, half},
+        {.texture = [&tower](double u, double v) { return tower_at(tower, u, v); }, .coarseness = 0.8});
     below = top;
   }
 }
@@ -81,8 +80,7 @@ void add_city_hills(Builder& builder, std::uint32_t range, double radius, double
     builder.sheet({.corner = b + down,
                    .u = a - b,
                    .v = -down,
-                   .paint = paint_hill,
-                   .subject = range,
+                   .texture = [range](double x, double y) { return hill_at(range, x, y); },
                    .at = {30.0 * k, 0.0},
                    .borders = border_high,
                    .coarseness = 3.0});
@@ -99,7 +97,11 @@ void add_city_sky(Builder& builder) {
         const double x = 2.0 * i / cells - 1.0, y = 2.0 * j / cells - 1.0, step = 2.0 / cells;
         const dvec3 corner = middle + x * right + y * up;
         const dvec3 a = point(corner), b = point(corner + step * right), c = point(corner + step * up);
-        builder.sheet({.corner = a, .u = b - a, .v = c - a, .paint = paint_sky, .coarseness = 7.0});
+        const dvec3 u = glm::normalize(b - a), v = glm::normalize(c - a);
+        const auto sky = [=, &city = builder.city](double along, double upwards) {
+          return sky_at(city, glm::normalize(a + along * u + upwards * v - sky_centre));
+        };
+        builder.sheet({.corner = a, .u = b - a, .v = c - a, .texture = sky, .coarseness = 7.0});
       }
     }
   };
@@ -115,7 +117,7 @@ void add_city_sky(Builder& builder) {
 }  // namespace
 
 void add_far_away(Builder& builder) {
-  for (std::uint32_t k = 0; k < builder.city.towers.size(); ++k) add_tower(builder, k);
+  for (const Tower& tower : builder.city.towers) add_tower(builder, tower);
   add_city_hills(builder, 0, 2250.0, 75.0);
   add_city_hills(builder, 1, 2500.0, 150.0);
   add_city_sky(builder);

@@ -24,41 +24,21 @@ std::uint32_t house_at(const City& city, const Row& row, double along) {
   return h;
 }
 
-Material paint_row_front(const City& city, const Surface& surface, double u, double v) {
-  const std::uint32_t h = house_at(city, city.rows[surface.subject], u);
-  return paint_wall(city, Surface{.subject = city.houses[h].first_wall}, u - city.houses[h].begin, v);
+Material row_front_at(const City& city, const Row& row, double u, double v) {
+  const House& house = city.houses[house_at(city, row, u)];
+  return wall_at(city, city.walls[house.first_wall], u - house.begin, v);
 }
 
-Material paint_row_back(const City& city, const Surface& surface, double u, double v) {
-  const Row& row = city.rows[surface.subject];
-  const std::uint32_t h = house_at(city, row, row.length - u);
-  const double from_end = u - (row.length - city.houses[h].begin - city.houses[h].width);
-  return paint_wall(city, Surface{.subject = city.houses[h].first_wall + 1}, from_end, v);
-}
-
-Material paint_row_roof(const City& city, const Surface& surface, double u, double v) {
-  return paint_roof(city, Surface{.subject = house_at(city, city.rows[surface.subject], u)}, u, v);
-}
-
-Material paint_frame(const City& city, const Surface& surface, double, double) {
-  return {.colour = city.houses[surface.subject].trim * 0.9};
-}
-
-Material paint_chimney(const City& city, const Surface& surface, double u, double v) {
-  const House& house = city.houses[surface.subject];
-  return {.colour = mix(house.roof, dvec3(0.45, 0.33, 0.28), 0.6) * (0.85 + 0.25 * noise(6.0 * u, 9.0 * v))};
-}
-
-Material paint_awning(const City& city, const Surface& surface, double u, double) {
-  const bool stripe = (static_cast<int>(u / 0.3) & 1) != 0;
-  return {.colour =
-              stripe ? dvec3(0.90, 0.88, 0.82) : mix(city.houses[surface.subject].door, dvec3(0.6), 0.15)};
+Material row_back_at(const City& city, const Row& row, double u, double v) {
+  const House& house = city.houses[house_at(city, row, row.length - u)];
+  const double from_end = u - (row.length - house.begin - house.width);
+  return wall_at(city, city.walls[house.first_wall + 1], from_end, v);
 }
 
 class HouseBuilder {
  public:
   HouseBuilder(Builder& builder, std::uint32_t number)
-      : builder_(builder), number_(number), house_(builder.city.houses[number]) {
+      : builder_(builder), number_(number), house_(builder.city.houses[number]), frame_{house_.trim * 0.9} {
     grain_ = builder.grain_at(house_.frame.at(0.5 * house_.width, -3.0, 0.0));
   }
 
@@ -79,13 +59,13 @@ class HouseBuilder {
   void piece(std::uint32_t w, double u0, double u1, double v0, double v1, double deep = 0.0) {
     if (u1 - u0 < 0.02 || v1 - v0 < 0.02) return;
     const Wall& wall = builder_.city.walls[w];
-    builder_.sheet({.corner = wall.frame.at(u0, -v0, deep),
-                    .u = wall.frame.axes[0] * (u1 - u0),
-                    .v = wall.frame.axes[1] * (v0 - v1),
-                    .paint = paint_wall,
-                    .subject = w,
-                    .at = {u0, v0},
-                    .coarseness = wall.is_front ? 1.0 : hidden});
+    builder_.sheet(
+        {.corner = wall.frame.at(u0, -v0, deep),
+         .u = wall.frame.axes[0] * (u1 - u0),
+         .v = wall.frame.axes[1] * (v0 - v1),
+         .texture = [&city = builder_.city, &wall](double u, double v) { return wall_at(city, wall, u, v); },
+         .at = {u0, v0},
+         .coarseness = wall.is_front ? 1.0 : hidden});
   }
 
   void add_wall(std::uint32_t w) {
@@ -126,11 +106,14 @@ class HouseBuilder {
       trim_box(wall, {o.u0 - 0.1, -0.12, -0.35}, {o.u1 + 0.1, 0.1, 0.0});
     }
     if (o.kind == Opening::Kind::shop) {
+      const auto awning = [&house = house_](double u, double) {
+        const bool stripe = (static_cast<int>(u / 0.3) & 1) != 0;
+        return Material{stripe ? dvec3(0.90, 0.88, 0.82) : mix(house.door, dvec3(0.6), 0.15)};
+      };
       builder_.sheet({.corner = wall.frame.at(o.u0 - 0.1, -o.v1 + 0.35, -1.1),
                       .u = wall.frame.axes[0] * (o.u1 - o.u0 + 0.2),
                       .v = wall.frame.axes * dvec3(0.0, -0.55, 1.1),
-                      .paint = paint_awning,
-                      .subject = number_,
+                      .texture = awning,
                       .borders = all_borders});
     }
   }
@@ -139,7 +122,7 @@ class HouseBuilder {
   void add_reveals(const Wall& wall, const Opening& o, double deep) {
     const dvec3 right = wall.frame.axes[0] * (o.u1 - o.u0), up = wall.frame.axes[1] * (o.v0 - o.v1),
                 in = wall.frame.axes[2] * deep;
-    Surface side{.paint = paint_frame, .subject = number_};
+    Surface side{.texture = frame_};
     const auto add = [&](double u, double v, const dvec3& along_u, const dvec3& along_v) {
       side.corner = wall.frame.at(u, -v, 0.0);
       side.u = along_u;
@@ -153,7 +136,7 @@ class HouseBuilder {
   }
 
   void trim_box(const Wall& wall, const dvec3& low, const dvec3& high) {
-    builder_.box(wall.frame, low, high, {.paint = paint_frame, .subject = number_});
+    builder_.box(wall.frame, low, high, {.texture = frame_});
   }
 
   /// What stands out beside a lower neighbour: a strip of wall without windows, and the gable.
@@ -162,7 +145,8 @@ class HouseBuilder {
     if (neighbour > house_.eave + 0.5 * house_.roof_rise) return;
     const dvec3 along = house_.frame.axes[2] * (left ? -row_depth : row_depth);
     const dvec3 low = house_.frame.at(left ? 0.0 : house_.width, 0.0, left ? row_depth : 0.0);
-    Surface side{.paint = paint_masonry, .subject = number_, .coarseness = hidden};
+    const auto masonry = [&house = house_](double u, double v) { return masonry_at(house, u, v); };
+    Surface side{.texture = masonry, .coarseness = hidden};
     if (neighbour > 0.0 && neighbour < house_.eave) {
       side.corner = low + house_.frame.axes[1] * -neighbour;
       side.u = along;
@@ -188,7 +172,8 @@ class HouseBuilder {
     const dvec3 right = house_.frame.axes[0] * house_.width;
     const unsigned ends = (house_.left_eave < house_.eave ? border_left : 0u) |
                           (house_.right_eave < house_.eave ? border_right : 0u);
-    Surface roof{.u = right, .paint = paint_roof, .subject = number_, .coarseness = roof_coarseness};
+    const auto tiles = [&house = house_](double u, double v) { return roof_at(house, u, v); };
+    Surface roof{.u = right, .texture = tiles, .coarseness = roof_coarseness};
     if (house_.roof_rise == 0.0) {
       roof.corner = house_.frame.at(0.0, -house_.eave + 0.15, 0.0);
       roof.v = house_.frame.axes[2] * row_depth;
@@ -208,9 +193,12 @@ class HouseBuilder {
   void add_chimney() {
     const double x = house_.width * (0.15 + 0.7 * hash(house_.number, 31));
     const double ridge = house_.eave + house_.roof_rise;
+    const auto bricks = [&house = house_](double u, double v) {
+      const dvec3 colour = mix(house.roof, dvec3(0.45, 0.33, 0.28), 0.6);
+      return Material{colour * (0.85 + 0.25 * noise(6.0 * u, 9.0 * v))};
+    };
     builder_.box(house_.frame, {x - 0.35, -ridge - 0.9, 0.5 * row_depth - 0.9},
-                 {x + 0.35, -ridge + 0.9, 0.5 * row_depth + 0.3},
-                 {.paint = paint_chimney, .subject = number_});
+                 {x + 0.35, -ridge + 0.9, 0.5 * row_depth + 0.3}, {.texture = bricks});
   }
 
   void add_cornice() {
@@ -221,27 +209,27 @@ class HouseBuilder {
   Builder& builder_;
   std::uint32_t number_;
   const House& house_;
+  Material frame_;  // of windows, doors and the cornice
   double grain_;
 };
 
-void add_row(Builder& builder, std::uint32_t number) {
-  const Row& row = builder.city.rows[number];
+void add_row(Builder& builder, const Row& row) {
+  const City& city = builder.city;
   const dvec3 up(0, -1, 0), in = row.frame.axes[2], from = row.frame.origin;
   const double slope = row.roof_rise / (0.5 * row_depth);
   const dvec3 to_ridge = 0.5 * row_depth * (in + slope * up);
   Surface s{.corner = from - house_foot * up, .u = row.along, .v = (row.eave + house_foot) * up};
-  s.subject = number;
-  s.paint = paint_row_front;
+  s.texture = [&](double u, double v) { return row_front_at(city, row, u, v); };
   s.at = {0.0, -house_foot};
   s.borders = border_left | border_right;
   builder.sheet(s);
   s.corner += row.along + row_depth * in;
   s.u = -row.along;
-  s.paint = paint_row_back;
+  s.texture = [&](double u, double v) { return row_back_at(city, row, u, v); };
   builder.sheet(s);
   s.at = {0.0, 0.0};
   s.u = row.along;
-  s.paint = paint_row_roof;
+  s.texture = [&](double u, double v) { return roof_at(city.houses[house_at(city, row, u)], u, v); };
   s.corner = from + row.eave * up;
   s.v = to_ridge;
   builder.sheet(s);
@@ -253,10 +241,9 @@ void add_row(Builder& builder, std::uint32_t number) {
 }  // namespace
 
 void add_houses(Builder& builder) {
-  for (std::uint32_t r = 0; r < builder.city.rows.size(); ++r) {
-    const Row& row = builder.city.rows[r];
+  for (const Row& row : builder.city.rows) {
     if (builder.grain_at(row.frame.origin + 0.5 * row.along) > grain_of_rows) {
-      add_row(builder, r);
+      add_row(builder, row);
       continue;
     }
     for (std::uint32_t h = row.first; h < row.end; ++h) HouseBuilder(builder, h).add();

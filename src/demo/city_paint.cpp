@@ -1,4 +1,4 @@
-// demo:city: what the walls of its houses look like.
+// demo:city: what the walls and roofs of its houses are made of.
 
 #include <algorithm>
 #include <cmath>
@@ -94,8 +94,7 @@ Opening opening_of(const City& city, const Wall& wall, int floor, int column) {
   return between(Opening::Kind::window, half, sill, sill + 1.55);
 }
 
-Material paint_masonry(const City& city, const Surface& surface, double u, double v) {
-  const House& house = city.houses[surface.subject];
+Material masonry_at(const House& house, double u, double v) {
   Material look = house.brick ? brick_look(house, u, v) : Material{.colour = house.wall};
   // Weather: large soft spots, and streaks below the eaves.
   const double spots = fractal(0.6 * u + 13.0 * house.number, 0.45 * v);
@@ -105,8 +104,7 @@ Material paint_masonry(const City& city, const Surface& surface, double u, doubl
   return look;
 }
 
-Material paint_wall(const City& city, const Surface& surface, double u, double v) {
-  const Wall& wall = city.walls[surface.subject];
+Material wall_at(const City& city, const Wall& wall, double u, double v) {
   const House& house = city.houses[wall.house];
   const int floor = static_cast<int>(v / house.floor_height);
   if (v >= 0.0 && floor < house.floors && u >= 0.0 && u < wall.width) {
@@ -130,11 +128,10 @@ Material paint_wall(const City& city, const Surface& surface, double u, double v
   if (v > house.eave - 0.3) return {.colour = house.trim};
   const double line = v - house.floor_height * std::max(1.0, std::floor(v / house.floor_height + 0.5));
   if (wall.is_front && std::abs(line + 0.06) < 0.07) return {.colour = house.trim * 0.93};
-  return paint_masonry(city, Surface{.subject = wall.house}, u, v);
+  return masonry_at(house, u, v);
 }
 
-Material paint_roof(const City& city, const Surface& surface, double u, double v) {
-  const House& house = city.houses[surface.subject];
+Material roof_at(const House& house, double u, double v) {
   const double mottled = 0.84 + 0.3 * fractal(0.5 * u + 5.0 * house.number, 0.5 * v);
   if (house.roof_rise == 0.0) return {.colour = house.roof * mottled};
   const double course = v / 0.28, along = u / 0.22;

@@ -111,31 +111,23 @@ struct City {
 
 City plan_city(std::uint64_t seed);
 
-struct Surface;
-/// The material at (u, v), in metres from Surface::at.
-using Paint = Material (*)(const City& city, const Surface& surface, double u, double v);
-
 // Borders at which a sheet ends, so that its Gaussians must not reach over them.
 enum Borders : unsigned { border_left = 1, border_right = 2, border_low = 4, border_high = 8 };
 constexpr unsigned all_borders = 15;
 
 /// A parallelogram of Gaussians, seen from where cross(u, v) points; or a ball of leaves.
 struct Surface {
-  dvec3 corner;  // of a ball: its middle
-  dvec3 u, v;    // of a ball: u its radii
-  Paint paint;
-  std::uint32_t subject = 0;  // the house, tree, ... that the paint is about
-  dvec2 at{0.0};              // of the corner, in the paint's metres
+  dvec3 corner;     // of a ball: its middle
+  dvec3 u, v;       // of a ball: u its radii
+  Texture texture;  // of a ball: by how far from its middle, and how far outside its lump
+  dvec2 at{0.0};    // of the corner, in the texture's metres
   unsigned borders = 0;
   double coarseness = 1.0;  // of its Gaussians, compared with others
   double thickness = 0.0;   // standard deviation along the normal; 0: flat
   bool ball = false;
+  std::uint32_t seed = 0;   // of a ball's leaves
   double weight = 0.0;      // how many Gaussians its grain asks for
   std::uint32_t count = 0;  // how many it has
-
-  dvec3 point(double a, double b) const {
-    return corner + u * ((a - at.x) / glm::length(u)) + v * ((b - at.y) / glm::length(v));
-  }
 };
 
 /// Collects surfaces, as detailed as the grain allows.
@@ -148,8 +140,8 @@ class Builder {
   void sheet(const Surface& surface);
   void ball(const Surface& surface);
   /// A thin post as a row of long Gaussians.
-  void rod(const dvec3& from, const dvec3& to, double radius, Paint paint, std::uint32_t subject);
-  /// The walls and the top of an upright box; paint coordinates go around its walls.
+  void wire(const dvec3& from, const dvec3& to, double radius, const Texture& texture);
+  /// The walls and the top of an upright box; a texture's u goes around its walls.
   void box(const Frame& frame, const dvec3& low, const dvec3& high, const Surface& like);
 
   double grain_at(const dvec3& p) const;
@@ -171,10 +163,10 @@ struct Opening {
 };
 Opening opening_of(const City& city, const Wall& wall, int floor, int column);
 
-// Paints of houses; their surfaces' subjects are a wall, a house and a house.
-Material paint_wall(const City& city, const Surface& surface, double u, double v);
-Material paint_masonry(const City& city, const Surface& surface, double u, double v);
-Material paint_roof(const City& city, const Surface& surface, double u, double v);
+// What houses are made of; (u, v) in metres from the wall's left end and from the ground, or from the eave.
+Material wall_at(const City& city, const Wall& wall, double u, double v);
+Material masonry_at(const House& house, double u, double v);
+Material roof_at(const House& house, double u, double v);
 
 // The cameras that demo_city gives, around which its detail lies: eye, and what it looks at, on the plan.
 struct Head {
@@ -212,6 +204,6 @@ class Light {
 };
 
 /// Adds the Gaussians of a surface to the model, from `first` on.
-void fill(const City& city, const Light& light, const Surface& surface, std::size_t first, Model& model);
+void fill(const Light& light, const Surface& surface, std::size_t first, Model& model);
 
 }  // namespace binosplat::demo::city

@@ -27,7 +27,7 @@ Material marking(double x, double z) {
 }
 
 /// A street along z, crossings included; x is from its middle.
-Material paint_road(const City&, const Surface&, double x, double z) {
+Material road_at(double x, double z) {
   const double along = part_of(z - first_crossing, crossing_pitch);
   const double from_crossing = std::min(along, crossing_pitch - along);
   if (from_crossing > side_road) {
@@ -47,13 +47,13 @@ Material paint_road(const City&, const Surface&, double x, double z) {
   return look;
 }
 
-Material paint_side_road(const City&, const Surface&, double x, double z) {
+Material side_road_at(double x, double z) {
   const double dash = part_of(x, 4.0);
   if (std::abs(z) < 0.06 && dash < 1.6) return marking(x, z);
   return asphalt(x, z);
 }
 
-Material paint_pavement(const City&, const Surface&, double x, double z) {
+Material pavement_at(double x, double z) {
   const double i = std::floor(x / 0.5), j = std::floor(z / 0.75);
   const double a = x - 0.5 * i, b = z - 0.75 * j;
   const double own = hash(static_cast<std::int64_t>(i) + 5000, static_cast<std::int64_t>(j));
@@ -62,29 +62,29 @@ Material paint_pavement(const City&, const Surface&, double x, double z) {
   return {.colour = slab * (joint ? 0.78 : 1.0), .gloss = 0.06};
 }
 
-Material paint_kerb(const City&, const Surface&, double u, double) {
+Material kerb_at(double u, double) {
   return {.colour = dvec3(0.70, 0.69, 0.67) * (part_of(u, 1.0) < 0.03 ? 0.75 : 1.0)};
 }
 
-Material paint_yard(const City&, const Surface&, double x, double z) {
+Material yard_at(double x, double z) {
   const double tufts = fractal(0.4 * x + 3.0, 0.4 * z + 8.0), blades = noise(9.0 * x, 9.0 * z);
   const dvec3 grass = mix(dvec3(0.27, 0.38, 0.15), dvec3(0.47, 0.52, 0.24), tufts);
   return {.colour = grass * (0.88 + 0.24 * blades)};
 }
 
 /// A whole block: a yard with pavements around it.
-Material paint_block(const City& city, const Surface& surface, double x, double z) {
+Material block_at(double x, double z) {
   const bool yard =
       x > front && x < street_pitch - front && z > side_front && z < crossing_pitch - side_front;
-  return yard ? paint_yard(city, surface, x, z) : paint_pavement(city, surface, x, z);
+  return yard ? yard_at(x, z) : pavement_at(x, z);
 }
 
-Material paint_yard_wall(const City&, const Surface&, double u, double v) {
+Material yard_wall_at(double u, double v) {
   return {.colour = dvec3(0.62, 0.55, 0.47) * (0.85 + 0.2 * fractal(1.5 * u, 2.0 * v))};
 }
 
 /// Fields with hedges, each of its own green or yellow.
-Material paint_fields(const City&, const Surface&, double x, double z) {
+Material fields_at(double x, double z) {
   const double u = x / 90.0 + 0.6 * noise(x / 240.0, z / 240.0),
                v = z / 70.0 + 0.6 * noise(z / 200.0, x / 200.0);
   const double own =
@@ -95,23 +95,28 @@ Material paint_fields(const City&, const Surface&, double x, double z) {
   return {.colour = field * (0.9 + 0.2 * fractal(0.05 * x, 0.05 * z))};
 }
 
-/// A level piece of ground, between two corners on the plan, with the slope of the relief; `middle` is where
-/// the paint's zero lies.
-void add_ground(Builder& builder, const dvec2& low, const dvec2& high, double height, Paint paint,
-                const dvec2& middle, double coarseness = 1.0) {
+/// A rectangle of the plan, which lies `height` above the relief and has its slope.
+struct Ground {
+  dvec2 low, high;
+  double height = 0.0;
+  dvec2 middle{0.0};  // where the texture's zero lies
+  double coarseness = 1.0;
+};
+
+void add_ground(Builder& builder, const Texture& texture, const Ground& g) {
   const Relief& relief = builder.city.relief;
-  const bool coarse =
-      builder.grain_at(relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) > grain_of_slopes;
-  const int pieces = std::max(1, static_cast<int>((high.y - low.y) / (coarse ? 100.0 : 20.0)));
+  const dvec2 middle = 0.5 * (g.low + g.high);
+  const bool coarse = builder.grain_at(relief.at(middle.x, middle.y)) > grain_of_slopes;
+  const int pieces = std::max(1, static_cast<int>((g.high.y - g.low.y) / (coarse ? 100.0 : 20.0)));
+  const auto z_at = [&](int k) { return g.low.y + (g.high.y - g.low.y) * k / pieces; };
   for (int k = 0; k < pieces; ++k) {
-    const double z0 = low.y + (high.y - low.y) * k / pieces, z1 = low.y + (high.y - low.y) * (k + 1) / pieces;
-    const dvec3 corner = relief.at(low.x, z0, height);
+    const dvec3 corner = relief.at(g.low.x, z_at(k), g.height);
     builder.sheet({.corner = corner,
-                   .u = relief.at(high.x, z0, height) - corner,
-                   .v = relief.at(low.x, z1, height) - corner,
-                   .paint = paint,
-                   .at = dvec2(low.x, z0) - middle,
-                   .coarseness = coarseness});
+                   .u = relief.at(g.high.x, z_at(k), g.height) - corner,
+                   .v = relief.at(g.low.x, z_at(k + 1), g.height) - corner,
+                   .texture = texture,
+                   .at = dvec2(g.low.x, z_at(k)) - g.middle,
+                   .coarseness = g.coarseness});
   }
 }
 
@@ -120,7 +125,7 @@ void add_kerb(Builder& builder, const dvec2& from, const dvec2& to) {
   const Relief& relief = builder.city.relief;
   const dvec3 a = relief.at(from.x, from.y), b = relief.at(to.x, to.y);
   if (builder.grain_at(0.5 * (a + b)) > grain_of_kerbs) return;
-  builder.sheet({.corner = a, .u = b - a, .v = dvec3(0, -kerb, 0), .paint = paint_kerb});
+  builder.sheet({.corner = a, .u = b - a, .v = dvec3(0, -kerb, 0), .texture = kerb_at});
 }
 
 /// The pavements, the yard and the kerbs of the block right of the street at x, from a crossing at z on.
@@ -128,19 +133,21 @@ void add_block(Builder& builder, double x, double z) {
   const dvec2 low(x + road, z + side_road), high(x + street_pitch - road, z + crossing_pitch - side_road);
   const dvec2 yard_low(x + front, z + side_front),
       yard_high(x + street_pitch - front, z + crossing_pitch - side_front);
-  const dvec2 zero(0.0);
   if (builder.grain_at(builder.city.relief.at(0.5 * (low.x + high.x), 0.5 * (low.y + high.y))) >
       grain_of_blocks) {
-    add_ground(builder, low, high, kerb, paint_block, {x, z});
+    add_ground(builder, block_at, {.low = low, .high = high, .height = kerb, .middle = {x, z}});
     return;
   }
-  add_ground(builder, low, {yard_low.x, high.y}, kerb, paint_pavement, zero);
-  add_ground(builder, {yard_high.x, low.y}, high, kerb, paint_pavement, zero);
-  add_ground(builder, {yard_low.x, low.y}, {yard_high.x, yard_low.y}, kerb, paint_pavement, zero);
-  add_ground(builder, {yard_low.x, yard_high.y}, {yard_high.x, high.y}, kerb, paint_pavement, zero);
+  add_ground(builder, pavement_at, {low, {yard_low.x, high.y}, kerb});
+  add_ground(builder, pavement_at, {{yard_high.x, low.y}, high, kerb});
+  add_ground(builder, pavement_at, {{yard_low.x, low.y}, {yard_high.x, yard_low.y}, kerb});
+  add_ground(builder, pavement_at, {{yard_low.x, yard_high.y}, {yard_high.x, high.y}, kerb});
   const double inner = row_depth - 1.0;
-  add_ground(builder, {yard_low.x + inner, yard_low.y}, {yard_high.x - inner, yard_high.y}, kerb, paint_yard,
-             zero, 2.0);
+  add_ground(builder, yard_at,
+             {.low = {yard_low.x + inner, yard_low.y},
+              .high = {yard_high.x - inner, yard_high.y},
+              .height = kerb,
+              .coarseness = 2.0});
   constexpr int pieces = 8;
   for (int k = 0; k < pieces; ++k) {
     const auto at = [&](int i) { return low + (high - low) * (static_cast<double>(i) / pieces); };
@@ -154,7 +161,7 @@ void add_block(Builder& builder, double x, double z) {
     const Frame frame{builder.city.relief.at(yard_low.x + row_depth, end, kerb), dmat3(1)};
     const double wide = yard_high.x - yard_low.x - 2.0 * row_depth;
     if (builder.grain_at(frame.at(0.5 * wide, 0, 0)) > grain_of_yard_walls) continue;
-    builder.box(frame, {0.0, -2.3, 0.0}, {wide, 0.5, 0.25}, {.paint = paint_yard_wall});
+    builder.box(frame, {0.0, -2.3, 0.0}, {wide, 0.5, 0.25}, {.texture = yard_wall_at});
   }
 }
 
@@ -165,15 +172,14 @@ void add_streets(Builder& builder) {
     const double x = street_pitch * i;
     for (int j = 0; j <= blocks_along; ++j) {
       const double z = first_crossing + crossing_pitch * j;
-      if (j < blocks_along) {
-        add_ground(builder, {x - road, z - side_road}, {x + road, z + crossing_pitch - side_road}, 0.0,
-                   paint_road, {x, 0.0});
-      } else {
-        add_ground(builder, {x - road, z - side_road}, {x + road, z + side_road}, 0.0, paint_road, {x, 0.0});
-      }
+      const double end = z + (j < blocks_along ? crossing_pitch - side_road : side_road);
+      add_ground(builder, road_at,
+                 {.low = {x - road, z - side_road}, .high = {x + road, end}, .middle = {x, 0.0}});
       if (i == streets_beside) continue;
-      add_ground(builder, {x + road, z - side_road}, {x + street_pitch - road, z + side_road}, 0.0,
-                 paint_side_road, {0.0, z});
+      add_ground(builder, side_road_at,
+                 {.low = {x + road, z - side_road},
+                  .high = {x + street_pitch - road, z + side_road},
+                  .middle = {0.0, z}});
       if (j < blocks_along) add_block(builder, x, z);
     }
   }
@@ -181,15 +187,21 @@ void add_streets(Builder& builder) {
   constexpr double around = 2700.0, rim = -0.1;
   const double start = first_crossing - side_road, end = last_crossing + side_road;
   const double city_x = streets_beside * street_pitch + road;
-  const dvec2 zero(0.0);
   for (const double side : {-1.0, 1.0}) {  // pavements of the outermost streets, then fields
     const double a = side * city_x, b = side * edge_x;
-    add_ground(builder, {std::min(a, b), start}, {std::max(a, b), end}, kerb, paint_pavement, zero, 2.0);
-    add_ground(builder, {side < 0.0 ? -around : edge_x, start}, {side < 0.0 ? -edge_x : around, end}, rim,
-               paint_fields, zero, 5.0);
+    add_ground(
+        builder, pavement_at,
+        {.low = {std::min(a, b), start}, .high = {std::max(a, b), end}, .height = kerb, .coarseness = 2.0});
+    add_ground(builder, fields_at,
+               {.low = {side < 0.0 ? -around : edge_x, start},
+                .high = {side < 0.0 ? -edge_x : around, end},
+                .height = rim,
+                .coarseness = 5.0});
   }
-  add_ground(builder, {-around, -around + 400.0}, {around, start}, rim, paint_fields, zero, 5.0);
-  add_ground(builder, {-around, end}, {around, around + 400.0}, rim, paint_fields, zero, 5.0);
+  add_ground(builder, fields_at,
+             {.low = {-around, -around + 400.0}, .high = {around, start}, .height = rim, .coarseness = 5.0});
+  add_ground(builder, fields_at,
+             {.low = {-around, end}, .high = {around, around + 400.0}, .height = rim, .coarseness = 5.0});
 }
 
 }  // namespace binosplat::demo::city

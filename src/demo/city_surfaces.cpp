@@ -49,14 +49,14 @@ double distance_to_heads(const City& city, const dvec3& p) {
 double margin(bool ends) { return ends ? margin_at_end : 0.5; }
 
 /// The mean material of a cell: of more points, the larger the cell is.
-Material mean_material(const City& city, const Surface& surface, const dvec2& middle, const dvec2& cell) {
-  const double size = std::max(cell.x, cell.y);
+Material mean_material(const Surface& surface, const dvec2& middle, const dvec2& extent) {
+  const double size = std::max(extent.x, extent.y);
   const int n = size < 0.05 ? 1 : size < 0.4 ? 2 : size < 2.0 ? 3 : 4;
   Material mean{.colour = dvec3(0.0)};
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i < n; ++i) {
-      const Material at = surface.paint(city, surface, middle.x + ((i + 0.5) / n - 0.5) * cell.x,
-                                        middle.y + ((j + 0.5) / n - 0.5) * cell.y);
+      const Material at = surface.texture(middle.x + ((i + 0.5) / n - 0.5) * extent.x,
+                                          middle.y + ((j + 0.5) / n - 0.5) * extent.y);
       mean.colour += at.colour / double(n * n);
       mean.gloss += at.gloss / (n * n);
       mean.glow += at.glow / (n * n);
@@ -83,7 +83,7 @@ void put(Model& model, std::size_t i, const dvec3& position, const glm::vec4& ro
   }
 }
 
-void fill_sheet(const City& city, const Light& light, const Surface& s, std::size_t first, Model& model) {
+void fill_sheet(const Light& light, const Surface& s, std::size_t first, Model& model) {
   const double length_u = glm::length(s.u), length_v = glm::length(s.v);
   const dvec3 u = s.u / length_u, v = s.v / length_v;
   const dvec3 normal = glm::normalize(glm::cross(u, v));
@@ -108,7 +108,7 @@ void fill_sheet(const City& city, const Light& light, const Surface& s, std::siz
       const double a = wide.first + (static_cast<double>(i) + shift_u) * wide.size;
       const double b = high.first + (static_cast<double>(j) + shift_v) * high.size;
       const dvec3 p = s.corner + a * u + b * v;
-      const Material mean = mean_material(city, s, {s.at.x + a, s.at.y + b}, {wide.size, high.size});
+      const Material mean = mean_material(s, {s.at.x + a, s.at.y + b}, {wide.size, high.size});
       const Light::Seen seen = mean.lit ? light.seen(p, normal, mean, false) : Light::Seen{mean.colour};
       put(model, at, p, rotation, scale, seen);
     }
@@ -126,11 +126,11 @@ dvec3 in_ball(Random& random) {
 }
 
 /// Leaves on the outside of lumps that overlap.
-void fill_ball(const City& city, const Light& light, const Surface& s, std::size_t first, Model& model) {
+void fill_ball(const Light& light, const Surface& s, std::size_t first, Model& model) {
   constexpr std::uint32_t lumps = 11;
   constexpr double lump_radius = 0.50;  // of the crown's
   std::array<dvec3, lumps> middles;
-  Random of_crown(std::uint64_t{s.subject} * 77 + 5);
+  Random of_crown(std::uint64_t{s.seed} * 77 + 5);
   for (std::uint32_t k = 0; k < lumps; ++k) {
     middles[k] = glm::normalize(in_ball(of_crown)) * (k == 0 ? 0.0 : 1.0 - lump_radius);
   }
@@ -138,7 +138,7 @@ void fill_ball(const City& city, const Light& light, const Surface& s, std::size
   const double area = ball_area * mean * mean;
   const double size = std::min(0.5 * mean, 0.62 * std::sqrt(area / s.count));
   for (std::uint32_t i = 0; i < s.count; ++i) {
-    Random random((std::uint64_t{s.subject} << 32) + i);
+    Random random((std::uint64_t{s.seed} << 32) + i);
     const dvec3 out = glm::normalize(in_ball(random));
     const double deep = std::max(random.uniform(), random.uniform()) * 0.35 + 0.65;
     // A few Gaussians alone are the whole crown.
@@ -147,7 +147,7 @@ void fill_ball(const City& city, const Light& light, const Surface& s, std::size
     const dvec3 p = s.corner + place * s.u;
     const dvec3 normal = glm::normalize(in_ball(random) + 0.6 * out);
     const dvec3 along = in_ball(random);
-    Material leaf = s.paint(city, s, glm::length(place), glm::dot(place, out));
+    Material leaf = s.texture(glm::length(place), glm::dot(place, out));
     leaf.colour *= 0.90 + 0.2 * random.uniform();
     const glm::vec4 rotation = quaternion(axes_from_normal(normal, along));
     const Light::Seen seen = light.seen(p, glm::normalize(out + place), leaf, true);
@@ -205,14 +205,13 @@ void Builder::ball(const Surface& surface) {
   surfaces.push_back(whole);
 }
 
-void Builder::rod(const dvec3& from, const dvec3& to, double radius, Paint paint, std::uint32_t subject) {
+void Builder::wire(const dvec3& from, const dvec3& to, double radius, const Texture& texture) {
   const dvec3 along = to - from;
   const dvec3 side = glm::normalize(dvec3(along.y, -along.x, 0.0)) * (2.0 * radius);
   Surface post{.corner = from - 0.5 * side,
                .u = side,
                .v = along,
-               .paint = paint,
-               .subject = subject,
+               .texture = texture,
                .borders = all_borders,
                .thickness = 0.6 * radius};
   const double grain = grain_at(from + 0.5 * along);
@@ -239,11 +238,11 @@ void Builder::box(const Frame& frame, const dvec3& low, const dvec3& high, const
   sheet(side);
 }
 
-void fill(const City& city, const Light& light, const Surface& surface, std::size_t first, Model& model) {
+void fill(const Light& light, const Surface& surface, std::size_t first, Model& model) {
   if (surface.ball) {
-    fill_ball(city, light, surface, first, model);
+    fill_ball(light, surface, first, model);
   } else {
-    fill_sheet(city, light, surface, first, model);
+    fill_sheet(light, surface, first, model);
   }
 }
 

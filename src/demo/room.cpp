@@ -1,6 +1,6 @@
 #include "demo/room.h"
 
-#include "demo/baked_light.h"
+#include "demo/room_light.h"
 #include "demo/room_parts.h"
 
 namespace binosplat {

@@ -160,13 +160,13 @@ void add_books(Stage& stage, int shelf, double y, double room) {
                     0.33 + 0.12 * std::cos(hue + 4.4));
     const dvec3 cover = dye * (0.65 + 0.65 * hash(book, shelf + 33));
     const double label = 0.15 + 0.5 * hash(book + 3, shelf);
-    stage.patch({x, y, z}, {0, -tall, 0}, {0, 0, thick}, {0.024, 0.020}, [&](double u, double) {
+    stage.sheet({x, y, z}, {0, -tall, 0}, {0, 0, thick}, {0.024, 0.020}, [&](double u, double) {
       const bool band = std::abs(u / tall - label) < 0.07 || std::abs(u / tall - 0.9) < 0.03;
       return Material{.colour = band ? mix(cover, {0.92, 0.82, 0.55}, 0.7) : cover, .gloss = 0.5};
     });
-    stage.patch({x, y - tall, z}, {0.18, 0, 0}, {0, 0, thick}, {0.05, 0.025},
+    stage.sheet({x, y - tall, z}, {0.18, 0, 0}, {0, 0, thick}, {0.05, 0.025},
                 Material{.colour = {0.88, 0.84, 0.74}});
-    stage.patch({x, y, z}, {0.10, 0, 0}, {0, -tall, 0}, {0.05, 0.05}, Material{.colour = cover});
+    stage.sheet({x, y, z}, {0.10, 0, 0}, {0, -tall, 0}, {0.05, 0.05}, Material{.colour = cover});
     z += thick + 0.003;
   }
 }
@@ -196,7 +196,7 @@ void add_bookshelf(Stage& stage) {
   };
   part({x0, top, z0 - board}, {x1, 0, z0});
   part({x0, top, z1}, {x1, 0, z1 + board});
-  stage.patch({x1 - 0.01, 0, z0}, {0, top, 0}, {0, 0, z1 - z0}, {0.08, 0.04}, plank, Border::overlaps);
+  stage.sheet({x1 - 0.01, 0, z0}, {0, top, 0}, {0, 0, z1 - z0}, {0.08, 0.04}, plank, Border::overlaps);
   stage.block(Shape::box, world, {x1 - 0.005, top, z0 - board}, {x1 + 0.04, 0, z1 + board});
   constexpr int shelves = 5;
   for (int shelf = 0; shelf <= shelves; ++shelf) {
@@ -268,7 +268,7 @@ void hang(Stage& stage, const Picture& picture) {
   const dvec3 &corner = picture.corner, &edge_u = picture.edge_u, &edge_v = picture.edge_v;
   const double w = glm::length(edge_u), h = glm::length(edge_v);
   const dvec3 u = edge_u / w, v = edge_v / h, out = glm::cross(u, v);
-  stage.patch(corner + 0.012 * out, edge_u, edge_v, Grain(picture.grain), [&](double a, double b) {
+  stage.sheet(corner + 0.012 * out, edge_u, edge_v, Grain(picture.grain), [&](double a, double b) {
     constexpr double margin = 0.045;
     const double x = (a - margin) / (w - 2.0 * margin), y = (b - margin) / (h - 2.0 * margin);
     const bool painted = x > 0.0 && x < 1.0 && y > 0.0 && y < 1.0;

@@ -62,7 +62,7 @@ void add_bricks(Stage& stage) {
   for (int j = 0; j < rows; ++j) {
     const dvec3 row = corner - course * j * down;
     const double shift = (j % 2) * 0.5 * brick;
-    stage.patch(row - joint * down, depth * away, joint * down, {0.13, joint},
+    stage.sheet(row - joint * down, depth * away, joint * down, {0.13, joint},
                 Material{.colour = {0.72, 0.67, 0.60}}, Border::overlaps);
     for (int i = -1; i <= static_cast<int>(depth / brick); ++i) {
       const double from = std::max(0.0, i * brick + shift),
@@ -72,14 +72,14 @@ void add_bricks(Stage& stage) {
       const dvec3 colour =
           mix(dvec3(0.52, 0.26, 0.19), dvec3(0.76, 0.47, 0.35), tone) * (0.92 + 0.16 * hash(j, i + 99));
       const dvec3 start = row - course * down + from * away;
-      stage.patch(
+      stage.sheet(
           start, (to - from) * away, (course - joint) * down, {0.055, 0.032},
           [&](double u, double v) {
             return Material{.colour =
                                 colour * (0.88 + 0.24 * fractal(40.0 * u + 9.0 * i, 40.0 * v + 7.0 * j))};
           },
           Border::overlaps);
-      stage.patch(start + (to - from) * away, joint * away, (course - joint) * down, {joint, course},
+      stage.sheet(start + (to - from) * away, joint * away, (course - joint) * down, {joint, course},
                   Material{.colour = {0.72, 0.67, 0.60}}, Border::overlaps);
     }
   }
@@ -116,14 +116,14 @@ void add_floor(Stage& stage) {
   for (int k = 0; k * plank < room_width; ++k) {
     const double x = room_low.x + k * plank, across = std::min(plank, room_high.x - x) - gap;
     const double joint = 2.0 * hash(k, 7);  // where one board ends and the next one starts
-    stage.patch(
+    stage.sheet(
         {x, 0, room_high.z}, -depth * away, across * right, {0.08, 0.036},
         [&](double u, double v) {
           const double seed = k * 10 + std::floor((u + joint) / 2.0);
           return Material{.colour = wood({0.60, 0.41, 0.25}, u, v, seed), .gloss = 3.5, .sharpness = 14};
         },
         Border::overlaps);
-    stage.patch({x + across, 0, room_high.z}, -depth * away, gap * right, {0.08, gap},
+    stage.sheet({x + across, 0, room_high.z}, -depth * away, gap * right, {0.08, gap},
                 Material{.colour = {0.22, 0.14, 0.09}}, Border::overlaps);
   }
 }
@@ -133,7 +133,7 @@ void add_rug(Stage& stage) {
   stage.group();
   stage.block(Solid::Shape::box, {rug_middle}, {-half.x, -0.009, -half.y}, {half.x, 0.02, half.y});
   const dvec3 corner = rug_middle + dvec3(-0.5 * rug_size.x, -0.012, 0.5 * rug_size.y);
-  stage.patch(corner, -rug_size.y * away, rug_size.x * right, Grain(0.023), [](double u, double v) {
+  stage.sheet(corner, -rug_size.y * away, rug_size.x * right, Grain(0.023), [](double u, double v) {
     const dvec3 colour = woven(v - 0.5 * rug_size.x, u - 0.5 * rug_size.y);
     return Material{.colour = colour * (0.9 + 0.2 * noise(70.0 * u, 70.0 * v))};
   });
@@ -154,22 +154,22 @@ void add_walls(Stage& stage) {
     const double x = room_low.x + u, y = -up;
     return x > window_low.x && x < window_high.x && y > window_low.y && y < window_high.y;
   };
-  stage.patch(
+  stage.sheet(
       back, room_width * right, -panelling * down, {0.028, 0.035},
       [&](double u, double up) { return in_window(u, up) ? hole : boarding(u, up); }, Border::overlaps);
-  stage.patch(
+  stage.sheet(
       back - panelling * down, room_width * right, (panelling - height) * down, Grain(0.028),
       [&](double u, double v) { return in_window(u, panelling + v) ? hole : wallpaper(u, panelling + v); },
       Border::overlaps);
   // Left: plaster above the same boards.
   const dvec3 left(room_low.x, 0, room_low.z);
-  stage.patch(left, depth * away, -panelling * down, {0.028, 0.040}, boarding, Border::overlaps);
-  stage.patch(
+  stage.sheet(left, depth * away, -panelling * down, {0.028, 0.040}, boarding, Border::overlaps);
+  stage.sheet(
       left - panelling * down, depth * away, (panelling - height) * down, Grain(0.075),
       [](double u, double v) { return plaster(u, panelling + v); }, Border::overlaps);
   add_bricks(stage);
   // Behind the default camera: plaster, with a door.
-  stage.patch(
+  stage.sheet(
       {room_low.x, room_low.y, room_low.z}, room_width * right, height * down, Grain(0.090),
       [](double u, double v) {
         const double up = height - v, x = std::abs(u - 3.6);
@@ -184,7 +184,7 @@ void add_walls(Stage& stage) {
 }
 
 void add_ceiling(Stage& stage) {
-  stage.patch({room_low.x, room_low.y, room_low.z}, depth * away, room_width * right, Grain(0.14),
+  stage.sheet({room_low.x, room_low.y, room_low.z}, depth * away, room_width * right, Grain(0.14),
               Material{.colour = {0.93, 0.92, 0.89}}, Border::overlaps);
   const Frame world;
   const auto stucco = Material{.colour = {0.94, 0.93, 0.90}};
@@ -221,7 +221,7 @@ void add_window(Stage& stage) {
   }
   for (const double y : {l.y, l.y + 0.52, h.y - 0.05}) bar({l.x, y, z + 0.005}, {h.x, y + 0.05, z + 0.045});
   // Panes: hardly there, but they mirror the lamp and the room.
-  stage.patch({l.x, h.y, z + 0.025}, (l.y - h.y) * down, (h.x - l.x) * right, Grain(0.09),
+  stage.sheet({l.x, h.y, z + 0.025}, (l.y - h.y) * down, (h.x - l.x) * right, Grain(0.09),
               Material{.colour = {0.75, 0.84, 0.86}, .opacity = 0.05, .gloss = 2.0, .sharpness = 12});
 }
 

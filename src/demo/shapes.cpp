@@ -10,11 +10,11 @@ namespace {
 
 /// Discs a cell apart overlap enough to close the surface when their standard deviation is this share of the
 /// cell: at an opacity of 0.97 the corner between four of them is covered by 99 %.
-constexpr double patch_overlap = 0.74;
-/// A patch's outermost discs lie this many cells inside its border: half transparent just there.
-constexpr double margin_at_border = 1.1 * patch_overlap;
+constexpr double room_overlap = 0.74;
+/// A sheet's outermost discs lie this many cells inside its border: half transparent just there.
+constexpr double margin_at_border = 1.1 * room_overlap;
 /// Thickness of a disc as a share of its smaller side.
-constexpr double patch_flatness = 0.08;
+constexpr double room_flatness = 0.08;
 
 /// A row of discs of about this grain.
 struct Row : Cells {
@@ -112,18 +112,18 @@ void Stage::disc(const dvec3& position, const dmat3& axes, const dvec3& scale, c
   if (material.opacity > 0.0) discs.push_back({position, axes, scale, material});
 }
 
-void Stage::patch(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
+void Stage::sheet(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
                   const Texture& texture, Border border) {
   const double length_u = glm::length(edge_u), length_v = glm::length(edge_v);
   const dvec3 u = edge_u / length_u, v = edge_v / length_v;
   const dmat3 axes = axes_from_normal(glm::normalize(glm::cross(u, v)), u);
   const double margin = border == Border::ends ? margin_at_border : 0.5;
   const Row row_u(length_u, grain.u, margin), row_v(length_v, grain.v, margin);
-  const double su = patch_overlap * row_u.size, sv = patch_overlap * row_v.size;
+  const double su = room_overlap * row_u.size, sv = room_overlap * row_v.size;
   for (int j = 0; j < row_v.count; ++j) {
     for (int i = 0; i < row_u.count; ++i) {
       const double a = row_u.first + i * row_u.size, b = row_v.first + j * row_v.size;
-      disc(corner + a * u + b * v, axes, {su, sv, patch_flatness * std::min(su, sv)}, texture(a, b));
+      disc(corner + a * u + b * v, axes, {su, sv, room_flatness * std::min(su, sv)}, texture(a, b));
     }
   }
 }
@@ -144,7 +144,7 @@ void Stage::box(const Frame& frame, const dvec3& low, const dvec3& high, Grain g
         corner += edge_v;
         edge_v = -edge_v;
       }
-      patch(frame.at(corner.x, corner.y, corner.z), frame.axes * edge_u, frame.axes * edge_v, grain, texture);
+      sheet(frame.at(corner.x, corner.y, corner.z), frame.axes * edge_u, frame.axes * edge_v, grain, texture);
     }
   }
 }
@@ -158,7 +158,7 @@ void Stage::solid_box(const Frame& frame, const dvec3& low, const dvec3& high, G
 void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, const Texture& texture) {
   const double mean = std::cbrt(radii.x * radii.y * radii.z);
   const int count = std::max(12, static_cast<int>(std::lround(4.0 * pi * mean * mean / (grain * grain))));
-  const double sigma = patch_overlap * std::sqrt(4.0 * pi / count);  // on the unit sphere
+  const double sigma = room_overlap * std::sqrt(4.0 * pi / count);  // on the unit sphere
   const double golden = pi * (3.0 - std::sqrt(5.0));
   for (int i = 0; i < count; ++i) {  // a Fibonacci spiral from pole to pole
     const double y = 1.0 - 2.0 * (i + 0.5) / count, ring = std::sqrt(1.0 - y * y);
@@ -172,7 +172,7 @@ void Stage::ellipsoid(const Frame& frame, const dvec3& radii, double grain, cons
       const dvec3 local = glm::transpose(frame.axes) * axes[k];
       scale[k] = sigma / glm::length(local / radii);
     }
-    scale.z = patch_flatness * std::min(scale.x, scale.y);
+    scale.z = room_flatness * std::min(scale.x, scale.y);
     // Half the disc's sagitta inwards, so that the silhouette keeps the radius.
     disc(frame.at(p.x * radii.x, p.y * radii.y, p.z * radii.z) - 0.5 * sigma * sigma * mean * normal, axes,
          scale, material);
@@ -210,7 +210,7 @@ double Stage::smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile
     const dvec2 along = glm::normalize(profile[k] - profile[k - 1]);
     const double round = 2.0 * pi * at.x;
     const int count = std::max(3, static_cast<int>(std::lround(round / grain)));
-    const double su = patch_overlap * round / count, sv = patch_overlap * row.size;
+    const double su = room_overlap * round / count, sv = room_overlap * row.size;
     for (int i = 0; i < count; ++i) {
       const double angle = 2.0 * pi * (i + 0.5 * (j % 2)) / count;
       const Material material = texture(angle, done + v);
@@ -218,7 +218,7 @@ double Stage::smooth_lathe(const Frame& frame, const std::vector<dvec2>& profile
       const dvec3 normal = frame.axes * (along.y * outwards - dvec3(0.0, along.x, 0.0));
       const dvec3 around = frame.axes * dvec3(-outwards.z, 0.0, outwards.x);
       const dvec3 p = frame.origin + frame.axes * (at.x * outwards + dvec3(0.0, at.y, 0.0));
-      disc(p, axes_from_normal(normal, around), {su, sv, patch_flatness * std::min(su, sv)}, material);
+      disc(p, axes_from_normal(normal, around), {su, sv, room_flatness * std::min(su, sv)}, material);
     }
   }
   return way.back();
@@ -237,9 +237,9 @@ void Stage::tube(const std::vector<dvec3>& path, double radius, double grain, co
       const double angle = 2.0 * pi * (k + 0.5 * static_cast<double>(i % 2)) / around;
       const Material material = texture(angle, way[i] + 0.5 * length);
       const dvec3 normal = std::cos(angle) * side + std::sin(angle) * up;
-      const double su = patch_overlap * length, sv = patch_overlap * 2.0 * pi * radius / around;
+      const double su = room_overlap * length, sv = room_overlap * 2.0 * pi * radius / around;
       disc(0.5 * (path[i] + path[i + 1]) + 0.9 * radius * normal, axes_from_normal(normal, forward),
-           {su, sv, patch_flatness * std::min(su, sv)}, material);
+           {su, sv, room_flatness * std::min(su, sv)}, material);
     }
   }
 }
@@ -262,7 +262,7 @@ void Stage::wire(const std::vector<dvec3>& path, double radius, double grain, co
     const dvec3 normal = glm::normalize(upwards - forward * glm::dot(forward, upwards));
     const double thin = 0.6 * radius;
     disc(path[k - 1] + (at - start) * forward, axes_from_normal(normal, forward),
-         {patch_overlap * length / count, thin, thin}, material);
+         {room_overlap * length / count, thin, thin}, material);
   }
 }
 

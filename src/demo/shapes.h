@@ -1,17 +1,17 @@
 #pragma once
 // The shapes that demo:room and demo:city are made of: what a surface is made of (Material), where it lies
 // (Frame), how it is divided into Gaussians (Cells), and the sheets, boxes, balls, lathed and bent surfaces
-// of the room, whose grain is given (Stage). The city's sheets, boxes, balls and rods, whose grain grows with
-// the distance, are in demo/city_parts.h.
+// of the room, whose grain is given (Stage). The city's sheets, boxes, balls and wires, whose grain grows
+// with the distance, are in demo/city_parts.h.
 //
 // Deterministic: no library's random distributions, and no two random numbers in one expression, whose order
 // compilers choose freely. World axes are COLMAP's: y points down, so heights above the floor are negative y.
 // Lengths are metres.
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -53,10 +53,9 @@ struct Material {
 /// What a surface shows at (u, v), in metres from its corner, or one material throughout.
 class Texture {
  public:
-  Texture(const Material& material) : at_([material](double, double) { return material; }) {}
-  template <typename Function>
-  requires std::is_invocable_r_v<Material, Function, double, double> Texture(Function at)
-      : at_(std::move(at)) {}
+  Texture(const Material& material = {}) : at_([material](double, double) { return material; }) {}
+  template <std::invocable<double, double> Function>
+  Texture(Function at) : at_(std::move(at)) {}
   Material operator()(double u, double v) const { return at_(u, v); }
 
  private:
@@ -122,7 +121,7 @@ struct Grain {
   Grain(double along_u, double along_v) : u(along_u), v(along_v) {}
 };
 
-/// Whether a patch ends at its border (silhouettes) or reaches over it (walls that must close at their
+/// Whether a sheet ends at its border (silhouettes) or reaches over it (walls that must close at their
 /// corners).
 enum class Border { ends, overlaps };
 
@@ -132,7 +131,7 @@ class Stage {
   explicit Stage(std::uint64_t seed) : random(seed) {}
 
   /// A parallelogram; its front is where cross(edge_u, edge_v) points.
-  void patch(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
+  void sheet(const dvec3& corner, const dvec3& edge_u, const dvec3& edge_v, Grain grain,
              const Texture& texture, Border border = Border::ends);
 
   /// The faces of a box from `low` to `high` in a frame; a texture's u runs along the longer side of each

@@ -96,7 +96,7 @@ TEST(GroundOfScenes, StandingInTheGarden) {
   ASSERT_TRUE(capture.around);
   // Where the cameras stood: around the table, above the lawn and below the trees.
   const glm::dvec3 table = capture_of(cameras)->around->middle;
-  const Camera camera = frame_model(model, 640, 360, 60.0, capture.up, capture.around);
+  const Camera camera = frame_model(model, 640, 360, 60.0, capture);
   EXPECT_LT(glm::distance(camera.position, table), 5.0);
   EXPECT_GT(glm::dot(camera.rotation[2], glm::normalize(table - camera.position)), 0.85);
 }

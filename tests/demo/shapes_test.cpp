@@ -58,12 +58,12 @@ TEST(Stage, SurfacesFaceOutwards) {
   EXPECT_FALSE(faces_outwards(can, frame.origin)) << "a disc turned over goes unnoticed";
 }
 
-TEST(Stage, PatchesStayWithinTheirBorder) {
+TEST(Stage, SheetsStayWithinTheirBorder) {
   Stage stage(1);
-  stage.patch({0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0.1, 0.05}, grey);
-  stage.patch({0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0.1, 0.05}, [](double u, double v) {
+  stage.sheet({0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0.1, 0.05}, grey);
+  stage.sheet({0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}, {0.1, 0.05}, [](double u, double v) {
     EXPECT_TRUE(u > 0.0 && u < 1.0 && v > 0.0 && v < 0.5);
-    return std::nullopt;
+    return Material{.opacity = 0.0};
   });
   EXPECT_GT(stage.discs.size(), 50u);
   for (const Disc& disc : stage.discs) {

@@ -1,4 +1,4 @@
-#include "demo/baked_light.h"
+#include "demo/room_light.h"
 
 #include <algorithm>
 #include <array>

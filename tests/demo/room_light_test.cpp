@@ -1,11 +1,11 @@
-#include "demo/baked_light.h"
+#include "demo/room_light.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-namespace binosplat::demo {
+namespace binosplat::demo::room {
 namespace {
 
 /// The brightness (green) of Gaussian i seen along `direction`, as a model of degree 3 defines it.
@@ -98,4 +98,4 @@ TEST(BakedLight, OutsideNothingIsLit) {
 }
 
 }  // namespace
-}  // namespace binosplat::demo
+}  // namespace binosplat::demo::room
