@@ -268,10 +268,10 @@ CameraList made_up_cameras(const SceneOptions& scene, const CameraOptions& camer
   } else if (camera.orbit) {
     list.source = "--orbit";
     log_info("going around {}: {}", scene.name, how);
-    list.cameras = orbit(cored, *camera.orbit, made_up_width, made_up_height, fov, up, known.around);
+    list.cameras = orbit(cored, *camera.orbit, made_up_width, made_up_height, fov, {up, known.around});
   } else {
     log_info("no cameras beside {}: {}", scene.name, how);
-    list.cameras = {frame_model(cored, made_up_width, made_up_height, fov, up, known.around)};
+    list.cameras = {frame_model(cored, made_up_width, made_up_height, fov, {up, known.around})};
   }
   list.near_plane = near_for(cored);
   return list;

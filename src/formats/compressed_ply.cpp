@@ -189,9 +189,9 @@ class CompressedPlyReader {
     const std::byte* bytes = bytes_.data() + harmonics_.at + i * harmonics_.bytes;
     for (std::size_t k = 0; k < harmonics_.offsets.size(); ++k)
       sh[3 + k] = harmonic_of(bytes[harmonics_.offsets[k]]);
-    return place(model, i, between(chunk, 0, fractions(word(0))),
-                 glm::exp(between(chunk, 6, fractions(word(2)))), rotation_of(word(1)),
-                 static_cast<float>(bit_field(rgba, 0, 8) / 255.0), sh.data());
+    return place(model, i,
+                 {between(chunk, 0, fractions(word(0))), glm::exp(between(chunk, 6, fractions(word(2)))),
+                  rotation_of(word(1)), static_cast<float>(bit_field(rgba, 0, 8) / 255.0), sh.data()});
   }
 
   const std::filesystem::path& path_;

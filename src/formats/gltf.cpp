@@ -100,6 +100,35 @@ void append(Model& all, Model&& part) {
                 all.name);
 }
 
+/// An extension that is not known, which may have numbers of its own in place of attributes.
+std::string unknown_in(const JsonValue& holder) {
+  if (!holder.has("extensions")) return {};
+  for (const auto& [name, value] : holder.at("extensions").value().items())
+    if (!is_known(name)) return name;
+  return {};
+}
+
+std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonValue& splatting) {
+  for (const char* name : packed_names) {
+    for (const JsonValue& holder : {splatting, primitive}) {
+      if (holder.has("extensions") && holder.at("extensions").has(name))
+        return holder.at("extensions").at(name).at("bufferView").whole(gltf_number_most);
+    }
+  }
+  return std::nullopt;
+}
+
+/// Drafts of the extension have logarithms of the scales, which then are not all above 0, as scales must
+/// be.
+void undo_logarithms(const std::filesystem::path& path, std::vector<float>& scales) {
+  constexpr std::ptrdiff_t few = 100;  // one in so many may be damaged
+  const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
+  if (below <= std::ssize(scales) / few) return;
+  log_warning("{}: its scales are taken for logarithms, as they were in drafts: {} are below 0",
+              path.string(), below);
+  for (float& s : scales) s = std::exp(s);
+}
+
 class GltfReader {
  public:
   GltfReader(const std::filesystem::path& path, std::span<const std::byte> bytes)
@@ -223,24 +252,6 @@ class GltfReader {
     }
   }
 
-  /// An extension that is not known, which may have numbers of its own in place of attributes.
-  static std::string unknown_in(const JsonValue& holder) {
-    if (!holder.has("extensions")) return {};
-    for (const auto& [name, value] : holder.at("extensions").value().items())
-      if (!is_known(name)) return name;
-    return {};
-  }
-
-  std::optional<std::size_t> packed_view(const JsonValue& primitive, const JsonValue& splatting) const {
-    for (const char* name : packed_names) {
-      for (const JsonValue& holder : {splatting, primitive}) {
-        if (holder.has("extensions") && holder.at("extensions").has(name))
-          return holder.at("extensions").at(name).at("bufferView").whole(gltf_number_most);
-      }
-    }
-    return std::nullopt;
-  }
-
   std::vector<float> attribute(const JsonValue& attributes, const std::string& name, std::size_t components,
                                std::size_t count) {
     const std::size_t accessor = attributes.at(name).whole(gltf_number_most);
@@ -249,17 +260,6 @@ class GltfReader {
           "its numbers are in the extension '{}', which is not known; export it without", unknown_);
     }
     return document_.read(accessor, components, count);
-  }
-
-  /// Drafts of the extension have logarithms of the scales, which then are not all above 0, as scales must
-  /// be.
-  void undo_logarithms(std::vector<float>& scales) const {
-    constexpr std::ptrdiff_t few = 100;  // one in so many may be damaged
-    const auto below = std::ranges::count_if(scales, [](float s) { return s < 0.0f; });
-    if (below <= std::ssize(scales) / few) return;
-    log_warning("{}: its scales are taken for logarithms, as they were in drafts: {} are below 0",
-                path_.string(), below);
-    for (float& s : scales) s = std::exp(s);
   }
 
   Model read_points(const JsonValue& attributes) {
@@ -272,7 +272,7 @@ class GltfReader {
     const std::vector<float> positions = attribute(attributes, "POSITION", 3, n);
     const std::vector<float> rotations = attribute(attributes, name("ROTATION"), 4, n);
     std::vector<float> scales = attribute(attributes, name("SCALE"), 3, n);
-    undo_logarithms(scales);
+    undo_logarithms(path_, scales);
     std::vector<float> opacities;
     std::vector<std::vector<float>> harmonics;
     Model model;
@@ -305,8 +305,12 @@ class GltfReader {
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t k = 0; k < harmonics.size(); ++k) std::copy_n(&harmonics[k][3 * i], 3, &sh[3 * k]);
       const float* q = &rotations[4 * i];
-      kept[i] = place(model, i, glm::make_vec3(&positions[3 * i]), glm::make_vec3(&scales[3 * i]),
-                      {q[3], q[0], q[1], q[2]}, opacities[i], sh.data());
+      kept[i] = place(model, i,
+                      {glm::make_vec3(&positions[3 * i]),
+                       glm::make_vec3(&scales[3 * i]),
+                       {q[3], q[0], q[1], q[2]},
+                       opacities[i],
+                       sh.data()});
     }
     keep_only(model, kept);
     return model;

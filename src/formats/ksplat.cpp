@@ -201,7 +201,7 @@ class KsplatReader {
       }
       first += width;
     }
-    return place(model, slot, position, scale, rotation, opacity, sh.data());
+    return place(model, slot, {position, scale, rotation, opacity, sh.data()});
   }
 
   const std::string& source_;

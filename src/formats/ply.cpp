@@ -22,6 +22,90 @@ namespace {
 
 constexpr std::size_t progress_block = 65536;  // Gaussians between two reports of progress
 
+/// The lines of a text file's elements, one each.
+class PlyText {
+ public:
+  PlyText(const std::filesystem::path& path, std::string_view text, const PlyHeader& header)
+      : path_(path), text_(text), at_(header.data), line_(header.lines) {}
+
+  /// Bytes that are not read yet.
+  std::size_t left() const { return text_.size() - at_; }
+
+  /// The next line that is not blank.
+  std::string_view next_line(const PlyElement& element, std::uint64_t row) {
+    while (at_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+      const std::string_view line = text_.substr(at_, end - at_);
+      at_ = std::min(end + 1, text_.size());
+      ++line_;
+      if (line.find_first_not_of(blanks) != std::string_view::npos) return line;
+    }
+    fail("{} is cut short: it ends at line {} with {} of {} lines of element '{}'; fetch or export it again",
+         path_.string(), line_, row, element.count, element.name);
+  }
+
+  /// One value a property; of lists the length.
+  void parse_row(const PlyElement& element, std::uint64_t row, std::string_view line,
+                 std::vector<double>& values) {
+    values.clear();
+    std::string_view rest = line;
+    for (const PlyProperty& property : element.properties) {
+      const double value = parse_value(element, row, property, rest);
+      values.push_back(value);
+      if (property.count_type) {
+        if (value < 0 || value != std::floor(value)) {
+          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), line_,
+               property.name, element.name, row, value);
+        }
+        for (double k = 0; k < value; ++k) parse_value(element, row, property, rest);
+      }
+    }
+    if (rest.find_first_not_of(blanks) != std::string_view::npos) {
+      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(), line_,
+           element.name, row, element.properties.size());
+    }
+  }
+
+  /// A number of a Gaussian, as text has it.
+  float value_of(const PlyLayout& layout, const PlyLayout::Source& source,
+                 const std::vector<double>& values) const {
+    const double value = values[source.property];
+    if (!source.as_bits) return static_cast<float>(value);
+    if (value >= 0.0 && value <= 65535.0 && value == std::floor(value))
+      return half_of(static_cast<std::uint16_t>(value));
+    fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535",
+         path_.string(), line_, layout.vertices->properties[source.property].name, value);
+  }
+
+ private:
+  double parse_value(const PlyElement& element, std::uint64_t row, const PlyProperty& property,
+                     std::string_view& rest) const {
+    const std::size_t begin = std::min(rest.find_first_not_of(blanks), rest.size());
+    const std::size_t end = std::min(rest.find_first_of(blanks, begin), rest.size());
+    std::string_view word = rest.substr(begin, end - begin);
+    rest.remove_prefix(end);
+    if (word.empty()) {
+      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), line_, element.name, row,
+           property.name);
+    }
+    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+    double value = 0;
+    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || stop != digits.data() + digits.size()) {
+      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), line_,
+           quoted(word), property.name, element.name, row);
+    }
+    return value;
+  }
+
+  static constexpr std::string_view blanks = " \t\r";
+
+  const std::filesystem::path& path_;
+  std::string_view text_;
+  std::size_t at_;    // byte where the next line begins
+  std::size_t line_;  // lines read so far
+};
+
 /// Walks the elements of a ply file in order and decodes the Gaussians among them.
 class PlyReader {
  public:
@@ -32,7 +116,7 @@ class PlyReader {
         layout_(find_layout(path, header_)),
         swapped_(is_swapped(header_.format)),
         at_(header_.data),
-        line_(header_.lines),
+        text_(path, as_text(bytes), header),
         progress_("reading " + path.filename().string(), layout_.vertices->count) {}
 
   Model read() {
@@ -163,96 +247,29 @@ class PlyReader {
     if (element.properties.empty()) return;
     // A value takes a digit and a blank at least.
     const std::size_t shortest = 2 * element.properties.size();
-    const std::size_t left = bytes_.size() - at_ + 1;
+    const std::size_t left = text_.left() + 1;
     if (element.count > left / shortest) fail_cut(element, left / shortest);
     if (gaussians) make_room();
     std::vector<double> values;
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      const std::string_view line = next_line(element, i);
+      const std::string_view line = text_.next_line(element, i);
       if (!gaussians) continue;
-      parse_row(element, i, line, values);
+      text_.parse_row(element, i, line, values);
       RawGaussian raw;
-      for (std::size_t k = 0; k < layout_.sources.size(); ++k) raw[k] = value_of(layout_.sources[k], values);
+      for (std::size_t k = 0; k < layout_.sources.size(); ++k)
+        raw[k] = text_.value_of(layout_, layout_.sources[k], values);
       keep(i, raw);
       if (i % 4096 == 0) progress_.update(i);
     }
   }
-
-  /// The next line that is not blank.
-  std::string_view next_line(const PlyElement& element, std::uint64_t row) {
-    const std::string_view text = as_text(bytes_);
-    while (at_ < text.size()) {
-      const std::size_t end = std::min(text.find('\n', at_), text.size());
-      const std::string_view line = text.substr(at_, end - at_);
-      at_ = std::min(end + 1, text.size());
-      ++line_;
-      if (line.find_first_not_of(blanks) != std::string_view::npos) return line;
-    }
-    fail("{} is cut short: it ends at line {} with {} of {} lines of element '{}'; fetch or export it again",
-         path_.string(), line_, row, element.count, element.name);
-  }
-
-  /// One value a property; of lists the length.
-  void parse_row(const PlyElement& element, std::uint64_t row, std::string_view line,
-                 std::vector<double>& values) {
-    values.clear();
-    std::string_view rest = line;
-    for (const PlyProperty& property : element.properties) {
-      const double value = parse_value(element, row, property, rest);
-      values.push_back(value);
-      if (property.count_type) {
-        if (value < 0 || value != std::floor(value)) {
-          fail("{}, line {}: list '{}' of element '{}' {} has length {}", path_.string(), line_,
-               property.name, element.name, row, value);
-        }
-        for (double k = 0; k < value; ++k) parse_value(element, row, property, rest);
-      }
-    }
-    if (rest.find_first_not_of(blanks) != std::string_view::npos) {
-      fail("{}, line {}: element '{}' {} has more values than its {} properties", path_.string(), line_,
-           element.name, row, element.properties.size());
-    }
-  }
-
-  /// A number of a Gaussian, as text has it.
-  float value_of(const PlyLayout::Source& source, const std::vector<double>& values) const {
-    const double value = values[source.property];
-    if (!source.as_bits) return static_cast<float>(value);
-    if (value >= 0.0 && value <= 65535.0 && value == std::floor(value))
-      return half_of(static_cast<std::uint16_t>(value));
-    fail("{}, line {}: property '{}' of type ushort is {}; expected the bits of a half, 0 to 65535",
-         path_.string(), line_, layout_.vertices->properties[source.property].name, value);
-  }
-
-  double parse_value(const PlyElement& element, std::uint64_t row, const PlyProperty& property,
-                     std::string_view& rest) const {
-    const std::size_t begin = std::min(rest.find_first_not_of(blanks), rest.size());
-    const std::size_t end = std::min(rest.find_first_of(blanks, begin), rest.size());
-    std::string_view word = rest.substr(begin, end - begin);
-    rest.remove_prefix(end);
-    if (word.empty()) {
-      fail("{}, line {}: element '{}' {} ends before property '{}'", path_.string(), line_, element.name, row,
-           property.name);
-    }
-    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
-    double value = 0;
-    const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || stop != digits.data() + digits.size()) {
-      fail("{}, line {}: {} is no number (property '{}' of element '{}' {})", path_.string(), line_,
-           quoted(word), property.name, element.name, row);
-    }
-    return value;
-  }
-
-  static constexpr std::string_view blanks = " \t\r";
 
   const std::filesystem::path& path_;
   std::span<const std::byte> bytes_;
   const PlyHeader& header_;
   PlyLayout layout_;
   bool swapped_;
-  std::size_t at_;    // byte where the next element begins
-  std::size_t line_;  // of text, lines read so far
+  std::size_t at_;  // byte where the next element begins
+  PlyText text_;
   Progress progress_;
   Model model_;
   std::vector<std::uint8_t> kept_;

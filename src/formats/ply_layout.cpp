@@ -130,8 +130,9 @@ bool decode(const PlyLayout& layout, Model& model, std::size_t i, const RawGauss
   if (layout.rgb) {
     for (int c = 0; c < 3; ++c) sh[c] = static_cast<float>((sh[c] / 255.0 - 0.5) / sh_c0);
   }
-  const bool good = decode_raw(model, i, position, glm::vec3(raw[3], raw[4], raw[5]),
-                               glm::vec4(raw[6], raw[7], raw[8], raw[9]), raw[10], sh.data());
+  const bool good = decode_raw(model, i,
+                               {position, glm::vec3(raw[3], raw[4], raw[5]),
+                                glm::vec4(raw[6], raw[7], raw[8], raw[9]), raw[10], sh.data()});
   if (!layout.filter_3d) return good;
 
   // Mip-Splatting convolves the Gaussian with one of standard deviation f and keeps its mass.

@@ -212,7 +212,7 @@ bool SogSource::decode_one(const Textures& textures, std::size_t i, Model& model
       for (std::size_t c = 0; c < 3; ++c) sh[3 + 3 * k + c] = sh_[rgb[c]];
     }
   }
-  return place(model, slot, position, scale, rotation, opacity_[texel(sh0)[3]], sh.data());
+  return place(model, slot, {position, scale, rotation, opacity_[texel(sh0)[3]], sh.data()});
 }
 
 void SogSource::decode(Model& model, std::span<const Range> ranges, std::vector<std::uint8_t>& kept,

@@ -39,7 +39,7 @@ class SpzDecoder {
     for (std::size_t k = 0; k < kept; ++k)
       sh[3 + k] = static_cast<float>(byte(harmonics_, sizes_.harmonics * i + k) - 128) / 128.0f;
     const float opacity = static_cast<float>(byte(opacities_, i) / 255.0);
-    return place(model, i, position(i), scale, rotation(i), opacity, sh.data());
+    return place(model, i, {position(i), scale, rotation(i), opacity, sh.data()});
   }
 
  private:

@@ -164,7 +164,7 @@ void add_camera(py::module_& module) {
         check_fov(fov);
         const glm::dvec3 upwards = vector_of("up", up);
         const Unlocked unlocked;
-        return frame_model(*model, width, height, fov, upwards);
+        return frame_model(*model, width, height, fov, {upwards});
       },
       py::arg("model").none(false), py::arg("width"), py::arg("height"), py::kw_only(),
       py::arg("up") = up_in_colmap, py::arg("fov") = default_fov_degrees,

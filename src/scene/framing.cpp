@@ -176,7 +176,8 @@ Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
 }
 
 std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int height, double fov_degrees,
-                          const glm::dvec3& up, const std::optional<Capture::Around>& around) {
+                          const Capture& capture) {
+  const auto& [up, around] = capture;
   const Ring ring(cored, width, height, fov_degrees, up, around);
   const glm::dmat3 world = world_from_axes(cored.model.axes);
   const double start = around ? ring.turn_to(around->first) : clearest_on(cored.model, ring).turn;
@@ -189,9 +190,9 @@ std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int hei
   return cameras;
 }
 
-Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees, const glm::dvec3& up,
-                   const std::optional<Capture::Around>& around) {
-  Camera camera = orbit(cored, 1, width, height, fov_degrees, up, around)[0];
+Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees,
+                   const Capture& capture) {
+  Camera camera = orbit(cored, 1, width, height, fov_degrees, capture)[0];
   camera.name = "framed";
   return camera;
 }

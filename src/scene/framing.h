@@ -21,7 +21,7 @@ constexpr double default_fov_degrees = 60.0;
 
 /// How a scene was captured: what goes for cameras that are made up where others are known. World units.
 struct Capture {
-  glm::dvec3 up;  // the mean of theirs, made level across as far as they are
+  glm::dvec3 up = default_up;  // the mean of theirs, made level across as far as they are
   /// What they stand around, nearest to all their axes, and how far from it and how high above it they are
   /// in the median; nothing where their axes do not meet before them.
   struct Around {
@@ -46,13 +46,12 @@ Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes);
 /// the picture, and from the side where the least stands in the way. A few far outliers change nothing.
 /// Or, where there is something `around` which to look, from there. Throws Error if the model is empty.
 Camera frame_model(const CoredModel& cored, int width, int height, double fov_degrees = default_fov_degrees,
-                   const glm::dvec3& up = default_up, const std::optional<Capture::Around>& around = {});
+                   const Capture& capture = {});
 
 /// `count` cameras on a circle around the same part, called orbit_000 and so on; the first is frame_model's.
 /// Or on the circle `around` which the scene was captured, from its first camera on.
 std::vector<Camera> orbit(const CoredModel& cored, int count, int width, int height,
-                          double fov_degrees = default_fov_degrees, const glm::dvec3& up = default_up,
-                          const std::optional<Capture::Around>& around = {});
+                          double fov_degrees = default_fov_degrees, const Capture& capture = {});
 
 /// near_default, or less for a model so small that near_default would cut into it when it is framed.
 double near_for(const CoredModel& cored);

@@ -29,15 +29,16 @@ void Model::resize(std::size_t n) {
   sh.resize(n * 3 * static_cast<std::size_t>(sh_count(degree)));
 }
 
-bool decode_raw(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& log_scale,
-                const glm::vec4& rotation, float opacity_logit, const float* sh) {
-  const glm::vec3 scale(std::exp(log_scale.x), std::exp(log_scale.y), std::exp(log_scale.z));
-  return place(model, i, position, scale, rotation, 1.0f / (1.0f + std::exp(-opacity_logit)), sh);
+bool decode_raw(Model& model, std::size_t i, const GaussianValues& raw) {
+  GaussianValues values = raw;
+  values.scale = {std::exp(raw.scale.x), std::exp(raw.scale.y), std::exp(raw.scale.z)};
+  values.opacity = 1.0f / (1.0f + std::exp(-raw.opacity));
+  return place(model, i, values);
 }
 
-bool place(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& scale,
-           const glm::vec4& rotation, float opacity, const float* sh) {
-  const std::size_t values = 3 * static_cast<std::size_t>(sh_count(model.degree));
+bool place(Model& model, std::size_t i, const GaussianValues& values) {
+  const auto& [position, scale, rotation, opacity, sh] = values;
+  const std::size_t count = 3 * static_cast<std::size_t>(sh_count(model.degree));
   // The squares of an fp32 quaternion can overflow fp32.
   const glm::dvec4 q(rotation);
   const double square = glm::dot(q, q), norm = std::sqrt(square);
@@ -47,20 +48,10 @@ bool place(Model& model, std::size_t i, const glm::vec3& position, const glm::ve
   model.scale[i] = scale;
   model.rotation[i] = unit ? rotation : glm::vec4(q / norm);
   model.opacity[i] = opacity;
-  std::copy(sh, sh + values, &model.sh[i * values]);
+  std::copy(sh, sh + count, &model.sh[i * count]);
   return finite(position) && finite(scale) && glm::all(glm::greaterThanEqual(scale, glm::vec3(0.0f))) &&
          opacity >= 0.0f && opacity <= 1.0f && std::isfinite(norm) && norm > 0.0 &&
-         std::all_of(sh, sh + values, [](float v) { return std::isfinite(v); });
-}
-
-bool append_raw(Model& model, const glm::vec3& position, const glm::vec3& log_scale,
-                const glm::vec4& rotation, float opacity_logit, const float* sh) {
-  const std::size_t i = model.count();
-  model.resize(i + 1);
-  if (decode_raw(model, i, position, log_scale, rotation, opacity_logit, sh)) return true;
-  model.resize(i);
-  ++model.left_out;
-  return false;
+         std::all_of(sh, sh + count, [](float v) { return std::isfinite(v); });
 }
 
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept) {

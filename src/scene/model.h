@@ -61,21 +61,23 @@ struct Model {
   void resize(std::size_t n);
 };
 
-/// Decodes one Gaussian from the raw numbers that trainers store (log-scales, opacity logit, quaternion w x y
-/// z of any length) and appends it; leaves it out, and counts it, if any decoded value is not finite or the
-/// quaternion is zero. `sh` holds 3 * sh_count(model.degree) values in the model's order. Returns whether it
-/// was kept.
-bool append_raw(Model& model, const glm::vec3& position, const glm::vec3& log_scale,
-                const glm::vec4& rotation, float opacity_logit, const float* sh);
+/// What a file says of one Gaussian.
+struct GaussianValues {
+  glm::vec3 position;
+  glm::vec3 scale;     // standard deviations, or their logarithms
+  glm::vec4 rotation;  // quaternion w x y z of any length
+  float opacity;       // 0 to 1, or its logit
+  const float* sh;     // 3 * sh_count(model.degree) values in the model's order
+};
 
-/// The same for readers that know the count and decode on several cores: resize(count), decode_raw for every
-/// slot `i` (it returns whether the Gaussian may be kept), then keep_only, which closes the gaps and counts
-/// them as left out. `place` is for formats that store scales and opacities as they are drawn; a scale below
-/// 0 or an opacity outside 0 to 1 is left out, too.
-bool decode_raw(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& log_scale,
-                const glm::vec4& rotation, float opacity_logit, const float* sh);
-bool place(Model& model, std::size_t i, const glm::vec3& position, const glm::vec3& scale,
-           const glm::vec4& rotation, float opacity, const float* sh);
+/// For readers that know the count and decode on several cores: resize(count), then for every slot `i` either
+/// decode_raw, where files hold what trainers store (logarithms and logits), or place, where they hold scales
+/// and opacities as they are drawn; then keep_only. Both return whether the Gaussian may be kept: not if a
+/// decoded value is not finite, the quaternion is zero, a scale is below 0 or the opacity outside 0 to 1.
+bool decode_raw(Model& model, std::size_t i, const GaussianValues& raw);
+bool place(Model& model, std::size_t i, const GaussianValues& values);
+
+/// Closes the gaps of those that are not kept (0), and counts them as left out.
 void keep_only(Model& model, const std::vector<std::uint8_t>& kept);
 
 /// Box around the middle of the model, robust against far outliers: the 2nd to 98th percentile of positions

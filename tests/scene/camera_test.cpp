@@ -68,11 +68,11 @@ TEST(Camera, ViewHoldsTheEyeAndNear) {
 TEST(Model, DecodesRawValues) {
   Model model;
   const float sh[3] = {1, 2, 3};
-  ASSERT_TRUE(append_raw(model, {1, 2, 3}, {0, std::log(2.0f), -INFINITY}, {2, 0, 0, 0}, 0.0f, sh));
+  ASSERT_TRUE(test::append_raw(model, {{1, 2, 3}, {0, std::log(2.0f), -INFINITY}, {2, 0, 0, 0}, 0.0f, sh}));
   EXPECT_EQ(model.scale[0], glm::vec3(1, 2, 0));
   EXPECT_EQ(model.rotation[0], glm::vec4(1, 0, 0, 0));
   EXPECT_EQ(model.opacity[0], 0.5f);
-  ASSERT_TRUE(append_raw(model, {1, 2, 3}, {0, 0, 0}, {0, 0, 3e30f, 4e30f}, INFINITY, sh));
+  ASSERT_TRUE(test::append_raw(model, {{1, 2, 3}, {0, 0, 0}, {0, 0, 3e30f, 4e30f}, INFINITY, sh}));
   EXPECT_LT(glm::length(model.rotation[1] - glm::vec4(0, 0, 0.6f, 0.8f)), 1e-6f)
       << "its squares overflow fp32";
   EXPECT_EQ(model.opacity[1], 1.0f);
@@ -83,15 +83,15 @@ TEST(Model, LeavesOutWhatIsNotFinite) {
   Model model;
   const float sh[3] = {1, 2, 3}, bad_sh[3] = {1, NAN, 3};
   const glm::vec4 q(1, 0, 0, 0);
-  EXPECT_FALSE(append_raw(model, {NAN, 0, 0}, {0, 0, 0}, q, 0, sh));
-  EXPECT_FALSE(append_raw(model, {0, 0, 0}, {1000, 0, 0}, q, 0, sh));
-  EXPECT_FALSE(append_raw(model, {0, 0, 0}, {0, 0, 0}, {0, 0, 0, 0}, 0, sh));
-  EXPECT_FALSE(append_raw(model, {0, 0, 0}, {0, 0, 0}, {INFINITY, 0, 0, 0}, 0, sh));
-  EXPECT_FALSE(append_raw(model, {0, 0, 0}, {0, 0, 0}, q, NAN, sh));
-  EXPECT_FALSE(append_raw(model, {0, 0, 0}, {0, 0, 0}, q, 0, bad_sh));
+  EXPECT_FALSE(test::append_raw(model, {{NAN, 0, 0}, {0, 0, 0}, q, 0, sh}));
+  EXPECT_FALSE(test::append_raw(model, {{0, 0, 0}, {1000, 0, 0}, q, 0, sh}));
+  EXPECT_FALSE(test::append_raw(model, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0, 0}, 0, sh}));
+  EXPECT_FALSE(test::append_raw(model, {{0, 0, 0}, {0, 0, 0}, {INFINITY, 0, 0, 0}, 0, sh}));
+  EXPECT_FALSE(test::append_raw(model, {{0, 0, 0}, {0, 0, 0}, q, NAN, sh}));
+  EXPECT_FALSE(test::append_raw(model, {{0, 0, 0}, {0, 0, 0}, q, 0, bad_sh}));
   EXPECT_EQ(model.left_out, 6u);
   EXPECT_EQ(model.count(), 0u);
-  EXPECT_TRUE(append_raw(model, {0, 0, 0}, {0, 0, 0}, q, 0, sh));
+  EXPECT_TRUE(test::append_raw(model, {{0, 0, 0}, {0, 0, 0}, q, 0, sh}));
   EXPECT_EQ(model.count(), 1u);
 }
 

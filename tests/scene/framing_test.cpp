@@ -85,7 +85,7 @@ TEST(Framing, LooksFromAboveAndPastWhatIsInTheWay) {
 
 TEST(Framing, HonoursUp) {
   const glm::dvec3 up(0, 0, 1);
-  const Camera camera = frame_model(ball_around({0, 0, 0}, 1.0f), 640, 360, 60.0, up);
+  const Camera camera = frame_model(ball_around({0, 0, 0}, 1.0f), 640, 360, 60.0, {up});
   EXPECT_GT(camera.position.z, 0.2);
   EXPECT_LT(glm::dot(camera.rotation[1], up), -0.9) << "the camera's y axis points down";
 }
@@ -115,7 +115,7 @@ TEST(Framing, FarFromTheOriginThereIsRoomForACamera) {
   for (const float far : {1e3f, 1e10f, 1e20f, 1e30f}) {
     Model model;
     add_ball(model, {0.0f, far, -far}, 0.1f);
-    const Camera camera = frame_model(model, 160, 120, 50.0, {0, -1, 0});
+    const Camera camera = frame_model(model, 160, 120, 50.0, {{0, -1, 0}});
     EXPECT_GT(glm::length(camera.position - glm::dvec3(0.0, far, -far)), 1e-8 * static_cast<double>(far))
         << far;
     EXPECT_LT(glm::length(camera.position - glm::dvec3(0.0, far, -far)),
@@ -134,7 +134,7 @@ TEST(Framing, OddModels) {
   const Camera of_both = frame_model(two, 640, 360);
   EXPECT_LT(reach(two, of_both, near_for(two)), 640.0 / 360.0) << "one is beside the picture";
   EXPECT_THROW(frame_model(one, 640, 360, 0.0), Error);
-  EXPECT_THROW(frame_model(one, 640, 360, 60.0, {0, 0, 0}), Error);
+  EXPECT_THROW(frame_model(one, 640, 360, 60.0, {{0, 0, 0}}), Error);
 }
 
 // Cameras on a circle that leans, 20 degrees above its plane, which look at its middle.
@@ -161,9 +161,9 @@ TEST(Capture, IsWhatTheCamerasStandAround) {
   EXPECT_NEAR(glm::degrees(capture->around->elevation), 20.0, 1e-6);
   // An orbit stands where they stood.
   const Model model = ball_around(glm::vec3(40, 0, 0), 1.0f);
-  const Camera first = orbit(model, 5, 64, 48, 50, capture->up, capture->around)[0];
+  const Camera first = orbit(model, 5, 64, 48, 50, *capture)[0];
   EXPECT_LT(glm::distance(first.position, middle + capture->around->first), 1e-6);
-  for (const Camera& camera : orbit(model, 5, 64, 48, 50, capture->up, capture->around)) {
+  for (const Camera& camera : orbit(model, 5, 64, 48, 50, *capture)) {
     EXPECT_NEAR(glm::distance(camera.position, middle), 5.0, 1e-6);
     EXPECT_LT(glm::distance(camera.rotation[2], glm::normalize(middle - camera.position)), 1e-6);
   }

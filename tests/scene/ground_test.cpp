@@ -176,7 +176,7 @@ TEST(Standing, IsOnTheFloorAndLooksAtTheMiddle) {
   const Model model = garden();
   const Capture capture = capture_of(model, *find_ground(model), 1.6);
   ASSERT_TRUE(capture.around);
-  const Camera camera = frame_model(model, 640, 360, 60.0, capture.up, capture.around);
+  const Camera camera = frame_model(model, 640, 360, 60.0, capture);
   EXPECT_NEAR(camera.position.z, 1.6, 0.1);
   EXPECT_LT(glm::length(glm::dvec2(camera.position)), 10.0) << "on the lawn";
   EXPECT_GT(glm::dot(camera.rotation[2], glm::normalize(-camera.position)), 0.9);
@@ -197,7 +197,7 @@ TEST(Standing, IsInARoomAndNotInItsWalls) {
   ASSERT_TRUE(ground && ground->level);
   const auto open = open_space(model, *ground, 1.6);
   ASSERT_TRUE(open);
-  for (const Camera& camera : orbit(model, 8, 64, 48, 60.0, ground->up, open)) {
+  for (const Camera& camera : orbit(model, 8, 64, 48, 60.0, {ground->up, open})) {
     const glm::dvec3& p = camera.position;
     EXPECT_NEAR(p.z, 1.6, 0.1);
     EXPECT_GT(p.y, 0.3);

@@ -11,6 +11,16 @@
 
 namespace binosplat::test {
 
+/// Appends a Gaussian as trainers store it, or counts it as left out; returns whether it was kept.
+inline bool append_raw(Model& model, const GaussianValues& raw) {
+  const std::size_t i = model.count();
+  model.resize(i + 1);
+  if (decode_raw(model, i, raw)) return true;
+  model.resize(i);
+  ++model.left_out;
+  return false;
+}
+
 constexpr double sh_c0 = 0.28209479177387814;
 
 /// Appends a Gaussian of one colour from all sides: the SH above degree 0 are 0.
