@@ -8,8 +8,8 @@
 #include "base/text.h"
 #include "formats/model_file.h"
 #include "formats/spz.h"
+#include "scene/detected_axes.h"
 #include "scene/repeat.h"
-#include "scene/told_axes.h"
 #include "stream/load_within.h"
 
 namespace binosplat::app {
@@ -72,29 +72,32 @@ void settle_axes(const SceneOptions& o, std::span<const Camera> cameras, Model& 
   if (model.axes != "RUB" && model.axes != "RDF") return;
   const bool said = !model.format.ends_with(axes_not_said);
   const std::string usual = model.axes, other = usual == "RUB" ? "RDF" : "RUB";
-  auto told = tell_axes(model, other, cameras);
-  if (!told) told = tell_axes(model, other, cameras_beside(o));
+  auto detected = detect_axes(model, other, cameras);
+  if (!detected) detected = detect_axes(model, other, cameras_beside(o));
   // What a file says is wrong only where cameras see hardly anything of the model so.
   constexpr double hardly = 0.05;
-  if (said && (!told || told->by_ground || told->axes == usual || told->seen_otherwise > hardly)) return;
-  if (!told) {
+  if (said &&
+      (!detected || detected->by_ground || detected->axes == usual || detected->seen_otherwise > hardly))
+    return;
+  if (!detected) {
     log_info(
         "{}: its file does not say where its axes point, and nothing else tells: taken as {}, as the format "
         "says (--axes {} if it lies upside down or out of sight)",
         o.name, usual, lowered(other));
     return;
   }
-  model.axes = told->axes;
-  const std::string& left = told->axes == usual ? other : usual;
+  model.axes = detected->axes;
+  const std::string& left = detected->axes == usual ? other : usual;
   const std::string why =
-      told->by_ground ? "in which its ground is below its cameras"
-                      : fmt::format("in which its cameras have {:.0f} % of it in view, and {:.0f} % in {}",
-                                    100.0 * told->seen, 100.0 * told->seen_otherwise, left);
+      detected->by_ground
+          ? "in which its ground is below its cameras"
+          : fmt::format("in which its cameras have {:.0f} % of it in view, and {:.0f} % in {}",
+                        100.0 * detected->seen, 100.0 * detected->seen_otherwise, left);
   if (said) {
     log_warning("{}: its axes are taken as {}, {}, though its file says that (--axes {} to take them so)",
-                o.name, told->axes, why, lowered(left));
+                o.name, detected->axes, why, lowered(left));
   } else {
-    log_info("{}: its axes are taken as {}, {} (--axes for others)", o.name, told->axes, why);
+    log_info("{}: its axes are taken as {}, {} (--axes for others)", o.name, detected->axes, why);
   }
 }
 

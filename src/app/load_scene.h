@@ -24,7 +24,7 @@ void set_as_asked(const SceneOptions& options, Model& model);
 std::vector<Camera> built_in_cameras(const SceneOptions& options);
 
 /// The axes of an spz, which is written in two frames, where no option says which: those in which
-/// `cameras`, or the ones beside the model, look at it (scene/told_axes.h), or else the file's or the
+/// `cameras`, or the ones beside the model, look at it (scene/detected_axes.h), or else the file's or the
 /// format's. Says which, unless it is what the file says, and how to choose others.
 void settle_axes(const SceneOptions& options, std::span<const Camera> cameras, Model& model);
 

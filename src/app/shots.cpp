@@ -184,7 +184,7 @@ std::string learn_from(const CoredModel& cored, const SceneOptions& scene, const
       if (!camera.eye)
         known.around = capture_of(cored, *ground, eye_height * known.units_per_metre.value_or(1.0)).around;
       if (known.around) {
-        const double eyes = glm::dot(known.around->middle, ground->up) - *ground->level +
+        const double eyes = glm::dot(known.around->middle, ground->up) - *ground->height +
                             known.around->distance * std::sin(known.around->elevation);
         place = fmt::format("from {:.2g} units above the ground (--eye and --at for another place)", eyes);
       }

@@ -16,7 +16,6 @@
 
 #include "app/mp4_spherical.h"
 #include "base/error.h"
-#include "base/levels.h"
 #include "base/text.h"
 
 namespace binosplat::app {
@@ -160,7 +159,7 @@ void Video::fail_with_what_it_said() {
 void Video::add(const Image& image) {
   std::vector<std::uint8_t> bytes(image.data.size());
   std::transform(image.data.begin(), image.data.end(), bytes.begin(),
-                 [](float v) { return static_cast<std::uint8_t>(level_of(v, 255.0f)); });
+                 [](float v) { return static_cast<std::uint8_t>(step_of(v, 255.0f)); });
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t sent = send(pictures_, &bytes[at], bytes.size() - at, MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;

@@ -56,10 +56,9 @@ Image depth_map(const Picture& picture) {
   return image;
 }
 
-Image quantised(const Image& image, int levels) {
+Image quantised(const Image& image, float top) {
   Image out = image;
-  const float top = static_cast<float>(levels - 1);
-  for (float& v : out.data) v = std::round(std::clamp(v, 0.0f, 1.0f) * top) / top;
+  for (float& v : out.data) v = static_cast<float>(step_of(v, top)) / top;
   return out;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 // Pictures in memory: what a blend leaves (Picture), and plain images of channels (Image).
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
@@ -62,7 +64,13 @@ Image on_black(const Picture& picture);
 /// Depth Z/A where A > 0.5, +infinity elsewhere; view-space z in world units; one channel.
 Image depth_map(const Picture& picture);
 
-/// Every value as 8 bits (or `levels` - 1 = 65535 for 16) would keep it: round(255 clamp(v)) / 255.
-Image quantised(const Image& image, int levels = 256);
+/// The step, 0 to `top`, by which a file of whole numbers keeps a value from 0 to 1: round(top clamp(value));
+/// 0 for one that is not a number.
+inline long step_of(float value, float top) {
+  return std::lround((value > 0.0f ? std::min(value, 1.0f) : 0.0f) * top);
+}
+
+/// Every value as 8 bits (or, with a `top` of 65535, 16) would keep it.
+Image quantised(const Image& image, float top = 255.0f);
 
 }  // namespace binosplat

@@ -14,7 +14,7 @@ namespace binosplat {
 
 namespace {
 
-/// Logarithms of scales beyond this are cut, as by PlayCanvas.
+/// Logarithms of scales beyond this are clipped, as by PlayCanvas.
 constexpr double packed_log_scale_most = 20.0;
 /// The higher harmonics reach from -4 to 4.
 constexpr double harmonic_most = 4.0;
@@ -139,13 +139,13 @@ class CompressedPlyWriter {
 Losses write_compressed_ply(OutputFile& file, const Model& model) {
   CompressedPlyWriter(file, model).write();
   Losses losses;
-  count_lost(losses, model, "scales beyond e^-20 to e^20, which a compressed ply cuts", [&](std::size_t i) {
+  count_lost(losses, model, "scales beyond e^-20 to e^20, which a compressed ply clips", [&](std::size_t i) {
     const glm::dvec3 scale(model.scale[i]);
     const double most = std::exp(packed_log_scale_most) * 1.000001;  // e^20 itself, as fp32 has it, is none
     return std::min({scale.x, scale.y, scale.z}) * most < 1.0 || std::max({scale.x, scale.y, scale.z}) > most;
   });
   const std::size_t values = model.sh.size() / model.count();
-  count_lost(losses, model, "harmonics beyond -4 to 4, which a compressed ply cuts", [&](std::size_t i) {
+  count_lost(losses, model, "harmonics beyond -4 to 4, which a compressed ply clips", [&](std::size_t i) {
     const float* sh = &model.sh[i * values];
     return std::any_of(sh + 3, sh + values, [](float v) { return std::abs(v) > harmonic_most; });
   });

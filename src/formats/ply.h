@@ -3,8 +3,8 @@
 //
 // Vertex properties are found by name: x y z, f_dc_0..2, f_rest_*, opacity (logit), scale_0..2 (logarithms),
 // rot_0..3 (quaternion w x y z of any length). The number of f_rest gives the degree of the spherical
-// harmonics: 0, 9, 24 or 45 for degrees 0 to 3; 72 (degree 4) is cut to degree 3 with a warning. They are
-// channel-major in the file, f_rest[c * K
+// harmonics: 0, 9, 24 or 45 for degrees 0 to 3; 72 (degree 4) is truncated to degree 3 with a warning. They
+// are channel-major in the file, f_rest[c * K
 // + k], and coefficient-major in Model::sh. Text and binary of either byte order, any scalar type, any order
 // of properties, CRLF in the header, other elements and properties: all are read or skipped as ply defines.
 //

@@ -95,7 +95,8 @@ PlyLayout find_layout(const std::filesystem::path& path, const PlyHeader& header
   PlyLayout layout;
   layout.vertices = header.find("vertex");
   const std::size_t in_file = count_rest(path, *layout.vertices) / 3;
-  if (in_file == 24) log_warning("{}: spherical harmonics of degree 4 are cut to degree 3", path.string());
+  if (in_file == 24)
+    log_warning("{}: spherical harmonics of degree 4 are truncated to degree 3", path.string());
   const std::size_t higher = std::min<std::size_t>(in_file, 15);
   layout.degree = static_cast<int>(std::lround(std::sqrt(static_cast<double>(higher + 1)))) - 1;
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/levels.h"
 #include "base/output_file.h"
 #include "formats/image_file.h"
 #include "formats/picture_readers.h"
@@ -90,17 +89,17 @@ bool read_rows(PngReader& reader) {
   return true;
 }
 
-/// The image's row `y` as PNG stores it: big-endian levels. NaN becomes 0.
+/// The image's row `y` as PNG stores it: big-endian. NaN becomes 0.
 void encode_row(const Image& image, int y, int bits, std::vector<png_byte>& row) {
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
   const float* values = &image.data[static_cast<std::size_t>(y) * count];
   for (std::size_t i = 0; i < count; ++i) {
     if (bits == 8) {
-      row[i] = static_cast<png_byte>(level_of(values[i], 255.0f));
+      row[i] = static_cast<png_byte>(step_of(values[i], 255.0f));
     } else {
-      const auto level = static_cast<std::uint16_t>(level_of(values[i], 65535.0f));
-      row[2 * i] = static_cast<png_byte>(level >> 8);
-      row[2 * i + 1] = static_cast<png_byte>(level & 255);
+      const auto step = static_cast<std::uint16_t>(step_of(values[i], 65535.0f));
+      row[2 * i] = static_cast<png_byte>(step >> 8);
+      row[2 * i + 1] = static_cast<png_byte>(step & 255);
     }
   }
 }
@@ -192,9 +191,9 @@ Image load_png(const std::filesystem::path& path, std::span<const std::byte> byt
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
   for (std::size_t i = 0; i < image.data.size(); ++i) {
     if (wide) {
-      std::uint16_t level;
-      std::memcpy(&level, &reader.values[2 * i], sizeof(level));
-      image.data[i] = static_cast<float>(level) / 65535.0f;
+      std::uint16_t step;
+      std::memcpy(&step, &reader.values[2 * i], sizeof(step));
+      image.data[i] = static_cast<float>(step) / 65535.0f;
     } else {
       image.data[i] = static_cast<float>(reader.values[i]) / 255.0f;
     }

@@ -24,7 +24,7 @@ namespace binosplat {
 
 namespace {
 
-/// Logarithms of scales beyond this are cut, as by PlayCanvas.
+/// Logarithms of scales beyond this are clipped, as by PlayCanvas.
 constexpr double sog_log_scale_most = 20.0;
 
 using Rgba = std::array<std::uint8_t, 4>;
@@ -209,7 +209,7 @@ ZipEntries sog_files(const Model& model) {
 Losses sog_losses(const Model& model) {
   Losses losses;
   const double thin = std::exp(-sog_log_scale_most), thick = std::exp(sog_log_scale_most);
-  count_lost(losses, model, "scales beyond e^-20 to e^20, which a SOG cuts", [&](std::size_t i) {
+  count_lost(losses, model, "scales beyond e^-20 to e^20, which a SOG clips", [&](std::size_t i) {
     const glm::vec3& s = model.scale[i];
     return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;
   });

@@ -34,7 +34,7 @@ Losses write_splat(OutputFile& file, const Model& model) {
         fmt::format(".splat keeps no harmonics: those of degrees 1 to {} are dropped, and with "
                     "them what changes with the viewer's place",
                     model.degree));
-  count_lost(losses, model, "base colours outside 0 to 1, which .splat cuts", [&](std::size_t i) {
+  count_lost(losses, model, "base colours outside 0 to 1, which .splat clips", [&](std::size_t i) {
     bool out = false;
     for (std::size_t c = 0; c < 3; ++c) out = out || std::abs(colour(i, c) - 0.5) > 0.5 + 0.5 / 255.0;
     return out;

@@ -89,7 +89,8 @@ class SpzDecoder {
 
 Model load_spz(const std::string& source, std::span<const std::byte> bytes) {
   const SpzContents contents = unpack_spz(source, bytes);
-  if (contents.degree == 4) log_warning("{}: spherical harmonics of degree 4 are cut to degree 3", source);
+  if (contents.degree == 4)
+    log_warning("{}: spherical harmonics of degree 4 are truncated to degree 3", source);
   Model model;
   model.format = fmt::format("spz {}{}", contents.version, contents.axes ? "" : axes_not_said);
   model.degree = std::min(contents.degree, 3);

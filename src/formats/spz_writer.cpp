@@ -101,16 +101,16 @@ Losses losses_of(const Model& model, int bits, int harmonic_bits) {
                                  std::ldexp(1.0, -bits)));
   // Up to half a step beyond the last one is rounding.
   const double thin = std::exp(-10.0 - 0.5 / 16.0), thick = std::exp(255.5 / 16.0 - 10.0);
-  count_lost(losses, model, "scales beyond e^-10 to e^5.94, which spz cuts", [&](std::size_t i) {
+  count_lost(losses, model, "scales beyond e^-10 to e^5.94, which spz clips", [&](std::size_t i) {
     const glm::vec3& s = model.scale[i];
     return std::min({s.x, s.y, s.z}) < thin || std::max({s.x, s.y, s.z}) > thick;
   });
-  count_lost(losses, model, "base colours beyond those of spz, which cuts them", [&](std::size_t i) {
+  count_lost(losses, model, "base colours beyond those of spz, which clips them", [&](std::size_t i) {
     const float* sh = &model.sh[i * values];
     return std::any_of(sh, sh + 3,
                        [](float v) { return std::abs(spz_colour_scale * v) > 0.5 + 0.5 / 255.0; });
   });
-  count_lost(losses, model, "harmonics beyond about -1 to 1, which spz cuts", [&](std::size_t i) {
+  count_lost(losses, model, "harmonics beyond about -1 to 1, which spz clips", [&](std::size_t i) {
     const float* sh = &model.sh[i * values];
     for (std::size_t k = 0; k < values - 3; ++k) {
       const double half = 1.0 / steps_of(k, harmonic_bits), v = sh[3 + k];

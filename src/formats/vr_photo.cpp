@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/levels.h"
 #include "base/output_file.h"
 #include "base/text.h"
 
@@ -27,7 +26,7 @@ constexpr int jpeg_quality = 95;
 std::string jpeg_of(const std::filesystem::path& path, const Image& image) {
   std::vector<unsigned char> bytes(image.data.size());
   std::transform(image.data.begin(), image.data.end(), bytes.begin(),
-                 [](float v) { return static_cast<unsigned char>(level_of(v, 255.0f)); });
+                 [](float v) { return static_cast<unsigned char>(step_of(v, 255.0f)); });
   const std::unique_ptr<void, decltype(&tjDestroy)> encoder(tjInitCompress(), &tjDestroy);
   unsigned char* made = nullptr;
   unsigned long size = 0;

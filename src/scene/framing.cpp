@@ -150,11 +150,11 @@ std::optional<Capture> capture_of(std::span<const Camera> cameras, const std::op
 
 Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
   Capture capture{ground.up};
-  if (!ground.level) return capture;
+  if (!ground.height) return capture;
   const Core& core = cored.core;
   const glm::dmat3 world = world_from_axes(cored.model.axes);
   constexpr double highest = 0.7;  // radii: of a model that is no larger than a person
-  const double eyes_at = *ground.level + std::min(eyes, highest * core.radius);
+  const double eyes_at = *ground.height + std::min(eyes, highest * core.radius);
   constexpr double crowded = 0.2;  // sr, of 1.8 that are looked at
   std::optional<double> least;
   for (const double away : {0.9, 0.6, 0.4}) {
@@ -170,7 +170,7 @@ Capture capture_of(const CoredModel& cored, const Ground& ground, double eyes) {
     capture.around = around;
   }
   if (*least > crowded) {
-    if (const auto open = open_space(cored, ground, eyes_at - *ground.level)) capture.around = open;
+    if (const auto open = open_space(cored, ground, eyes_at - *ground.height)) capture.around = open;
   }
   return capture;
 }

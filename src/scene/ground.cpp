@@ -128,7 +128,7 @@ glm::dvec3 upper(const glm::dvec3& axis, std::span<const Piece> pieces) {
 }
 
 /// Along up from the core's middle, in its radii.
-std::optional<double> level_of(const glm::dvec3& up, std::span<const Piece> pieces) {
+std::optional<double> floor_of(const glm::dvec3& up, std::span<const Piece> pieces) {
   constexpr double around = 2.0;
   std::vector<double> heights;
   double flat_weight = 0.0;
@@ -177,9 +177,9 @@ std::optional<Ground> find_ground(const CoredModel& cored, const std::optional<g
     if (!axis) return std::nullopt;
     ground.up = upper(*axis, pieces);
   }
-  if (const auto level = level_of(ground.up, pieces))
-    ground.level = glm::dot(world_from_axes(cored.model.axes) * cored.core.middle, ground.up) +
-                   *level * cored.core.radius;
+  if (const auto floor = floor_of(ground.up, pieces))
+    ground.height = glm::dot(world_from_axes(cored.model.axes) * cored.core.middle, ground.up) +
+                    *floor * cored.core.radius;
   return ground;
 }
 

@@ -13,7 +13,7 @@ struct Ground {
   glm::dvec3 up;
   /// How far along `up` the floor lies that reaches around what the model is about, world units; nothing for
   /// an object, which nobody stands in.
-  std::optional<double> level;
+  std::optional<double> height;
 };
 
 /// From the flat, opaque Gaussians, which lie in surfaces: up is where most of them face, as grounds, floors

@@ -46,19 +46,19 @@ struct Plan {
   Core core;
   glm::dmat3 world;
   glm::dvec3 up, aside, ahead;
-  double level, cell;
+  double floor, cell;
 
   Plan(const CoredModel& cored, const Ground& ground)
       : core(cored.core), world(world_from_axes(cored.model.axes)), cell(core.radius / space_half) {
     up = glm::transpose(world) * ground.up;
     aside = glm::normalize(glm::cross(up, std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
     ahead = glm::cross(up, aside);
-    level = *ground.level - glm::dot(core.middle, up);
+    floor = *ground.height - glm::dot(core.middle, up);
   }
 
   glm::dvec3 place(const glm::dvec2& at, double height) const {
     return core.middle + cell * ((at.x - space_half) * aside + (at.y - space_half) * ahead) +
-           (level + height) * up;
+           (floor + height) * up;
   }
 };
 
@@ -69,7 +69,7 @@ Map map_of(const Model& model, const Plan& plan, double eyes) {
     const glm::ivec2 cell = glm::floor(
         glm::dvec2(glm::dot(v, plan.aside), glm::dot(v, plan.ahead)) / plan.cell + (space_half + 0.5));
     if (!Map::inside(cell)) continue;
-    const double height = glm::dot(v, plan.up) - plan.level;
+    const double height = glm::dot(v, plan.up) - plan.floor;
     const std::size_t at = Map::index(cell);
     if (std::abs(height) < 0.25 * eyes) {
       if (model.opacity[i] > 0.5f) map.floor[at] = 1;

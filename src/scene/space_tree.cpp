@@ -10,13 +10,13 @@ namespace binosplat {
 
 namespace {
 
-struct Cut {
+struct Plane {
   glm::length_t axis;
   double at;
 };
 
 /// The middle of the longest side.
-Cut middle(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+Plane middle(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
   glm::vec3 low(positions[indices.front()]), high(low);
   for (const std::uint32_t i : indices) {
     low = glm::min(low, positions[i]);
@@ -31,33 +31,33 @@ Cut middle(std::span<const glm::vec3> positions, std::span<const std::uint32_t> 
 constexpr int deepest_middle = 64;
 
 /// Puts those before the plane first, and says how many they are.
-std::size_t part_at(const Cut& plane, std::span<const glm::vec3> positions, std::span<std::uint32_t> part,
-                    int depth) {
-  const std::size_t half = part.size() / 2;
+std::size_t split_at(const Plane& plane, std::span<const glm::vec3> positions, std::span<std::uint32_t> chunk,
+                     int depth) {
+  const std::size_t half = chunk.size() / 2;
   if (depth > deepest_middle) {
     const auto place = [&](std::uint32_t i) { return std::pair(positions[i][plane.axis], i); };
-    std::nth_element(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(half), part.end(),
+    std::nth_element(chunk.begin(), chunk.begin() + static_cast<std::ptrdiff_t>(half), chunk.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
     return half;
   }
   const auto beyond = std::stable_partition(
-      part.begin(), part.end(), [&](std::uint32_t i) { return positions[i][plane.axis] < plane.at; });
-  const auto first = static_cast<std::size_t>(beyond - part.begin());
+      chunk.begin(), chunk.end(), [&](std::uint32_t i) { return positions[i][plane.axis] < plane.at; });
+  const auto first = static_cast<std::size_t>(beyond - chunk.begin());
   return first > 0 ? first : half;  // all are at one place, or as near as numbers tell
 }
 
-void cut(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std::uint32_t> order,
-         std::size_t most, int depth) {
+void split(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std::uint32_t> order,
+           std::size_t most, int depth) {
   if (node.count <= most) return;
-  const std::span<std::uint32_t> part = order.subspan(node.first, node.count);
-  const std::size_t first = part_at(middle(positions, part), positions, part, depth);
+  const std::span<std::uint32_t> chunk = order.subspan(node.first, node.count);
+  const std::size_t first = split_at(middle(positions, chunk), positions, chunk, depth);
   node.children = {{node.first, first, {}}, {node.first + first, node.count - first, {}}};
-  const auto cut_child = [&](std::size_t k) { cut(node.children[k], positions, order, most, depth + 1); };
+  const auto split_child = [&](std::size_t k) { split(node.children[k], positions, order, most, depth + 1); };
   constexpr std::size_t worth_a_thread = 1 << 16;
   if (node.count < worth_a_thread) {
-    for (std::size_t k = 0; k < 2; ++k) cut_child(k);
+    for (std::size_t k = 0; k < 2; ++k) split_child(k);
   } else {
-    parallel_for(2, cut_child);
+    parallel_for(2, split_child);
   }
 }
 
@@ -66,7 +66,7 @@ void cut(SpaceNode& node, std::span<const glm::vec3> positions, std::span<std::u
 SpaceTree make_space_tree(std::span<const glm::vec3> positions, std::size_t most) {
   SpaceTree tree{std::vector<std::uint32_t>(positions.size()), {0, positions.size(), {}}};
   std::iota(tree.order.begin(), tree.order.end(), 0u);
-  cut(tree.root, positions, tree.order, most, 0);
+  split(tree.root, positions, tree.order, most, 0);
   return tree;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A model cut in two again and again, so that neighbours in space are neighbours in memory.
+// A model split in two again and again, so that neighbours in space are neighbours in memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,9 +20,9 @@ struct SpaceTree {
   SpaceNode root;
 };
 
-/// Cuts the box around the positions in halves across its longest side, so that what lies far out is by
-/// itself, and those at one place by their indices, until no part has more than `most`. The order of what is
-/// not cut apart stays. Beyond 64 cuts on end, which takes outliers without end, it cuts at the median.
+/// Splits the box around the positions in halves across its longest side, so that what lies far out is by
+/// itself, and those at one place by their indices, until no leaf has more than `most`. The order of what is
+/// not split stays. Beyond 64 splits on end, which takes outliers without end, it splits at the median.
 SpaceTree make_space_tree(std::span<const glm::vec3> positions, std::size_t most);
 
 }  // namespace binosplat

@@ -46,7 +46,7 @@ TEST(Image, IsQuantisedByRoundingAndClamping) {
   image.data = {-1.0f, 1.5f, 0.499f / 255.0f, 0.501f / 255.0f};
   EXPECT_EQ(quantised(image).data, (std::vector<float>{0.0f, 1.0f, 0.0f, 1.0f / 255.0f}));
   image.data = {0.5f, 0.25f, 1e-5f, 0.0f};
-  EXPECT_EQ(quantised(image, 65536).data,
+  EXPECT_EQ(quantised(image, 65535).data,
             (std::vector<float>{32768.0f / 65535.0f, 16384.0f / 65535.0f, 1.0f / 65535.0f, 0.0f}));
 }
 

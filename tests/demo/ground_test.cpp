@@ -46,7 +46,7 @@ double askew(const Model& model, const glm::dvec3& up, const glm::dquat& by, boo
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   EXPECT_TRUE(found);
   if (!found) return 180.0;
-  EXPECT_EQ(found->level.has_value(), place);
+  EXPECT_EQ(found->height.has_value(), place);
   const double degrees = glm::degrees(std::acos(std::min(1.0, glm::dot(found->up, by * up))));
   std::printf("%.1f degrees from up, %.2f s\n", degrees, took.count());
   return degrees;
@@ -91,7 +91,7 @@ TEST(GroundOfScenes, StandingInTheGarden) {
   const Model model = load_model(folder / "garden.ply");
   const std::vector<Camera> cameras = load_cameras(folder / "cameras.json");
   const auto ground = find_ground(model);
-  ASSERT_TRUE(ground && ground->level);
+  ASSERT_TRUE(ground && ground->height);
   const Capture capture = capture_of(model, *ground, 1.6);
   ASSERT_TRUE(capture.around);
   // Where the cameras stood: around the table, above the lawn and below the trees.

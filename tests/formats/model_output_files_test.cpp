@@ -164,16 +164,16 @@ TEST(ModelOutputFiles, SaysWhatIsCut) {
   model.sh[1] = 3.5f;
   model.sh[12 + 9] = 0.97f;
   EXPECT_EQ(losses(ModelFormat::spz),
-            (Texts{"1 of 5 Gaussians have scales beyond e^-10 to e^5.94, which spz cuts",
-                   "1 of 5 Gaussians have base colours beyond those of spz, which cuts them"}));
+            (Texts{"1 of 5 Gaussians have scales beyond e^-10 to e^5.94, which spz clips",
+                   "1 of 5 Gaussians have base colours beyond those of spz, which clips them"}));
   EXPECT_EQ(losses(ModelFormat::spz, 4).size(), 3u) << "1 - 1/32 is the last that rounds to a step";
   EXPECT_EQ(losses(ModelFormat::splat).back(),
-            "1 of 5 Gaussians have base colours outside 0 to 1, which .splat cuts");
+            "1 of 5 Gaussians have base colours outside 0 to 1, which .splat clips");
   model.scale[1].y = 0.0f;
   model.sh[12 + 9] = -4.5f;
   EXPECT_EQ(losses(ModelFormat::compressed_ply),
-            (Texts{"1 of 5 Gaussians have scales beyond e^-20 to e^20, which a compressed ply cuts",
-                   "1 of 5 Gaussians have harmonics beyond -4 to 4, which a compressed ply cuts"}));
+            (Texts{"1 of 5 Gaussians have scales beyond e^-20 to e^20, which a compressed ply clips",
+                   "1 of 5 Gaussians have harmonics beyond -4 to 4, which a compressed ply clips"}));
   EXPECT_TRUE(losses(ModelFormat::ply).empty());
   model.position[0].x = 3000.0f;
   EXPECT_EQ(losses(ModelFormat::spz).front(),

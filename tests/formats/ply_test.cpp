@@ -294,7 +294,8 @@ TEST(Ply, CutsDegreeFourToThree) {
   }
   testing::internal::CaptureStderr();
   EXPECT_TRUE(equal(load(file), load(expected)));
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("degree 4 are cut to degree 3"), std::string::npos);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("degree 4 are truncated to degree 3"),
+            std::string::npos);
 }
 
 TEST(Ply, FoldsTheFilterOfMipSplatting) {

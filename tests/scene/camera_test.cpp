@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/model.h"
+#include "support/models.h"
 
 namespace binosplat {
 namespace {

@@ -109,8 +109,8 @@ TEST(Ground, IsWhereMostSurfacesFaceAndTheModelBegins) {
     const auto found = find_ground(turned(garden(), by));
     ASSERT_TRUE(found);
     EXPECT_LT(degrees_between(found->up, by * z_up), 1.0);
-    ASSERT_TRUE(found->level);
-    EXPECT_NEAR(*found->level, 0.0, 0.05);
+    ASSERT_TRUE(found->height);
+    EXPECT_NEAR(*found->height, 0.0, 0.05);
   }
 }
 
@@ -126,8 +126,8 @@ TEST(Ground, OfARoomIsTheFloor) {
   const auto found = find_ground(furnished_room({5, 5, 5}));
   ASSERT_TRUE(found);
   EXPECT_LT(degrees_between(found->up, z_up), 1.0);
-  ASSERT_TRUE(found->level);
-  EXPECT_NEAR(*found->level, 5.0, 0.05);
+  ASSERT_TRUE(found->height);
+  EXPECT_NEAR(*found->height, 5.0, 0.05);
 }
 
 TEST(Ground, WallsAloneTellUpButNoFloor) {
@@ -137,7 +137,7 @@ TEST(Ground, WallsAloneTellUpButNoFloor) {
   const auto found = find_ground(walls.model);
   ASSERT_TRUE(found);
   EXPECT_LT(degrees_between(found->up, {0, -1, 0}), 2.0) << "y is down where nothing tells";
-  EXPECT_FALSE(found->level);
+  EXPECT_FALSE(found->height);
 }
 
 TEST(Ground, WhereNothingTellsThereIsNone) {
@@ -164,9 +164,9 @@ TEST(Ground, PiecesWithoutAnAreaSayNothing) {
 
 TEST(Ground, UpThatIsKnownIsTaken) {
   const auto found = find_ground(garden(), glm::dvec3(0, 0, 2));
-  ASSERT_TRUE(found && found->level);
+  ASSERT_TRUE(found && found->height);
   EXPECT_EQ(found->up, z_up);
-  EXPECT_NEAR(*found->level, 0.0, 0.05);
+  EXPECT_NEAR(*found->height, 0.0, 0.05);
   const auto askew = find_ground(garden(), glm::dvec3(1, 0, 0));
   ASSERT_TRUE(askew);
   EXPECT_FALSE(askew->level) << "nothing is level";
@@ -194,7 +194,7 @@ TEST(Standing, IsInARoomAndNotInItsWalls) {
     model.sh.insert(model.sh.end(), other.sh.begin(), other.sh.end());
   }
   const auto ground = find_ground(model);
-  ASSERT_TRUE(ground && ground->level);
+  ASSERT_TRUE(ground && ground->height);
   const auto open = open_space(model, *ground, 1.6);
   ASSERT_TRUE(open);
   for (const Camera& camera : orbit(model, 8, 64, 48, 60.0, {ground->up, open})) {

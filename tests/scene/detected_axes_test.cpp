@@ -1,4 +1,4 @@
-#include "scene/told_axes.h"
+#include "scene/detected_axes.h"
 
 #include <gtest/gtest.h>
 
@@ -59,12 +59,12 @@ Model stored(Model model, const std::string& axes) {
   return model;
 }
 
-TEST(ToldAxes, ByWhatCamerasHaveInView) {
+TEST(DetectedAxes, ByWhatCamerasHaveInView) {
   const glm::dvec3 middle(1, 2, 7);
   for (const std::string axes : {"RUB", "RDF"}) {
     for (const std::size_t count : {1u, 3u, 100u}) {
       const std::vector<Camera> all = ring_of_100(middle);
-      const auto told = tell_axes(stored(cloud(middle), axes), "RDF", std::span(all).first(count));
+      const auto told = detect_axes(stored(cloud(middle), axes), "RDF", std::span(all).first(count));
       ASSERT_TRUE(told) << axes;
       EXPECT_EQ(told->axes, axes);
       EXPECT_FALSE(told->by_ground);
@@ -75,9 +75,9 @@ TEST(ToldAxes, ByWhatCamerasHaveInView) {
 }
 
 // Around the world's origin cameras see the model in both.
-TEST(ToldAxes, ByTheGroundWhereBothAreSeen) {
+TEST(DetectedAxes, ByTheGroundWhereBothAreSeen) {
   for (const std::string axes : {"RUB", "RDF"}) {
-    const auto told = tell_axes(stored(bare_room(), axes), "RDF", ring_of_100(glm::dvec3(0)));
+    const auto told = detect_axes(stored(bare_room(), axes), "RDF", ring_of_100(glm::dvec3(0)));
     ASSERT_TRUE(told) << axes;
     EXPECT_EQ(told->axes, axes);
     EXPECT_TRUE(told->by_ground);
@@ -87,16 +87,16 @@ TEST(ToldAxes, ByTheGroundWhereBothAreSeen) {
       camera.rotation[0] = -camera.rotation[0];
       camera.rotation[1] = -camera.rotation[1];
     }
-    EXPECT_NE(tell_axes(stored(bare_room(), axes), "RDF", turned)->axes, axes);
+    EXPECT_NE(detect_axes(stored(bare_room(), axes), "RDF", turned)->axes, axes);
   }
 }
 
-TEST(ToldAxes, NotWhereNothingTells) {
+TEST(DetectedAxes, NotWhereNothingTells) {
   const glm::dvec3 origin(0);
-  EXPECT_FALSE(tell_axes(stored(cloud(origin), "RDF"), "RDF", ring_of_100(origin)))
+  EXPECT_FALSE(detect_axes(stored(cloud(origin), "RDF"), "RDF", ring_of_100(origin)))
       << "round Gaussians have no ground";
-  EXPECT_FALSE(tell_axes(stored(cloud({1, 2, 7}), "RDF"), "RDF", {}));
-  EXPECT_FALSE(tell_axes(stored(cloud({1, 2, 7}), "RDF"), "RDF", ring_of_100({500, 0, 0})))
+  EXPECT_FALSE(detect_axes(stored(cloud({1, 2, 7}), "RDF"), "RDF", {}));
+  EXPECT_FALSE(detect_axes(stored(cloud({1, 2, 7}), "RDF"), "RDF", ring_of_100({500, 0, 0})))
       << "nobody looks at it";
 }
 

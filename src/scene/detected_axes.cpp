@@ -1,4 +1,4 @@
-#include "scene/told_axes.h"
+#include "scene/detected_axes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,13 +57,13 @@ Upright upright(const Model& model, const std::string& others, std::span<const C
 
 }  // namespace
 
-std::optional<ToldAxes> tell_axes(const Model& model, const std::string& others,
-                                  std::span<const Camera> cameras) {
+std::optional<DetectedAxes> detect_axes(const Model& model, const std::string& others,
+                                        std::span<const Camera> cameras) {
   if (cameras.empty() || model.count() == 0) return std::nullopt;
   std::vector<Camera> some;
   for (std::size_t i = 0; i < cameras.size(); i += cameras.size() / most_cameras + 1)
     some.push_back(cameras[i]);
-  ToldAxes usual{.axes = model.axes, .cameras = some.size()}, other = usual;
+  DetectedAxes usual{.axes = model.axes, .cameras = some.size()}, other = usual;
   other.axes = others;
   usual.seen = other.seen_otherwise = mean_in_view(model, some, usual.axes);
   other.seen = usual.seen_otherwise = mean_in_view(model, some, other.axes);
